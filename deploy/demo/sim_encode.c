@@ -42,7 +42,7 @@ static uint64_t whole(double raw, double low, double high)
     raw = nearbyint(raw);
     if (raw <= low)
         raw = low;
-    if (raw >= high) /* 2^63 and 2^64 are doubles, the integers below them are not */
+    if (raw >= high) /* the maxima 2^63 - 1 and 2^64 - 1 are not representable as double, so compare before converting */
         return high >= 18446744073709551615.0 ? UINT64_MAX : high >= 9223372036854775807.0 ? INT64_MAX : (uint64_t)high;
     return raw < 0 ? (uint64_t)(int64_t)raw : (uint64_t)raw;
 }

@@ -47,7 +47,7 @@ static bool connect_to(struct sim_mqtt *mqtt, const char *where)
     mosquitto_lib_init();
     mqtt->library = good ? mosquitto_new(NULL, true, NULL) : NULL;
     if (mqtt->library) {
-        mosquitto_connect_async(mqtt->library, host, (int)port, KEEPALIVE_S); /* retries until the broker is up */
+        mosquitto_connect_async(mqtt->library, host, (int)port, KEEPALIVE_S); /* the library retries until the broker is up */
         good = mosquitto_loop_start(mqtt->library) == MOSQ_ERR_SUCCESS;
     }
     mem_free(host);

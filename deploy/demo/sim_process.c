@@ -208,7 +208,7 @@ struct process *process_create(const struct process_tag *tags, size_t count, uin
         state->random = seed ^ (uint64_t)hash_of(tags[i].name) << 20;
         state->machine = machine_of(process, tags, i);
         find_effects(state, tags[i].loop);
-        double own = 0.75 + 0.5 * uniform(&state->random); /* tags of a loop react differently */
+        double own = 0.75 + 0.5 * uniform(&state->random); /* random factor: tags of one loop react to an upset with different strength */
         for (int u = 0; u < UPSETS; u++)
             state->shares[u] *= own;
         state->dead_own_s = 6 * uniform(&state->random);

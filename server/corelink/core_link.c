@@ -30,7 +30,7 @@ enum { MAX_MESSAGE_BYTES = 64 << 20 /* of one message */, TOKEN_BYTES = 256, WHY
 static const int64_t CONNECT_NS = 4 * NS_PER_S, CLOCKS_NS = 2 * NS_PER_S /* clock difference above which a warning is logged */;
 /* smaller clock differences are not corrected, so that the clock which pages use does not step */
 static const int64_t STEP_NS = 500 * NS_PER_MS;
-static const int64_t QUICK_NS = 100 * NS_PER_MS; /* maximum delay of a message whose clock is used */
+static const int64_t QUICK_NS = 100 * NS_PER_MS; /* maximum delay of a message for its clock to be used */
 
 struct pending_request {
     uint64_t id, client; /* id 0: free slot */
@@ -686,7 +686,7 @@ static int64_t take_turn(struct core_link *link)
     *index = count ? (link->address + 1) % count : 0;
     if (*index)
         return clock_mono_ns();
-    if (link->turn.backoff.failures > 1) /* keep the delay at about a second: operators are waiting */
+    if (link->turn.backoff.failures > 1) /* limit the reconnect delay to about a second: operators are waiting */
         link->turn.backoff.failures = 1;
     return host_turn_next_ns(&link->turn, link->params.url_count, clock_mono_ns());
 }
@@ -734,7 +734,7 @@ struct core_link *core_link_start(const struct core_link_params *params)
     link->connects = counters_add(c, "plantcast_core_connects_total", "counter", "Connections to cores that brought readings.");
     link->refused = counters_add(c, "plantcast_core_refused_total", "counter", "Connections to cores that do not belong to this renderer.");
     link->behind = counters_add_seconds(c, "plantcast_core_clock_ahead_seconds", "gauge", "By so much the core's clock is ahead of ours.");
-    lws_set_log_level(LLL_ERR | LLL_WARN, NULL); /* the loop logs the connection's target */
+    lws_set_log_level(LLL_ERR | LLL_WARN, NULL); /* libwebsockets logs only errors and warnings; the loop logs the connection's target */
     thread_init(&link->thread);
     link->stop_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
     if (link->stop_fd < 0)

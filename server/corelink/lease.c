@@ -42,7 +42,7 @@ void lease_saw(struct lease *lease, const struct lease_row *row, int64_t now_ns)
     else if (!lease->leads && lease->bids && is_ours(lease, row)) /* our bid succeeded, but the database's answer was lost */
         lead(lease);
     else if (!same)
-        lease->bids = false; /* a late answer to an old bid has no effect any more */
+        lease->bids = false; /* the row has changed: a late answer to our old bid has no effect any more */
     if (!same)
         lease->seen_ns = now_ns;
     lease->row = *row;

@@ -332,7 +332,7 @@ static int64_t take_turn(struct lease_keeper *keeper)
     pthread_mutex_lock(&keeper->thread.lock);
     int64_t next_ns = began_ns + (leads ? LEASE_RENEW_NS : LEASE_LOOK_NS), last_ns = keeper->lease.until_ns - SHUTDOWN_NS + 1;
     pthread_mutex_unlock(&keeper->thread.lock);
-    /* wake in time to report the end of the lease */
+    /* wakes the thread in time to report the end of the lease */
     return leads && !keeper->told_lost && last_ns > began_ns && last_ns < next_ns ? last_ns : next_ns;
 }
 

@@ -24,8 +24,8 @@
 #include "value/quality.h"
 
 enum {
-    QUEUE_MAX = 4000000,   /* maximum number of samples in one second */
-    WAITING_MAX = 4000000, /* maximum number of rows in memory while the disk cannot be written */
+    QUEUE_MAX = 4000000,   /* maximum number of queued samples, which arrive within one second */
+    WAITING_MAX = 4000000, /* maximum number of rows waiting in memory while the disk cannot be written */
     TIDY_ROWS = 200000,
     TAG_LEADS = -1,   /* used instead of a tag: the following samples are from the store */
     TAG_FOLLOWS = -2, /* used instead of a tag: the following samples are from a new connection to the leading daemon */
@@ -51,7 +51,7 @@ struct historian {
         counter *samples, *points, *lost, *waiting, *good, *bytes, *free, *backup;
     } counters;
     struct postgres *postgres; /* NULL: history is not sent to a database */
-    atomic_bool restored;      /* older points have been read from the database into the files */
+    atomic_bool restored;      /* flag: older points have been read from the database into the files */
     /* --- below: used by the historian's thread only */
     struct history_tag *tags;
     struct recorder *recorder;

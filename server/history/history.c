@@ -53,7 +53,7 @@ static struct month_file *open_month(struct history_reader *reader, int month, i
         if (reader->files[i] && month_file_month(reader->files[i]) == month) {
             if (month_file_is_there(reader->files[i]))
                 return reader->files[i];
-            place = &reader->files[i]; /* deleted or set aside since it was opened */
+            place = &reader->files[i]; /* the month's file was deleted or set aside since it was opened; replace it */
         }
     if (place == &reader->files[reader->next])
         reader->next = (reader->next + 1) % OPEN_MONTHS;
@@ -269,7 +269,7 @@ int history_at(struct history_reader *reader, const struct history_tag *tags, in
     int month = month_of(t_us), error = 0;
     for (size_t i = 0; i < into->count; i++)
         pairs[i].before.t_us = pairs[i].after.t_us = INT64_MIN;
-    for (int i = 0; i < 3 && !error; i++) /* lines cross the ends of months */
+    for (int i = 0; i < 3 && !error; i++) /* the month of t_us and its neighbours, since lines cross the ends of months */
         error = at_month(reader, month + (int[]){ 0, -1, 1 }[i], tags, t_us, into->count, pairs);
     for (size_t i = 0; i < into->count; i++)
         read_pair(&pairs[i], t_us, tags[i].stale_us, &into->readings[i]);

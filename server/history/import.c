@@ -418,7 +418,8 @@ static void record_pending(struct filling *filling, int tag, int64_t next_us)
     if (ends) {
         const struct history_point end = { sample->t_us + 1, NAN, QUALITY_BAD_NO_COMMUNICATION };
         recorder_put(filling->recorder, tag, &end, &filling->rows);
-    } else if (usable && was_end_of_line(series, sample->t_us + 1)) { /* the line continues: a value replaces its end */
+    /* the recorded line continues: the new value replaces the point that ended it */
+    } else if (usable && was_end_of_line(series, sample->t_us + 1)) {
         recorder_end_tag(filling->recorder, tag, &filling->rows);
         add_row(filling, tag, sample->t_us + 1, sample->value, sample->quality);
     }
@@ -508,7 +509,7 @@ static bool fill(const struct import_params *params, struct import_series *serie
         .series = series,
         .counts = counts,
     };
-    struct diag again = { 0 };   /* repeats findings that `diag` already has */
+    struct diag again = { 0 };   /* receives the findings of the second pass, which `diag` already has */
     mkdir(params->folder, 0777); /* if the folder cannot be created, opening a month reports the error */
     bool good = read_before(&filling) && read_file(params, &again, counts, series, fill_sample, &filling);
     diag_finish(&again);

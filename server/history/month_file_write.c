@@ -235,7 +235,7 @@ static int move_row(struct month_file *file, int tag, int64_t id, const struct h
 {
     int error = 0;
     if (tag >= 0 && !file->rollups[tag].loaded)
-        error = load_rollups(file, tag, id); /* must precede adding the sample to the table */
+        error = load_rollups(file, tag, id); /* the rollups must be loaded before the new sample is in the table */
     if (!error)
         error = put(file, SQL_ADD_SAMPLE, id, point);
     return error || tag < 0 ? error : roll_point(file, tag, id, point);

@@ -14,8 +14,9 @@
 #include "history/month_outbox.h"
 
 static const char *const parts[] = { "", "-wal", "-shm" };
-enum { PARTS = sizeof(parts) / sizeof(parts[0]), CUT_BYTES = 16000000 /* CUT_BYTES: at once, because the recording thread waits */ };
-static const int64_t NEWEST_US = 600 * US_PER_S; /* minutes that are never cut off */
+/* CUT_BYTES: bytes cut from a month in one call, limited because the recording thread waits */
+enum { PARTS = sizeof(parts) / sizeof(parts[0]), CUT_BYTES = 16000000 };
+static const int64_t NEWEST_US = 600 * US_PER_S; /* the last ten minutes of history are never cut off */
 #define CUT_BELOW 0.01 /* fraction of the limit freed in addition, so that the limit is not reached again at once */
 
 static char *path_of(const char *folder, int month, int part)
@@ -73,7 +74,7 @@ static bool cut_month(struct log *log, const char *folder, int month, bool newes
     month_file_close(&file);
     if (!can || first_us > last_us || !(file = month_file_open(log, folder, month, NULL, 0, &error)))
         return false;
-    if (!newest) /* the file's free space is returned to the disk in any case */
+    if (!newest) /* cutting returns the file's free space to the disk in any case */
         too_many = too_many > size.free_bytes ? too_many - size.free_bytes : 0;
     double share = (double)(too_many < CUT_BYTES ? too_many : CUT_BYTES) / (double)(size.bytes - size.free_bytes);
     int64_t until_us = first_us + (int64_t)((double)(last_us - first_us) * share), latest_us = last_us - NEWEST_US;

@@ -18,7 +18,7 @@
 #include "base/text/text.h"
 
 static const char HEAD[] = "plantcast spool 1\n";
-enum { PLACES = 3, RESERVE_BYTES = 8 << 20, PLENTY = 10 /* PLENTY: free disk space required, in multiples of the reserve */ };
+enum { PLACES = 3, RESERVE_BYTES = 8 << 20, PLENTY = 10 /* free disk space required for making a reserve, in multiples of its size */ };
 
 char **spool_places(const char *folder)
 {

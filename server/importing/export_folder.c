@@ -133,7 +133,7 @@ struct export_upload *export_upload_begin(const char *folder, const char *name, 
     upload->fd = mkostemp(upload->hidden, O_CLOEXEC);
     *error = upload->fd < 0 ? -errno : 0;
     if (upload->fd < 0) {
-        mem_free(upload->hidden); /* no hidden file to be removed */
+        mem_free(upload->hidden); /* the file could not be created, so there is no hidden file to remove */
         upload->hidden = NULL;
         export_upload_abandon(&upload);
     }

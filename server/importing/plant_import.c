@@ -252,7 +252,7 @@ void plant_import_end(struct plant_import *import, bool in_force, const char *wh
     mem_free(import->why);
     import->why = line.at;
     pthread_mutex_unlock(&import->lock);
-    /* if it cannot be written, the next start uses the units that the models state */
+    /* errors are ignored: without this file the next start uses the units that the models state */
     atomic_file_put(import->choice, choice, strlen(choice));
     mem_free(choice);
 }

@@ -53,7 +53,8 @@ enum message_type {
 
 enum signed_frames { SIGNED_NONE, SIGNED_REFINED, SIGNED_ALL }; /* which frames of a session are signed */
 
-enum { TOKEN_MAX_CHARS = 128, RESUME_CHARS = 32, RESUME_MOST_CHARS = 8191 /* maximum length of a resume token that contains a view */ };
+/* RESUME_MOST_CHARS: maximum length of a resume token; it is long if it contains a view */
+enum { TOKEN_MAX_CHARS = 128, RESUME_CHARS = 32, RESUME_MOST_CHARS = 8191 };
 
 enum params_given { /* bit mask of the members in a params message */
                     GIVEN_GROUP = 1 << 0,

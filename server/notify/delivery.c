@@ -145,7 +145,8 @@ static char *set_mail(struct delivery *delivery, struct transfer *transfer, cons
     for (size_t i = 0; i < recipient->addresses.count; i++)
         transfer->list = curl_slist_append(transfer->list, recipient->addresses.at[i]);
     curl_easy_setopt(handle, CURLOPT_MAIL_RCPT, transfer->list);
-    curl_easy_setopt(handle, CURLOPT_MAIL_RCPT_ALLLOWFAILS, 1L); /* one missing mailbox does not stop the mail to the others */
+    /* a mailbox that the server refuses does not stop the mail to the others */
+    curl_easy_setopt(handle, CURLOPT_MAIL_RCPT_ALLLOWFAILS, 1L);
     curl_easy_setopt(handle, CURLOPT_DEBUGFUNCTION, hear_refusals);
     curl_easy_setopt(handle, CURLOPT_DEBUGDATA, transfer);
     curl_easy_setopt(handle, CURLOPT_VERBOSE, 1L);

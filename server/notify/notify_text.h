@@ -6,7 +6,7 @@
 #include "base/text/text.h"
 #include "notify/outbox.h"
 
-enum { NOTIFY_LINES = 50 /* alarms that an e-mail lists; further ones are only counted */ };
+enum { NOTIFY_LINES = 50 /* maximum number of alarms listed in an e-mail; further ones are only counted */ };
 
 /* Appends a complete e-mail, header and body, with CRLF line ends. now_us: its date. */
 void notify_mail_text(struct text *out, const struct plant *plant, const struct notify_recipient *recipient,

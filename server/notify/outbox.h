@@ -10,7 +10,7 @@
 #include "plant/sections/notification.h"
 
 enum { OUTBOX_ITEMS = 5000 /* maximum number of queued alarms of all recipients together */, OUTBOX_ID_BYTES = 40 };
-#define OUTBOX_REPEAT_US (600 * INT64_C(1000000)) /* an alarm that cleared by itself is not notified again sooner */
+#define OUTBOX_REPEAT_US (600 * INT64_C(1000000)) /* minimum time between two notifications of an alarm that cleared by itself */
 #define OUTBOX_KEEP_US (86400 * INT64_C(1000000)) /* age after which an undeliverable message is dropped */
 #define OUTBOX_REFRESH_US (60 * INT64_C(1000000)) /* interval at which Alertmanager is sent the active alarms */
 #define OUTBOX_ALERT_US (300 * INT64_C(1000000))  /* time after which Alertmanager drops an alarm that is not repeated */

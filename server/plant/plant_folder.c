@@ -122,7 +122,7 @@ static int put_elsewhere(const char *from, const char *to)
 static int move_into_place(const struct revision_record *record, const char *folder, const char *from, const char *name)
 {
     char *source = revision_version_of(record->path, from, name), *target = plant_folder_file(folder, name);
-    int status = access(source, F_OK) != 0 ? 0 /* already moved, or unchanged by the revision */
+    int status = access(source, F_OK) != 0 ? 0 /* no such version: the file was moved already, or is unchanged by the revision */
                  : *name == '/'            ? put_elsewhere(source, target)
                                            : move(source, target);
     mem_free(source);
@@ -152,7 +152,7 @@ int revision_go_on_undoing(const char *folder)
     struct revision_record record;
     char *last = plant_folder_file(folder, undone);
     int status = revision_record_read(&record, folder, REVISION_UNDOING);
-    if (status == -ENOENT) /* all files were put back; the record was being removed */
+    if (status == -ENOENT) /* the record is gone: all files were put back, and its removal had begun */
         status = 0;
     for (size_t i = record.count; i-- > 0 && status == 0;) {
         char *path = plant_folder_file(folder, record.entries[i].name);

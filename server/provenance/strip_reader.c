@@ -264,7 +264,7 @@ bool strip_read(const struct strip_picture *picture, const struct strip_found *f
     else if (best >= STRIP_BEYOND + STRIP_RAMP)
         out->state = STRIP_ABOVE;
     else {
-        /* if the two ends are far apart, their mean would be meaningless */
+        /* Colours at both ends of the scale may be similar: then the mean of their places would be meaningless. */
         double place = abs(high - low) > STRIP_RAMP / 4 ? best - STRIP_BEYOND + 0.5 : sum / total;
         out->value = value_of(&found->strip, place / STRIP_RAMP);
         out->low = value_of(&found->strip, (double)(low - STRIP_BEYOND - 1) / STRIP_RAMP);

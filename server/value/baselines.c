@@ -62,7 +62,7 @@ void baselines_destroy(struct baselines **baselines_ptr)
     *baselines_ptr = NULL;
 }
 
-/* Call with the lock held. NULL: none. */
+/* Returns the named baseline, or NULL. Call with the lock held. */
 static struct baseline_slot *find_name(struct baselines *baselines, const char *name)
 {
     for (size_t i = 0; i < baselines->count; i++)
@@ -71,7 +71,7 @@ static struct baseline_slot *find_name(struct baselines *baselines, const char *
     return NULL;
 }
 
-/* Call with the lock held. NULL: none. */
+/* Returns the baseline with that id, or NULL. Call with the lock held. */
 static struct baseline_slot *find_id(struct baselines *baselines, uint32_t id)
 {
     for (size_t i = 0; i < baselines->count; i++)
@@ -98,7 +98,7 @@ static void slot_remove(struct baselines *baselines, struct baseline_slot *slot)
     baselines->count--;
 }
 
-/* Call with the lock held and a free slot. */
+/* Adds a baseline and returns its id. Call with the lock held and a free slot. */
 static uint32_t slot_add(struct baselines *baselines, const char *name, const struct snapshot *snapshot)
 {
     struct baseline_slot *slot = &baselines->slots[baselines->count++];
@@ -125,7 +125,7 @@ uint32_t baselines_set(struct baselines *baselines, const char *name, const stru
     return id;
 }
 
-/* Call with the lock held. NULL: none. */
+/* Returns the first unnamed baseline of that time (taken_utc_ns < 0: of any time), or NULL. Call with the lock held. */
 static struct baseline_slot *find_unnamed(struct baselines *baselines, int64_t taken_utc_ns)
 {
     for (size_t i = 0; i < baselines->count; i++)

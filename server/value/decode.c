@@ -110,7 +110,7 @@ static uint32_t judge_current(const struct plant_tag *tag, double raw)
 {
     static const double MEASURED_LOW_MA = 3.8, MEASURED_HIGH_MA = 20.5, FAILED_LOW_MA = 3.6, FAILED_HIGH_MA = 21;
     double ma = 4 + 16 * (raw - tag->raw_low) / (tag->raw_high - tag->raw_low);
-    double half_step_ma = 8 / (tag->raw_high - tag->raw_low); /* half of one raw count, in mA */
+    double half_step_ma = 8 / (tag->raw_high - tag->raw_low); /* half of one raw count in mA: tolerance for rounded raw values */
     double rounding_ma = half_step_ma < 0.05 ? half_step_ma : 0;
     if (ma <= FAILED_LOW_MA + rounding_ma || ma >= FAILED_HIGH_MA - rounding_ma)
         return QUALITY_BAD_SENSOR_FAILURE;

@@ -99,7 +99,7 @@ void derived_compute(struct derived_state *state, struct store *store, int64_t n
     store_snapshot(store, now_mono_ns, now_utc_ns, state->snapshot);
     for (size_t i = 0; i < plant->derived_count; i++) {
         struct reading *reading = &state->snapshot->readings[plant->derived[i]];
-        *reading = combine(state, &plant->tags[plant->derived[i]]); /* later derived tags use this result */
+        *reading = combine(state, &plant->tags[plant->derived[i]]); /* derived tags that come later use this result */
         write_new(state, store, i, reading);
     }
 }

@@ -34,7 +34,7 @@ static void read_block(struct modbus_source *modbus, size_t index)
     modbus->asked_ns = now_ns;
     if (status < 0 && modbus_manners_excuse_read(modbus, status, unit->state == UNIT_UP))
         return; /* the block stays due, so that the next connection begins with it */
-    /* late: missed reads are skipped, not made up in a burst */
+    /* if the reader is late, missed reads are skipped, not made up in a burst */
     block->due_ns = next_ns > now_ns ? next_ns : now_ns + block->scan_ms * NS_PER_MS;
     counter_inc(status == 0 ? modbus->reads_ok : modbus->reads_failed, 1);
     if (status < 0) {

@@ -100,14 +100,14 @@ void modbus_take_exception(struct modbus_source *modbus, size_t index, int code,
         note_busy(modbus, block, code, now_ns);
         return;
     }
-    if (block->answered) { /* the block was read before: give the device a second try */
+    if (block->answered) { /* the block was readable before: read it once more before splitting it */
         block->answered = false;
         block->due_ns = now_ns;
         return;
     }
     modbus->plan_cut = true;
     if (code != MODBUS_EXCEPTION_ILLEGAL_FUNCTION && block->tag_count > 1) {
-        block->due_ns = now_ns; /* both halves at once; splitting repeats until the refused register is found */
+        block->due_ns = now_ns; /* both halves are read at once; splitting repeats until the refused register is found */
         read_plan_split(&modbus->plan, modbus->base.plant, index);
         return;
     }

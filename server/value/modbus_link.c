@@ -52,7 +52,7 @@ static modbus_t *new_modbus(const struct plant_source *source)
     if (!modbus)
         return NULL;
     modbus_set_response_timeout(modbus, (uint32_t)(source->timeout_ms / 1000), (uint32_t)(source->timeout_ms % 1000) * 1000);
-    modbus_set_byte_timeout(modbus, 0, 0); /* off: the response timeout limits the whole reply, not each byte */
+    modbus_set_byte_timeout(modbus, 0, 0); /* no timeout per byte: the response timeout limits the whole reply */
     return modbus;
 }
 
@@ -216,7 +216,7 @@ static int connect_any(struct modbus_link *link, int64_t deadline_ns, int *out_f
         if (status == 0 || status == -ECANCELED)
             break;
     }
-    lookup_destroy(&link->lookup); /* each connection resolves the name again: addresses change */
+    lookup_destroy(&link->lookup); /* each connection resolves the host name again, since addresses change */
     return status;
 }
 
@@ -310,7 +310,7 @@ static int ask_framed(struct modbus_link *link, const struct modbus_question *qu
         numbered.number = ++link->number;
         status = modbus_tcp_ask(link->slot_fd, link->stop_fd, clock_mono_ns() + timeout_ns, &numbered, words, &link->answered);
     } while (status == -ETIMEDOUT && link->answers == 0 && !link->answered.began && clock_mono_ns() < begin_ns + link->patience_ns);
-    if (link->answers == 0) /* repeated requests are one timeout apart */
+    if (link->answers == 0) /* send time of the answered request: repeated requests are one timeout apart */
         link->sent_ns = begin_ns + (uint16_t)(link->answered.number - numbered.oldest) * timeout_ns;
     return status;
 }

@@ -8,8 +8,8 @@
 #include "value/modbus_impl.h"
 
 enum { SHORT_CONNECTIONS = 3, REFUSED_CONNECTIONS = 6, CLOSED_CONNECTIONS = 2 };
-static const int64_t RECONNECT_DELAY_NS = 50 * NS_PER_MS; /* doubled after each attempt: some devices free a connection late */
-static const int64_t TOLERANCE_NS = 2 * NS_PER_S; /* time since the last answer after which the device counts as lost */
+static const int64_t RECONNECT_DELAY_NS = 50 * NS_PER_MS; /* first delay, doubled each time: some devices free a connection late */
+static const int64_t TOLERANCE_NS = 2 * NS_PER_S;         /* time since the last answer after which the device counts as lost */
 /* wait for the first answer on the second silent connection; twice as long on later ones */
 static const int64_t FIRST_ANSWER_TIMEOUT_NS = 3 * NS_PER_S;
 static const int64_t RTU_DELAY_NS = 500 * NS_PER_MS; /* first delay to try for RTU over TCP, whose requests have no numbers */

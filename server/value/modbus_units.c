@@ -34,7 +34,7 @@ static void link_lost(struct modbus_source *modbus, const char *why)
 void modbus_unit_is_up(struct modbus_source *modbus, struct modbus_unit *unit)
 {
     if (unit->state == UNIT_DOWN && modbus->plan_cut)
-        modbus_replan(modbus); /* the unit may have been replaced by another device */
+        modbus_replan(modbus); /* rebuild the plan: the unit may have been replaced by another device */
     if (unit->loss_said)
         log_info(modbus->base.log, "source %s: unit %d answers again", modbus->base.config->id, unit->id);
     unit->loss_said = false;

@@ -50,7 +50,7 @@ void snapshot_cache_destroy(struct snapshot_cache **cache_ptr)
     *cache_ptr = NULL;
 }
 
-/* Call with the lock held. NULL: none. */
+/* Returns the entry of an instant, or NULL. Call with the lock held. */
 static struct snapshot_entry *find(const struct snapshot_cache *snapshot_cache, int64_t at_us)
 {
     for (size_t i = 0; i < snapshot_cache->count; i++)

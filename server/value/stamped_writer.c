@@ -13,7 +13,7 @@ void stamped_writer_init(struct stamped_writer *writer, const struct plant *plan
     *writer = (struct stamped_writer){ .store = store, .plant = plant };
     writer->samples = mem_array(plant->tag_count, sizeof(*writer->samples));
     writer->last = mem_array(plant->tag_count, sizeof(*writer->last));
-    for (size_t i = 0; i < plant->tag_count; i++) /* a time before the machine's start is negative */
+    for (size_t i = 0; i < plant->tag_count; i++) /* 0 would not be early enough: a time before the machine's start is negative */
         writer->last[i].mono_ns = INT64_MIN;
 }
 
@@ -76,7 +76,7 @@ void stamped_writer_add(struct stamped_writer *writer, int tag, const struct sta
         writer->worst_skew_ns = utc_ns - writer->utc_ns;
     if (!quality_is_bad(value->quality)) {
         decode_number(&writer->plant->tags[tag], value->value, &sample);
-        if (value->quality >> 30 >= sample.quality >> 30) /* equal severity: the sender's code is more specific */
+        if (value->quality >> 30 >= sample.quality >> 30) /* at equal or worse severity the sender's code is used, which is more specific */
             sample.quality = value->quality;
         if (was_kept && quality_is_good(sample.quality))
             sample.quality = QUALITY_UNCERTAIN_LAST_USABLE;

@@ -125,7 +125,7 @@ void store_adopt(struct store *store, struct store *before)
             continue;
         const struct held own = *to;
         *to = before->tags[i];
-        to->alarm = own.alarm; /* the limits may have changed: the alarm service sets the alarm again */
+        to->alarm = own.alarm; /* not copied, since limits may have changed: the alarm service sets the alarm again */
         to->alarm_status = own.alarm_status;
         to->stale_ns = own.stale_ns;
         to->flatline_ns = own.flatline_ns;

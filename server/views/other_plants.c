@@ -297,7 +297,7 @@ char *other_plants_text(struct other_plants *others, const int *which, size_t co
     pthread_mutex_lock(&others->lock);
     for (size_t i = 0; i < count; i++) {
         struct other *other = &others->at[which[i]];
-        if (!other->wanted_ns) { /* the first request of a display */
+        if (!other->wanted_ns) { /* first request after a time without displays */
             other->why = WHY_WAITING;
             other->since_us = clock_plant_ns() / 1000;
             wakes = true;

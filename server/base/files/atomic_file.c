@@ -10,7 +10,8 @@
 
 #include "base/mem.h"
 
-enum { MAX_TRIES = 1000 }; /* attempts to find a free name: killed programs with the same process id may have left files */
+/* attempts to find a free name for the temporary file: killed programs with the same process id may have left files */
+enum { MAX_TRIES = 1000 };
 
 int atomic_file_begin(struct atomic_file *file, const char *path, mode_t mode)
 {

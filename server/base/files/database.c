@@ -237,7 +237,7 @@ int database_open_to_read(struct database *database)
     int code = open_handle(database, database->path, SQLITE_OPEN_READONLY);
     if (code == SQLITE_OK)
         code = read_version(database, &version);
-    /* not for a writable disk, where another process may be about to write the file */
+    /* Only for a read-only disk: on a writable one, another process may be about to write the file. */
     if ((code & 0xff) == SQLITE_CANTOPEN && !has_log(database) && is_on_read_only_disk(database)) {
         code = open_unchanging(database);
         if (code == SQLITE_OK)

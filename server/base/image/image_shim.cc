@@ -25,8 +25,8 @@ namespace
 {
 
 constexpr int MAX_SIDE_PX = 1 << 15;
-constexpr int MAX_FILE_CHANNELS = 64; /* renderers append channels of their own after the colours */
-constexpr uint64_t MAX_PIXELS = 1 << 26;                          /* 8192 x 8192; a texture is never drawn with more */
+constexpr int MAX_FILE_CHANNELS = 64; /* maximum number of channels; renderers append channels of their own after the colours */
+constexpr uint64_t MAX_PIXELS = 1 << 26; /* maximum image size, 8192 x 8192; a texture is never drawn with more pixels */
 /* plausible decoded values per byte of file (zlib shrinks to a thousandth at best, JPEG to less), and values that any file may have */
 constexpr uint64_t VALUES_PER_BYTE = 2000, FREE_VALUES = 1 << 20;
 
@@ -93,7 +93,7 @@ template <typename T> void read_pixels(OIIO::ImageInput *in, const OIIO::ImageSp
         throw std::bad_alloc();
     bool read = in->read_image(0, 0, 0, channels, kind<T>::type, raw.data());
     std::string error = in->geterror();
-    if (!read || error.find("Premature end") != std::string::npos) /* the JPEG reader fills missing rows with grey */
+    if (!read || error.find("Premature end") != std::string::npos) /* the JPEG reader reports this error and fills missing rows with grey */
         throw std::runtime_error(error.empty() ? "broken" : error);
     spread(raw.data(), channels, pixels, kind<T>::opaque, *rgba);
     *width_px = static_cast<uint32_t>(spec.width);
@@ -124,7 +124,8 @@ bool size_good(const OIIO::ImageSpec &spec, int max_channels, char *why)
 bool claim_good(const OIIO::ImageSpec &spec, const char *format, size_t size, char *why)
 {
     uint64_t values = static_cast<uint64_t>(spec.width) * static_cast<uint64_t>(spec.height) * static_cast<uint64_t>(spec.nchannels);
-    if (strcmp(format, "webp") != 0 && values > FREE_VALUES + VALUES_PER_BYTE * size) /* WebP stores plain colours in a few bytes */
+    /* no such check for WebP, which stores images of one colour in a few bytes */
+    if (strcmp(format, "webp") != 0 && values > FREE_VALUES + VALUES_PER_BYTE * size)
         return refuse(why, "%zu bytes claim %d x %d pixels", size, spec.width, spec.height);
     return true;
 }

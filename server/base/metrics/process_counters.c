@@ -28,7 +28,7 @@ static bool read_stat(unsigned long long fields[STAT_LAST + 1])
     for (int i = 3; i <= STAT_LAST && at; i++, at = strchr(at, ' ')) {
         at++;
         if (i > 3 && sscanf(at, "%llu", &fields[i]) != 1)
-            fields[i] = 0; /* the field may be negative, such as a priority */
+            fields[i] = 0; /* a negative field, such as a priority, is not parsed and counts as 0 */
     }
     return at != NULL;
 }
@@ -61,7 +61,7 @@ void process_counters_set(struct counters *counters)
     if (read_stat(fields)) {
         counter_set(counters_add(counters, "process_threads", "gauge", "Threads."), (int64_t)fields[STAT_THREADS]);
         counter *start_s = counters_add(counters, "process_start_time_seconds", "gauge", "When the process was started, since 1970.");
-        if (atomic_load(start_s) == 0) /* set only once, so that a later change of the clock has no effect */
+        if (atomic_load(start_s) == 0) /* the start time is set only once, so that a later change of the clock does not change it */
             counter_set(start_s, boot_s() + (int64_t)(fields[STAT_START] / (unsigned long long)sysconf(_SC_CLK_TCK)));
         counter_set(counters_add(counters, "process_virtual_memory_bytes", "gauge", "Address space in use."),
                     (int64_t)fields[STAT_VIRTUAL]);

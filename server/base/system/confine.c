@@ -166,7 +166,7 @@ static void offer_to_oom_killer(void)
     int file = open("/proc/self/oom_score_adj", O_WRONLY | O_CLOEXEC);
     if (file >= 0) {
         ssize_t written = write(file, "1000", 4);
-        (void)written; /* if the write is refused, the kernel's default stays */
+        (void)written; /* if the kernel refuses the write, the OOM score keeps its default */
         close(file);
     }
 }
@@ -178,7 +178,7 @@ int confine(const struct confine_params *params)
     drop_capabilities(params->role);
     if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0)
         return -errno;
-    bool moves_files = params->role != CONFINE_READER; /* moving files between folders; Landlock ABI 1 forbids that to all */
+    bool moves_files = params->role != CONFINE_READER; /* Landlock ABI 1 forbids moving files between folders to every confined process */
     int status = abi < 1 || (abi < ABI_RENAME && moves_files) ? 0 : restrict_paths(params, abi);
     if (status != 0)
         return status;

@@ -24,7 +24,8 @@
 #endif
 
 #ifdef OWN_ARCH
-enum { MAX_INSTRUCTIONS = 1024, FIRST_NEWER_CALL = 451 /* cachestat, Linux 6.5; x32 calls are above it too */ };
+/* FIRST_NEWER_CALL: number of cachestat, Linux 6.5: this and higher calls, also those of x32, are newer than the list */
+enum { MAX_INSTRUCTIONS = 1024, FIRST_NEWER_CALL = 451 };
 #define NAMESPACES (CLONE_NEWNS | CLONE_NEWCGROUP | CLONE_NEWUTS | CLONE_NEWIPC | CLONE_NEWUSER | CLONE_NEWPID | CLONE_NEWNET)
 #ifndef PR_SET_VMA
 #define PR_SET_VMA 0x53564d41

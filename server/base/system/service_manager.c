@@ -24,9 +24,9 @@ enum {
     FIRST_SOCKET = 3 /* first descriptor passed by systemd: sd_listen_fds(3) */,
     EXTENSION_S = 60,
     EXTENSION_INTERVAL_S = 10,
-    MIN_EXTENSIONS = 60 /* minimum number of requests within the time limit */
+    MIN_EXTENSIONS = 60 /* minimum number of extension requests within the time limit */
 };
-static const int64_t AT_WORK_NS = 20 * NS_PER_MS; /* CPU time since the last check; less counts as idle */
+static const int64_t AT_WORK_NS = 20 * NS_PER_MS; /* CPU time between two checks below which the processes count as idle */
 
 /* Sends a datagram. path: a file's path, or @NAME for an abstract socket. */
 static bool send_to(const char *path, const char *bytes, size_t count)
@@ -138,7 +138,7 @@ static bool is_at_work(struct service_patience *patience)
 static void *extend_start(void *arg)
 {
     struct service_patience *patience = arg;
-    bool works = true; /* ask at least once, so that a quick start shows its status too */
+    bool works = true; /* request an extension at least once, so that a quick start shows its status too */
     pthread_mutex_lock(&patience->lock);
     do {
         if (works && clock_mono_ns() - patience->since_ns < patience->limit_ns)

@@ -217,7 +217,7 @@ struct charset_choice charset_find(const char *bytes, size_t count)
         choice.ascii = characters == 0 && invalid == 0;
         if (choice.ascii && has_escape(bytes, count))
             name = "ISO-2022-JP";
-        else if (invalid * 4 > characters) /* tolerates a few invalid bytes of a damaged or truncated text */
+        else if (invalid * 4 > characters) /* UTF-8 may have a few invalid bytes if the text is damaged or truncated */
             return charset_find_legacy(bytes, count);
     }
     if (name) {

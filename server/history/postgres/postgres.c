@@ -357,7 +357,8 @@ static void send_all(struct postgres *postgres)
     postgres->flushed = true;
     if (postgres->alone) {
         pthread_mutex_lock(&postgres->lock);
-        postgres->sent_ns = now_ns - ROUND_MS * NS_PER_MS; /* subtracted because the historian may have added points meanwhile */
+        /* one round is subtracted because the historian may have added points meanwhile */
+        postgres->sent_ns = now_ns - ROUND_MS * NS_PER_MS;
         pthread_mutex_unlock(&postgres->lock);
     }
 }
@@ -368,7 +369,7 @@ static void *run(void *arg)
     struct pollfd fd = { .fd = postgres->stop_fd, .events = POLLIN };
     bool last;
     do {
-        last = poll(&fd, 1, ROUND_MS) > 0; /* points written before the end are still sent */
+        last = poll(&fd, 1, ROUND_MS) > 0; /* after the stop signal one more round sends the points written before it */
         if (!last || !*postgres->said)
             connect_now(postgres);
         take_lead(postgres);
@@ -380,7 +381,8 @@ static void *run(void *arg)
         drop_oldest(postgres);
         counter_set(postgres->counters.waiting, waiting(postgres));
         if (postgres->alone || !postgres->flushed) {
-            if (!postgres->restore.wanted || postgres->restore.next_month != INT_MAX) /* once the earlier lines in the database are ended */
+            /* do not send before the earlier lines in the database are ended */
+            if (!postgres->restore.wanted || postgres->restore.next_month != INT_MAX)
                 send_all(postgres);
         } else {
             forget_sent(postgres);
@@ -445,7 +447,7 @@ static int64_t end_of_files_us(struct postgres *postgres)
 static void add_span(struct postgres *postgres, const struct postgres_span *span)
 {
     struct postgres_span *last = &postgres->owed.spans[SPANS - 1];
-    if (postgres->owed.span_count == SPANS) /* queue full, as with an unstable connection: extend the last span */
+    if (postgres->owed.span_count == SPANS) /* the list of spans is full, as with an unstable connection: extend the last span */
         *last = (struct postgres_span){ last->from_us, span->to_us, span->at_ns };
     else
         postgres->owed.spans[postgres->owed.span_count++] = *span;

@@ -236,7 +236,8 @@ static void put_int64(struct postgres_link *link, int64_t value)
 
 bool postgres_copy_begin(struct postgres_link *link, const char *table)
 {
-    static const char head[19] = "PGCOPY\n\377\r\n\0"; /* followed by flags and the length of an extension, both 0 */
+    /* header of COPY BINARY; flags and the length of an extension, both 0, complete it */
+    static const char head[19] = "PGCOPY\n\377\r\n\0";
     link->copy.length = 0;
     put(link, head, sizeof(head));
     return postgres_link_runf(link, "COPY %s FROM STDIN (FORMAT binary)", table);

@@ -23,7 +23,7 @@ struct plant_models_check {
     struct diag *diag;
     struct model_header header; /* header of the model being checked */
     bool *taken;                /* flag by node: the node belongs to the asset being checked */
-    bool *counted;              /* flag by node: the node belongs to an asset checked so far */
+    bool *counted;              /* flag by node: the node belongs to an asset checked so far, so its triangles are counted */
     uint64_t triangles;         /* triangles of all models; a model that several assets share counts once */
     uint32_t *found;
 };
@@ -75,7 +75,7 @@ static bool find_better(const struct plant_asset *asset, const struct model_box 
     static const struct {
         const char *name;
         double m;
-    /* ascending: the smallest unit that fits is chosen */
+    /* in ascending order, so that the smallest unit that fits is chosen */
     } units[] = { { "mm", 1e-3 }, { "cm", 1e-2 }, { "in", 0.0254 }, { "ft", 0.3048 }, { "m", 1 } };
     size_t best = within, placed;
     for (int pass = 0; pass < 3; pass++) /* another axis, other units, both */
@@ -137,7 +137,8 @@ static bool is_one_place(const struct plant_models_check *check, const struct pl
     for (size_t i = 1; i < *count; i++) {
         place_of(&check->header, check->found[i], other);
         for (int axis = 0; axis < 3; axis++)
-            if (fabs(other[axis] - first[axis]) * asset->unit_m > SAME_PLACE_M) /* false if a coordinate is unknown (NaN) */
+            /* the comparison is false if a coordinate is unknown (NaN) */
+            if (fabs(other[axis] - first[axis]) * asset->unit_m > SAME_PLACE_M)
                 return false;
     }
     return true;

@@ -222,7 +222,7 @@ bool nodes_take(const char *patterns, const struct model_node *nodes, size_t cou
     memset(taken, 0, count * sizeof(*taken));
     bool good = !patterns || mark_all(patterns, false, &model, taken, &including, why, why_bytes);
     if (good && including == 0)
-        memset(taken, 1, count * sizeof(*taken)); /* no including pattern: start from all nodes */
+        memset(taken, 1, count * sizeof(*taken)); /* without an including pattern, exclusion starts from all nodes */
     return good && (!patterns || mark_all(patterns, true, &model, taken, &excluding, why, why_bytes));
 }
 

@@ -51,7 +51,7 @@ static const char *kind_of(const char *text, size_t count)
         return "a DWG drawing";
     if (count > 6 && !memcmp(text, "solid ", 6) && has(text, count, "facet"))
         return "an STL model";
-    if (count > 80 && text[72] == 'S' && text[79] == '1' && !memchr(text, '\n', 72)) /* IGES: the first line of its start section */
+    if (count > 80 && text[72] == 'S' && text[79] == '1' && !memchr(text, '\n', 72)) /* matches the first line of an IGES start section */
         return "an IGES model";
     return NULL;
 }

@@ -88,7 +88,7 @@ void tag_derived_resolve(const struct tag_links *derived, struct plant *plant, s
             continue;
         diag_error(diag, plant->tags_path, link->line, link->column, "Address: '%.60s' is computed from itself",
                    plant->tags[link->tag].name);
-        break; /* all other tags of the cycle would be reported too */
+        break; /* report one tag only: all others of the cycle would be reported too */
     }
     mem_free(walk.marks);
 }

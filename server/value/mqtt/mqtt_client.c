@@ -100,7 +100,7 @@ static void on_subscribe(struct mosquitto *library, void *arg, int id, int count
         request++;
     if (request == requests)
         return;
-    client->requests[request] = 0; /* acknowledged; 0 is never an id of the library */
+    client->requests[request] = 0; /* 0 marks the request as acknowledged; the library never uses this id */
     for (size_t i = 0, topic = request * TOPICS_AT_ONCE; i < TOPICS_AT_ONCE && topic < client->topic_count; i++, topic++) {
         client->acknowledged++;
         if ((int)i >= count || granted[i] >= 128)

@@ -405,7 +405,7 @@ static bool refuse_unborn(struct sparkplug *sparkplug, struct sparkplug_node *no
 static bool take_node_birth(struct sparkplug *sparkplug, const struct said *said, const struct sparkplug_payload *payload, char why[200])
 {
     struct sparkplug_node *node = said->node;
-    node_dies(sparkplug, node, said->topic); /* ends earlier births of this node and its devices */
+    node_dies(sparkplug, node, said->topic); /* invalidates earlier births of this node and its devices */
     node->is_born = true;
     node->told = node->is_wanted = false;
     node->bd_seq = sparkplug_bd_seq(payload);

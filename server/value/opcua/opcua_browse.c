@@ -115,7 +115,7 @@ static char *address_of(const struct browse *browse, const UA_NodeId *id)
     UA_String printed = UA_STRING_NULL;
     if (id->namespaceIndex >= browse->client->namespace_count)
         return NULL;
-    local.namespaceIndex = 0; /* prints the identifier without a namespace */
+    local.namespaceIndex = 0; /* makes UA_NodeId_print() print the identifier without a namespace */
     UA_NodeId_print(&local, &printed);
     struct text text = { 0 };
     text_add(&text, "nsu=");

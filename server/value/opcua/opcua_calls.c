@@ -43,7 +43,7 @@ void opcua_on_answer(UA_Client *library, void *arg, UA_UInt32 id, void *response
     if (!client->call.response)
         return;
     memcpy(client->call.response, response, client->call.type->memSize);
-    memset(response, 0, client->call.type->memSize); /* the response now belongs to us */
+    memset(response, 0, client->call.type->memSize); /* the response's memory now belongs to us; clear the library's copy */
     client->call.response = NULL;
 }
 

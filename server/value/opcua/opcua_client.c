@@ -249,8 +249,8 @@ int opcua_client_connect(struct opcua_client *client, int stop_fd, int64_t deadl
         status = open_library(client, &client->endpoint, true, stop_fd, deadline_mono_ns, why);
     if (status == 0) {
         UA_ClientConfig *config = UA_Client_getConfig(client->library);
-        config->noReconnect = true;                     /* a lost session is replaced by a new client */
-        config->connectivityCheckInterval = TIMEOUT_MS; /* detects a silent server sooner than rarely published values would */
+        config->noReconnect = true;                     /* the library must not reconnect: a lost session is replaced by a new client */
+        config->connectivityCheckInterval = TIMEOUT_MS; /* milliseconds; detects a silent server even if values are published rarely */
         *client->said = 0;
     }
     return status;
