@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rows into blocks of columns, as they are written. */
+/* Converts rows of sensors into the file's blocks of vertices. */
 #include "preprocess/subdivision/distance_rows.h"
 
 #include <errno.h>
@@ -10,9 +10,10 @@
 #include "protocol/asset_distance.h"
 #include "surface/mesh/trimesh.h"
 
-#define APART (ASSET_DISTANCE_BLOCK + 32) /* of columns while rows are dealt to them: so that they do not meet in the cache */
-#define AHEAD 8                           /* vertices: their rows lie anywhere, and memory is slow */
-#define LINE 32u                          /* sensors at a time: a line of codes each, in the nearest cache */
+/* offset between the sensors' output lines, chosen so that they do not evict each other from the CPU cache */
+#define APART (ASSET_DISTANCE_BLOCK + 32)
+#define AHEAD 8  /* prefetch distance in vertices, because rows are scattered in memory */
+#define LINE 32u /* sensors processed at a time, so that their output lines fit the first-level cache */
 
 void distance_rows_finish(struct distance_rows *rows)
 {
@@ -36,7 +37,7 @@ struct rows_block {
     const struct distance_rows *rows;
     int fd;
     off_t at;
-    atomic_int error; /* errno */
+    atomic_int error; /* errno of the first failed write; 0: none */
 };
 
 static void fetch_row(const struct distance_rows *rows, size_t vertex, size_t begin, size_t width)
@@ -46,7 +47,7 @@ static void fetch_row(const struct distance_rows *rows, size_t vertex, size_t be
         __builtin_prefetch(row + at);
 }
 
-/* The codes of one block of vertices. */
+/* Computes the codes of one block of vertices. */
 static void turn_block(const struct distance_rows *rows, size_t first, size_t count, uint16_t *codes)
 {
     uint16_t line[LINE * APART];

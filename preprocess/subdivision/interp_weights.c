@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sums over sensors, eight side by side. */
+/* Sums over sensors, eight at a time. */
 #include "preprocess/subdivision/interp_weights.h"
 
 #include <math.h>
@@ -9,12 +9,12 @@
 #include "base/math/simd.h"
 
 #define L INTERP_LANES
-#define LEAST_M 1e-5f    /* a sensor nearer than that has all the weight */
-#define LEAST_EXP -87.0f /* below it, exp is no normal number */
-#define LEAST_NEAR 1e-3f /* a decay below 1 makes the value rise without bound where the radius ends; here, up to there */
+#define MIN_M 1e-5f        /* metres; a sensor nearer than this has all the weight */
+#define MIN_EXP -87.0f     /* exp of a smaller argument is denormal */
+#define MIN_NEARNESS 1e-3f /* lower limit of nearness for slopes: a decay below 1 has an infinite slope at the end of the radius */
 
 typedef float lanes __attribute__((vector_size(4 * L)));
-typedef int32_t mask __attribute__((vector_size(4 * L))); /* of each lane all bits, or none */
+typedef int32_t mask __attribute__((vector_size(4 * L))); /* per lane all bits set or none */
 
 SIMD_BODY void load(const float *from, lanes *to)
 {
@@ -26,7 +26,7 @@ SIMD_BODY void store(const lanes *from, float *to)
     memcpy(to, from, sizeof(*from));
 }
 
-SIMD_BODY void keep(const mask *which, lanes *x) /* 0 elsewhere */
+SIMD_BODY void keep(const mask *which, lanes *x) /* sets the other lanes to 0 */
 {
     *x = (lanes)(*which & (mask)*x);
 }
@@ -94,7 +94,8 @@ SIMD_BODY void raise_lanes(lanes *x, float power)
             (*x)[l] = powf(base[l], power);
 }
 
-/* Towards the reach, by what is left of it against what the nearest has left; from there on, 0 for all but the nearest. */
+/* Fades a weight towards the reach: multiplies by the square of the remaining distance relative to the nearest sensor's. Beyond the reach,
+ * the weight is 0 except for the nearest sensor. */
 SIMD_BODY void fade(const struct interp_group *group, float near_m, const lanes *far, lanes *weight)
 {
     const lanes zero = { 0 }, near = zero + near_m;
@@ -107,10 +108,10 @@ SIMD_BODY void fade(const struct interp_group *group, float near_m, const lanes 
     *weight *= left;
 }
 
-/* Weights as shares of the nearest one's, so that no power is too large for a float. */
+/* Computes weights relative to the nearest sensor's, so that no power overflows a float. */
 SIMD_BODY void shepard_weight(const struct interp_group *group, size_t i, float near_m, const float *distance_m, lanes *weight)
 {
-    const lanes floor_m = (lanes){ 0 } + LEAST_M;
+    const lanes floor_m = (lanes){ 0 } + MIN_M;
     lanes far, strength;
     load(distance_m + i, &far);
     load(group->strength + i, &strength);
@@ -122,10 +123,10 @@ SIMD_BODY void shepard_weight(const struct interp_group *group, size_t i, float 
         fade(group, near_m, &far, weight);
 }
 
-/* How fast a weight fades, in parts of itself. */
+/* Computes the relative change of a fading weight per metre. */
 SIMD_BODY void per_left(const struct interp_group *group, const lanes *far, lanes *out)
 {
-    const lanes least_m = (lanes){ 0 } + LEAST_M;
+    const lanes least_m = (lanes){ 0 } + MIN_M;
     lanes left = group->reach_m - *far;
     take_more(&least_m, &left);
     *out = 2 / left;
@@ -133,7 +134,7 @@ SIMD_BODY void per_left(const struct interp_group *group, const lanes *far, lane
 
 SIMD_BODY float shepard_slope(const struct interp_group *group, const float *distance_m, const float *interp)
 {
-    const lanes floor_m = (lanes){ 0 } + LEAST_M;
+    const lanes floor_m = (lanes){ 0 } + MIN_M;
     lanes slope = { 0 }, fading = { 0 }, far, weight;
     for (size_t i = 0; i < group->count; i += L) {
         load(distance_m + i, &far);
@@ -152,7 +153,7 @@ SIMD_BODY float shepard(const struct interp_group *group, const float *distance_
 {
     lanes sum = { 0 }, weight;
     float near_m = least(distance_m, group->count);
-    *norm = (struct interp_norm){ .near_m = near_m < LEAST_M ? LEAST_M : near_m };
+    *norm = (struct interp_norm){ .near_m = near_m < MIN_M ? MIN_M : near_m };
     if (near_m == INFINITY) {
         memset(interp, 0, group->count * sizeof(*interp));
         return 0;
@@ -176,7 +177,7 @@ SIMD_BODY void shepard_norm(const struct interp_group *group, const float *dista
 {
     lanes sum = { 0 }, weight;
     float near_m = least(distance_m, group->count);
-    *norm = (struct interp_norm){ .near_m = near_m < LEAST_M ? LEAST_M : near_m };
+    *norm = (struct interp_norm){ .near_m = near_m < MIN_M ? MIN_M : near_m };
     for (size_t i = 0; i < group->count && near_m < INFINITY; i += L) {
         shepard_weight(group, i, norm->near_m, distance_m, &weight);
         sum += weight;
@@ -199,13 +200,13 @@ SIMD_BODY void shepard_again(const struct interp_group *group, const float *dist
 
 /* --- paper -------------------------------------------------------------------------------------------------------------------- */
 
-/* Of numbers up to 0: 2^n times a polynomial, right to about 2e-7. */
+/* Computes exp for arguments up to 0, as 2^n times a polynomial, with a relative error of about 2e-7. */
 SIMD_BODY void exponential(lanes *x)
 {
-    const lanes lowest = (lanes){ 0 } + LEAST_EXP;
+    const lanes lowest = (lanes){ 0 } + MIN_EXP;
     take_more(&lowest, x);
     lanes halves = *x * 1.44269504f - 0.5f;
-    mask n = __builtin_convertvector(halves, mask); /* towards 0, and so to the nearest */
+    mask n = __builtin_convertvector(halves, mask); /* truncation towards 0, which rounds to the nearest integer here */
     lanes whole = __builtin_convertvector(n, lanes), r = *x - whole * 0.693359375f + whole * 2.12194440e-4f, p;
     p = 1.3888889e-3f * r + 8.3333333e-3f;
     p = p * r + 4.1666667e-2f;
@@ -217,11 +218,11 @@ SIMD_BODY void exponential(lanes *x)
 }
 
 struct softmax {
-    float per_m, largest; /* exponent of those that take part */
-    float near_m;         /* with a reach */
+    float per_m, largest; /* largest: exponent of the largest contributing sensor */
+    float near_m;         /* used if there is a reach */
 };
 
-/* 1 at the sensor, 0 at the radius and beyond. */
+/* Computes the nearness of sensors: 1 at the sensor, 0 at the radius and beyond. */
 SIMD_BODY void nearness(const float *distance_m, float per_m, lanes *out)
 {
     const lanes zero = { 0 };
@@ -230,7 +231,7 @@ SIMD_BODY void nearness(const float *distance_m, float per_m, lanes *out)
     take_more(&zero, out);
 }
 
-/* Softmax weights, not yet divided by their sum; `near` of each. */
+/* Computes softmax weights before division by their sum, and the nearness of each sensor. */
 SIMD_BODY void paper_weight(const struct interp_group *group, size_t i, const struct softmax *softmax, const float *distance_m, lanes *near,
                             lanes *weight)
 {
@@ -247,12 +248,12 @@ SIMD_BODY void paper_weight(const struct interp_group *group, size_t i, const st
         fade(group, softmax->near_m, &far, weight);
 }
 
-/* The most that a value changes where all nearnesses change by one at most: a sensor's changes its own share, by its weight's part and its
-   decay's, and the weights of the others, of whose shares there are all but its own. Beyond the radius nothing changes. */
+/* Returns the largest change of the value if each nearness changes by at most one. A sensor changes its own share, through its weight and
+ * its decay, and the others' shares, which sum to 1 minus its own. Sensors beyond the radius change nothing. */
 SIMD_BODY float paper_slope(const struct interp_group *group, const struct softmax *softmax, const float *distance_m, float per,
                             const float *interp, float all)
 {
-    const lanes zero = { 0 }, least_near = (lanes){ 0 } + LEAST_NEAR;
+    const lanes zero = { 0 }, least_near = (lanes){ 0 } + MIN_NEARNESS;
     lanes sum = { 0 }, near, weight, strength, decay, share, far;
     for (size_t i = 0; i < group->count; i += L) {
         paper_weight(group, i, softmax, distance_m, &near, &weight);
@@ -282,7 +283,7 @@ SIMD_BODY float paper(const struct interp_group *group, float radius_m, const fl
     struct softmax softmax = { .per_m = 1 / radius_m, .near_m = INFINITY };
     if (group->reach_m < INFINITY) {
         softmax.near_m = least(distance_m, group->count);
-        softmax.near_m = softmax.near_m < LEAST_M ? LEAST_M : softmax.near_m;
+        softmax.near_m = softmax.near_m < MIN_M ? MIN_M : softmax.near_m;
     }
     for (size_t i = 0; i < group->count; i += L) {
         nearness(distance_m + i, softmax.per_m, &d);
@@ -338,7 +339,7 @@ SIMD_BODY float error_of(const float *const *corners, const float *weights, size
     return most > least ? most : least;
 }
 
-/* --- as wide as the processor is ------------------------------------------------------------------------------------------------ */
+/* --- variants for wider processors ---------------------------------------------------------------------------------------------- */
 
 SIMD_AVX2 static void euclidean_wide(const float point_m[3], const float *const places_m[3], size_t count, float *distance_m)
 {

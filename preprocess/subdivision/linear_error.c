@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shares of sensors, as server/field computes them, and their errors along a straight line. */
+/* Computes sensor weights as server/field does, and their error against linear interpolation. */
 #include "preprocess/subdivision/linear_error.h"
 
 #include <math.h>
@@ -9,8 +9,9 @@
 #include "base/mem.h"
 #include "plant/singles.h"
 
-#define MOST_SLACK (1 / 255.0) /* of the range */
-#define MANY 64 /* sensors: with more, each has so small a share in paper that its bends are far below shepard's, and are not looked at */
+#define MAX_SLACK (1 / 255.0) /* share of the range */
+/* with more sensors in a group, each has so small a weight in Algorithm 1 that its errors are far below Shepard's and are not measured */
+#define MANY 64
 
 static double factor_of(double x)
 {
@@ -93,7 +94,7 @@ void linear_error_set_radius(struct linear_error *linear, const float *const lar
         }
 }
 
-/* Room for distances, on the caller's stack if there are few sensors. */
+/* Buffer for distances: on the caller's stack if there are few sensors. */
 #define FEW 1024
 struct corner_room {
     float few[FEW], *at;
@@ -111,7 +112,7 @@ static void room_finish(struct corner_room *room)
         mem_free(room->at);
 }
 
-/* From a point to every sensor, by both modes. */
+/* Distances from a point to every sensor, by both distance modes. */
 struct distances {
     const float *of[2]; /* by enum distance_mode */
     struct corner_room straight_m, picked_m;
@@ -133,7 +134,8 @@ static void distances_finish(struct distances *distances)
     room_finish(&distances->picked_m);
 }
 
-/* Of the group's sensors: until the next ones are picked. Not copied where these are all that it holds. */
+/* Returns the distances of the group's sensors, valid until the next call. Not copied if the group's columns are consecutive and need no
+ * padding. */
 static const float *pick(const struct linear_error_group *group, struct distances *distances, int mode)
 {
     const float *from = distances->of[mode];
@@ -216,7 +218,7 @@ struct error_question {
     double wide_m, slack_m;
 };
 
-/* The largest of the errors, group by group. Where a group has no value at a corner, because no way leads there, there is no error. */
+/* Returns the largest error over all groups. A group without a value at a corner, because no path connects it to a sensor, has no error. */
 static double worst_of(const struct linear_error *linear, const struct error_question *question, const float *sample)
 {
     double most = 0;
@@ -233,11 +235,11 @@ static double worst_of(const struct linear_error *linear, const struct error_que
             at[c] = question->corners[c] + first;
             reached = reached && (g % 2 != INTERPOLATION_SHEPARD || has_value(at[c], count));
         }
-        double slope = (double)sample[linear->share_count + g]; /* or metres beyond the data, less than 0 */
+        double slope = (double)sample[linear->share_count + g]; /* below 0: minus the distance in metres from the end of the data */
         if (reached && slope >= -question->wide_m && question->modes & 1 << g / 2 / linear->group_count)
             most = max_of((double)interp_error(at, question->weights, question->corner_count, sample + first, count) -
-                              min_of(question->slack_m * max_of(slope, 0), MOST_SLACK),
-                          most); /* in this order: what is no number is left out */
+                              min_of(question->slack_m * max_of(slope, 0), MAX_SLACK),
+                          most); /* this order of arguments ignores NaN */
         first += count;
     }
     return most;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A table of numbers of triangles by keys of points: eight bytes each, as they lie in the file. */
+/* Hash table from point keys to triangle indices, 8 bytes per entry, in memory as in the file. */
 #include "preprocess/subdivision/sample_cache.h"
 
 #include <string.h>
@@ -8,10 +8,10 @@
 #include "preprocess/cache/build_cache.h"
 #include "surface/mesh/trimesh.h"
 
-#define TRI_BITS 24 /* one more than the triangle's number; the key's lower bits before it, its higher ones say where it stands */
+#define TRI_BITS 24 /* low bits of an entry: triangle index + 1; above them the key's low bits. The key's high bits select the slot. */
 #define NOWHERE ((1u << TRI_BITS) - 1)
 #define FULL 0.85
-#define WORTH 0.5 /* of what is asked for is known, or it is written anew */
+#define WORTH 0.5 /* share of a run's lookups that the file must answer, or it is rewritten */
 
 void sample_cache_open(struct sample_cache *sample_cache, const char *folder, uint64_t key)
 {
@@ -31,7 +31,7 @@ void sample_cache_close(struct sample_cache *sample_cache)
     *sample_cache = (struct sample_cache){ 0 };
 }
 
-/* Where the key stands in the table, or would. */
+/* Returns the key's slot, or the empty slot where it would be inserted. */
 static size_t slot_of(const uint64_t *table, size_t count, uint64_t key)
 {
     size_t slot = (size_t)((key >> 32) * count >> 32);

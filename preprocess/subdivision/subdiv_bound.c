@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which coarser levels will need too many triangles, before they are cut that far. */
+/* Predicts which coarser levels will need too many triangles, before they are fully split. */
 #include <math.h>
 #include <stdatomic.h>
 #include <string.h>
@@ -7,13 +7,13 @@
 #include "base/mem.h"
 #include "preprocess/subdivision/subdivide_impl.h"
 
-#define SAMPLE_OF 8 /* blocks of triangles, of which one is taken: a power of 2 */
-#define BLOCK 8     /* triangles */
-#define GRAIN 4096  /* triangles: a few tenths of a millisecond */
-#define SURE 1.5    /* standard deviations that the sample has to be beyond the bound */
+#define SAMPLE_OF 8 /* one in so many blocks of triangles is sampled; a power of 2 */
+#define BLOCK 8     /* triangles per block */
+#define GRAIN 4096  /* triangles per unit of work: a few tenths of a millisecond */
+#define SURE 1.5    /* standard deviations by which the sample must exceed the limit */
 
-/* How many triangles it takes to mend this one: an edge that errs has to be cut itself, and half as often as its error can be halved, since
-   a cut leaves a quarter of it where the field bends evenly and more where it peaks. */
+/* Returns the number of triangles needed to fix a triangle. An edge with an error needs a split, and further ones until its error is small
+ * enough: each split leaves a quarter of the error where the field bends evenly, and more at a peak. */
 static size_t tris_needed(const struct subdiv *subdiv, const struct subdiv_tri *tri)
 {
     size_t needed = 1;
@@ -23,7 +23,7 @@ static size_t tris_needed(const struct subdiv *subdiv, const struct subdiv_tri *
     return needed;
 }
 
-/* Blocks of a sample say how far it may be from the whole. */
+/* Returns a lower bound of the triangles that the whole level needs. The variance between the sample's blocks gives the uncertainty. */
 static double least_needed_by_sample(const struct subdiv *subdiv)
 {
     const struct subdiv_mesh *mesh = &subdiv->mesh;
@@ -76,7 +76,7 @@ size_t subdiv_take_sample(struct level *sample, const struct level *level)
         to->first_index = sample->index_count;
         for (uint32_t i = 0; i + 3 * BLOCK <= level->primitives[p].index_count; i += 3 * BLOCK) {
             uint32_t at = level->primitives[p].first_index + i;
-            if (at / (3 * BLOCK) * 0x9e3779b9u >> 16 & (SAMPLE_OF - 1)) /* nothing that a model repeats falls in step with it */
+            if (at / (3 * BLOCK) * 0x9e3779b9u >> 16 & (SAMPLE_OF - 1)) /* the hash avoids resonance with repetition in the model */
                 continue;
             memcpy(sample->indices + sample->index_count, level->indices + at, 3 * BLOCK * sizeof(*sample->indices));
             sample->index_count += 3 * BLOCK;

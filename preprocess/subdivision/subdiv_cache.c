@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Findings by the places of the corners that they are about, and whether they still hold. */
+/* Stores findings by the positions of their corners, and decides whether they still hold. */
 #include "preprocess/subdivision/subdiv_cache.h"
 
 #include <math.h>
@@ -12,11 +12,12 @@
 #include "preprocess/cache/build_cache.h"
 #include "preprocess/subdivision/subdivide_impl.h"
 
-#define MOST_CHANGES 16   /* sensors */
-#define FEW 16            /* changes must be fewer than one in so many sensors */
-#define MOST_DOUBT 0.05f  /* then, of edges that err by about a step, one in a thousand errs by a tenth of a step more or less: measured */
-#define MOST_SETTLED 0.5f /* doubt, where the error is so far from what matters that it cannot have come there */
-#define LITTLE 0.4f       /* of the error that matters: what errs by less at its middle was not looked at elsewhere */
+#define MAX_CHANGES 16 /* limit of sensor changes */
+#define FEW 16         /* changes must be fewer than one in this many sensors */
+/* measured: at this doubt, one in a thousand edges with an error of about a step is off by a tenth of a step or more */
+#define MAX_DOUBT 0.05f
+#define MAX_SETTLED 0.5f /* limit of doubt for findings whose error is too far from any limit to cross it */
+#define LITTLE 0.4f      /* share of the relevant error; an edge with a smaller error at its midpoint was not measured elsewhere */
 
 struct subdiv_cache_entry {
     uint64_t key;
@@ -24,21 +25,21 @@ struct subdiv_cache_entry {
     uint32_t jumps;
 };
 
-struct sensor { /* all that its shares depend on */
+struct sensor { /* everything that a sensor's weights depend on */
     float place_m[3], strength, power;
     uint32_t group;
 };
 
 struct subdiv_head {
-    uint64_t sensors, findings, rest; /* how many follow */
-    uint64_t given_up, changes_since; /* subdiv_cache.h */
+    uint64_t sensors, findings, rest; /* numbers of following records */
+    uint64_t given_up, changes_since; /* see subdiv_cache.h */
 };
 
-/* What is kept of a finding beside its key and its error: most have little more. Of what follows in the list of the rest, in this order. */
+/* Flags for the optional numbers of a finding; most findings have only a key and an error. The numbers follow in this order. */
 #define SHARE_FOLLOWS 1
 #define BARRED_FOLLOWS 2
-#define DOUBT_FOLLOWS 4 /* and by how much it may be off */
-#define SHARE_IS_HALF 8 /* else it is 0, if it does not follow */
+#define DOUBT_FOLLOWS 4 /* doubt, and how far the error may be off */
+#define SHARE_IS_HALF 8 /* the share is 0.5; without this flag and SHARE_FOLLOWS it is 0 */
 #define JUMPS 16
 
 /* --- sensors ---------------------------------------------------------------------------------------------------------------------- */
@@ -82,12 +83,13 @@ static uint32_t column_of(const struct linear_error *linear, const struct sensor
     return UINT32_MAX;
 }
 
-/* Those that only one of two sorted lists has. False: too many, or of a group that is no more. */
+/* Lists the sensors that only one of the two sorted lists has. Returns false if they are too many, or belong to a group that no longer
+ * exists. */
 static bool find_changes(struct subdiv_cache *cache, const struct linear_error *linear, const struct sensor *old, size_t old_count)
 {
     const struct sensor *now = (const struct sensor *)(const void *)cache->sensors.at;
     size_t count = cache->sensors.length / sizeof(*now), i = 0, j = 0;
-    cache->changes = mem_array(MOST_CHANGES, sizeof(*cache->changes));
+    cache->changes = mem_array(MAX_CHANGES, sizeof(*cache->changes));
     while (i < old_count || j < count) {
         int order = i == old_count ? 1 : j == count ? -1 : compare_sensors(&old[i], &now[j]);
         const struct sensor *changed = order < 0 ? &old[i] : &now[j];
@@ -95,7 +97,7 @@ static bool find_changes(struct subdiv_cache *cache, const struct linear_error *
         j += order >= 0;
         if (order == 0)
             continue;
-        if (cache->change_count == MOST_CHANGES || FEW * cache->change_count >= count || changed->group >= linear->group_count)
+        if (cache->change_count == MAX_CHANGES || FEW * cache->change_count >= count || changed->group >= linear->group_count)
             return false;
         struct subdiv_sensor_change *change = &cache->changes[cache->change_count++];
         *change = (struct subdiv_sensor_change){ .power = changed->power, .group = changed->group, .column = UINT32_MAX };
@@ -108,7 +110,7 @@ static bool find_changes(struct subdiv_cache *cache, const struct linear_error *
 
 /* --- the file --------------------------------------------------------------------------------------------------------------------- */
 
-#define ENTRY_BYTES (sizeof(uint64_t) + sizeof(float) + 1) /* without the rest */
+#define ENTRY_BYTES (sizeof(uint64_t) + sizeof(float) + 1) /* without optional numbers */
 
 static size_t rest_of(unsigned kind)
 {
@@ -130,7 +132,7 @@ static void index_findings(struct subdiv_cache *cache, size_t count)
     }
 }
 
-/* Where the rest of each begins. Returns how many numbers that is. */
+/* Computes the index of each finding's optional numbers. Returns their total count. */
 static size_t index_rest(struct subdiv_cache *cache, size_t count)
 {
     size_t rest = 0;
@@ -191,7 +193,7 @@ void subdiv_cache_close(struct subdiv_cache *cache)
     *cache = (struct subdiv_cache){ 0 };
 }
 
-/* Findings as they are written. */
+/* Findings in the file's format. */
 struct packed_findings {
     uint64_t *keys;
     float *errors, *rest;
@@ -256,7 +258,7 @@ void subdiv_cache_write(const struct subdiv_cache *cache, const char *folder, ui
 
 /* --- findings --------------------------------------------------------------------------------------------------------------------- */
 
-/* The same for every order of the corners. */
+/* Returns a key that does not depend on the order of the corners. */
 uint64_t subdiv_cache_key(const struct subdiv *subdiv, const uint32_t *corners, size_t count)
 {
     if (!subdiv->in->cache || !subdiv->in->cache->applies)
@@ -272,8 +274,8 @@ uint64_t subdiv_cache_key(const struct subdiv *subdiv, const uint32_t *corners, 
     return XXH3_64bits_withSeed(places_m, count * sizeof(*places_m), subdiv->level);
 }
 
-/* How far from straight the share of a new sensor is between these corners, at most: since it bends, and since its distance along the
-   surface may have a kink there, where two ways round are equally long; on an edge, where it does not grow as fast as it can. */
+/* Returns an upper bound of the non-linearity of a new sensor's weight between these corners: from its curvature, and from a kink where two
+ * paths along the surface are equally long. On an edge, a kink is possible only if the distance grows less than it could. */
 static float bend_of(const struct subdiv *subdiv, const struct subdiv_sensor_change *change, const uint32_t *corners, size_t count,
                      double wide_m, double near_m, double far_m, double share)
 {
@@ -289,8 +291,8 @@ static float bend_of(const struct subdiv *subdiv, const struct subdiv_sensor_cha
     return (float)(share * (p * (p - 1) / 2 * near * near + p * p * near * far + p * (p + 1) / 2 * far * far) + kink);
 }
 
-/* The most that the sensors that are new or gone have, together, of a value between these corners. A distance along the surface is no
-   shorter than the straight one. */
+/* Returns an upper bound of the total weight of all changed sensors at any point between these corners. Uses straight-line distances, which
+ * are at most the distances along the surface. */
 static float share_of_changes(const struct subdiv *subdiv, const uint32_t *corners, size_t count, float *off)
 {
     const struct subdiv_cache *cache = subdiv->in->cache;
@@ -312,18 +314,18 @@ static float share_of_changes(const struct subdiv *subdiv, const uint32_t *corne
         double ratio = (near_m + wide_m) / far_m;
         float own = ratio < 1 ? powf((float)ratio, change->power) : 1;
         share += own;
-        if (change->column != UINT32_MAX && own < MOST_SETTLED)
+        if (change->column != UINT32_MAX && own < MAX_SETTLED)
             *off += bend_of(subdiv, change, corners, count, wide_m, near_m, far_m, (double)own);
     }
     return share;
 }
 
-/* So far from the error that matters that it is sure to stay on its side. */
+/* Returns whether the error is so far from the relevant limit that it certainly stays on the same side. */
 static bool is_settled(const struct subdiv_cache_entry *old, float doubt, float off)
 {
     const float matters = (float)SUBDIV_AIM, error = fmaxf(old->error, old->barred);
     float most = error / (1 - doubt) + off, least = error * (1 - 2 * doubt) - off;
-    return doubt <= MOST_SETTLED && (most <= LITTLE * matters || (error > LITTLE * matters && most <= matters) || least > matters);
+    return doubt <= MAX_SETTLED && (most <= LITTLE * matters || (error > LITTLE * matters && most <= matters) || least > matters);
 }
 
 static void unpack_finding(const struct subdiv_cache *cache, size_t i, struct subdiv_cache_entry *found)
@@ -343,7 +345,7 @@ static void unpack_finding(const struct subdiv_cache *cache, size_t i, struct su
     }
 }
 
-/* Most come in the order that they had the last time. */
+/* Finds a finding by key. Most are looked up in the order of the last run, so the guess *next is tried first. */
 static bool find(const struct subdiv_cache *cache, uint64_t key, uint32_t *next, struct subdiv_cache_entry *found)
 {
     if (*next >= cache->finding_count || cache->keys[*next] != key) {
@@ -367,7 +369,7 @@ bool subdiv_cache_find(const struct subdiv *subdiv, uint64_t key, const uint32_t
         return false;
     float off, doubt = old.doubt + share_of_changes(subdiv, corners, count, &off);
     off += old.off;
-    if (!(doubt <= MOST_DOUBT) && !is_settled(&old, doubt, off))
+    if (!(doubt <= MAX_DOUBT) && !is_settled(&old, doubt, off))
         return false;
     *finding = (struct subdiv_finding){ .number = finding->number,
                                         .error = old.error,

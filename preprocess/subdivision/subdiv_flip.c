@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Edges that run the other way between two triangles: where that helps as much as a cut, it costs no triangle. */
+/* Flips edges to the other diagonal of their two triangles: where that reduces the error as much as a split, it adds no triangle. */
 #include <math.h>
 #include <string.h>
 
@@ -7,19 +7,19 @@
 #include "base/mem.h"
 #include "preprocess/subdivision/subdivide_impl.h"
 
-#define MOST_TURNS 4       /* in a row */
-#define FLAT_OF_ERROR 0.02 /* the surface may move so far, of the level's error */
-#define GAIN 0.7           /* of the error, at most, is left */
-#define CROSSING 0.02      /* of either edge: they cross at least so far from its ends */
+#define MAX_FLIP_ROUNDS 4  /* maximum consecutive rounds of flips */
+#define FLAT_OF_ERROR 0.02 /* share of the level's error by which the surface may move */
+#define GAIN 0.7           /* a flip must reduce the error to at most this share */
+#define CROSSING 0.02      /* share of either edge; the crossing must be at least this far from its ends */
 
-#define GRAIN 1024 /* turns: a few tenths of a millisecond */
+#define GRAIN 1024 /* flips per unit of work: a few tenths of a millisecond */
 
 struct edge_flip {
     uint32_t edge, tris[2], across;
-    bool may; /* the edges cross, and the surface stays about in place */
+    bool may; /* allowed: the edges cross, and the surface stays about in place */
 };
 
-/* Those that err by more than the limit, of triangles that were made from `first` on in their list. */
+/* Lists edges with an error above the limit, among the triangles from index `first` of mesh->made on. */
 static void list_edges(struct subdiv *subdiv, double limit, size_t first, struct subdiv_list *edges)
 {
     const struct subdiv_mesh *mesh = &subdiv->mesh;
@@ -32,7 +32,7 @@ static void list_edges(struct subdiv *subdiv, double limit, size_t first, struct
     subdiv_mesh_sort(edges);
 }
 
-/* False: it is not part of two triangles, no more and no fewer. */
+/* Finds the two triangles of an edge. Returns false if the edge does not have exactly two. */
 static bool find_tris(const struct subdiv_mesh *mesh, uint32_t edge, uint32_t tris[2])
 {
     uint32_t first = mesh->cuts[edge].corner, second = first == TRIMESH_NONE ? first : mesh->next[first];
@@ -43,7 +43,7 @@ static bool find_tris(const struct subdiv_mesh *mesh, uint32_t edge, uint32_t tr
     return true;
 }
 
-/* --- turning one ------------------------------------------------------------------------------------------------------------- */
+/* --- flipping one edge ------------------------------------------------------------------------------------------------------- */
 
 static void position_of(const struct subdiv *subdiv, uint32_t vertex, double at[3])
 {
@@ -51,7 +51,7 @@ static void position_of(const struct subdiv *subdiv, uint32_t vertex, double at[
         at[i] = (double)subdiv_position(subdiv, vertex)[i];
 }
 
-/* Where the edges come nearest to each other lies within both, and there they nearly touch. */
+/* Returns whether the closest points of the two edges are inside both and at most apart_m from each other. */
 static bool cross(const double a[3], const double b[3], const double c[3], const double d[3], double apart_m)
 {
     double ab[3], cd[3], ac[3], normal[3], side[3];
@@ -128,7 +128,7 @@ static float error_of(const struct subdiv_edge *edge)
     return fmaxf(edge->error, edge->barred);
 }
 
-/* Each triangle once. */
+/* Applies the flips that reduce the error, at most one per triangle. Returns their number. */
 static size_t turn_better(struct subdiv *subdiv, const struct edge_flip *turns, size_t count)
 {
     struct subdiv_mesh *mesh = &subdiv->mesh;
@@ -151,7 +151,7 @@ void subdiv_flip_edges(struct subdiv *subdiv, double limit)
 {
     struct subdiv_list edges = { 0 };
     size_t done = 1, listed = 0;
-    for (int i = 0; i < MOST_TURNS && done > 0; i++) {
+    for (int i = 0; i < MAX_FLIP_ROUNDS && done > 0; i++) {
         list_edges(subdiv, limit, listed, &edges);
         listed = subdiv->mesh.made.count;
         struct edge_flip *turns = mem_array(edges.count, sizeof(*turns));

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the field is between the vertices, how far that is from straight, and where an edge is best cut. */
+/* Measures the field between vertices, its deviation from linear interpolation, and the best point to split an edge. */
 #include <math.h>
 #include <string.h>
 #include <xxhash.h>
@@ -10,23 +10,24 @@
 #include "protocol/asset_distance.h"
 #include "surface/mesh/bvh.h"
 
-#define PROBABLE 0.4  /* of an error that would matter: if an edge errs by less at its middle, it does so everywhere */
-#define CLOSE 0.5     /* of the way to the nearest sensor: only of shorter edges that is true */
-#define WIDE 0.3      /* likewise: longer edges are cut in the middle, so that cuts of neighbours lie side by side */
-#define GRAIN 256     /* edges, triangles or places, at least: half a millisecond */
-#define POINTS 16     /* of an edge that are looked at, at most */
-#define CORNERS 61    /* whose shares are at hand */
-#define STEPS 2       /* in which the best place for a cut is narrowed down */
-#define NO_GAIN 0.5   /* of the error, left by the best cut: a bend leaves a quarter, a kink nothing */
-#define ROUNDING 1e-9 /* of a distance, more than it is off by */
-#define JUMP 1.5      /* times the way gone: a distance cannot grow by more, unless the surface does not hang together there */
+#define PROBABLE 0.4 /* share of the relevant error: if the error at an edge's midpoint is smaller, it is small along the whole edge */
+#define CLOSE 0.5    /* share of the distance to the nearest sensor: that rule holds only for shorter edges */
+/* share of the distance to the nearest sensor: longer edges are split in the middle, so that splits of neighbours line up */
+#define WIDE 0.3
+#define GRAIN 256     /* minimum edges, triangles or positions per unit of work: half a millisecond */
+#define POINTS 16     /* maximum number of points sampled on an edge */
+#define CORNERS 61    /* number of cached corner samples */
+#define STEPS 2       /* refinement steps for the best split point */
+#define NO_GAIN 0.5   /* share of the error left by the best split: a smooth bend leaves a quarter, a kink nothing */
+#define ROUNDING 1e-9 /* relative; larger than the rounding error of a distance */
+#define JUMP 1.5      /* a distance cannot grow by more than this times the path, unless the surface is not connected there */
 
 static uint32_t place_of(const struct subdiv *subdiv, uint32_t vertex)
 {
     return subdiv->mesh.welded.of_vertex[vertex];
 }
 
-/* --- which piece of the surface a point belongs to -------------------------------------------------------------------------- */
+/* --- connected components --------------------------------------------------------------------------------------------------- */
 
 static bool list_faces(struct subdiv *subdiv)
 {
@@ -59,12 +60,12 @@ bool subdiv_find_parts(struct subdiv *subdiv)
     return list_faces(subdiv);
 }
 
-struct origin_sight { /* which triangles of the model a point may lie on */
+struct origin_sight { /* which triangles of the original model a point may lie on */
     const struct subdiv *subdiv;
-    uint32_t origin[2]; /* in the finest level, these */
-    uint32_t part;      /* in a coarser one, those of that part which look the same way */
+    uint32_t origin[2]; /* finest level: one of these two triangles */
+    uint32_t part;      /* coarser levels: triangles of this connected component that face the same way */
     double normal[3];
-    struct sample_cache_notes *notes; /* the thread's */
+    struct sample_cache_notes *notes; /* notes of the calling thread */
 };
 
 static bool is_in_sight(const void *arg, uint32_t triangle)
@@ -98,7 +99,8 @@ static void to_doubles(const float point[3], double at[3])
         at[i] = (double)point[i];
 }
 
-/* Where a coarser level's point is: on its own part, or else on another one that hides that, out of which it may stand. */
+/* Finds the surface point for a sample point. In a coarser level it is on the point's own component, or else on another component that
+ * hides it, from which it may protrude. */
 static bool search(const struct origin_sight *sight, const double at[3], struct surface_point *hit)
 {
     const struct subdiv *subdiv = sight->subdiv;
@@ -109,7 +111,7 @@ static bool search(const struct origin_sight *sight, const double at[3], struct 
     return surface_find_point_within(subdiv->in->surface, at, sight->normal, subdiv->on_surface_m, hit);
 }
 
-/* All that the place of a point depends on, but for the surface. */
+/* Returns a hash of everything the projection of a point depends on, except the surface. */
 static uint64_t key_of(const struct origin_sight *sight, const float point[3])
 {
     struct {
@@ -126,7 +128,7 @@ static uint64_t key_of(const struct origin_sight *sight, const float point[3])
     return XXH3_64bits(&all, sizeof(all));
 }
 
-/* Where it was found the last time, if it is known. */
+/* Projects a point onto the surface, using the cached triangle if there is one. */
 static bool project(const struct origin_sight *sight, const float point[3], const double at[3], struct surface_point *hit)
 {
     const struct subdiv *subdiv = sight->subdiv;
@@ -143,8 +145,9 @@ static bool project(const struct origin_sight *sight, const float point[3], cons
     return seen;
 }
 
-/* Where a triangle is seen, nearest to a place in it that is not: large ones stand out of other parts. *hit: what was found from another
-   place, or none; what is found from this one, though it be too far to count; none: nothing of the triangle is seen. */
+/* Finds the visible point of a partly hidden triangle that is nearest to the position `from` inside it; large triangles may protrude from
+ * other parts. *hit: in: result for another position, or none; out: result for this one, even if it is too far away to count; none: the
+ * whole triangle is hidden. Returns whether the result counts. */
 static bool find_seen(const struct origin_sight *sight, const double corners[3][3], const double from[3], double weights[3],
                       struct surface_point *hit)
 {
@@ -168,8 +171,8 @@ static bool find_seen(const struct origin_sight *sight, const double corners[3][
     return vec_distance(at, hit->point_m) <= subdiv->on_surface_m;
 }
 
-/* Distances along the surface, where it is nearest to a coarser level's point. False: the point is hidden deep inside another part, and
-   nobody sees an error. */
+/* Computes the distances along the surface at the projection of a point. Returns false if the point is hidden deep inside another part,
+ * where no error is visible. */
 static bool measure(const struct origin_sight *sight, const float point[3], float *geodesic_m)
 {
     const struct subdiv *subdiv = sight->subdiv;
@@ -182,7 +185,7 @@ static bool measure(const struct origin_sight *sight, const float point[3], floa
     return true;
 }
 
-/* The same; at a hidden point, those of the nearest one that is seen. */
+/* Computes the distances like measure(); for a hidden point, those of the nearest visible point. */
 static void measure_always(const struct origin_sight *sight, const float point[3], float *geodesic_m)
 {
     struct surface_point hit;
@@ -196,19 +199,19 @@ static void measure_always(const struct origin_sight *sight, const float point[3
 
 /* --- edges ------------------------------------------------------------------------------------------------------------------ */
 
-struct line { /* points along an edge, from one end to the other */
+struct line { /* sample points along an edge, in order */
     const struct subdiv *subdiv;
-    const float *a, *b; /* positions of the ends */
+    const float *a, *b; /* positions of the edge's ends */
     double length_m;
     struct origin_sight sight;
     double t[POINTS];
     const float *interp[POINTS], *geodesic_m[POINTS];
     int count;
-    float *room; /* for as many points more */
+    float *room; /* buffer for further points */
     struct interp_norm *norms;
 };
 
-/* Of a point, against a line between two others. */
+/* Returns the error at a point against linear interpolation between two other points. */
 static double error_at(const struct line *line, enum linear_error_modes modes, int from, int to, int point)
 {
     double t = (line->t[point] - line->t[from]) / (line->t[to] - line->t[from]);
@@ -216,7 +219,7 @@ static double error_at(const struct line *line, enum linear_error_modes modes, i
                                 line->length_m, line->subdiv->slack_m);
 }
 
-/* A point more, if it is seen; its error against a line between the ends. */
+/* Adds a sample point if it is visible. Returns its error against linear interpolation between the ends. */
 static double add_point(struct line *line, double t)
 {
     const struct linear_error *linear = line->subdiv->in->linear;
@@ -250,7 +253,7 @@ static bool jumps(const struct line *line, double length_m)
     return false;
 }
 
-/* What is left if the edge is cut at one of its points; of more than `enough`, only so much that it is more. */
+/* Returns the error that remains if the edge is split at one of its sample points. Stops once it exceeds `enough`. */
 static double left_after(const struct line *line, int cut, double enough)
 {
     double most = 0;
@@ -262,7 +265,7 @@ static double left_after(const struct line *line, int cut, double enough)
     return most;
 }
 
-/* Of the points looked at; the middle one where that is about as good. */
+/* Returns the sample point with the smallest remaining error, preferring the middle if about as good. */
 static int best_cut(const struct line *line, double *left)
 {
     int best = 0;
@@ -283,8 +286,8 @@ static void add_eighths(struct line *line, struct subdiv_finding *finding)
         finding->error = fmaxf(finding->error, (float)add_point(line, i / 8.0));
 }
 
-/* A field bends evenly, then the middle is best; or it has a kink, where two ways round are equally long, and straight pieces beside it.
-   Where it jumps, no cut mends anything, and only halves come to an end: they close in on it. */
+/* Finds the split point. Where a field bends evenly, the middle is best. At a kink, where two paths are equally long, the kink is best. If
+ * the distance jumps, no split helps; splitting in halves closes in on the jump until the edges are short. */
 static void find_cut(struct line *line, double length_m, double enough, struct subdiv_finding *finding)
 {
     double left;
@@ -300,7 +303,7 @@ static void find_cut(struct line *line, double length_m, double enough, struct s
     finding->share = (float)line->t[best];
 }
 
-/* --- jobs ------------------------------------------------------------------------------------------------------------------- */
+/* --- work items ------------------------------------------------------------------------------------------------------------- */
 
 struct measure_job {
     struct subdiv *subdiv;
@@ -310,12 +313,12 @@ struct measure_job {
     double enough;
 };
 
-/* A thread's room: for points, and for the shares at corners last looked at, since the next edge likely has some of them too. */
+/* A thread's buffers: for sample points, and for the samples of recently used corners, which the next edge probably shares. */
 struct measure_room {
     float *points, *corners;
-    struct interp_norm *norms; /* of the point last looked at */
-    uint32_t of[CORNERS + 3];  /* which place's, by the place's number; then those for which that is taken */
-    uint32_t taken[3];         /* by the corners in hand */
+    struct interp_norm *norms; /* of the last sample point */
+    uint32_t of[CORNERS + 3];  /* by slot: the position whose sample it holds; the last three slots are used when slots collide */
+    uint32_t taken[3];         /* slot of each corner of the current edge or triangle */
     struct sample_cache_notes notes;
 };
 
@@ -337,7 +340,7 @@ static void room_finish(struct measure_room *room, const struct subdiv *subdiv)
     mem_free(room->norms);
 }
 
-/* Of a corner of the edge or triangle in hand. Kept by place while they are few. */
+/* Returns the sample at a corner of the current edge or triangle, from the cache of this thread if possible. */
 static const float *shares_at(const struct subdiv *subdiv, uint32_t vertex, uint32_t corner, struct measure_room *room)
 {
     uint32_t place = place_of(subdiv, vertex), number = place % CORNERS;
@@ -361,7 +364,8 @@ static void bar_short(struct subdiv_finding *finding)
     finding->error = 0;
 }
 
-/* Straight distances do not jump. */
+/* Marks an edge across which the geodesic distance jumps: its geodesic error cannot be fixed. Errors of straight-line distances, which do
+ * not jump, remain. */
 static void bar_jump(struct subdiv_finding *finding, const struct line *line)
 {
     finding->jumps = true;
@@ -372,7 +376,8 @@ static void bar_jump(struct subdiv_finding *finding, const struct line *line)
     }
 }
 
-/* Of which the middle was looked at last. */
+/* Returns the distance from the edge's midpoint to the nearest sensor or end of data. If the midpoint was the last sample, its
+ * normalisations are used. */
 static double nearest_to_middle(const struct line *line, uint32_t end)
 {
     const struct linear_error *linear = line->subdiv->in->linear;
@@ -446,7 +451,8 @@ static void try_edges(void *arg, size_t begin, size_t end)
     room_finish(&room, subdiv);
 }
 
-/* From the middle to a corner, in a triangle in which no cut would mend that. */
+/* Returns whether a distance jumps between a point inside a triangle and a corner, and the triangle's edges are too short for a split to
+ * help. */
 static bool jumps_inside(const struct subdiv *subdiv, const struct subdiv_tri *tri, const float middle[3], const float *geodesic_m)
 {
     for (int c = 0; c < 3; c++) {
@@ -461,12 +467,12 @@ static bool jumps_inside(const struct subdiv *subdiv, const struct subdiv_tri *t
     return false;
 }
 
-struct inside { /* a triangle, looked at inside */
+struct inside { /* a triangle measured at inner points */
     struct origin_sight sight;
     const struct subdiv_tri *tri;
-    const float *interp[3]; /* at its corners */
+    const float *interp[3]; /* samples at its corners */
     double corners[3][3];
-    float *points; /* room for one */
+    float *points; /* buffer for one point */
     struct interp_norm *norms;
 };
 
@@ -476,7 +482,7 @@ static void place_in(const struct inside *inside, const double weights[3], doubl
         at[i] = weights[0] * inside->corners[0][i] + weights[1] * inside->corners[1][i] + weights[2] * inside->corners[2][i];
 }
 
-/* At a place with these weights, where the surface is there. */
+/* Returns the error at a point with these barycentric weights, given its projection onto the surface. */
 static double error_inside(const struct inside *inside, const double weights[3], const struct surface_point *hit)
 {
     const struct subdiv *subdiv = inside->sight.subdiv;
@@ -494,7 +500,8 @@ static double error_inside(const struct inside *inside, const double weights[3],
     return linear_error_in_triangle(linear, modes, inside->interp, weights, interp, wide_m, subdiv->slack_m);
 }
 
-/* At the middle; where that is not seen, at what is seen nearest to it and to places beside the corners. */
+/* Measures a triangle at its centre. If the centre is hidden, measures the visible points nearest to the centre and to three points near
+ * the corners. */
 static void try_inside(const struct subdiv *subdiv, struct subdiv_finding *finding, struct measure_room *room)
 {
     static const double places[4][3] = {
@@ -538,7 +545,8 @@ static void try_insides(void *arg, size_t begin, size_t end)
     room_finish(&room, subdiv);
 }
 
-/* Beyond a reach the nearest sensor has all of a value: as it is written, since two may then be as near. */
+/* Rounds distances beyond a reach to the file's precision: there the nearest sensor has all the weight, and rounding may make two sensors
+ * equally near. */
 static void round_beyond_reach(const struct linear_error *linear, float *geodesic_m)
 {
     for (size_t g = 0; g < linear->group_count; g++) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Cutting edges, and the triangles at them. */
+/* Splits edges and the triangles at them. */
 #include "preprocess/subdivision/subdiv_mesh.h"
 
 #include <math.h>
@@ -39,7 +39,7 @@ void subdiv_mesh_finish(struct subdiv_mesh *mesh)
 
 #define DIGIT_BITS 11
 
-/* By one digit after the other, the lowest first. */
+/* Radix sort, lowest digit first. */
 static void sort_numbers(uint32_t *numbers, size_t count)
 {
     uint32_t *other = mem_array(count, sizeof(*other)), *from = numbers, *to = other, most = 0;
@@ -112,7 +112,7 @@ static uint32_t edge_of(struct subdiv_mesh *mesh, uint32_t a, uint32_t b, uint32
 
 #define LOOK_UP TRIMESH_NONE
 
-/* known: its sides' numbers, where they are known already: looking them up is what takes long. */
+/* Creates a triangle. known: indices of edges that are known already, because looking them up is expensive. */
 static struct subdiv_tri make_tri(struct subdiv_mesh *mesh, const struct subdiv_tri *like, const uint32_t v[3], const uint32_t known[3])
 {
     struct subdiv_tri tri = { .v = { v[0], v[1], v[2] }, .primitive = like->primitive, .origin = like->origin };
@@ -157,7 +157,7 @@ static void put_tri(struct subdiv_mesh *mesh, size_t t, const struct subdiv_tri 
     enter(mesh, t);
 }
 
-/* Returns its number; it is the last. */
+/* Appends a triangle. Returns its index. */
 static size_t add_tri(struct subdiv_mesh *mesh, const struct subdiv_tri *like, const uint32_t v[3], const uint32_t known[3])
 {
     struct subdiv_tri tri = make_tri(mesh, like, v, known);
@@ -170,7 +170,7 @@ static size_t add_tri(struct subdiv_mesh *mesh, const struct subdiv_tri *like, c
 
 static const uint32_t unknown[3] = { LOOK_UP, LOOK_UP, LOOK_UP };
 
-#define AHEAD 8 /* triangles */
+#define AHEAD 8 /* prefetch distance in triangles */
 static void prefetch_edges(const struct subdiv_mesh *mesh, const uint32_t v[3])
 {
     for (int c = 0; c < 3; c++)
@@ -182,7 +182,7 @@ void subdiv_mesh_load(struct subdiv_mesh *mesh, const struct level *level)
     mesh->tri_count = 0;
     mesh->loads++;
     mesh->made.count = mesh->open.count = 0;
-    for (size_t e = 0; e < mesh->edges.count; e++) { /* each level has its own idea of what is an error */
+    for (size_t e = 0; e < mesh->edges.count; e++) { /* errors depend on the level, unless an edge is proven */
         mesh->cuts[e].error = mesh->cuts[e].proven ? mesh->cuts[e].error : -1;
         mesh->cuts[e].corner = TRIMESH_NONE;
     }
@@ -227,7 +227,7 @@ static uint32_t add_place(struct subdiv_mesh *mesh, const float position_m[3])
     return (uint32_t)mesh->welded.count++;
 }
 
-/* The last vertex's place on textures, if there are any. */
+/* Interpolates the texture coordinates of the last vertex, if there are any. */
 static void add_texcoord(float (**texcoords)[2], size_t *capacity, uint32_t vertex, const uint32_t *from, const double *weights, int count)
 {
     float mixed[2] = { 0 };
@@ -240,7 +240,7 @@ static void add_texcoord(float (**texcoords)[2], size_t *capacity, uint32_t vert
     memcpy((*texcoords)[vertex], mixed, sizeof(mixed));
 }
 
-/* A vertex at a place whose attributes are those of others, mixed. */
+/* Adds a vertex at a position, with attributes interpolated from other vertices. */
 static uint32_t add_vertex(struct subdiv_mesh *mesh, uint32_t place, const uint32_t *from, const double *weights, int count)
 {
     struct geometry *g = mesh->geometry;
@@ -270,7 +270,7 @@ static uint32_t add_vertex(struct subdiv_mesh *mesh, uint32_t place, const uint3
     return vertex;
 }
 
-/* The vertex in the middle of a cut edge, for the face that has the vertices a and b at its ends. */
+/* Returns the vertex at the split point of an edge, for the face whose vertices at the edge's ends are a and b. */
 static uint32_t middle_vertex(struct subdiv_mesh *mesh, uint32_t edge, uint32_t a, uint32_t b)
 {
     const struct subdiv_edge *cut = &mesh->cuts[edge];
@@ -307,7 +307,7 @@ static double distance2(const struct subdiv_mesh *mesh, uint32_t a, uint32_t b)
     return x * x + y * y + z * z;
 }
 
-/* Its sides that are not cut are pieces' sides, too, and two pieces share one: e holds what is known of them. */
+/* Splits a triangle at one edge. Unsplit edges pass to the pieces, which also share a new edge; e holds the known indices. */
 static struct subdiv_tri cut_once(struct subdiv_mesh *mesh, const struct subdiv_tri *old, const uint32_t v[3], const uint32_t e[3],
                                   uint32_t m)
 {
@@ -339,7 +339,7 @@ static struct subdiv_tri cut_thrice(struct subdiv_mesh *mesh, const struct subdi
     return piece;
 }
 
-/* The first piece takes the triangle's place, the others go to the end. */
+/* Splits a triangle: the first piece replaces it, the others are appended. */
 static void split_tri(struct subdiv_mesh *mesh, size_t t)
 {
     struct subdiv_tri old = mesh->tris[t];
@@ -371,7 +371,7 @@ static bool is_open(const struct subdiv_mesh *mesh, size_t t)
     return subdiv_mesh_is_split(mesh, e[0]) || subdiv_mesh_is_split(mesh, e[1]) || subdiv_mesh_is_split(mesh, e[2]);
 }
 
-/* Pieces that are still to be split come behind those that were there. */
+/* Triangles that need further splits are appended to mesh->open and handled in the next round. */
 size_t subdiv_mesh_apply(struct subdiv_mesh *mesh)
 {
     size_t before = mesh->tri_count;
@@ -398,9 +398,9 @@ uint32_t subdiv_mesh_insert(struct subdiv_mesh *mesh, size_t tri, const double w
     return vertex;
 }
 
-/* --- turning -------------------------------------------------------------------------------------------------------------- */
+/* --- flipping ------------------------------------------------------------------------------------------------------------- */
 
-/* The corners in their order, the first two at the edge; e: the sides, that edge first. */
+/* Lists the corners in winding order, beginning with the edge's two; e: the edges, beginning with that edge. */
 static void corners_from(const struct subdiv_tri *tri, uint32_t edge, uint32_t v[3], uint32_t e[3])
 {
     int first = tri->e[0] == edge ? 0 : tri->e[1] == edge ? 1 : 2;

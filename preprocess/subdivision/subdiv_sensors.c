@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Vertices where the sensors stand. */
+/* Inserts vertices at the sensors. */
 #include <math.h>
 #include <string.h>
 
@@ -8,9 +8,9 @@
 #include "preprocess/subdivision/subdivide_impl.h"
 #include "surface/mesh/bvh.h"
 
-#define ON_OF_SIZE 1e-5 /* a sensor as near to a vertex or an edge stands on it */
-#define MOST_CUTS 30    /* of edges that the other levels cut elsewhere */
-#define FEW 32          /* sensors, for which a search tree of the level is not worth making */
+#define ON_OF_SIZE 1e-5 /* relative to the size; a sensor this near to a vertex or an edge is placed on it */
+#define MAX_CUTS 30     /* limit of splits of edges that other levels split elsewhere */
+#define FEW 32          /* number of sensors up to which no search tree of the level is built */
 
 struct sensor_hit { /* where a sensor meets a level */
     size_t tri;
@@ -46,7 +46,7 @@ static double try_piece(const struct subdiv *subdiv, size_t t, const double poin
     return distance_m;
 }
 
-/* Among the pieces of a triangle that the level had at first: in its own place, and behind the first ones. */
+/* Finds the piece nearest to a point among the pieces of one of the level's original triangles: its own slot, and appended ones. */
 static double find_piece(const struct subdiv *subdiv, uint32_t tri, const double point[3], struct sensor_hit *hit)
 {
     double best_m = try_piece(subdiv, tri, point, INFINITY, hit);
@@ -56,7 +56,7 @@ static double find_piece(const struct subdiv *subdiv, uint32_t tri, const double
     return best_m;
 }
 
-/* The distance of a vertex from a point. */
+/* Returns the distance of a vertex from a point. */
 static double off(const struct subdiv *subdiv, uint32_t vertex, const float point[3])
 {
     return subdiv_length(subdiv_position(subdiv, vertex), point);
@@ -68,7 +68,7 @@ static void know_place(struct subdiv *subdiv, uint32_t place, uint32_t part, con
     subdiv_measure_places(subdiv, place, edge, 1);
 }
 
-/* Cuts the edge of the triangle that runs through the point, if one does. */
+/* Splits the triangle's edge that passes through the point, if there is one. */
 static bool cut_edge_at(struct subdiv *subdiv, const struct sensor_hit *hit, const float point[3])
 {
     struct subdiv_mesh *mesh = &subdiv->mesh;
@@ -99,12 +99,12 @@ static uint32_t put_into_triangle(struct subdiv *subdiv, const struct sensor_hit
     return vertex;
 }
 
-/* A vertex that is there, or a new one in an edge or in a triangle. An edge that another level cut elsewhere is cut there first. False: the
-   part that the sensor stands on is not in this level. */
+/* Finds or creates the vertex at a sensor: an existing one, or a new one on an edge or inside a triangle. An edge that another level split
+ * elsewhere is split there first. Returns false if the part below the sensor is not in this level. */
 static bool find_vertex(struct subdiv *subdiv, uint32_t tri, const double point[3], double error_m, uint32_t *vertex)
 {
     struct sensor_hit hit = { 0 };
-    for (int tries = 0; tries < MOST_CUTS; tries++) {
+    for (int tries = 0; tries < MAX_CUTS; tries++) {
         float at[3];
         if (find_piece(subdiv, tri, point, &hit) > 2 * error_m + ON_OF_SIZE * subdiv->size_m)
             return false;
@@ -138,7 +138,7 @@ static void stand(struct subdiv *subdiv, uint32_t tri, size_t sensor, double err
     subdiv_measure_places(subdiv, place, NULL, 1);
 }
 
-/* --- where they are nearest to the level: of triangles that are as near, the first ----------------------------------------------- */
+/* --- nearest triangle to each sensor; the first of equally near ones ------------------------------------------------------------- */
 
 static void look_at_all(const struct subdiv *subdiv, uint32_t *nearest)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds the edges along which the field is not straight, and cuts them where that helps most, until it is: those that err most first. */
+/* Finds edges along which the field is not linear and splits them, those with the largest error first, until the error is small enough. */
 #include "preprocess/subdivision/subdivide.h"
 
 #include <math.h>
@@ -10,44 +10,45 @@
 #include "base/mem.h"
 #include "preprocess/subdivision/subdivide_impl.h"
 
-#define MOST_ROUNDS 16
-#define GRAIN 2048          /* triangles: a few tenths of a millisecond */
-#define MOST_KEPT 512       /* shares of a place */
-#define LARGE 0.25          /* of the way to the nearest sensor */
-#define LIKELY 1.0          /* errors of the edges together, in limits: with less, one of 500 large triangles errs more inside */
-#define INSIDE_LEAST 2.0    /* shortest pieces: smaller triangles are not looked at inside */
-#define FLAT 1e-3           /* a triangle's longest edge is no more than that shorter than the way round over the corner across */
-#define ASIDE 0.1           /* of the edge, at least, that corner is from its ends */
-#define LINE_OF_SIZE 2.5e-7 /* a triangle no higher than that, a few units of the last place, is a line */
-#define MORE_PLACES 12.0    /* room for places, in those that the model has */
-#define MOST_ASKED 2000     /* short edges of a coarser level that are looked at for what is told of it */
-#define FULL 2e-4           /* a level that may grow by less than that is done: each round takes half of what is left */
+#define MAX_ROUNDS 16
+#define GRAIN 2048              /* triangles per unit of work: a few tenths of a millisecond */
+#define MAX_STORED 512          /* limit of numbers per sample, up to which samples are stored */
+#define LARGE 0.25              /* share of the distance to the nearest sensor */
+#define LIKELY 1.0              /* sum of the edges' errors, in limits; below this, one of 500 large triangles has a larger error inside */
+#define MIN_INSIDE 2.0          /* in shortest pieces; smaller triangles are not measured inside */
+#define FLAT 1e-3               /* a triangle is flat if its longest edge is shorter than the sum of the other two by at most this share */
+#define ASIDE 0.1               /* share of the longest edge; a flat triangle's opposite corner must be this far from its ends */
+#define LINE_OF_SIZE 2.5e-7     /* relative to the size; a triangle no higher than this, a few units of the last place, is degenerate */
+#define MORE_PLACES 12.0        /* capacity for positions, in multiples of the model's */
+#define MAX_REPORTED_EDGES 2000 /* limit of the short edges of a coarser level that are measured for the report */
+#define FULL 2e-4               /* a level that can grow by less than this share is done, because each round uses half of the rest */
 
-/* How many triangles the finest level may get more: so much of its own, or so many, whichever is more. */
+/* Growth limits of the finest level: share of its triangles, and number of triangles; the larger one counts. */
 #define FINEST_GROWTH 2.0
 #define FINEST_GROWTH_TRIS 100000.0
-#define WORTH 0.95          /* a coarser level that would get more than so much of the next finer one is of no use; */
-#define WORTH_MANY 0.5      /* the same for MANY_SENSORS, whose distances take most of a file, and where the finest ran out of triangles */
+#define WORTH 0.95 /* a coarser level is dropped if it would need more than this share of the next finer one's triangles */
+/* the same with MANY_SENSORS or more, whose distances take most of a file, and if the finest level reached its limit */
+#define WORTH_MANY 0.5
 #define MANY_SENSORS 128
-#define SAMPLE_WORTH 9000   /* levels of so many triangles or more are first tried on a sample: those of fewer hang on too few of them */
-#define SAMPLE_ROUNDS 4     /* of cuts, then it is known or never will be */
-#define SHORTEST_NEAR 0.125 /* pieces of the finest level, of the tolerance: sensors may stand side by side */
-#define SHORTEST 1.0        /* pieces of coarser levels, of their error: two pixels */
-#define JUMP_WIDTH 8        /* tolerances, or errors */
-#define ON_SURFACE 0.25     /* tolerances: so far apart places may be said to be the same */
-#define SLACK 0.7           /* how far away a coarser level may show what the field is, likewise */
+#define SAMPLE_WORTH 9000 /* levels with at least this many triangles are first tried on a sample; samples of smaller ones are unreliable */
+#define SAMPLE_ROUNDS 4   /* rounds of splits on a sample; if a level is not hopeless after them, it never will be */
+#define SHORTEST_NEAR 0.125 /* shortest pieces of the finest level, in tolerances: sensors may be close together */
+#define SHORTEST 1.0        /* shortest pieces of coarser levels, in their errors: two pixels */
+#define JUMP_WIDTH 8        /* in tolerances or errors */
+#define ON_SURFACE 0.25     /* in tolerances: positions this close may count as equal */
+#define SLACK 0.7           /* in errors: how far away the field shown by a coarser level may be */
 
 /* --- cutting -------------------------------------------------------------------------------------------------------------- */
 
 #define BINS (1u << 16)
-static uint32_t bin_of(float error) /* errors are not negative: their bits have their order */
+static uint32_t bin_of(float error) /* positive floats sort like their bit patterns */
 {
     uint32_t bits;
     memcpy(&bits, &error, sizeof(bits));
     return bits >> 16;
 }
 
-/* Keeps the `most` worst ones, in the order that they have; of about the last error, the first ones. Returns how many that are. */
+/* Keeps the `most` largest errors, in their present order; of nearly equal ones at the threshold, the first. Returns the number kept. */
 static size_t keep_worst(struct subdiv_finding *findings, size_t count, size_t most)
 {
     if (count <= most)
@@ -68,7 +69,7 @@ static size_t keep_worst(struct subdiv_finding *findings, size_t count, size_t m
     return kept;
 }
 
-/* It has no width that a picture could show. */
+/* Returns whether a triangle is too narrow to be visible in a picture. */
 static bool is_line(const struct subdiv *subdiv, const struct subdiv_tri *tri)
 {
     double p[3][3], normal[3], longest_m = 0;
@@ -81,20 +82,20 @@ static bool is_line(const struct subdiv *subdiv, const struct subdiv_tri *tri)
     return vec_length(normal) <= LINE_OF_SIZE * subdiv->size_m * longest_m;
 }
 
-/* In a coarser level: it stays as it is, whatever it errs by. */
+/* Returns whether an edge of a coarser level is too short to be split whatever its error. */
 static bool is_too_short(const struct subdiv *subdiv, const struct subdiv_edge *edge)
 {
     return !subdiv->finest && subdiv_is_short(subdiv, subdiv_length(subdiv_position(subdiv, edge->a), subdiv_position(subdiv, edge->b)));
 }
 
-/* Bits of a triangle made; those of a side are shifted by its number. */
+/* Flags of a new triangle; those of an edge are shifted by its index. */
 #define SIDE_IS_NEW 1u
 #define SIDE_IS_TOO_SHORT 8u
-#define ASKS 64u /* it has new sides, and is no line */
+#define ASKS 64u /* it has new edges and is not degenerate */
 
 struct sides {
     const struct subdiv *subdiv;
-    unsigned char *of; /* the triangles made */
+    unsigned char *of; /* flags, by new triangle */
 };
 
 static void look_at_sides(void *arg, size_t begin, size_t end)
@@ -116,8 +117,8 @@ static void look_at_sides(void *arg, size_t begin, size_t end)
     }
 }
 
-/* Of triangles that ask for their new sides, or of those that do not: these sides are 0 where no other triangle asks. Lists those to be
-   measured; returns how many. */
+/* Lists the new edges to measure, of triangles with ASKS set (or not set). Edges that only degenerate triangles have get error 0. Returns
+ * their number. */
 static size_t take_new_sides(struct subdiv *subdiv, const struct sides *sides, unsigned asks, struct subdiv_finding *findings)
 {
     struct subdiv_mesh *mesh = &subdiv->mesh;
@@ -138,8 +139,8 @@ static size_t take_new_sides(struct subdiv *subdiv, const struct sides *sides, u
     return count;
 }
 
-/* Measures edges that are new. One that only lines have is not seen; were it cut, they would become ever more. Half of the edges of coarser
-   levels are too short to be cut: what they err by does not matter. */
+/* Measures new edges. Edges of degenerate triangles only are invisible; splitting them would make more of them. Half of the edges of
+ * coarser levels are too short to split, so their error does not matter. */
 static void measure_edges(struct subdiv *subdiv)
 {
     struct subdiv_mesh *mesh = &subdiv->mesh;
@@ -168,9 +169,9 @@ static int longest_edge(const struct subdiv *subdiv, const struct subdiv_tri *tr
     return longest;
 }
 
-/* Where a field bends evenly, it errs at the middle by 4/9 of what it errs along the three edges together. In a triangle that is large
-   beside the way to the nearest sensor, anything may happen: but before the last limit the few are left for later that err by more than the
-   limit though their edges do not. */
+/* Returns whether the error inside a triangle may exceed the limit. Where a field bends evenly, the error at the centre is 4/9 of the sum
+ * of the three edges' errors. In a triangle that is large compared with the distance to the nearest sensor, it may be anything; before the
+ * last limit, such triangles with small edge errors are left for later. */
 static bool inside_may_err(const struct subdiv *subdiv, const struct subdiv_tri *tri, double limit)
 {
     const struct subdiv_mesh *mesh = &subdiv->mesh;
@@ -180,7 +181,7 @@ static bool inside_may_err(const struct subdiv *subdiv, const struct subdiv_tri 
     double length_m = subdiv_length(a, b);
     for (int e = 0; e < 3; e++)
         sum += (double)mesh->cuts[tri->e[e]].error;
-    if (length_m <= INSIDE_LEAST * subdiv->shortest_m)
+    if (length_m <= MIN_INSIDE * subdiv->shortest_m)
         return false;
     bool any_error = sum > LIKELY * limit || limit <= SUBDIV_AIM;
     const struct interp_norm *norms = subdiv->norms + mesh->welded.of_vertex[tri->v[i]] * subdiv->norm_count;
@@ -190,7 +191,7 @@ static bool inside_may_err(const struct subdiv *subdiv, const struct subdiv_tri 
 struct insides {
     const struct subdiv *subdiv;
     double limit;
-    char *asked; /* of the triangles made */
+    char *asked; /* by new triangle: whether to measure its inside */
 };
 
 static void choose_insides(void *arg, size_t begin, size_t end)
@@ -206,7 +207,7 @@ static void choose_insides(void *arg, size_t begin, size_t end)
     }
 }
 
-/* Measures new triangles whose edges are good: has those that err inside cut at the longest edge. */
+/* Measures new triangles whose edges are good. If the error inside is too large, marks the longest edge to be split. */
 static void measure_insides(struct subdiv *subdiv, double limit)
 {
     struct subdiv_mesh *mesh = &subdiv->mesh;
@@ -255,7 +256,8 @@ static void cut_edges(struct subdiv *subdiv, const struct subdiv_finding *findin
     mem_free(edges);
 }
 
-/* In a flat triangle the longest edge runs beside the corner across: where it is to be cut, it is cut there. False: it is not so flat. */
+/* In a flat triangle, the longest edge passes close to the opposite corner and should be split next to it. Returns false if the triangle is
+ * not that flat. */
 static bool find_aim(const struct subdiv *subdiv, const struct subdiv_tri *tri, uint32_t *edge, float *share)
 {
     const struct subdiv_mesh *mesh = &subdiv->mesh;
@@ -283,7 +285,7 @@ static bool aim_at_corner(struct subdiv *subdiv, const struct subdiv_tri *tri, u
 
 struct aims {
     const struct subdiv *subdiv;
-    char *flat; /* of the triangles made */
+    char *flat; /* by new triangle */
 };
 
 static void find_flat(void *arg, size_t begin, size_t end)
@@ -296,7 +298,7 @@ static void find_flat(void *arg, size_t begin, size_t end)
     }
 }
 
-/* Of triangles that are new. */
+/* Sets the split points of the longest edges of new flat triangles. */
 static void aim_at_corners(struct subdiv *subdiv)
 {
     struct subdiv_mesh *mesh = &subdiv->mesh;
@@ -311,7 +313,7 @@ static void aim_at_corners(struct subdiv *subdiv)
     mem_free(aims.flat);
 }
 
-/* Edges beside corners at which other edges are cut, or the pieces would stay as long as they are. */
+/* Splits longest edges next to corners at which other edges are split; else the pieces would stay as long as the edge. */
 static void cut_beside_corners(struct subdiv *subdiv)
 {
     struct subdiv_mesh *mesh = &subdiv->mesh;
@@ -330,12 +332,12 @@ static void cut_beside_corners(struct subdiv *subdiv)
     mem_free(findings);
 }
 
-/* Edges that err too much, each as often as triangles have it, in the order of these. */
+/* Lists edges with an error above the limit, once for each triangle that has them, in the triangles' order. */
 static struct subdiv_finding *list_errors(const struct subdiv *subdiv, double limit, size_t *count)
 {
     const struct subdiv_mesh *mesh = &subdiv->mesh;
     struct subdiv_list corners = { 0 };
-    bool all = mesh->made.count == mesh->tri_count; /* then each corner is met in order */
+    bool all = mesh->made.count == mesh->tri_count; /* all triangles are new, so corners are visited in order */
     for (size_t t = 0; t < mesh->tri_count && all; t++)
         for (uint32_t i = 0; i < 3; i++)
             if ((double)mesh->cuts[mesh->tris[t].e[i]].error > limit)
@@ -356,7 +358,7 @@ static struct subdiv_finding *list_errors(const struct subdiv *subdiv, double li
     return findings;
 }
 
-/* Cuts the edges that err too much, the worst ones first, as long as the level may grow. False: nothing to do. */
+/* Splits edges with an error above the limit, largest first, as far as the level may grow. Returns false if there was nothing to do. */
 static bool cut_worst(struct subdiv *subdiv, double limit)
 {
     struct subdiv_mesh *mesh = &subdiv->mesh;
@@ -386,7 +388,8 @@ static void note_left(struct level *level, enum level_limit limit, float error, 
     level->left[limit].steps = fmaxf(level->left[limit].steps, error / (float)SUBDIV_ERROR);
 }
 
-/* Of those that were too short to be asked for, some; the rest errs as they do. Returns how many each of these stands for. */
+/* Measures some of the edges that were too short to be measured; the rest are assumed to be similar. Returns the number of edges that each
+ * measured one represents. */
 static uint32_t ask_some(struct subdiv *subdiv)
 {
     struct subdiv_mesh *mesh = &subdiv->mesh;
@@ -395,7 +398,7 @@ static uint32_t ask_some(struct subdiv *subdiv)
     for (uint32_t e = 0; e < mesh->edges.count; e++)
         if (mesh->cuts[e].unasked && mesh->cuts[e].corner != TRIMESH_NONE)
             findings[count++].number = e;
-    const size_t of = 1 + count / MOST_ASKED;
+    const size_t of = 1 + count / MAX_REPORTED_EDGES;
     for (size_t i = 0; i < count; i += of)
         findings[asked++].number = findings[i].number;
     subdiv_measure_new_edges(subdiv, findings, asked);
@@ -422,10 +425,10 @@ static void tell_left(struct subdiv *subdiv, struct level *level)
     mem_free(told);
 }
 
-/* Until no edge errs by more than the limit. */
+/* Splits edges until no error exceeds the limit. */
 static void cut_to(struct subdiv *subdiv, double limit)
 {
-    int rounds = subdiv->sample_blocks ? SAMPLE_ROUNDS : MOST_ROUNDS;
+    int rounds = subdiv->sample_blocks ? SAMPLE_ROUNDS : MAX_ROUNDS;
     for (int round = 0; round < rounds; round++) {
         if (round == 0)
             subdiv_mesh_list_all(&subdiv->mesh);
@@ -441,7 +444,8 @@ static void cut_to(struct subdiv *subdiv, double limit)
     }
 }
 
-/* What becomes of a sample when large errors are cut says that the level is no use: most of the work for such levels is saved. */
+/* Splits a sample of the level for large errors. Returns whether the result shows that the level would need too many triangles, which saves
+ * most of the work for such levels. */
 static bool is_hopeless(struct subdiv *subdiv, const struct level *level, double large)
 {
     struct level sample;
@@ -465,7 +469,7 @@ static bool is_known_hopeless(const struct subdiv *subdiv)
     return subdiv->in->cache && subdiv->in->cache->hopeless >> subdiv->level & 1;
 }
 
-/* Large errors go first: should the level come to its bound, the smaller ones are what is left. */
+/* Subdivides a level in passes with decreasing limits, so that only small errors remain if the level reaches its triangle limit. */
 static void subdivide_level(struct subdiv *subdiv, struct level *level, size_t finer_tris)
 {
     static const double limits[] = { 16 * SUBDIV_AIM, 4 * SUBDIV_AIM, 2 * SUBDIV_AIM, SUBDIV_AIM };
@@ -494,7 +498,7 @@ static void subdivide_level(struct subdiv *subdiv, struct level *level, size_t f
     subdiv_mesh_store(&subdiv->mesh, level);
 }
 
-/* A coarser level that came to its bound is given up: the next finer one is no dearer. */
+/* Subdivides all levels. A coarser level that reaches its limit is dropped, because the next finer one is no more expensive. */
 static void subdivide_all(struct subdiv *subdiv, struct levels *levels)
 {
     size_t kept = 0, finer_tris = 0;
@@ -545,15 +549,15 @@ static bool start(struct subdiv *subdiv, struct geometry *geometry)
     if (!subdiv_mesh_init(&subdiv->mesh, geometry) || !subdiv_find_parts(subdiv))
         return false;
     size_t places = subdiv->mesh.welded.count;
-    subdiv->geodesic_capacity = (size_t)(MORE_PLACES * (double)places) * subdiv->sensors; /* memory is taken as it is used */
+    subdiv->geodesic_capacity = (size_t)(MORE_PLACES * (double)places) * subdiv->sensors; /* memory is committed only when used */
     subdiv->geodesic_m = mem_try_array(subdiv->geodesic_capacity, sizeof(*subdiv->geodesic_m));
-    if (subdiv->samples <= MOST_KEPT) {
+    if (subdiv->samples <= MAX_STORED) {
         subdiv->share_capacity = places * subdiv->samples;
         subdiv->interp = mem_try_array(subdiv->share_capacity, sizeof(*subdiv->interp));
     }
     subdiv->norm_capacity = places * subdiv->norm_count;
     subdiv->norms = mem_array(subdiv->norm_capacity, sizeof(*subdiv->norms));
-    if (!subdiv->geodesic_m || (subdiv->samples <= MOST_KEPT && !subdiv->interp))
+    if (!subdiv->geodesic_m || (subdiv->samples <= MAX_STORED && !subdiv->interp))
         return false;
     for (uint32_t v = 0; v < geometry->vertex_count; v++)
         surface_field_at_vertex(subdiv->in->field, subdiv->in->surface, v,
@@ -564,7 +568,7 @@ static bool start(struct subdiv *subdiv, struct geometry *geometry)
     return true;
 }
 
-/* Taken out of what is then done with. */
+/* Moves the distances out of the subdivision, which no longer needs them. */
 static void take_rows(struct subdiv *subdiv, struct distance_rows *rows)
 {
     *rows = (struct distance_rows){ .distances_m = subdiv->geodesic_m,
