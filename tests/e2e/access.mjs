@@ -494,7 +494,7 @@ test('a person is asked for a token, and sees the plant', {
         await page.waitForSelector('#token[open]');
         await page.fill('#token-text', 'pc_wrong');
         await page.click('#token-form button');
-        await page.waitForFunction(() => /not valid/.test(document.getElementById('token-why').textContent));
+        await page.waitForFunction(() => /invalid/.test(document.getElementById('token-why').textContent));
         await shoot(page, 'token');
         await page.fill('#token-text', tokens.viewer);
         await page.click('#token-form button');

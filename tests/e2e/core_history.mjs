@@ -116,7 +116,7 @@ test('the page of a renderer has trends and the past', options, async () => {
     await settle(page);
     // the chart shows an hour with a reading each second
     await page.waitForFunction(() => globalThis.plantcast.trends.chart.data[0].length > 100);
-    assert.match(await page.locator('#clock-name').textContent(), /^Then/);
+    assert.match(await page.locator('#clock-name').textContent(), /^Time shown/);
     await shoot(page, 'core-history');
     assert.deepEqual(errors, []);
     await close();

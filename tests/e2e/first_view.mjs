@@ -74,8 +74,8 @@ test('a notice says what lies far outside, and shows everything', options, async
         await far.startSim();
         await far.startDaemon();
         for (const [language, screen, title, all] of [
-            ['en', SCREENS.desk, 'Not in the first view, up to 7012 km away: STRAY', 'Show everything'],
-            ['de', SCREENS.desk, 'Nicht in der ersten Ansicht, bis 7012 km entfernt: STRAY', 'Alles zeigen'],
+            ['en', SCREENS.desk, 'Outside the first view, up to 7012 km away: STRAY', 'Show everything'],
+            ['de', SCREENS.desk, 'Außerhalb der ersten Ansicht, bis 7012 km entfernt: STRAY', 'Alles zeigen'],
             ['ko', PHONE, '첫 화면 밖, 최대 7012 km 거리: STRAY', '전체 보기']]) {
             const { page, close, errors } = await openPage(`http://127.0.0.1:${far.port}/?lang=${language}`, screen);
             try {

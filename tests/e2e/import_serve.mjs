@@ -377,7 +377,7 @@ test('by keyboard: gone through, its candidates light up, one accepted, all of a
     assert.match(await page.locator('#import .row[aria-selected=true] b').textContent(), /^TT-2012$/);
     await page.keyboard.press('End');
     assert.match(await page.locator('#import .row[aria-selected=true] b').textContent(), /^TT-1014$/);
-    assert.equal(await page.getByRole('button', { name: 'Accept all 2 like TT-####' }).count(), 1, 'those with a proposal');
+    assert.equal(await page.getByRole('button', { name: 'Accept all 2 matching TT-####' }).count(), 1, 'those with a proposal');
     await page.keyboard.press('a');
     await page.locator('#import .segments label', { hasText: 'All' }).click();
     await shoot(page, 'import-4-decided');
@@ -444,13 +444,13 @@ test('placed by hand: the engineer\'s panel takes over, and the tag is not unpla
     const engineer = page.locator('#engineer'), dialog = page.locator('dialog.diff[open]');
     const { x, y } = await drawnAt(page, [(min[0] + max[0]) / 2, (min[1] + max[1]) / 2, max[2]]);
     await page.mouse.click(x, y);
-    await engineer.locator('.moves .off', { hasText: /^not on E-101, as the tag list has it$/ }).waitFor();
+    await engineer.locator('.moves .off', { hasText: /^not on E-101 as listed$/ }).waitFor();
     await engineer.getByRole('button', { name: 'Save …' }).click();
-    await dialog.locator('.off', { hasText: 'TT-9999 was on E-101, and is on P-201A now: is that meant?' }).waitFor();
+    await dialog.locator('.off', { hasText: 'TT-9999 was on E-101 and is now on P-201A: is that intended?' }).waitFor();
     await settle(page);
     await shoot(page, 'import-6-elsewhere');
     await dialog.getByRole('button', { name: 'Cancel' }).click();
-    await engineer.getByRole('button', { name: 'Take all back' }).click();
+    await engineer.getByRole('button', { name: 'Discard all' }).click();
     await page.waitForFunction(() => globalThis.plantcast.session.model.placed.size === 0);
     await page.locator('#import-toggle').click();
     // Isolates the tag's equipment, then restores what was shown before.

@@ -287,7 +287,7 @@ test('while the disk hangs, an alarm is answered with "not kept", and others are
 test('the page says that it is not kept, in three languages', options, async (t) => {
     if (!mounted)
         return t.skip('this user may not mount a file system');
-    for (const [lang, words] of [['en', /In force, but lost if the server restarts \(not saved: the server’s disk is full\)/],
+    for (const [lang, words] of [['en', /Applied, but lost if the server restarts \(not saved: the server’s disk is full\)/],
         ['ko', /서버를 다시 시작하면 사라집니다 \(저장되지 않음: 서버 디스크가 가득 찼습니다\)/],
         ['de', /nach einem Neustart des Servers verloren \(nicht gespeichert: der Datenträger des Servers ist voll\)/]]) {
         const browser = await openPage(`http://127.0.0.1:${port}/?lang=${lang}`, { viewport: { width: 1280, height: 800 } });

@@ -416,9 +416,9 @@ test('from exports of two systems to a live picture', { skip: noData, timeout: 2
         await waitForPicture(page);
         await page.waitForFunction(() => globalThis.plantcast.session.model.tag('ART1105BA_TT02')?.index !== undefined &&
             globalThis.plantcast.session.model.readings[globalThis.plantcast.session.model.tag('ART1105BA_TT02').index].value > 130);
-        await page.locator('.legend').getByText('Place assumed').waitFor();
+        await page.locator('.legend').getByText('Location assumed').waitFor();
         await page.evaluate(() => { location.hash = '#tag=ART1105BA_TT02'; });
-        await page.locator('#card').getByText('Place assumed').waitFor();
+        await page.locator('#card').getByText('Location assumed').waitFor();
         // Without the walls.
         const walls = ['-HZA05-B', '-HZB05-B', '-HZC05-B', '-HAA01---B', 'IMAGE-DALLE', '-HZ0501M-', 'ORIGINE_BATIMENT'];
         const view = `width=1280&height=800&group=temperature&hidden=${walls.map(encodeURIComponent).join(',')}`;

@@ -96,7 +96,7 @@ test('what cannot be is refused with the reason, and nothing moves', options, as
     };
     await wrong([{ tag: 'XX', asset: 'E-101', position: [0, 0, 0] }], /no tag “XX”/);
     await wrong([{ tag: 'TI-1', asset: 'XX', position: [0, 0, 0] }], /no equipment “XX”/);
-    await wrong([{ tag: 'TI-1', asset: 'E-101', position: [50, 0, 0] }], /TI-1: that place is too far from E-101/);
+    await wrong([{ tag: 'TI-1', asset: 'E-101', position: [50, 0, 0] }], /TI-1: this location is too far from E-101/);
     await wrong([{ tag: 'TI-1', asset: 'E-101', position: [0, 0, 'a'] }], /position/);
     await wrong([1, 2].map((z) => ({ tag: 'TI-1', asset: 'E-101', position: [0, 0, z / 4] })), /TI-1 is moved twice/);
     engineer.say('save_tags', { seq: ++seq });
@@ -151,7 +151,7 @@ test('a list is saved: the difference first, then in force for all, the old one 
     engineer.say('save_tags', { seq: ++seq, confirm: diff.hash }); // sends the same message again while the first one is carried out
     const answers = [await engineer.text('tags_saved', 60000), await engineer.text('tags_saved', 60000)];
     const saved = answers.find((answer) => answer.saved), refused = answers.find((answer) => !answer.saved);
-    assert.match(refused.errors.join(), /another list is being put in force/);
+    assert.match(refused.errors.join(), /another list is being applied/);
     assert.equal(saved.kept, 'tags.csv.1', JSON.stringify(saved));
     assert.deepEqual(saved.changes.sort(), ['tag TI-2 changed: place', 'tag TI-9 changed: asset, place']);
     assert.equal(readFileSync(`${tagsFile}.1`, 'utf8'), old);

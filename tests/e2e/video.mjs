@@ -213,7 +213,7 @@ test('a token that is none, or is revoked, and a view that is not there: a card 
     await plant.daemon.stop();
     await plant.startDaemon();
     program = await start('--view', 'none');
-    await program.line(/there is no view 'none'; there are: none/);
+    await program.line(/there is no view 'none'; the views are: none/);
     reader = see();
     assert.ok((await reader.until(() => true)).card);
     await reader.stop();

@@ -134,7 +134,7 @@ test('what the page says is clicked, and what it shows comes', { skip, timeout: 
         const files = ['plm-sample.rvm', 'plm-sample.att', 'kepware.csv'].map((name) => join(folder, read(`\`${name}\``).slice(1, -1)));
         await panel.locator('input[type=file]').setInputFiles(files);
         await room.waitForFunction(() => globalThis.plantcast.session.model.assets.length === 19, null, { timeout: 200000 });
-        await said(named('The plant is in force'));
+        await said(named('The plant is live'));
 
         // 2. Its size.
         await said(read('12.5 × 6.45 × 8.00 m'));
@@ -181,7 +181,7 @@ test('what the page says is clicked, and what it shows comes', { skip, timeout: 
         await room.locator('#engineer').getByRole('button', { name: named('Save …') }).click();
         await settle(room);
         await shoot(room, 'page-4b-save');
-        await button(named('Save and put in force')).click();
+        await button(named('Save and apply')).click();
         await room.waitForFunction(() => globalThis.plantcast.session.model.tag('ART1105BA_TT01').place === undefined, null,
             { timeout: 60000 });
         await arrive(room);

@@ -180,7 +180,7 @@ test('its picture, its name and the age of its readings; a server that is gone a
 
     await other.daemon.stop('SIGKILL');
     const killed = performance.now();
-    await card.filter({ hasText: /No picture of .* since \d\d:\d\d:\d\d.*Its server does not answer/ }).waitFor();
+    await card.filter({ hasText: /No picture from .* since \d\d:\d\d:\d\d.*Its server does not answer/ }).waitFor();
     assert.ok(await image.isHidden());
     assert.ok(performance.now() - killed < 20000, `${performance.now() - killed} ms`);
     assert.doesNotMatch(await title(), /old/);
@@ -188,7 +188,7 @@ test('its picture, its name and the age of its readings; a server that is gone a
 
     writeFileSync(join(plant.folder, 'other.token'), 'pc_nonsense\n'); // the token file is read for each request
     await other.startDaemon(...otherArgs);
-    await card.filter({ hasText: 'Its server does not accept the token' }).waitFor();
+    await card.filter({ hasText: 'Its server rejects the token' }).waitFor();
     writeFileSync(join(plant.folder, 'other.token'), `${tokens.other}\n`);
     await image.waitFor();
     assert.deepEqual(errors, []);

@@ -101,7 +101,7 @@ test('it shows six digits, and nothing of the plant', options, async () => {
 test('digits that no display shows, other secrets and other people change nothing', options, async () => {
     await desk.page.fill('#devices-digits', '000 000');
     await desk.page.click('#devices button[type=submit]');
-    await desk.page.locator('#toast, [role=status], [role=alert]').filter({ hasText: 'no display shows these digits' }).first()
+    await desk.page.locator('#toast, [role=status], [role=alert]').filter({ hasText: 'no display shows this code' }).first()
         .waitFor({ timeout: 20000 });
     assert.equal((await get('api/v1/pair?wall=room&display=1', 'Pairing pc_1')).status, 400);
     assert.equal((await get('api/v1/pair?wall=nowhere&display=1', `Pairing pc_${'0'.repeat(64)}`)).status, 400);
@@ -270,7 +270,7 @@ test('a viewer notes, sends and points at nothing; who may stands in the audit t
     }), [asked, globals]);
     await post(wall.page, 'wall');
     for (const what of ['to note something', 'to send something to a wall'])
-        assert.match(audit(), new RegExp(`refused.*room\\.1\\.1.*${what}: that takes the role operator`));
+        assert.match(audit(), new RegExp(`refused.*room\\.1\\.1.*${what}: this needs the role operator`));
     assert.equal(audit().split('to send something to a wall: that takes').length - 1, 2); // sending, and pointing
     await desk.page.waitForFunction(() => globalThis.plantcast.session.connection.state === 'open', null, { timeout: 60000 });
     await post(desk.page, 'page');

@@ -77,7 +77,7 @@ test('alarms are marked behind something, and of a quantity that is not shown', 
         const [x, y] = await placeOf(i, '.marks .alarm', text);
         assert.ok(x > 0 && x < 1 && y > 0.2 && y < 0.8, `${text} at ${x}, ${y}`);
     }
-    await pages[0].page.locator('.picture > h2', { hasText: '2 active, 2 to be acknowledged' }).waitFor();
+    await pages[0].page.locator('.picture > h2', { hasText: '2 active, 2 unacknowledged' }).waitFor();
     assert.ok(await pages[0].page.locator('.picture > h2').evaluate(({ clientHeight, scrollWidth, parentNode }) => {
         const { fontSize } = getComputedStyle(parentNode);
         return clientHeight < 2.2 * parseFloat(fontSize) && scrollWidth <= parentNode.clientWidth;
@@ -92,7 +92,7 @@ test('alarms are marked behind something, and of a quantity that is not shown', 
     for (const [i, { page }] of pages.entries())
         await shoot(page, `wall-tile-marks-${i + 1}`);
     said({ type: 'alarm', action: 'acknowledge', alarms: [['TI-2', 'H'], ['PI-1', 'H']], name: 'kim' });
-    await pages[0].page.locator('.picture > h2', { hasText: '2 active, 0 to be acknowledged' }).waitFor();
+    await pages[0].page.locator('.picture > h2', { hasText: '2 active, 0 unacknowledged' }).waitFor();
     await plant.tell('set TI-2 20');
     await plant.tell('set PI-1 5');
     for (const i of [0, 1])

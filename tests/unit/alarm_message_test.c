@@ -129,7 +129,7 @@ CASE(what_is_asked_is_done_or_refused)
     assert_int_equal(json_integer_value(json_object_get(answer, "done")), 1);
     assert_int_equal(json_array_size(refused), 2);
     assert_string_equal(json_string_value(json_array_get(json_array_get(refused, 0), 2)), "there is nothing to acknowledge");
-    assert_string_equal(json_string_value(json_array_get(json_array_get(refused, 1), 2)), "its state is another one by now");
+    assert_string_equal(json_string_value(json_array_get(json_array_get(refused, 1), 2)), "its state has changed meanwhile");
     const json_t *refusal = json_array_get(json_array_get(refused, 0), 3);
     assert_string_equal(json_string_value(json_object_get(refusal, "code")), "quiet");
     json_decref(answer);

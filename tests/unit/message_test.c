@@ -361,7 +361,7 @@ TEST(what_is_not_drawn_truly_on_whole_triangles_is_refused)
     assert_false(query(paper, 1, &view, &error));
     assert_int_equal(error.refusal.code, REFUSAL_UNCUT);
     assert_string_equal(error.refusal.args, "group=temperature\ncount=1\nall=2\nasset=E-101");
-    assert_non_null(strstr(error.text, "interpolation: Paper cannot be drawn truly where temperature has one sensor (1 of 2 assets"));
+    assert_non_null(strstr(error.text, "interpolation: “paper” cannot be drawn accurately where temperature has one sensor (1 of 2 assets"));
     assert_false(query(split, 1, &view, &error));
     assert_false(query(far, 2, &view, &error));
     assert_int_equal(error.refusal.code, REFUSAL_FAR_UNCUT);
@@ -573,9 +573,9 @@ TEST(a_refused_number_is_told_why)
     static const char *const said[][2] = {
         { "\"range\":[1e-300,1e300]", "range: a number from -1e+12 to 1e+12 is expected" },
         { "\"range\":[-1e13,0]", "range: a number from -1e+12 to 1e+12 is expected" },
-        { "\"range\":[20,20]", "range: the range has to begin below its end" },
-        { "\"range\":[20]", "range: the range has to begin below its end" },
-        { "\"range\":[0,1e-10]", "range: the range has to begin below its end" },
+        { "\"range\":[20,20]", "range: the range must begin below its end" },
+        { "\"range\":[20]", "range: the range must begin below its end" },
+        { "\"range\":[0,1e-10]", "range: the range must begin below its end" },
         { "\"breaks\":[1,1e13]", "breaks: a number from -1e+12 to 1e+12 is expected" },
         { "\"breaks\":[2,1]", "breaks: at most 16 numbers, each larger than the one before" },
         { "\"isolines\":[1e13]", "isolines: a number from -1e+12 to 1e+12 is expected" },

@@ -388,7 +388,7 @@ TEST(values_are_put_in)
     overlay_say(LANGUAGE_EN, WORD_FROM, "%s{}%n", NULL, text, sizeof(text));
     assert_string_equal(text, "From %s{}%n");
     overlay_say(LANGUAGE_EN, WORD_HOT_SPOT, "x", NULL, small, sizeof(small));
-    assert_string_equal(small, "Hot spo");
+    assert_string_equal(small, "Detecta");
 }
 
 int main(void)

@@ -20,7 +20,7 @@ test('asks for the subprotocol and says what state it is in', () => {
     sockets[0].accept();
     sockets[0].fail(1001);
     assert.deepEqual(states, ['connecting', 'open', 'waiting']);
-    assert.equal(connection.reason, 'The server went down');
+    assert.equal(connection.reason, 'The server shut down');
 });
 
 test('waits 0.5, 1, 2, 4, 8, 8 seconds between tries', () => {
@@ -60,7 +60,7 @@ test('an open socket alone does not shorten the waits; a greeting does', () => {
     sockets[1].accept();
     sockets[1].fail(1001, 'the server goes down');
     assert.equal(waitOf(bench), 1000);
-    assert.equal(connection.reason, 'The server went down');
+    assert.equal(connection.reason, 'The server shut down');
     clock.advance(1000);
     sockets[2].accept();
     connection.settle();
@@ -100,7 +100,7 @@ test('a server that falls silent is noticed, then given up without waiting for i
     assert.equal(connection.quiet, false);
     clock.advance(DEAD_MS + 100);
     assert.equal(connection.state, 'waiting');
-    assert.equal(connection.reason, 'The server fell silent');
+    assert.equal(connection.reason, 'The server stopped responding');
     assert.ok(sockets[0].closed);
     assert.equal(sockets[0].onmessage, null, 'what still comes is not heard');
 });

@@ -420,7 +420,7 @@ test('health: each state has its own kind and words', () => {
     assert.deepEqual([now().kind, now().words, now().detail], ['partial', 'Live, 1 of 2 sources down', 'Source plc2 does not answer.']);
     const said = (links) => sockets[0].say({ type: 'status', time_us: 1, live: true, clock_set: false, links });
     said([{ ...link('plc1', true), simulated: true }, link('plc2', true)]);
-    assert.deepEqual([now().kind, now().words, now().detail], ['simulated', 'Live, partly simulated', 'Not measured in the plant: plc1.']);
+    assert.deepEqual([now().kind, now().words, now().detail], ['simulated', 'Live, partly simulated', 'Simulated values from: plc1.']);
     assert.deepEqual([session.model.clockSet, session.model.clockErrorMs, session.model.leapS], [false, null, 0]);
     sockets[0].say({ type: 'status', time_us: 1, live: true, clock_set: true, clock_error_ms: 10, leap_s: 1, links: [] });
     assert.deepEqual([session.model.clockSet, session.model.clockErrorMs, session.model.leapS], [true, 10, 1]);
@@ -437,7 +437,7 @@ test('health: each state has its own kind and words', () => {
     sockets[0].fail(1001);
     clock.advance(250);
     assert.equal(now().kind, 'lost');
-    assert.equal(now().detail, 'The server went down. This picture is 6.3 s old. Trying again in 1 s.');
+    assert.equal(now().detail, 'The server shut down. This picture is 6.3 s old. Trying again in 1 s.');
 });
 
 test('health: after a reconnect it is not live before the picture is one of the new connection', () => {
@@ -668,7 +668,7 @@ test('until its first picture of now, it is said that the picture is of then', (
     socket.say({ type: 'status', links: [], time_us: 1793500000000000, live: true });
     session.picture = { past: true, dataTimeUs: 1793491200250000, at: 0 };
     socket.say(vector('server/time-now.json'));
-    assert.deepEqual([health(session, clock.now()).kind, health(session, clock.now()).words], ['past', 'Returning to now']);
+    assert.deepEqual([health(session, clock.now()).kind, health(session, clock.now()).words], ['past', 'Returning to live']);
     session.picture = { past: false, dataTimeUs: 1793500000000000, at: 0 };
     assert.equal(health(session, clock.now()).kind, 'live');
 });

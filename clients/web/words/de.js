@@ -8,10 +8,10 @@ legend: Legende
 card: Messstelle
 place: Stelle
 status: Status
-timings: Messungen
+timings: Leistung
 
 [part]
-failed: Dieser Teil der Seite konnte nicht geladen werden. Er kommt von selbst, sobald der Server da ist.
+failed: Dieser Teil der Seite konnte nicht geladen werden. Er wird geladen, sobald der Server antwortet.
 
 [age]
 s: {n} s
@@ -24,27 +24,27 @@ equipment: Anlagenliste
 quantity: Messgröße
 display: Darstellung
 colours: Farben
-ramp: Stufen
-lines: Linien
-look: Optik
+ramp: Farbstufen
+lines: Isolinien
+look: Schattierung
 show: Zeigen
-views: Ansichten, Schnitt und gezeigte Anlagenteile
+views: Ansichten, Schnitt, sichtbare Anlagenteile
 picture: Bild: Vergleich, Licht, geteilte Ansicht
 history: Verlauf
 fit: Einpassen
 home: Grundansicht
 help: Hilfe
-hold: Anhalten: Werte stehen still
-go: Weiter: aktuelle Werte
-unrecorded: Hier wird nichts aufgezeichnet: Werte können nicht angehalten werden
+hold: Werte einfrieren
+go: Zurück zu Live-Werten
+unrecorded: Ohne Aufzeichnung lassen sich Werte nicht einfrieren
 more: Mehr
 measure: Abstand messen
 snapshot: Bild speichern
 share: Teilen
-theme: Dunkel oder hell
-engineer: Ingenieur: Messstellen und Feld
-import: Anlage einlesen
-account: Wer Sie sind
+theme: Hell/dunkel umschalten
+engineer: Engineering: Messstellen und Feld
+import: Anlage importieren
+account: Konto
 
 [show]
 value: Werte
@@ -53,7 +53,7 @@ distance: Abstand
 difference: Differenz
 
 [look]
-default: Messtreu
+default: Farbtreu
 glossy: Glänzend
 flat: Flach
 materials: Werkstoffe
@@ -61,13 +61,13 @@ materials: Werkstoffe
 [lines]
 none: Keine
 every: Alle {step}
-chosen: Gewählte
+chosen: Eigene
 
 [ramp]
 smooth: Stufenlos
-group: Eigene Bänder
+group: Standardbänder
 limits: Grenzwerte
-chosen: Gewählte Bänder
+chosen: Eigene Bänder
 
 [quantity]
 temperature: Temperatur
@@ -88,10 +88,10 @@ title: Ansichten
 title: Anlagenteile
 close: Anlagenliste schließen
 search: Teile, Messstellen suchen
-nothing: Nichts heißt so.
+nothing: Keine Treffer.
 sensors(one): {count} Sensor
 sensors(other): {count} Sensoren
-loose: Messstellen ohne Anlagenteil
+loose: Nicht zugeordnete Messstellen
 about: Über das gewählte Anlagenteil
 worst: schlechteste Qualität: {quality}
 
@@ -99,12 +99,12 @@ worst: schlechteste Qualität: {quality}
 waiting: Warten auf das erste Bild
 
 [legend]
-right: Legende der rechten Hälfte
+right: Legende, rechte Seite
 colours: Farben von {min} bis {max}
 distance: Abstand von {tag}
 operator: Nach den Grenzwerten jeder Messstelle.
 log: Logarithmische Skala.
-unsafe: Diese Farben können täuschen.
+unsafe: Diese Farbskala kann täuschen.
 glossy: Glänzend: Licht ändert die Farben. Keine Werte ablesen.
 nolimits: Ohne Grenzwerte
 nodata: Keine Daten
@@ -112,36 +112,36 @@ uncertain: Unsicher
 drawn: Punkte: Fehler bis {off}.
 
 [following]
-own: Eigene Ansicht
+own: Nicht mehr folgen
 
 [alarms]
 title: Alarme
-unheard: Alarme: noch nichts gehört
+unheard: Alarme: warten auf Daten
 none: Keine aktiven Alarme
 some(one): {count} aktiver Alarm
 some(other): {count} aktive Alarme
 zero: 0 aktiv
-waiting: {waiting} zu quittieren
+waiting: {waiting} unquittiert
 latched: {latched} zurückzusetzen
 asof: Stand {time}: {alarms}
-gone: Priorität {priority}, Ursache gegangen
+gone: Priorität {priority}, gegangen
 now: Jetzt: {alarms}
 value: ausgelöst bei {value}, jetzt {now} (Grenzwert {limit})
 priority: Priorität {priority}
 
 [kind]
-HH: Hoch hoch
+HH: Hoch-Hoch
 H: Hoch
 L: Tief
-LL: Tief tief
+LL: Tief-Tief
 BAD: Messung gestört
 ALM: Alarm
-LINK: Gerät liefert keine Werte
+LINK: Keine Verbindung zum Gerät
 
 [mode]
-display: Hier nur gezeigt, quittiert wird im Leitsystem
-mirror: Wie das Leitsystem sie hat
-local: Eigene Alarme dieses Standorts
+display: Nur Anzeige: im Leitsystem quittieren
+mirror: Aus dem Leitsystem übernommen
+local: Alarme von Plantcast
 
 [trends]
 title: Trend
@@ -151,12 +151,12 @@ title: Verlauf
 
 [status]
 clock: Anlagenzeit
-then: Damals
+then: Gezeigte Zeit
 unset: {clock}, nicht synchronisiert
-unset.why: Nichts stellt die Uhr des Servers: Zeiten können falsch sein, Altersangaben nicht.
-within: Die Uhr des Servers wird gestellt, auf {n} ms genau.
+unset.why: Die Serveruhr ist nicht synchronisiert: Zeiten können falsch sein, Altersangaben stimmen.
+within: Serveruhr auf {n} ms genau synchronisiert.
 leap: Am Ende des Monats (UTC) kommt eine Schaltsekunde hinzu.
-leap.less: Am Ende des Monats (UTC) entfällt eine Sekunde.
+leap.less: Am Ende des Monats (UTC) entfällt eine Schaltsekunde.
 oldest: Ältester Messwert
 frames: Bilder
 rate: {count}/s
@@ -168,25 +168,25 @@ picture: Bild
 retry: Jetzt versuchen
 
 [health]
-nothing: Damals wurden keine Daten aufgezeichnet
+nothing: Zu dieser Zeit wurden keine Daten aufgezeichnet
 connecting: Verbinden
 live: Live
 partly: Live, teils simuliert
 simulated: Simuliert
 down: {live}, {down} von {all} Quellen gestört
-unmeasured: Nicht in der Anlage gemessen: {sources}.
+unmeasured: Simulierte Werte von: {sources}.
 nodata: Keine Live-Daten
 nosensor: Kein Sensor liefert Werte.
 source: Quelle {source} antwortet nicht.
 sources: Quellen {sources} antworten nicht.
 past: Vergangenheit
-returning: Zurück zu jetzt
+returning: Zurück zu Live
 playing: {instant}, Wiedergabe {speed}×
 back: {instant}, Rücklauf {speed}×
 noanswer: Keine Antwort
-silent: Der Server schweigt seit {age}.
+silent: Seit {age} keine Antwort vom Server.
 old: Dieses Bild ist {age} alt.
-barred: Kein Zutritt
+barred: Zugriff verweigert
 disconnected: Getrennt
 because: {reason}.
 retry: Nächster Versuch in {age}.
@@ -197,14 +197,14 @@ down: Der Server wurde beendet
 version: Diese Seite und der Server haben verschiedene Versionen
 forbidden: Nicht erlaubt
 long: Eine Nachricht war zu lang
-full: Der Server ist voll
-slow: Diese Seite war zu langsam
+full: Der Server ist ausgelastet
+slow: Dieser Browser kam nicht nach
 unreachable: Der Server ist nicht erreichbar
 unanswered: Der Server antwortet nicht
-silent: Der Server ist verstummt
-token_needed: Ein Token wird verlangt
-bad_token: Dieses Token gilt nicht oder nicht mehr
-locked: Eine Zeit lang war niemand an dieser Seite
+silent: Der Server antwortet nicht mehr
+token_needed: Ein Token ist erforderlich
+bad_token: Das Token ist ungültig oder abgelaufen
+locked: Nach Inaktivität gesperrt
 
 [quality]
 good: Gut
@@ -217,6 +217,6 @@ all: Simuliert
 partly: Teilweise simuliert
 
 [proof]
-none: Ungeprüft
+none: Ohne Loop-Check
 assumed: Ort angenommen
 `;

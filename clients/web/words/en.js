@@ -8,10 +8,10 @@ legend: Legend
 card: Tag
 place: Place
 status: Status
-timings: Measurements
+timings: Performance
 
 [part]
-failed: This part of the page could not be loaded. It comes by itself once the server is there.
+failed: This part of the page could not be loaded. It loads once the server responds.
 
 [age]
 s: {n} s
@@ -24,27 +24,27 @@ equipment: Equipment list
 quantity: Quantity
 display: Display settings
 colours: Colours
-ramp: Ramp
-lines: Lines
-look: Look
+ramp: Colour steps
+lines: Contour lines
+look: Shading
 show: Show
-views: Views, cut and equipment shown
+views: Views, section, visible equipment
 picture: Picture: comparison, light, split view
 history: History
 fit: Fit to picture
 home: Home view
 help: Help
-hold: Stop here: values stand still
-go: Go on: live values
-unrecorded: Nothing is recorded here: values cannot be stopped
+hold: Freeze values
+go: Resume live values
+unrecorded: No history is recorded, so values cannot be frozen
 more: More
 measure: Measure a distance
 snapshot: Save a picture
 share: Share
-theme: Dark or light
-engineer: Engineer: sensors and field
-import: Bring a plant in
-account: Who you are
+theme: Switch theme
+engineer: Engineering: sensors and field
+import: Import a plant
+account: Account
 
 [show]
 value: Values
@@ -53,7 +53,7 @@ distance: Distance
 difference: Difference
 
 [look]
-default: Measured
+default: True colours
 glossy: Glossy
 flat: Flat
 materials: Materials
@@ -61,13 +61,13 @@ materials: Materials
 [lines]
 none: None
 every: Every {step}
-chosen: Chosen
+chosen: Custom
 
 [ramp]
 smooth: Smooth
-group: Own bands
+group: Default bands
 limits: Limits
-chosen: Chosen bands
+chosen: Custom bands
 
 [quantity]
 temperature: Temperature
@@ -88,10 +88,10 @@ title: Views
 title: Equipment
 close: Close equipment list
 search: Search equipment and tags
-nothing: Nothing has that name.
+nothing: No match.
 sensors(one): {count} sensor
 sensors(other): {count} sensors
-loose: Tags without equipment
+loose: Unassigned tags
 about: About the selected equipment
 worst: worst quality: {quality}
 
@@ -99,49 +99,49 @@ worst: worst quality: {quality}
 waiting: Waiting for the first picture
 
 [legend]
-right: Legend of the right half
+right: Legend, right side
 colours: Colours from {min} to {max}
 distance: Distance from {tag}
-operator: By each tag’s own limits.
+operator: By each tag’s limits.
 log: Logarithmic scale.
-unsafe: These colours may be misread.
-glossy: Glossy look: light changes the colours. Do not read values.
+unsafe: This colour map can be misread.
+glossy: Glossy: light alters the colours. Do not read values.
 nolimits: No limits
 nodata: No data
 uncertain: Uncertain
 drawn: Dots: error up to {off}.
 
 [following]
-own: Own view
+own: Stop following
 
 [alarms]
 title: Alarms
-unheard: Alarms: nothing heard yet
+unheard: Alarms: waiting for data
 none: No active alarms
 some(one): {count} active alarm
 some(other): {count} active alarms
 zero: 0 active
-waiting: {waiting} to be acknowledged
-latched: {latched} to be reset
+waiting: {waiting} unacknowledged
+latched: {latched} to reset
 asof: As of {time}: {alarms}
-gone: Priority {priority}, its cause has gone
+gone: Priority {priority}, returned to normal
 now: Now: {alarms}
 value: raised at {value}, now {now} (limit {limit})
 priority: Priority {priority}
 
 [kind]
-HH: High high
+HH: High-high
 H: High
 L: Low
-LL: Low low
-BAD: Bad measurement
+LL: Low-low
+BAD: Bad quality
 ALM: Alarm
-LINK: Device gives no readings
+LINK: No communication with device
 
 [mode]
-display: Shown here, acknowledged in the control system
-mirror: As the control system has them
-local: Local alarms of this site
+display: View only: acknowledge in the control system
+mirror: Mirrored from the control system
+local: Plantcast alarms
 
 [trends]
 title: Trend
@@ -151,16 +151,16 @@ title: History
 
 [status]
 clock: Plant time
-then: Then
+then: Time shown
 unset: {clock}, unsynchronised
-unset.why: Nothing keeps the server’s clock right: times may be wrong. Ages are not.
-within: The server’s clock is kept right, within {n} ms.
+unset.why: The server clock is not synchronised: times may be wrong; data ages are still correct.
+within: Server clock synchronised to within {n} ms.
 leap: A leap second is added at the end of the month (UTC).
-leap.less: A second is left out at the end of the month (UTC).
+leap.less: A leap second is removed at the end of the month (UTC).
 oldest: Oldest reading
 frames: Frames
 rate: {count}/s
-still: still
+still: idle
 latency: Latency
 ms: {n} ms
 config: Configuration
@@ -168,43 +168,43 @@ picture: Picture
 retry: Try now
 
 [health]
-nothing: No data was recorded then
+nothing: No data recorded at that time
 connecting: Connecting
 live: Live
 partly: Live, partly simulated
 simulated: Simulated
 down: {live}, {down} of {all} sources down
-unmeasured: Not measured in the plant: {sources}.
+unmeasured: Simulated values from: {sources}.
 nodata: No live data
 nosensor: No sensor delivers values.
 source: Source {source} does not answer.
 sources: Sources {sources} do not answer.
 past: History
-returning: Returning to now
+returning: Returning to live
 playing: {instant}, playing {speed}×
 back: {instant}, playing back {speed}×
 noanswer: No answer
-silent: The server has been silent for {age}.
+silent: No response from the server for {age}.
 old: This picture is {age} old.
-barred: Not let in
+barred: Access denied
 disconnected: Disconnected
 because: {reason}.
 retry: Trying again in {age}.
 retrying: Trying again now.
 
 [reason]
-down: The server went down
+down: The server shut down
 version: This page and the server speak different versions
 forbidden: Not allowed
 long: A message was too long
-full: The server is full
-slow: This page was too slow
+full: The server has reached its limit
+slow: This browser could not keep up
 unreachable: The server cannot be reached
 unanswered: The server does not answer
-silent: The server fell silent
-token_needed: A token is needed
-bad_token: This token is not valid, or no longer
-locked: Nobody was at this page for some time
+silent: The server stopped responding
+token_needed: A token is required
+bad_token: The token is invalid or expired
+locked: Locked after inactivity
 
 [quality]
 good: Good
@@ -217,6 +217,6 @@ all: Simulated
 partly: Partly simulated
 
 [proof]
-none: Unproven
-assumed: Place assumed
+none: Not loop-checked
+assumed: Location assumed
 `;

@@ -18,7 +18,7 @@ phase.reading: Modelle werden gelesen …
 phase.matching: Messstellen werden zugeordnet …
 phase.preparing: Die Anlage wird vorbereitet …
 phase.loading: Die Anlage wird gezeichnet …
-done: Die Anlage ist in Kraft
+done: Die Anlage ist aktiv
 cancel: Abbrechen
 again: Noch einmal lesen
 details: Was gefunden wurde
@@ -39,21 +39,21 @@ unit.ask: {file} nennt keine Einheit. Angenommen: {unit}. Das Modell ist dann {l
 unit.all: Die Antwort gilt für alle diese Dateien.
 unit.length: {length} m lang
 units: Einheit des Modells
-units.said: wie es sagt
+units.said: wie in der Datei
 units.m: Meter
 units.mm: Millimeter
 units.cm: Zentimeter
 units.in: Zoll
 units.ft: Fuß
 up: Oben im Modell
-up.said: wie es sagt
+up.said: wie in der Datei
 up.y: Y
 up.z: Z
 apply: Anwenden
 person: Eine Person von 1,8 m daneben zeigen
 person.label: 1,8 m
-units.note: Anwenden liest die Modelle noch einmal. plant.yaml und tags.csv entstehen neu, die alten
- bleiben als .1, .2, …; Entscheidungen über Messstellen bleiben.
+units.note: Anwenden liest die Modelle noch einmal und schreibt plant.yaml und tags.csv neu; die vorigen bleiben als .1, .2, …,
+  Entscheidungen über Messstellen bleiben erhalten.
 source: Messwerte
 source.none: noch keine
 source.host: Modbus-TCP-Gerät
@@ -78,16 +78,15 @@ sign.likely: ?
 sign.none: –
 sign.unplaced: ◎
 find: Messstellen, Anlagenteile, Gründe suchen
-keys: ↑ ↓ durchgehen · 1–8 Vorschlag wählen · Enter annehmen · A alle solchen · N keiner · P
- platzieren
+keys: ↑ ↓ durchgehen · 1–8 Vorschlag wählen · Enter annehmen · A alle ähnlichen · N keiner · P platzieren
 byhand: von Hand
 decided(one): {count} Entscheidung
 decided(other): {count} Entscheidungen
 save: Speichern
 undo: Verwerfen
 selected: Am gewählten Anlagenteil: {asset}
-alike: Alle {count} wie {pattern} annehmen
-off: An keinem
+alike: Alle {count} passend zu {pattern} annehmen
+off: An keinem Anlagenteil
 place: Von Hand platzieren
-choose: Das Anlagenteil im Bild anklicken, dann hier sagen, dass die Messstelle daran ist.
+choose: Das Anlagenteil im Bild anklicken, dann hier bestätigen.
 `;

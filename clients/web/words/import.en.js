@@ -18,7 +18,7 @@ phase.reading: Reading models …
 phase.matching: Matching tags …
 phase.preparing: Preparing the plant …
 phase.loading: Drawing the plant …
-done: The plant is in force
+done: The plant is live
 cancel: Cancel
 again: Read again
 details: What was found
@@ -39,21 +39,21 @@ unit.ask: {file} does not say its unit. Taken as {unit}: the model is {length} m
 unit.all: The answer holds for all of these files.
 unit.length: {length} m long
 units: Units of the model
-units.said: as it says
+units.said: as in the file
 units.m: metres
 units.mm: millimetres
 units.cm: centimetres
 units.in: inches
 units.ft: feet
 up: Up in the model
-up.said: as it says
+up.said: as in the file
 up.y: Y
 up.z: Z
 apply: Apply
 person: Show a person of 1.8 m beside it
 person.label: 1.8 m
-units.note: Applying reads the models again. plant.yaml and tags.csv are made anew, those before are
- kept as .1, .2, …; decisions on tags stay.
+units.note: Applying reads the models again and rewrites plant.yaml and tags.csv; the previous files are kept as .1, .2, …, and so are
+  decisions on tags.
 source: Values
 source.none: none yet
 source.host: Modbus TCP device
@@ -78,15 +78,15 @@ sign.likely: ?
 sign.none: –
 sign.unplaced: ◎
 find: Find tags, equipment, reasons
-keys: ↑ ↓ go through · 1–8 choose a candidate · Enter accept · A all like it · N none · P place
+keys: ↑ ↓ go through · 1–8 choose a candidate · Enter accept · A all similar · N none · P place
 byhand: by hand
 decided(one): {count} decision
 decided(other): {count} decisions
 save: Save
 undo: Discard
 selected: On the selected equipment: {asset}
-alike: Accept all {count} like {pattern}
-off: On none
+alike: Accept all {count} matching {pattern}
+off: Not on any equipment
 place: Place by hand
-choose: Click the equipment in the picture, then say here that the tag is on it.
+choose: Click the equipment in the picture, then confirm here.
 `;

@@ -84,5 +84,5 @@ selected: 선택한 설비에: {asset}
 alike: {pattern} 형식 {count}개 모두 수락
 off: 설비 없음
 place: 직접 배치
-choose: 그림에서 설비를 클릭한 다음 여기에서 태그가 그 설비에 있다고 지정하세요.
+choose: 그림에서 설비를 클릭한 다음 여기에서 확인하세요.
 `;

@@ -26,7 +26,7 @@ display: 표시 설정
 colours: 색상표
 ramp: 색 단계
 lines: 등치선
-look: 모양
+look: 음영
 show: 보기
 views: 시점, 단면, 설비 표시
 picture: 화면: 비교, 조명, 화면 분할
@@ -34,15 +34,15 @@ history: 이력
 fit: 화면에 맞춤
 home: 기본 시점
 help: 도움말
-hold: 여기서 정지: 값이 멈춤
-go: 계속: 실시간 값
-unrecorded: 기록이 없어 값을 정지할 수 없습니다
+hold: 값 정지
+go: 실시간 값으로
+unrecorded: 이력 기록이 없어 값을 정지할 수 없습니다
 more: 더 보기
 measure: 거리 측정
 snapshot: 그림 저장
 share: 공유
-theme: 어둡게 또는 밝게
-engineer: 엔지니어: 센서와 필드
+theme: 밝은/어두운 화면 전환
+engineer: 엔지니어링: 센서와 필드
 import: 플랜트 가져오기
 account: 내 계정
 
@@ -53,7 +53,7 @@ distance: 거리
 difference: 차이
 
 [look]
-default: 계측
+default: 색 그대로
 glossy: 광택
 flat: 평면
 materials: 재질
@@ -61,13 +61,13 @@ materials: 재질
 [lines]
 none: 없음
 every: {step} 간격
-chosen: 선택한 값
+chosen: 직접 지정
 
 [ramp]
 smooth: 연속
-group: 고유 구간
+group: 기본 구간
 limits: 한계
-chosen: 선택한 구간
+chosen: 사용자 구간
 
 [quantity]
 temperature: 온도
@@ -88,9 +88,9 @@ title: 시점
 title: 설비
 close: 설비 목록 닫기
 search: 설비와 태그 검색
-nothing: 그런 이름이 없습니다.
+nothing: 검색 결과가 없습니다.
 sensors(other): 센서 {count}개
-loose: 설비 없는 태그
+loose: 설비 미지정 태그
 about: 선택한 설비 정보
 worst: 가장 나쁜 품질: {quality}
 
@@ -103,26 +103,26 @@ colours: {min}~{max}의 색
 distance: {tag}에서의 거리
 operator: 태그마다 정해진 한계 기준.
 log: 로그 눈금.
-unsafe: 잘못 읽기 쉬운 색.
-glossy: 광택 모양: 빛이 색을 바꿈. 값을 읽지 마십시오.
+unsafe: 잘못 읽기 쉬운 색상표.
+glossy: 광택: 빛이 색을 바꿉니다. 값을 읽지 마십시오.
 nolimits: 한계 없음
 nodata: 데이터 없음
 uncertain: 불확실
 drawn: 점: 오차 ≤ {off}
 
 [following]
-own: 내 화면
+own: 따라 보기 종료
 
 [alarms]
 title: 알람
-unheard: 알람: 아직 수신 없음
+unheard: 알람: 데이터 대기 중
 none: 활성 알람 없음
 some(other): 활성 알람 {count}건
 zero: 활성 0건
-waiting: 확인할 것 {waiting}건
-latched: 리셋할 것 {latched}건
+waiting: 미확인 {waiting}건
+latched: 리셋 대기 {latched}건
 asof: {time} 기준: {alarms}
-gone: 우선순위 {priority}, 원인 사라짐
+gone: 우선순위 {priority}, 정상 복귀
 now: 현재: {alarms}
 value: 발생 {value}, 현재 {now} (한계 {limit})
 priority: 우선순위 {priority}
@@ -134,12 +134,12 @@ L: 하한
 LL: 하하한
 BAD: 계측 불량
 ALM: 알람
-LINK: 장치 값 없음
+LINK: 장치 통신 두절
 
 [mode]
-display: 표시 전용, 확인은 제어 시스템에서
-mirror: 제어 시스템의 상태 그대로
-local: 이 사업장의 자체 알람
+display: 표시 전용: 확인은 제어 시스템에서
+mirror: 제어 시스템의 알람을 그대로 표시
+local: Plantcast 자체 알람
 
 [trends]
 title: 추세
@@ -149,16 +149,16 @@ title: 이력
 
 [status]
 clock: 플랜트 시각
-then: 당시 시각
+then: 표시 시각
 unset: {clock}, 동기화 안 됨
-unset.why: 서버 시계를 맞추는 것이 없습니다. 시각은 틀릴 수 있으나 경과 시간은 맞습니다.
-within: 서버 시계가 동기화되어 있습니다. 오차 {n} ms 이내.
+unset.why: 서버 시계가 동기화되지 않았습니다. 시각은 틀릴 수 있으나 경과 시간은 맞습니다.
+within: 서버 시계가 {n} ms 이내로 동기화되었습니다.
 leap: 이번 달 말(UTC)에 윤초가 추가됩니다.
-leap.less: 이번 달 말(UTC)에 1초가 빠집니다.
+leap.less: 이번 달 말(UTC)에 음의 윤초로 1초가 빠집니다.
 oldest: 가장 오래된 지시값
 frames: 프레임
 rate: {count}/s
-still: 정지
+still: 대기
 latency: 지연
 ms: {n} ms
 config: 구성
@@ -166,13 +166,13 @@ picture: 화면
 retry: 지금 시도
 
 [health]
-nothing: 그때 기록된 데이터가 없습니다
+nothing: 해당 시각에 기록된 데이터가 없습니다
 connecting: 연결 중
 live: 실시간
 partly: 실시간, 일부 모의값
 simulated: 모의값
 down: {live}, 소스 {all}개 중 {down}개 중단
-unmeasured: 플랜트에서 측정한 값이 아님: {sources}.
+unmeasured: 모의값 소스: {sources}.
 nodata: 실시간 데이터 없음
 nosensor: 값을 보내는 센서가 없습니다.
 source: 소스 {source}이(가) 응답하지 않습니다.
@@ -184,7 +184,7 @@ back: {instant}, {speed}× 역재생
 noanswer: 응답 없음
 silent: 서버가 {age} 동안 응답하지 않습니다.
 old: 이 화면은 {age} 전의 것입니다.
-barred: 접근 불가
+barred: 접근 거부
 disconnected: 연결 끊김
 because: {reason}.
 retry: {age} 뒤 다시 시도합니다.
@@ -195,8 +195,8 @@ down: 서버가 종료되었습니다
 version: 이 페이지와 서버의 버전이 다릅니다
 forbidden: 허용되지 않았습니다
 long: 메시지가 너무 길었습니다
-full: 서버가 가득 찼습니다
-slow: 이 페이지가 너무 느렸습니다
+full: 서버가 한도에 도달했습니다
+slow: 이 브라우저가 너무 느렸습니다
 unreachable: 서버에 연결할 수 없습니다
 unanswered: 서버가 응답하지 않습니다
 silent: 서버의 응답이 끊겼습니다
@@ -215,6 +215,6 @@ all: 시뮬레이션
 partly: 일부 시뮬레이션
 
 [proof]
-none: 미확인
+none: 루프체크 안 됨
 assumed: 위치 추정
 `;

@@ -1,89 +1,89 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the parts of the page say that are loaded when they are first used, in German.
 export default `
-accept: Angenommene Plätze bestätigen
+accept: Angenommene Orte bestätigen
 close: Schließen
-sun: aus {wind}, {height}° hoch
+sun: aus {wind}, {height}° Höhe
 
 [distance]
 metres: {metres} m
 geodesic: Geodätisch
-geodesic.why: Abstand entlang der Oberfläche: Wärme springt nicht über einen Spalt
+geodesic.why: Abstand entlang der Oberfläche: Wärme springt nicht über Spalte
 euclidean: Euklidisch
 euclidean.why: Gerader Abstand durch den Raum
-heat: Wärme auf Punkten
-heat.why: Wie der Aufsatz sie findet, auf Punkten der Oberfläche, zum Vergleich: irrt um ein halbes Prozent, geht durch dünne Wände
+heat: Wärmemethode
+heat.why: Wie im Aufsatz, auf Punkten der Oberfläche, zum Vergleich: 0,5 % Fehler, geht durch dünne Wände
 
 [interpolation]
 shepard: Shepard
-shepard.why: Inverser Abstand: an jedem Messpunkt genau der Messwert
+shepard.why: Inverse Distanzwichtung: an jedem Messpunkt gleich dem Messwert
 paper: Paper
-paper.why: Algorithmus 1 von Kim & Suh 2025: glatter, erreicht die Messwerte nicht
+paper.why: Algorithmus 1 von Kim & Suh 2025: glatter, erreicht aber die Messwerte nicht
 harmonic: Wärmeleitung
 harmonic.why: Stationäre Wärmeleitung in der Wand zwischen Messpunkten.
   Nicht, wo Medium oder Luft die Wärme abführt, nicht für Druck oder Durchfluss
 fin: Leitung und Verlust
-fin.why: Wie Wärmeleitung, aber die Wand verliert Wärme an die Luft; unbekannt, wo Messpunkte unter ein Zehntel sagen.
-  Nicht für gedämmte oder beheizte Wände
+fin.why: Wie Wärmeleitung, aber die Wand verliert Wärme an die Luft; unbekannt, wo Messpunkte unter ein Zehntel beitragen. Nicht für
+  gedämmte oder beheizte Wände
 gp: Am wahrscheinlichsten
-gp.why: Gauß-Prozess: wahrscheinlichstes Feld mit seiner Unsicherheit. Nicht, wo Teile sich berühren, die nichts miteinander zu tun haben
+gp.why: Gauß-Prozess: wahrscheinlichstes Feld mit seiner Unsicherheit. Nicht, wo sich unabhängige Teile berühren
 
 [bar]
 distance: Abstand
 interpolation: Interpolation
 
 [neighbours]
-say: Andere sagen
+say: Laut Nachbarn
 above: {predicted}; zeigt {by} mehr
 below: {predicted}; zeigt {by} weniger
-title: Sensoren mit größter Abweichung
-why: Was jeder zeigt, und was die anderen seiner Anlage ohne ihn sagen. Nicht, wo einer abweichen soll, wie am Einlass.
+title: Größte Abweichungen von Nachbarn
+why: Jeder Messwert und was die anderen Sensoren am Anlagenteil erwarten lassen. Nicht, wo einer abweichen soll, wie am Einlass.
 
 [drift]
 week: Drift in einer Woche
 found: {by}: driftet
-none: {by}: keine Drift zu sehen
-unknown: {by}: nicht feststellbar
-why: Weg von dem, was die anderen sagen, nach Stundenmitteln. Nicht, wo die Anlage selbst die Unterschiede ändert.
+none: {by}: keine Drift erkannt
+unknown: {by}: nicht bestimmbar
+why: Änderung gegenüber den Nachbarn, nach Stundenmitteln. Nicht, wo der Prozess selbst die Unterschiede ändert.
 
 [coverage]
 since: seit {when}
-title: Was Sensoren abdecken
+title: Sensorabdeckung
 none: Aus
 uncertainty: Unsicherheit
-uncertainty.note: Standardabweichung nach den Sensoren, die jetzt gut sind.
-uncertainty.why: So weit kann das Feld irren, wenn sich die Fläche verhält, wie gp es erwartet. Nicht, wo die Reichweite geraten ist.
-blind: Blinde Stellen
-blind.of: Sichtbarer Hotspot: {name}
-blind.note: Kleinster Hotspot von {size} m, von dem der nächste Sensor 5 % des Bereichs anzeigt.
+uncertainty.note: Standardabweichung, aus den jetzt guten Sensoren.
+uncertainty.why: So weit kann das Feld abweichen, wenn sich die Fläche verhält, wie gp annimmt. Nicht, wo die Reichweite geschätzt ist.
+blind: Blinde Flecken
+blind.of: Erkennbarer Hotspot: {name}
+blind.note: Schwächster Hotspot von {size} m, der den nächsten Sensor um 5 % des Bereichs bewegt.
 blind.why: So heiß muss eine kleine Stelle werden, bis ein Sensor sie zeigt. Nicht für andere Formen oder andere Wege der Wärme.
 
 [picture]
 from: Abstand von
 tag: Messstelle
 difference: Differenz zu
-kept: Behaltene Messwerte
+kept: Gespeicherte Messwerte
 now: Jetzt
-name: Name für die jetzigen Messwerte
-keep: Behalten
+name: Name für aktuelle Messwerte
+keep: Messwerte speichern
 scale: Skala
-fill: Stellen ohne Daten
+fill: Flächen ohne Daten
 light: Licht: Sonne {where}
-turn: Seite
-turn.why: Seite der Sonne, Grad von Norden
-height: Höhe
-height.why: Höhe der Sonne, Grad
-around: Umgebung
-around.why: Umgebung
+turn: Azimut
+turn.why: Azimut der Sonne, Grad von Norden
+height: Höhenwinkel
+height.why: Höhenwinkel der Sonne, Grad
+around: Hintergrund
+around.why: Hintergrund
 split: Geteilte Ansicht
-right: Rechte Hälfte
+right: Rechte Seite
 
 [arrows]
 title: Richtungen
 arrows: Pfeile
-arrows.why: So lang wie der Wert. Nicht zwischen Flächen und nicht als berechnete Strömung: sie interpolieren, was Sensoren sagen.
+arrows.why: Die Länge zeigt den Wert. Aus Sensoren interpoliert: gilt nicht zwischen Flächen und nicht als berechnete Strömung.
 strokes: Striche
-strokes.why: Wohin es geht; sie laufen schneller, wo der Wert größer ist. Nicht als Bahnen eines Fluids: sie interpolieren Sensoren.
+strokes.why: Laufende Striche: schneller, wo der Wert größer ist. Aus Sensoren interpoliert: keine Bahnen eines Fluids.
 none: Keine
 none.why: Richtungen werden nicht gezeichnet; Farben zeigen nur den Wert.
 unknown: Richtung unbekannt
@@ -99,8 +99,8 @@ neighbours: Aus Nachbarn
 neighbours.why: Gefüllt und gepunktet
 
 [split]
-one: Ein Bild
-two: Zwei Hälften
+one: Einzeln
+two: Nebeneinander
 
 [environment]
 sky: Himmel
@@ -116,31 +116,32 @@ W: W
 NW: NW
 
 [walls]
-unknown: Eine Wand „{id}“ steht nicht in der Anlagendatei. Es gibt: {known}
+unknown: Die Anlagendatei hat keine Wand „{id}“. Es gibt: {known}
 display: Die Wand „{id}“ hat {count} Bildschirme und keinen Bildschirm {n}
 lost: Keine Verbindung zur Anlage seit {time}
 never: Keine Verbindung zur Anlage
 self: Bildschirm {display} von {wall}, wartet seit {time}
 denied: Dieser Bildschirm braucht ein eigenes Token
-digits: Wer die Rolle engineer hat, gibt diese Ziffern auf der Seite unter „Ansichten“ ein
-asks: Dieser Bildschirm fragt den Server nach den Ziffern, mit denen er eingelassen wird
-left: Diese Ziffern gelten noch {time}
+digits: Zum Koppeln gibt die Rolle engineer diesen Code unter „Ansichten“ ein
+asks: Kopplungscode wird vom Server angefordert
+left: Code läuft in {time} ab
 place: Bildschirm {display} von {wall}
-crowded: Zu viele Bildschirme warten darauf, eingelassen zu werden; dieser fragt wieder
-nowhere: In der Anlagendatei gibt es keinen Bildschirm {display} einer Wand „{wall}“
+crowded: Zu viele Bildschirme warten auf Kopplung; wird wiederholt
+nowhere: Die Anlagendatei hat keinen Bildschirm {display} an Wand „{wall}“
 token: Token
 enter: Eingeben
 held: festgehalten von {who} seit {time}
 sent: gesendet von {who}, {time}
 age: Daten {age} alt
 since: seit {time}
-many: {count} Alarme, schwerster {worst}
+many(one): {count} Alarm, höchster {worst}
+many(other): {count} Alarme, höchster {worst}
 more(one): und {count} weiterer
 more(other): und {count} weitere
-counts: {active} aktiv, {waiting} zu quittieren
-flood: Alarmschwall: {active} aktiv, {waiting} zu quittieren
-late: Die Verbindung zu dieser Anzeige ist zu langsam; ausgelassen seit {time}
-missing: Fehlt: Anzeige {displays}
+counts: {active} aktiv, {waiting} unquittiert
+flood: Alarmschwall: {active} aktiv, {waiting} unquittiert
+late: Die Verbindung zu dieser Anzeige ist zu langsam; nicht aktualisiert seit {time}
+missing: Anzeige {displays} nicht verbunden
 
 [others]
 gone: Kein Bild von {name} seit {time}
@@ -153,14 +154,14 @@ busy: Ihr Server ist überlastet
 slow: Ihr Server antwortet zu langsam
 large: Ihr Server sendet zu viel
 no_picture: Ihr Server sendet kein Bild
-unheard: Der Server dieser Anlage sagt nichts über sie
+unheard: Keine Angaben vom Server dieser Anlage
 
 [notes]
 legend: Notizen
-text: Notiz für die Schicht
-at: Woran
-until: Bis wann
-save: Notieren
+text: Schichtnotiz
+at: Anheften an
+until: Sichtbar bis
+save: Notiz anlegen
 place: diese Stelle
 choose: Apparat oder Messstelle wählen
 ends: bis {time}
@@ -168,18 +169,18 @@ handover: Schichtübergabe
 
 [until]
 shift: 8 Stunden
-day: ein Tag
-week: eine Woche
+day: 1 Tag
+week: 1 Woche
 ever: bis zum Entfernen
 
 [remote]
-legend: Großbild
+legend: Bildwand
 pane: Feld einer Bildwand
-desk: Name dieses Platzes
+desk: Name des Platzes
 where: {wall} {display}: {area}
-send: Gezeigtes senden
+send: Diese Ansicht senden
 hold: Festhalten
-back: Zurückgeben
+back: Freigeben
 point: Mit der Maus zeigen
 there: verbunden
 gone: dieser Schirm ist nicht verbunden
@@ -188,18 +189,18 @@ held: festgehalten von {who}, {time}
 
 [devices]
 legend: Bildschirme
-digits: Sechs Ziffern eines Bildschirms
-pair: Einlassen
-revoke: Widerrufen
-is: Bildschirm {display} von {wall}, von {from}, eingelassen von {who}, {time}
+digits: Kopplungscode
+pair: Koppeln
+revoke: Entkoppeln
+is: Bildschirm {display} von {wall}, von {from}, gekoppelt von {who}, {time}
 
 [handover]
 title: Schichtübergabe, {plant}
 last: Die letzten
 hours: {n} Stunden
-print: Drucken oder als PDF sichern
+print: Drucken oder als PDF speichern
 notes: Notizen
-standing: Steht jetzt an
+standing: Aktiv oder unquittiert
 raised: Gekommene Alarme
 acknowledged: Quittiert
 shelved: Zurückgestellt oder außer Betrieb
@@ -215,36 +216,36 @@ count: Anzahl
 newest: Zuletzt
 reason: Grund
 ended: entfernt von {who}, {time}
-cut: Es gab mehr Alarme, als hier stehen
+cut: Liste gekürzt: es gab mehr Alarme
 gives: Übergeben von
 takes: Übernommen von
-denied: Die Übergabe ist für Operatoren: aus der Seite öffnen, angemeldet oder mit Token
+denied: Die Übergabe ist für Operatoren: anmelden oder Token eingeben, dann aus der Seite öffnen
 
 [named]
-legend: Benannte Ansichten
-title: Name für das Gezeigte
+legend: Gespeicherte Ansichten
+title: Name dieser Ansicht
 save: Speichern
-unknown: Eine Ansicht „{id}“ gibt es hier nicht
+unknown: Eine Ansicht „{id}“ gibt es nicht
 wrong: Diese Ansicht lässt sich nicht zeigen: {why}
 more: Mehr zu {title}
 by: {who}, {time}
-update: Gezeigtes hier speichern
+update: Auf aktuelle Ansicht setzen
 up: Nach oben
 down: Nach unten
 remove: Entfernen
 look: Zeigen
-back: Zurückholen
+back: Rückgängig
 
 [views]
 from: Blick von
 projection: Projektion
-cut: Wegschneiden
+cut: Schnitt
 where: Lage des Schnitts
-turn: Andere Seite
+turn: Umdrehen
 equipment: Anlagenteil: {what}
-select: erst eines wählen
+select: Erst Anlagenteil wählen
 all: Alle zeigen
-stays: {axis} {sign} {at} m bleibt
+stays: {axis} {sign} {at} m behalten
 part: {percent} % von {what}
 plant: der Anlage
 
@@ -264,32 +265,32 @@ parallel: Parallel
 off: Aus
 box: Quader
 move: Schnitt verschieben: {axis}
-whole: Quader verschieben: Pfeiltasten entlang X und Y, Bildtasten entlang Z
+whole: Quader verschieben: Pfeiltasten entlang X und Y, Bild auf/ab entlang Z
 oblique: schräg
 
 [shown]
 hide: Ausblenden
-ghost: Durchsichtig
+ghost: Transparent
 only: Nur dies
 hidden: {hidden} von {all} ausgeblendet
-ghosts(one): {count} durchsichtig
-ghosts(other): {count} durchsichtig
+ghosts(one): {count} transparent
+ghosts(other): {count} transparent
 
 [assets]
 description: Beschreibung
 area: Bereich
 missing: Fehlt
 size: Größe
-place: Mitte bei
+place: Mitte
 sensors.name: Sensoren
 
 [wall]
-far: Auf diesem Bildschirm sind die Buchstaben bis {metres} m groß genug, nicht bis {wanted} m.
+far: Text auf diesem Bildschirm ist bis {metres} m lesbar, nicht bis {wanted} m.
 
 [callout]
 held: gehalten seit {time}
 count: {count} Alarme
-worst: schwerster
+worst: höchster
 
 [card]
 novalue: Kein Wert
@@ -297,69 +298,69 @@ quality: Qualität
 age: Alter
 on: An
 trend: Trend
-add: Zum Trend dazu
-HH: über dem höchsten Grenzwert
-H: über dem oberen Grenzwert
-L: unter dem unteren Grenzwert
-LL: unter dem tiefsten Grenzwert
+add: Zum Trend hinzufügen
+HH: über Grenzwert Hoch-Hoch
+H: über Grenzwert Hoch
+L: unter Grenzwert Tief
+LL: unter Grenzwert Tief-Tief
 BAD: Messung gestört
 ALM: Alarm
 
 [place]
 measured: Hier gemessen
 between: Zwischen Messpunkten
-no data: Keine Daten: der nächste Sensor ist gestört, oder keiner reicht hin
-context: Kein Sensor dieser Messgröße daran
-equipment: Ein Sensor steht für das Ganze: sein Ort ist angenommen
-inside: Inneres des Aufgeschnittenen
+no data: Keine Daten: nächster Sensor gestört oder außer Reichweite
+context: Kein Sensor für diese Messgröße
+equipment: Ein Sensor gilt für das ganze Teil: sein Ort ist angenommen
+inside: Inneres (Schnittfläche)
 uncertain: {state}, unsicher
 drawn: Für diesen Punkt berechnet. Das Bild ringsum kann um bis zu {value} abweichen
 hide: Ausblenden
-ghost: Durchsichtig
+ghost: Transparent
 only: Nur dies
 
 [following]
-title: Dies ist die Ansicht von Sitzung {session}
-gone: Sitzung {session} ist gegangen: dies ist ihre letzte Ansicht
-awaited: Sitzung {session} ist nicht da: es wird auf sie gewartet
+title: Sie folgen einer fremden Ansicht (Sitzung {session})
+gone: Sitzung {session} ist beendet: ihre letzte Ansicht
+awaited: Warten auf Sitzung {session}
 
 [outside]
-title: Nicht in der ersten Ansicht, bis {far} entfernt: {names}
+title: Außerhalb der ersten Ansicht, bis {far} entfernt: {names}
 more: {names} und {count} weitere
 all: Alles zeigen
 close: Hinweis schließen
 
 [alarms]
 close: Alarme schließen
-then: Gezeigt wird die Anlage von damals. Diese Alarme sind die von jetzt.
+then: Das Bild zeigt die Vergangenheit, diese Liste die aktuellen Alarme.
 quiet: Keine aktiven Alarme.
-aside: Zurückgestellt ({count})
+aside: Zurückgestellt oder unterdrückt ({count})
 more: und {count} weitere
 since: seit {time}, {age}
 until: bis {time}
 by: durch {who}
-held: Messung gestört: wie zuletzt
+held: Messung gestört: letzter Zustand gehalten
 fly: Zu {tag} fliegen
-stale: Nicht von jetzt: Stand {time}, als die Verbindung abbrach.
+stale: Nicht aktuell: Stand {time}, als die Verbindung abbrach.
 which: Welche Alarme
 search: Filtern
-filtered: Der Filter lässt keinen von {count} durch.
+filtered: Keine Treffer unter {count} Alarmen.
 choose: {tag} auswählen
-chooseall: Alle gezeigten
+chooseall: Alle auswählen
 acknowledge: {count} quittieren
 also: auch {what}
 
 [which]
 all: Alle
-waiting: Zu quittieren
+waiting: Unquittiert
 active: Aktiv
-gone: Ursache gegangen
+gone: Gegangen
 
 [state]
 active: Aktiv
-unacknowledged: Nicht quittiert
+unacknowledged: Unquittiert
 acknowledged: Quittiert
-returned: Gegangen, nicht quittiert
+returned: Gegangen, unquittiert
 latched: Gehalten
 shelved: Zurückgestellt
 suppressed: Planmäßig unterdrückt
@@ -370,7 +371,7 @@ acknowledge: Quittieren
 shelve: Zurückstellen …
 reset: Zurücksetzen
 unshelve: Wieder melden
-in_service: In Betrieb nehmen
+in_service: Wieder in Betrieb nehmen
 
 [shelve]
 title: {what} zurückstellen
@@ -399,20 +400,20 @@ remove: {tag} entfernen
 gaps: Schraffiert: kein Wert von {tags}
 failed: Kein Trend: {why}
 unsaved: Nicht exportiert: {why}
-uncharted: dieser Server wurde ohne seine Diagramme gebaut (npm fehlte)
+uncharted: dieser Server wurde ohne Diagramme gebaut (npm fehlte)
 
 [time]
-before: Voriger Alarm
+before: Vorheriger Alarm
 after: Nächster Alarm
 goto: Gehe zu
 first: Kein früherer Alarm ist aufgezeichnet
 last: Kein späterer Alarm ist aufgezeichnet
 play: Abspielen
 pause: Anhalten
-speed: Geschwindigkeit
-span: Zeitspanne des Schiebers
+speed: Wiedergabetempo
+span: Zeitbereich
 slider: Gezeigter Zeitpunkt
-live: Zurück zu jetzt
+live: Zurück zu Live
 now: Jetzt
 ago: {instant} · vor {age}
 lost: {source}: ausgefallen
@@ -454,25 +455,25 @@ rate: {pictures} Bilder/s, {kbit} kbit/s
 follow: Sitzung {session}. Wer {link} öffnet, sieht diese Ansicht.
 
 [account]
-title: Wer Sie sind
-viewer: darf ansehen
-operator: ist Operator
-engineer: ist Engineer
-open: darf das Bild ansehen
-nobody: Hier kennt Sie niemand.
-person: Sie haben sich beim Identitätsanbieter angemeldet.
-token: Sie sind mit einem Token hier.
-here: Sie sind am Server selbst, wo niemand gefragt wird.
+title: Konto
+viewer: (Betrachter)
+operator: (Operator)
+engineer: (Engineer)
+open: (nur ansehen)
+nobody: Nicht angemeldet.
+person: Über den Identitätsanbieter angemeldet.
+token: Mit Token angemeldet.
+here: Am Server selbst ist keine Anmeldung nötig.
 in: Anmelden: {provider}
 out: Abmelden
 
 [token]
 title: Token
-needed: Dieser Server fragt, wer Sie sind.
-bad: Dieses Token gilt nicht oder nicht mehr.
-locked: Eine Zeit lang war niemand an dieser Seite. Weisen Sie sich erneut aus.
+needed: Anmeldung erforderlich.
+bad: Das Token ist ungültig oder abgelaufen.
+locked: Nach Inaktivität gesperrt. Bitte erneut anmelden.
 go: Weiter
-note: Tokens macht, wer diesen Server betreibt: {command}. Es wird behalten, bis dieser Tab geschlossen wird.
+note: Tokens erstellt, wer den Server verwaltet: {command}. Das Token bleibt bis zum Schließen dieses Tabs gespeichert.
 
 [help]
 title: Bedienung
@@ -496,17 +497,17 @@ fit: Einpassen
 fit.mouse: Doppelklick
 fit.touch: Doppelt tippen
 home: Grundansicht
-back: Zurück vor den letzten Flug
+back: Zurück zur vorigen Ansicht
 from: Blick von
 from.keys: [T] oben, [I] schräg, [O] parallel, [V] alle Ansichten, [P] Bild
-what: Was dort ist
+what: Bestimmen
 what.mouse: Klick
 what.touch: Tippen
 selected: Gewähltes
-selected.keys: [X] ausblenden, [G] durchsichtig, [L] allein, [U] alle
+selected.keys: [X] ausblenden, [G] transparent, [L] allein, [U] alle
 quantity.keys: [1] bis [9]
 equipment.keys: [B], suchen [/]
-history.keys: [Y], zurück zu jetzt [N]
+history.keys: [Y], zurück zu Live [N]
 markers: Markierungen
 mark.good: guter Messwert
 mark.uncertain: unsicherer Messwert
@@ -515,91 +516,91 @@ mark.behind: verdeckt
 mark.alarm: Alarm; die Farbe ist die Priorität
 mark.acknowledged: quittierter Alarm
 mark.returned: gegangen oder gehalten
-crowd: Wo sich Markierungen drängen, fehlen einige; aus der Nähe sind alle da. Alarme fehlen nie.
+crowd: Gedrängte Markierungen werden ausgedünnt; näher heranzoomen zeigt alle. Alarme fehlen nie.
 
 [measure]
 first: Ersten Punkt anklicken
 second: Zweiten Punkt anklicken
 done: Für eine neue Messung klicken
-missed: Dort ist nichts: auf die Anlage klicken
+missed: Hier ist nichts: auf die Anlage klicken
 end: Fertig
-parts: waagrecht {level} m, Höhe {rise} m
+parts: horizontal {level} m, vertikal {rise} m
 
 [snapshot]
 failed: Kein Bild: {why}
-unnamed: ein Vergleich braucht Werte, die unter einem Namen behalten wurden
+unnamed: ein Vergleich braucht unter einem Namen gespeicherte Werte
 shown: Speichern, was zu sehen ist
 shown.note: Pixel für Pixel, mit den Werten, die es zeigt; ohne Legende, Marken und Uhr.
 again: Mit Legende und Marken speichern
-again.note: Vom Server noch einmal gezeichnet. Beide sind signiert: „plantcast verify“ findet, was daran geändert wurde.
-late: es kam kein signiertes Bild
+again.note: Vom Server neu gezeichnet. Beide sind signiert: „plantcast verify“ erkennt jede Änderung.
+late: kein signiertes Bild empfangen
 
 [share]
 title: Teilen
-what: Was sich öffnet
+what: Was der Link öffnet
 view: Ansicht
 view.why: Öffnet diese Ansicht: Kamera, Größe, Farben, Zeitpunkt.
 tag: Messstelle
-tag.why: Öffnet sich an der Messstelle. Zum Ausdrucken und Anbringen.
+tag.why: Öffnet sich an der Messstelle. Ausdrucken und am Apparat anbringen.
 asset: Apparat
-asset.why: Öffnet sich am Apparat. Zum Ausdrucken und Anbringen.
+asset.why: Öffnet sich am Apparat. Ausdrucken und dort anbringen.
 follow: Mir folgen
-follow.why: Wer ihn öffnet, sieht mit, solange Sie schauen.
+follow.why: Wer ihn öffnet, sieht mit, solange diese Seite offen ist.
 link: Link
 copy: Kopieren
 copied: Kopiert
-code: Der Link als Code zum Scannen
-nocode: Dieser Server wurde ohne Codes zum Scannen gebaut (npm fehlte).
-local: Öffnet sich nur auf diesem Rechner: seine Adresse hier ist eine lokale.
-people: Wer mitschaut
-alone: Niemand folgt dieser Ansicht, Sitzung {session}.
-followers(one): {count} folgt dieser Ansicht, Sitzung {session}.
-followers(other): {count} folgen dieser Ansicht, Sitzung {session}.
-lead: Sitzung {session} führen lassen
+code: Der Link als QR-Code
+nocode: Dieser Server wurde ohne QR-Codes gebaut (npm fehlte).
+local: Funktioniert nur auf diesem Rechner: die Adresse ist lokal.
+people: Mitschauende
+alone: Niemand folgt Ihnen.
+followers(one): {count} Person folgt Ihnen.
+followers(other): {count} Personen folgen Ihnen.
+lead: An Sitzung {session} übergeben
 
 [factor]
-range: Bereich der Farben
+range: Farbbereich
 min: Von
 max: Bis
-own: Der eigene der Größe
-title: Wie das Feld berechnet wird
+own: Vorgabe der Gruppe
+title: Feldberechnung
 strength: Stärke
 decay: Abfall
 power: Exponent
-radius_m: Radius m, 0: von selbst
-reach_m: Reichweite m, leer: ohne
-of: Nur von {tag}
-choose: Eines Sensors: erst auswählen
+radius_m: Radius (m), 0 = automatisch
+reach_m: Reichweite (m), leer = unbegrenzt
+of: Nur für {tag}
+choose: Für einen Sensor: erst auswählen
 reset(one): Wie eingestellt ({count} Sensor)
 reset(other): Wie eingestellt ({count} Sensoren)
 
 [proof]
-fail: Ungeprüft: nicht bestanden
-changed: Ungeprüft: seither geändert
-pass: Geprüft
+fail: Loop-Check nicht bestanden
+changed: Loop-Check veraltet: seither geändert
+pass: Loop-Check bestanden
 
 [eng]
-title: Ingenieur
-close: Feld des Ingenieurs schließen
-place: Setzen
-prove: Prüfen
+title: Engineering
+close: Engineering schließen
+place: Platzieren
+prove: Loop-Check
 method: Feld
-what: Was zu tun ist
+what: Aufgabe
 find: Messstelle suchen
-nowhere: steht noch nirgends
+nowhere: nicht platziert
 on: an {asset}
 choose: Eine Messstelle wählen, dann auf die Oberfläche klicken; oder ihr Zeichen ziehen.
 click: {tag}: auf die Oberfläche klicken oder das Zeichen ziehen.
-missed: Dort ist keine Oberfläche.
-moves: Ausprobiert, nur für Sie
-nomoves: Nichts ist versetzt. Was Sie ausprobieren, sehen nur Sie, bis es gespeichert ist.
+missed: Hier ist keine Oberfläche.
+moves: Entwurf (nur für Sie sichtbar)
+nomoves: Nichts versetzt. Bis zum Speichern sehen nur Sie Ihre Änderungen.
 off: {metres} m neben der Oberfläche
-left: nicht an {asset}, wie die Liste sagt
-waiting: gerade Abstände, die entlang der Oberfläche folgen
+left: nicht an {asset} wie in der Liste
+waiting: gerade Abstände; Abstände entlang der Oberfläche folgen
 straight: nur gerade Abstände
 ready: entlang der Oberfläche
-undo: Zurück
-back: Alles zurück
+undo: Rückgängig
+back: Alles verwerfen
 gaps: Lücken
 save: Speichern …
 gaps.of: Lücken: {quantity}
@@ -611,30 +612,30 @@ diff: {file} speichern?
 diff.before: vorher
 diff.after: nachher
 diff.line: Zeile {n}
-diff.note: Die Liste, wie sie ist, bleibt daneben stehen. Danach gilt sie für alle; das dauert einige Sekunden.
-diff.conflict: {file} wurde von jemand anderem geändert und ist noch nicht geladen. Nichts wurde gespeichert; das wurde geändert:
-diff.left: {tag} war an {left} und ist jetzt an {asset}: Ist das gewollt?
+diff.note: Die bisherige Liste bleibt als Sicherung. Die neue gilt in wenigen Sekunden für alle.
+diff.conflict: {file} wurde von jemand anderem geändert und ist noch nicht geladen. Nichts wurde gespeichert; die Änderungen:
+diff.left: {tag} war an {left} und ist jetzt an {asset}: Ist das beabsichtigt?
 diff.more: … und {count} weitere Zeilen
 cancel: Abbrechen
-confirm: Speichern und in Kraft setzen
-saving: Wird vorbereitet; alle sehen die Anlage noch, wie sie war.
-saved: In Kraft. Die Liste davor ist {kept}.
+confirm: Speichern und anwenden
+saving: Wird vorbereitet; alle sehen noch die bisherige Anlage.
+saved: Angewendet. Die vorige Liste ist als {kept} gesichert.
 unsaved: Nicht gespeichert: {text}
 device: Gerät
-proven: {done} von {count} geprüft
+proven: {done} von {count} bestanden
 expected: Erwartet
 tolerance: Toleranz ±
 watch: Beobachten
-watching: Jetzt den Messumformer verstellen.
-still: Noch hat sich nichts bewegt.
-moved: {tag} hat sich am meisten bewegt: um {by}.
-swapped: {tag} hat sich bewegt, nicht {wanted}: sind sie vertauscht?
+watching: Jetzt den Messumformer auf einen Wert zwingen.
+still: Noch hat sich kein Messwert geändert.
+moved: {tag} hat sich am meisten geändert: um {by}.
+swapped: {tag} hat sich geändert, nicht {wanted}: sind sie vertauscht?
 compare: Vergleichen
 fails: Nicht bestanden
 csv: Werte aus CSV …
 csv.note: {count} erwartete Werte wurden gelesen.
-csv.bad: Die Spalten Tag Name, Expected, Tolerance werden gebraucht.
-export: Ergebnisse ausgeben
+csv.bad: Die Spalten Tag Name, Expected, Tolerance sind nötig.
+export: Ergebnisse exportieren
 remark: Bemerkung
 passed: {tag} bestanden: {value}.
 failed: {tag} nicht bestanden: {why}.
@@ -645,18 +646,18 @@ asset: Anlagenteil
 all: alle ({count})
 tags: Messstellen
 pattern: Name oder Beschreibung; * und ? in Namen
-within: Abstand zur Fläche, höchstens (m)
-confidence: Sicherheit, mindestens (0 bis 1)
-count(one): {count} Platz würde bestätigt. Er ist im Bild blau umringt.
-count(other): {count} Plätze würden bestätigt. Sie sind im Bild blau umringt.
-none: Kein Platz würde bestätigt.
+within: Höchster Abstand zur Fläche (m)
+confidence: Mindestsicherheit (0 bis 1)
+count(one): {count} Ort würde bestätigt. Er ist im Bild blau umringt.
+count(other): {count} Orte würden bestätigt. Sie sind im Bild blau umringt.
+none: Kein Ort würde bestätigt.
 nowhere: {count} ausgelassen: weder Knoten noch Position in der Liste
 missing: {count} ausgelassen: das Anlagenteil hat kein Modell
 far: {count} ausgelassen: weiter von der Fläche entfernt
 unsure: {count} ausgelassen: geringere oder keine bekannte Sicherheit
 go: {count} bestätigen
-saved(one): {count} Platz bestätigt. Die vorige Liste ist als {kept} aufgehoben.
-saved(other): {count} Plätze bestätigt. Die vorige Liste ist als {kept} aufgehoben.
+saved(one): {count} Ort bestätigt. Die vorige Liste ist als {kept} gesichert.
+saved(other): {count} Orte bestätigt. Die vorige Liste ist als {kept} gesichert.
 undo: Zurück zu {kept} …
 changed: Nichts wurde bestätigt: die Liste hat sich geändert. Bitte die Zahl prüfen und noch einmal bestätigen.
 undone: Zurückgenommen. {kept} gilt wieder.

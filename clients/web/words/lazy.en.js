@@ -1,87 +1,88 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the parts of the page say that are loaded when they are first used, in English.
 export default `
-accept: Accept assumed places
+accept: Accept assumed locations
 close: Close
-sun: from {wind}, {height}° high
+sun: from {wind}, {height}° elevation
 
 [distance]
 metres: {metres} m
 geodesic: Geodesic
-geodesic.why: Distance along the surface: heat does not jump across a gap
+geodesic.why: Distance along the surface: heat does not jump across gaps
 euclidean: Euclidean
-euclidean.why: Straight distance through space
-heat: Heat on points
-heat.why: Along the surface as the paper finds it, on sampled points, to compare: errs by half a percent, and goes through thin walls
+euclidean.why: Straight-line distance through space
+heat: Heat method
+heat.why: As in the paper, on sampled surface points, for comparison: 0.5 % off, and passes through thin walls
 
 [interpolation]
 shepard: Shepard
-shepard.why: Inverse distance: exactly the reading at each sensor
+shepard.why: Inverse distance weighting: equals the reading at each sensor
 paper: Paper
-paper.why: Algorithm 1 of Kim & Suh 2025: smoother, does not reach the readings
+paper.why: Algorithm 1 of Kim & Suh 2025: smoother, but does not reach the readings
 harmonic: Conduction
-harmonic.why: Steady heat conduction along the wall between sensors. Not where fluid or air takes the heat away, nor for pressure or flow
+harmonic.why: Steady heat conduction along the wall between sensors. Not where a fluid or air carries heat away, nor for pressure or flow
 fin: Conduction and loss
-fin.why: As conduction, but the wall loses heat to the air; unknown where sensors say under a tenth. Not for insulated or heated walls
+fin.why: As conduction, but the wall loses heat to the air; unknown where sensors contribute less than a tenth. Not for insulated or
+  heated walls
 gp: Most probable
-gp.why: Gaussian process: most probable field, with its uncertainty. Not where parts that touch have nothing to do with each other
+gp.why: Gaussian process: most probable field, with its uncertainty. Not where unrelated parts touch
 
 [bar]
 distance: Distance
 interpolation: Interpolation
 
 [neighbours]
-say: Others say
-above: {predicted}; reads {by} more
-below: {predicted}; reads {by} less
-title: Sensors that disagree most
-why: What each reads, and what the others on its asset say without it. Not where a sensor is meant to differ, as at an inlet.
+say: Neighbours suggest
+above: {predicted}; reads {by} higher
+below: {predicted}; reads {by} lower
+title: Largest deviations from neighbours
+why: Each reading, and what the other sensors of its asset suggest. Not where a sensor is meant to differ, as at an inlet.
 
 [drift]
-week: Drift in a week
+week: Drift over a week
 found: {by}: drifts
-none: {by}: no drift seen
-unknown: {by}: cannot be told
-why: Away from what the others say, by hourly means. Not where the plant itself changed how places differ.
+none: {by}: no drift detected
+unknown: {by}: cannot be determined
+why: Change against its neighbours, by hourly means. Not where the process itself changed the differences.
 
 [coverage]
 since: since {when}
-title: What sensors cover
+title: Sensor coverage
 none: Off
 uncertainty: Uncertainty
-uncertainty.note: Standard deviation, by the sensors that are good now.
-uncertainty.why: How far the field may err, if the surface behaves as the kernel of gp expects. Not where its range is a guess.
-blind: Blind places
-blind.of: Hot spot seen: {name}
-blind.note: Smallest hot spot of {size} m of which the nearest sensor reads 5 % of the range.
-blind.why: How hot a small spot must get before any sensor shows it. Not for other shapes, nor where heat takes other ways.
+uncertainty.note: Standard deviation, from the sensors that are good now.
+uncertainty.why: How far the field may be off, if the surface behaves as the gp kernel assumes. Not where its range is a guess.
+blind: Blind spots
+blind.of: Detectable hot spot: {name}
+blind.note: Weakest hot spot of {size} m that moves the nearest sensor by 5 % of the range.
+blind.why: How hot a small spot must get before any sensor shows it. Not for other shapes, nor where heat takes other paths.
 
 [picture]
 from: Distance from
 tag: Tag
 difference: Difference from
-kept: Readings kept
+kept: Saved readings
 now: Now
-name: Name for the readings of now
-keep: Keep
+name: Name for current readings
+keep: Save readings
 scale: Scale
-fill: Places without data
+fill: Areas without data
 light: Light: sun {where}
-turn: Side
-turn.why: Side of the sun, degrees from north
-height: Height
-height.why: Height of the sun, degrees
-around: Around
-around.why: Surroundings
+turn: Azimuth
+turn.why: Azimuth of the sun, degrees from north
+height: Elevation
+height.why: Elevation of the sun, degrees
+around: Background
+around.why: Background
 split: Split view
-right: Right half
+right: Right side
 
 [arrows]
 title: Directions
 arrows: Arrows
-arrows.why: As long as the value. Not between surfaces, nor as a flow that was computed: they interpolate what sensors say.
-strokes: Strokes
-strokes.why: Where to; they run faster where the value is larger. Not as paths of a fluid: they interpolate what sensors say now.
+arrows.why: Length shows the value. Interpolated from sensors: not valid between surfaces, nor as a computed flow.
+strokes: Streaks
+strokes.why: Animated streaks: faster where the value is larger. Interpolated from sensors: not the paths of a fluid.
 none: None
 none.why: Directions are not drawn; colours show the value alone.
 unknown: Direction unknown
@@ -92,13 +93,13 @@ log: Logarithmic
 
 [fill]
 none: Hatched
-none.why: Where no good sensor reaches nothing is shown
-neighbours: By neighbours
+none.why: Nothing is shown where no good sensor reaches
+neighbours: From neighbours
 neighbours.why: Filled and dotted
 
 [split]
-one: One picture
-two: Two halves
+one: Single
+two: Side by side
 
 [environment]
 sky: Sky
@@ -114,70 +115,71 @@ W: W
 NW: NW
 
 [walls]
-unknown: There is no wall '{id}' in the plant file. There are: {known}
+unknown: The plant file has no wall '{id}'. Its walls: {known}
 display: Wall '{id}' has {count} displays, and no display {n}
 lost: No connection to the plant since {time}
 never: No connection to the plant
 self: Display {display} of {wall}, waiting since {time}
-denied: This display needs a token of its own
-digits: To let this display in, an engineer enters these digits on the page, in Views
-asks: This display asks the server for the digits that it is let in by
-left: These digits are good for another {time}
+denied: This display needs its own token
+digits: To pair this display, an engineer enters this code under Views
+asks: Requesting a pairing code from the server
+left: Code expires in {time}
 place: Display {display} of {wall}
-crowded: Too many displays wait to be let in; this one asks again
-nowhere: The plant file has no display {display} of a wall '{wall}'
+crowded: Too many displays are waiting to pair; retrying
+nowhere: The plant file has no display {display} on wall '{wall}'
 token: Token
 enter: Enter
 held: held by {who} since {time}
 sent: sent by {who}, {time}
 age: data {age} old
 since: since {time}
-many: {count} alarms, worst {worst}
+many(one): {count} alarm, highest {worst}
+many(other): {count} alarms, highest {worst}
 more(one): and {count} more
 more(other): and {count} more
-counts: {active} active, {waiting} to be acknowledged
-flood: Flood of alarms: {active} active, {waiting} to be acknowledged
-late: The link to this display is too slow; left out since {time}
-missing: Not shown: display {displays}
+counts: {active} active, {waiting} unacknowledged
+flood: Alarm flood: {active} active, {waiting} unacknowledged
+late: The connection to this display is too slow; not updated since {time}
+missing: Display {displays} not connected
 
 [others]
-gone: No picture of {name} since {time}
+gone: No picture from {name} since {time}
 waiting: Waiting for its server
 unreachable: Its server does not answer
 tls: Its server's certificate is not trusted
 token: The file with the token for it cannot be read
-refused: Its server does not accept the token
-busy: Its server has too much to do
+refused: Its server rejects the token
+busy: Its server is overloaded
 slow: Its server answers too slowly
-large: What its server sends is too large
+large: Its server sends too much data
 no_picture: Its server sends no picture
-unheard: This plant's server says nothing of it
+unheard: No information from this plant's server
 
 [notes]
 legend: Notes
-text: Note for the crew
-at: At what
-until: Until when
-save: Note
-place: this place
+text: Shift note
+at: Attach to
+until: Visible until
+save: Add note
+place: this location
 choose: Choose equipment or a tag
 ends: until {time}
-handover: Handover of the shift
+handover: Shift handover
 
 [until]
 shift: 8 hours
-day: a day
-week: a week
+day: 1 day
+week: 1 week
 ever: until removed
 
 [remote]
 legend: Wall
-pane: Pane of a wall
-desk: Name of this desk
+pane: Wall pane
+desk: Desk name
 where: {wall} {display}: {area}
-send: Send what is seen
+send: Send this view
 hold: Hold
-back: Give back
+back: Release
 point: Point with the mouse
 there: connected
 gone: this display is not connected
@@ -186,21 +188,21 @@ held: held by {who}, {time}
 
 [devices]
 legend: Displays
-digits: Six digits of a display
-pair: Let in
+digits: Pairing code
+pair: Pair
 revoke: Revoke
-is: Display {display} of {wall}, from {from}, let in by {who}, {time}
+is: Display {display} of {wall}, from {from}, paired by {who}, {time}
 
 [handover]
-title: Handover of the shift, {plant}
-last: The last
+title: Shift handover, {plant}
+last: Last
 hours: {n} hours
-print: Print, or keep as PDF
+print: Print or save as PDF
 notes: Notes
-standing: Standing now
+standing: Active or unacknowledged
 raised: Alarms raised
 acknowledged: Acknowledged
-shelved: Shelved, or out of service
+shelved: Shelved or out of service
 time: Time
 where: Where
 what: Note
@@ -209,40 +211,40 @@ until: Until
 alarm: Alarm
 priority: Priority
 state: State
-count: Times
-newest: Newest
+count: Count
+newest: Latest
 reason: Reason
 ended: removed by {who}, {time}
-cut: There were more alarms than stand here
+cut: List shortened: there were more alarms
 gives: Handed over by
 takes: Taken over by
-denied: The handover is for operators: open it from the page, signed in or with a token
+denied: The handover is for operators: sign in or enter a token, then open it from the page
 
 [named]
-legend: Views with names
-title: Name for what is seen
+legend: Saved views
+title: Name this view
 save: Save
-unknown: There is no view '{id}' here
+unknown: There is no view '{id}'
 wrong: This view cannot be shown: {why}
 more: More about {title}
 by: {who}, {time}
-update: Save what is seen here
+update: Update to current view
 up: Up
 down: Down
 remove: Remove
 look: Show
-back: Take back
+back: Undo
 
 [views]
 from: Look from
 projection: Projection
-cut: Cut away
-where: Where to cut
-turn: Other side
+cut: Section
+where: Section position
+turn: Flip
 equipment: Equipment: {what}
-select: select some first
+select: Select equipment first
 all: Show all
-stays: {axis} {sign} {at} m stays
+stays: Keep {axis} {sign} {at} m
 part: {percent} % of {what}
 plant: the plant
 
@@ -261,33 +263,33 @@ parallel: Parallel
 [cut]
 off: Off
 box: Box
-move: Move the cut: {axis}
-whole: Move the box: arrow keys along X and Y, page keys along Z
+move: Move the section: {axis}
+whole: Move the box: arrow keys along X and Y, Page Up/Down along Z
 oblique: oblique
 
 [shown]
 hide: Hide
-ghost: Ghost
+ghost: Transparent
 only: Only this
 hidden: {hidden} of {all} hidden
-ghosts(one): {count} see-through
-ghosts(other): {count} see-through
+ghosts(one): {count} transparent
+ghosts(other): {count} transparent
 
 [assets]
 description: Description
 area: Area
 missing: Missing
 size: Size
-place: Middle at
+place: Centre
 sensors.name: Sensors
 
 [wall]
-far: On this screen letters are large enough up to {metres} m, not {wanted} m.
+far: Text on this screen is readable from up to {metres} m, not {wanted} m.
 
 [callout]
 held: held since {time}
 count: {count} alarms
-worst: worst
+worst: highest
 
 [card]
 novalue: No value
@@ -296,62 +298,62 @@ age: Age
 on: On
 trend: Trend
 add: Add to trend
-HH: above the highest limit
+HH: above the high-high limit
 H: above the high limit
 L: below the low limit
-LL: below the lowest limit
-BAD: bad measurement
+LL: below the low-low limit
+BAD: bad quality
 ALM: alarm
 
 [place]
 measured: Measured here
 between: Between sensors
-no data: No data: its nearest sensor is bad, or none reaches
-context: No sensor of this quantity on it
-equipment: One sensor stands for all of it: its place is assumed
-inside: Inside of what is cut open
+no data: No data: nearest sensor is bad or out of range
+context: No sensor for this quantity
+equipment: One sensor represents all of it: its location is assumed
+inside: Interior (cut surface)
 uncertain: {state}, uncertain
 drawn: Computed for this point. The picture around it may be off by up to {value}
 hide: Hide
-ghost: Ghost
+ghost: Transparent
 only: Only
 
 [following]
-title: This is the view of session {session}
-gone: Session {session} has gone: this is its last view
-awaited: Session {session} is not there: waiting for it
+title: Following another user’s view (session {session})
+gone: Session {session} has ended: this is its last view
+awaited: Waiting for session {session}
 
 [outside]
-title: Not in the first view, up to {far} away: {names}
+title: Outside the first view, up to {far} away: {names}
 more: {names} and {count} more
 all: Show everything
 close: Close this notice
 
 [alarms]
 close: Close alarms
-then: The plant is shown as it was. These alarms are those of now.
+then: The picture shows the past; this list shows current alarms.
 quiet: No active alarms.
-aside: Set aside ({count})
+aside: Shelved or suppressed ({count})
 more: and {count} more
 since: since {time}, {age}
 until: until {time}
 by: by {who}
-held: measurement bad: as it last was
+held: bad measurement: last state held
 fly: Fly to {tag}
-stale: Not of now: as of {time}, when the connection was lost.
+stale: Out of date: as of {time}, when the connection was lost.
 which: Which alarms
 search: Filter
-filtered: None of {count} passes the filter.
-choose: Choose {tag}
-chooseall: All of these
+filtered: No match among {count} alarms.
+choose: Select {tag}
+chooseall: Select all
 acknowledge: Acknowledge {count}
 also: also {what}
 
 [which]
 all: All
-waiting: To be acknowledged
+waiting: Unacknowledged
 active: Active
-gone: Cause has gone
+gone: Returned to normal
 
 [state]
 active: Active
@@ -368,7 +370,7 @@ acknowledge: Acknowledge
 shelve: Shelve…
 reset: Reset
 unshelve: Unshelve
-in_service: Put in service
+in_service: Return to service
 
 [shelve]
 title: Shelve {what}
@@ -397,19 +399,19 @@ remove: Remove {tag}
 gaps: Hatched: no value of {tags}
 failed: No trend: {why}
 unsaved: Not exported: {why}
-uncharted: this server was built without its charts (npm was not there)
+uncharted: this server was built without charts (npm was missing)
 
 [time]
-before: Alarm before
+before: Previous alarm
 after: Next alarm
 goto: Go to
 first: No earlier alarm was recorded
 last: No later alarm was recorded
 play: Play
 pause: Pause
-speed: Speed of play
-span: Time that the slider spans
-slider: Instant that is shown
+speed: Playback speed
+span: Time range
+slider: Time shown
 live: Back to live
 now: Now
 ago: {instant} · {age} ago
@@ -438,7 +440,7 @@ SensorNotAccurate: sensor not accurate
 
 [timings]
 ms: Milliseconds
-half: half
+half: median
 most: 95 %
 input: Input to picture
 sensor: Reading to picture
@@ -449,28 +451,28 @@ encode: encoding
 network: network
 decode: decoding
 rate: {pictures} pictures/s, {kbit} kbit/s
-follow: Session {session}. Who opens {link} sees this view.
+follow: Session {session}. Anyone who opens {link} sees this view.
 
 [account]
-title: Who you are
-viewer: may look
-operator: is an operator
-engineer: is an engineer
-open: may look at the picture
-nobody: Nobody knows you here.
-person: You signed in at the identity provider.
-token: You are here by a token.
-here: You are at the server’s own machine, where nobody is asked.
+title: Account
+viewer: (viewer)
+operator: (operator)
+engineer: (engineer)
+open: (view only)
+nobody: Not signed in.
+person: Signed in through the identity provider.
+token: Signed in with a token.
+here: On the server’s own machine, where no sign-in is required.
 in: Sign in: {provider}
 out: Sign out
 
 [token]
 title: Token
-needed: This server asks who you are.
-bad: This token is not valid, or no longer.
-locked: Nobody was at this page for some time. Say again who you are.
+needed: Sign-in required.
+bad: The token is invalid or expired.
+locked: Locked after inactivity. Please sign in again.
 go: Continue
-note: Whoever runs this server makes tokens: {command}. It is kept until this tab is closed.
+note: The server’s administrator creates tokens: {command}. The token is kept until this tab is closed.
 
 [help]
 title: Moving around
@@ -494,14 +496,14 @@ fit: Fit
 fit.mouse: Double click
 fit.touch: Double tap
 home: Home
-back: Back to where one flew from
+back: Back to previous view
 from: Look from
 from.keys: [T] top, [I] corner, [O] parallel, [V] all views, [P] picture
-what: What is there
+what: Identify
 what.mouse: Click
 what.touch: Tap
 selected: Selected
-selected.keys: [X] hide, [G] ghost, [L] alone, [U] all
+selected.keys: [X] hide, [G] transparent, [L] alone, [U] all
 quantity.keys: [1] to [9]
 equipment.keys: [B], search [/]
 history.keys: [Y], back to live [N]
@@ -509,95 +511,95 @@ markers: Markers
 mark.good: good reading
 mark.uncertain: uncertain reading
 mark.bad: bad: no value
-mark.behind: behind something
+mark.behind: hidden behind something
 mark.alarm: alarm; its colour is the priority
 mark.acknowledged: acknowledged alarm
 mark.returned: returned or latched
-crowd: Where markers crowd, some are left out; nearer by all are there. Alarms are never left out.
+crowd: Crowded markers are thinned out; zoom in to see all. Alarms are never left out.
 
 [measure]
-first: Click the first place
-second: Click the second place
+first: Click the first point
+second: Click the second point
 done: Click to measure again
-missed: Nothing is there: click on the plant
+missed: Nothing here: click on the plant
 end: Done
-parts: level {level} m, rise {rise} m
+parts: horizontal {level} m, vertical {rise} m
 
 [snapshot]
 failed: No picture: {why}
-unnamed: a comparison needs readings that were kept under a name
+unnamed: a comparison needs readings saved under a name
 shown: Save what is on the screen
 shown.note: Pixel for pixel, with the readings that it shows; without legend, markers and clock.
 again: Save with legend and markers
-again.note: Drawn once more by the server. Both are signed: “plantcast verify” finds whatever is changed in them.
-late: no signed picture came
+again.note: Redrawn by the server. Both are signed: “plantcast verify” detects any change.
+late: no signed picture was received
 
 [share]
 title: Share
-what: What to open
+what: What the link opens
 view: This view
 view.why: Opens this view: camera, quantity, colours, instant.
 tag: This tag
-tag.why: Opens at the tag. To be printed and put at the equipment.
+tag.why: Opens at the tag. Print it and attach it to the equipment.
 asset: This equipment
-asset.why: Opens at the equipment. To be printed and put there.
+asset.why: Opens at the equipment. Print it and attach it there.
 follow: Follow me
-follow.why: Whoever opens it sees what you see, while you look.
+follow.why: Anyone who opens it sees what you see, while this page is open.
 link: Link
 copy: Copy
 copied: Copied
-code: The link as a code to scan
-nocode: This server was built without codes to scan (npm was not there).
-local: Opens on this machine only: its address here is a local one.
-people: Who looks along
-alone: Nobody follows this view, of session {session}.
-followers(one): {count} follows this view, of session {session}.
-followers(other): {count} follow this view, of session {session}.
-lead: Let session {session} lead
+code: The link as a QR code
+nocode: This server was built without QR codes (npm was missing).
+local: Works on this machine only: its address is a local one.
+people: Followers
+alone: Nobody is following you.
+followers(one): {count} person is following you.
+followers(other): {count} people are following you.
+lead: Hand over to session {session}
 
 [factor]
-range: Range of the colours
+range: Colour range
 min: From
 max: To
-own: The group’s own
-title: How the field is computed
+own: Group default
+title: Field calculation
 strength: Strength
 decay: Decay
 power: Power
-radius_m: Radius m, 0: by itself
-reach_m: Reach m, empty: no limit
-of: Of {tag} alone
-choose: Of one sensor: select it first
+radius_m: Radius (m), 0 = automatic
+reach_m: Reach (m), empty = no limit
+of: For {tag} only
+choose: For one sensor: select it first
 reset(one): As configured ({count} sensor)
 reset(other): As configured ({count} sensors)
 
 [proof]
-fail: Unproven: failed
-changed: Unproven: changed since
-pass: Proven
+fail: Loop check failed
+changed: Loop check outdated: changed since
+pass: Loop check passed
 
 [eng]
-title: Engineer
-close: Close the engineer’s panel
+title: Engineering
+close: Close engineering panel
 place: Place
-prove: Prove
+prove: Loop check
 method: Field
-what: What to do
+what: Task
 find: Find a tag
-nowhere: stands nowhere yet
+nowhere: not placed
 on: on {asset}
 choose: Choose a tag, then click on the surface; or drag its marker.
 click: {tag}: click on the surface, or drag its marker.
-missed: There is no surface at that place.
-moves: Tried out, for you alone
-nomoves: Nothing is moved. What you try out only you can see, until it is saved.
+missed: There is no surface here.
+moves: Draft (only you see it)
+nomoves: Nothing moved. Only you see your changes until you save.
 off: {metres} m off the surface
-left: not on {asset}, as the tag list has it
-waiting: straight distances, those along the surface follow
-straight: straight distances only
+left: not on {asset} as listed
+waiting: straight-line distances; surface distances follow
+straight: straight-line distances only
 ready: along the surface
 undo: Undo
-back: Take all back
+back: Discard all
 gaps: Gaps
 save: Save …
 gaps.of: Gaps: {quantity}
@@ -609,29 +611,29 @@ diff: Save {file}?
 diff.before: before
 diff.after: after
 diff.line: line {n}
-diff.note: The list as it is stays beside it. It is then in force for everybody; that takes some seconds.
-diff.conflict: {file} was changed by somebody else and is not loaded yet. Nothing was saved; this is what they changed:
-diff.left: {tag} was on {left}, and is on {asset} now: is that meant?
+diff.note: The current list is kept as a backup. The new one applies to everyone within seconds.
+diff.conflict: Someone else changed {file}, and it is not loaded yet. Nothing was saved; their changes:
+diff.left: {tag} was on {left} and is now on {asset}: is that intended?
 diff.more: … and {count} more lines
 cancel: Cancel
-confirm: Save and put in force
-saving: Being prepared; everybody is still shown the plant as it was.
-saved: In force. The list before it is {kept}.
+confirm: Save and apply
+saving: Preparing; everyone still sees the previous plant.
+saved: Applied. The previous list is kept as {kept}.
 unsaved: Not saved: {text}
 device: Device
-proven: {done} of {count} proven
+proven: {done} of {count} passed
 expected: Expected
 tolerance: Tolerance ±
 watch: Watch
 watching: Force the transmitter now.
-still: Nothing has moved yet.
-moved: {tag} moved most: by {by}.
-swapped: {tag} moved, not {wanted}: are they swapped?
+still: No reading has changed yet.
+moved: {tag} changed most: by {by}.
+swapped: {tag} changed, not {wanted}: are they swapped?
 compare: Compare
-fails: Fails
+fails: Fail
 csv: Values from CSV …
 csv.note: {count} expected values were read.
-csv.bad: Columns Tag Name, Expected, Tolerance are needed.
+csv.bad: Columns Tag Name, Expected, Tolerance are required.
 export: Export results
 remark: Remark
 passed: {tag} passed: {value}.
@@ -643,19 +645,19 @@ asset: Equipment
 all: all ({count})
 tags: Tags
 pattern: Name or description; * and ? in names
-within: Distance from surface, at most (m)
-confidence: Confidence, at least (0 to 1)
-count(one): {count} place would be accepted. It is ringed blue in the picture.
-count(other): {count} places would be accepted. They are ringed blue in the picture.
-none: No place would be accepted.
+within: Maximum distance from surface (m)
+confidence: Minimum confidence (0 to 1)
+count(one): {count} location would be accepted. It is ringed blue in the picture.
+count(other): {count} locations would be accepted. They are ringed blue in the picture.
+none: No location would be accepted.
 nowhere: {count} left out: no node and no position in the list
 missing: {count} left out: the equipment has no model
 far: {count} left out: farther from the surface
-unsure: {count} left out: lower confidence, or none known
+unsure: {count} left out: confidence lower or unknown
 go: Accept {count}
-saved(one): {count} place accepted. The previous list is kept as {kept}.
-saved(other): {count} places accepted. The previous list is kept as {kept}.
+saved(one): {count} location accepted. The previous list is kept as {kept}.
+saved(other): {count} locations accepted. The previous list is kept as {kept}.
 undo: Undo: back to {kept} …
 changed: Nothing was accepted: the list has changed. Check the count and accept again.
-undone: Undone. {kept} is in force again.
+undone: Undone. {kept} applies again.
 `;

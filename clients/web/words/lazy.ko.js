@@ -11,8 +11,8 @@ geodesic: 측지 거리
 geodesic.why: 표면을 따르는 거리: 열은 틈을 건너뛰지 않습니다
 euclidean: 직선 거리
 euclidean.why: 공간을 가로지르는 직선 거리
-heat: 점 위의 열
-heat.why: 논문의 방법(뽑은 점 위의 거리), 비교용: 약 0.5 % 어긋나고 얇은 벽을 통과합니다
+heat: 열 방법
+heat.why: 논문의 방법(표본점 위의 거리), 비교용: 약 0.5 % 어긋나고 얇은 벽을 통과합니다
 
 [interpolation]
 shepard: Shepard
@@ -35,26 +35,26 @@ interpolation: 보간
 say: 다른 센서의 예측
 above: {predicted}; {by} 높음
 below: {predicted}; {by} 낮음
-title: 가장 어긋나는 센서
-why: 각 센서의 값과, 그 센서 없이 같은 설비의 다른 센서가 말하는 값. 입구처럼 달라야 하는 곳은 제외
+title: 이웃 센서와 편차가 큰 센서
+why: 각 센서의 값과 같은 설비의 다른 센서로 예측한 값. 입구처럼 달라야 하는 곳은 제외
 
 [drift]
 week: 주간 드리프트
 found: {by}: 드리프트 있음
-none: {by}: 드리프트 안 보임
-unknown: {by}: 알 수 없음
-why: 시간 평균으로 본, 다른 센서의 예측에서 벗어난 정도. 운전 자체로 위치별 차이가 바뀐 곳은 제외
+none: {by}: 드리프트 없음
+unknown: {by}: 판정 불가
+why: 시간 평균으로 본, 이웃 센서 예측과의 편차 변화. 공정 자체로 차이가 바뀐 곳은 제외
 
 [coverage]
 since: {when} 이후
-title: 센서가 미치는 곳
+title: 센서 감시 범위
 none: 끔
 uncertainty: 불확실성
 uncertainty.note: 지금 정상인 센서에 따른 표준편차.
-uncertainty.why: 표면이 gp의 커널대로 변할 때 장이 벗어날 수 있는 크기. 범위가 추측이면 믿지 말 것
+uncertainty.why: 표면이 gp의 커널대로 변할 때 필드가 벗어날 수 있는 크기. 범위가 추측이면 믿지 말 것
 blind: 사각지대
-blind.of: 보이는 열점: {name}
-blind.note: 크기 {size} m 열점 중 가장 가까운 센서가 범위의 5 %를 읽는 최소값
+blind.of: 감지 가능한 열점: {name}
+blind.note: 크기 {size} m 열점 중 가장 가까운 센서를 범위의 5 %만큼 움직이는 최소값
 blind.why: 작은 곳이 얼마나 뜨거워져야 센서가 보이는가. 다른 모양이나 다른 열 경로에는 맞지 않음
 
 [picture]
@@ -64,16 +64,16 @@ difference: 차이의 기준
 kept: 저장한 지시값
 now: 지금
 name: 현재 지시값의 이름
-keep: 저장
+keep: 지시값 저장
 scale: 눈금
 fill: 데이터가 없는 곳
 light: 조명: 태양 {where}
-turn: 방향
-turn.why: 태양의 방향, 북쪽에서 잰 각도
-height: 높이
-height.why: 태양의 높이, 각도
-around: 주변
-around.why: 주변 환경
+turn: 방위각
+turn.why: 태양의 방위각, 북쪽 기준
+height: 고도
+height.why: 태양의 고도, 각도
+around: 배경
+around.why: 배경
 split: 화면 분할
 right: 오른쪽 화면
 
@@ -99,7 +99,7 @@ neighbours.why: 채우고 점으로 표시
 
 [split]
 one: 한 화면
-two: 두 화면
+two: 좌우 분할
 
 [environment]
 sky: 하늘
@@ -121,11 +121,11 @@ lost: {time}부터 플랜트와 연결이 끊겼습니다
 never: 플랜트와 연결되지 않았습니다
 self: {wall} 디스플레이 {display}, {time}부터 기다리는 중
 denied: 이 디스플레이에는 전용 토큰이 필요합니다
-digits: 이 디스플레이를 허용하려면 엔지니어가 페이지의 '뷰'에서 이 숫자를 입력합니다
-asks: 이 디스플레이가 서버에 허용용 숫자를 요청하고 있습니다
-left: 숫자의 남은 유효 시간: {time}
+digits: 페어링하려면 엔지니어가 '시점'에서 이 코드를 입력합니다
+asks: 서버에 페어링 코드를 요청하는 중입니다
+left: 코드 만료까지 {time}
 place: {wall} 디스플레이 {display}
-crowded: 허용을 기다리는 디스플레이가 너무 많습니다. 다시 요청합니다
+crowded: 페어링을 기다리는 디스플레이가 너무 많습니다. 다시 시도합니다
 nowhere: 플랜트 파일에 월 '{wall}'의 디스플레이 {display}번이 없습니다
 token: 토큰
 enter: 입력
@@ -133,12 +133,12 @@ held: {who} 고정, {time}부터
 sent: {who} 보냄, {time}
 age: 데이터 {age} 경과
 since: {time}부터
-many: 경보 {count}건, 최고 {worst}
+many(other): 알람 {count}건, 최고 {worst}
 more(other): 외 {count}건
-counts: 활성 {active}건, 확인 대기 {waiting}건
-flood: 경보 폭주: 활성 {active}건, 확인 대기 {waiting}건
-late: 이 화면의 연결이 너무 느려 {time}부터 제외됨
-missing: 표시되지 않음: 화면 {displays}
+counts: 활성 {active}건, 미확인 {waiting}건
+flood: 알람 폭주: 활성 {active}건, 미확인 {waiting}건
+late: 이 디스플레이의 연결이 너무 느려 {time}부터 갱신되지 않음
+missing: 디스플레이 {displays} 연결 안 됨
 
 [others]
 gone: {time}부터 {name} 화면이 없습니다
@@ -147,37 +147,37 @@ unreachable: 해당 서버가 응답하지 않습니다
 tls: 해당 서버의 인증서를 신뢰할 수 없습니다
 token: 토큰 파일을 읽을 수 없습니다
 refused: 해당 서버가 토큰을 받아들이지 않습니다
-busy: 해당 서버에 부하가 너무 많습니다
+busy: 해당 서버가 과부하 상태입니다
 slow: 해당 서버의 응답이 너무 느립니다
 large: 해당 서버가 보내는 데이터가 너무 큽니다
 no_picture: 해당 서버가 화면을 보내지 않습니다
-unheard: 이 플랜트의 서버가 아무것도 알려 주지 않습니다
+unheard: 이 플랜트의 서버에서 정보가 없습니다
 
 [notes]
 legend: 메모
-text: 근무조에 남길 메모
+text: 근무조 메모
 at: 대상
-until: 기한
-save: 남기기
+until: 표시 기한
+save: 메모 추가
 place: 이 위치
 choose: 설비나 태그를 선택하세요
 ends: {time}까지
-handover: 근무 인계
+handover: 교대 인수인계
 
 [until]
 shift: 8시간
-day: 하루
-week: 일주일
+day: 1일
+week: 1주
 ever: 삭제할 때까지
 
 [remote]
 legend: 상황판
 pane: 상황판의 화면
-desk: 이 자리의 이름
+desk: 데스크 이름
 where: {wall} {display}: {area}
-send: 현재 화면 보내기
+send: 이 화면 보내기
 hold: 고정
-back: 되돌리기
+back: 해제
 point: 마우스로 가리키기
 there: 연결됨
 gone: 이 디스플레이는 연결되어 있지 않습니다
@@ -186,21 +186,21 @@ held: {who} 고정, {time}
 
 [devices]
 legend: 디스플레이
-digits: 디스플레이에 보이는 여섯 자리 숫자
-pair: 허용
-revoke: 취소
-is: {wall} 디스플레이 {display}, {from}, {who} 허용, {time}
+digits: 페어링 코드
+pair: 페어링
+revoke: 페어링 해제
+is: {wall} 디스플레이 {display}, {from}, {who} 페어링, {time}
 
 [handover]
-title: 근무 인계, {plant}
+title: 교대 인수인계, {plant}
 last: 최근
 hours: {n}시간
 print: 인쇄 또는 PDF 저장
 notes: 메모
-standing: 현재 지속 중
+standing: 활성 또는 미확인
 raised: 발생한 알람
 acknowledged: 확인됨
-shelved: 보류 또는 서비스 제외
+shelved: 보류 또는 사용 중지
 time: 시각
 where: 위치
 what: 메모
@@ -210,39 +210,39 @@ alarm: 알람
 priority: 우선순위
 state: 상태
 count: 횟수
-newest: 마지막
+newest: 최근
 reason: 사유
 ended: {who} 삭제, {time}
-cut: 여기 표시된 것보다 많은 알람이 있었습니다
+cut: 일부만 표시: 알람이 더 있었습니다
 gives: 인계자
 takes: 인수자
-denied: 인계는 운전원용입니다: 로그인하거나 토큰으로 페이지에서 여세요
+denied: 인수인계는 운전원용입니다. 로그인하거나 토큰을 입력한 뒤 페이지에서 여십시오
 
 [named]
 legend: 저장된 뷰
-title: 현재 화면의 이름
+title: 이 뷰의 이름
 save: 저장
 unknown: '{id}' 뷰가 없습니다
 wrong: 이 뷰를 표시할 수 없습니다: {why}
 more: {title} 더 보기
 by: {who}, {time}
-update: 현재 화면으로 저장
+update: 현재 화면으로 갱신
 up: 위로
 down: 아래로
 remove: 삭제
 look: 보기
-back: 되돌리기
+back: 실행 취소
 
 [views]
 from: 보는 방향
 projection: 투영
 cut: 단면
-where: 자를 위치
-turn: 반대쪽
+where: 단면 위치
+turn: 뒤집기
 equipment: 설비: {what}
-select: 먼저 선택하세요
+select: 먼저 설비를 선택하세요
 all: 모두 표시
-stays: {axis} {sign} {at} m 남김
+stays: {axis} {sign} {at} m 유지
 part: {what}의 {percent} %
 plant: 플랜트
 
@@ -262,7 +262,7 @@ parallel: 평행
 off: 끔
 box: 상자
 move: 단면 옮기기: {axis}
-whole: 상자 옮기기: 화살표 키는 X와 Y, Page 키는 Z 방향
+whole: 상자 옮기기: 화살표 키는 X와 Y, Page Up/Down은 Z 방향
 oblique: 비스듬히
 
 [shown]
@@ -270,7 +270,7 @@ hide: 숨기기
 ghost: 투명
 only: 이것만
 hidden: {all}개 중 {hidden}개 숨김
-ghosts(other): {count}개 반투명
+ghosts(other): {count}개 투명
 
 [assets]
 description: 설명
@@ -286,7 +286,7 @@ far: 이 화면에서는 글자를 {metres} m까지 읽을 수 있습니다({wan
 [callout]
 held: {time}부터 유지
 count: 알람 {count}건
-worst: 가장 심각
+worst: 최고
 
 [card]
 novalue: 값 없음
@@ -295,10 +295,10 @@ age: 경과
 on: 설비
 trend: 추세
 add: 추세에 추가
-HH: 최고 한계 초과
+HH: 상상한 초과
 H: 상한 초과
 L: 하한 미만
-LL: 최저 한계 미만
+LL: 하하한 미만
 BAD: 계측 불량
 ALM: 알람
 
@@ -306,9 +306,9 @@ ALM: 알람
 measured: 측정된 곳
 between: 센서 사이
 no data: 데이터 없음: 가장 가까운 센서가 불량이거나 닿는 센서가 없음
-context: 이 측정량의 센서가 없는 설비
+context: 이 측정량의 센서 없음
 equipment: 센서 하나가 설비 전체를 나타냄: 위치는 추정
-inside: 잘린 설비의 내부
+inside: 내부(절단면)
 uncertain: {state}, 불확실
 drawn: 이 지점의 값을 직접 계산함. 주변 그림의 오차는 최대 {value}
 hide: 숨기기
@@ -316,9 +316,9 @@ ghost: 투명
 only: 이것만
 
 [following]
-title: 세션 {session}의 화면입니다
-gone: 세션 {session}이(가) 나갔습니다: 마지막 화면입니다
-awaited: 세션 {session}이(가) 없어 기다리는 중입니다
+title: 다른 사용자의 화면을 따라 보는 중 (세션 {session})
+gone: 세션 {session} 종료: 마지막 화면입니다
+awaited: 세션 {session} 대기 중
 
 [outside]
 title: 첫 화면 밖, 최대 {far} 거리: {names}
@@ -328,9 +328,9 @@ close: 알림 닫기
 
 [alarms]
 close: 알람 닫기
-then: 화면은 과거의 플랜트입니다. 이 알람은 현재의 알람입니다.
+then: 화면은 과거이고, 이 목록은 현재 알람입니다.
 quiet: 활성 알람이 없습니다.
-aside: 보류됨 ({count})
+aside: 보류 또는 억제 ({count})
 more: 외 {count}건
 since: {time}부터, {age}
 until: {time}까지
@@ -342,24 +342,24 @@ which: 알람 종류
 search: 필터
 filtered: {count}건 중 필터에 맞는 것이 없습니다.
 choose: {tag} 선택
-chooseall: 표시된 것 모두
+chooseall: 모두 선택
 acknowledge: {count}건 확인
 also: 또한 {what}
 
 [which]
 all: 전체
-waiting: 확인할 것
+waiting: 미확인
 active: 활성
-gone: 원인 사라짐
+gone: 정상 복귀
 
 [state]
 active: 활성
 unacknowledged: 미확인
 acknowledged: 확인됨
 returned: 복귀, 미확인
-latched: 유지
+latched: 래치됨
 shelved: 보류
-suppressed: 설계에 따라 억제
+suppressed: 설계 억제
 out_of_service: 사용 중지
 
 [action]
@@ -407,7 +407,7 @@ last: 더 늦은 알람 기록이 없습니다
 play: 재생
 pause: 일시 정지
 speed: 재생 속도
-span: 슬라이더의 시간 범위
+span: 시간 범위
 slider: 표시하는 시점
 live: 실시간으로
 now: 지금
@@ -451,10 +451,10 @@ follow: 세션 {session}. {link} 링크를 열면 이 화면을 함께 봅니다
 
 [account]
 title: 내 계정
-viewer: 조회 권한
-operator: 운전원
-engineer: 엔지니어
-open: 화면 조회 권한
+viewer: (조회 권한)
+operator: (운전원)
+engineer: (엔지니어)
+open: (화면 조회만)
 nobody: 로그인하지 않았습니다.
 person: ID 공급자를 통해 로그인했습니다.
 token: 토큰으로 접속했습니다.
@@ -464,11 +464,11 @@ out: 로그아웃
 
 [token]
 title: 토큰
-needed: 이 서버는 사용자 확인이 필요합니다.
+needed: 로그인이 필요합니다.
 bad: 토큰이 올바르지 않거나 만료되었습니다.
 locked: 한동안 사용이 없어 잠겼습니다. 다시 로그인하십시오.
 go: 계속
-note: 토큰은 서버 운영자가 만듭니다: {command}. 이 탭을 닫을 때까지 보관됩니다.
+note: 토큰은 서버 관리자가 만듭니다: {command}. 이 탭을 닫을 때까지 보관됩니다.
 
 [help]
 title: 조작 방법
@@ -495,7 +495,7 @@ home: 기본 시점
 back: 이전 시점으로
 from: 보는 방향
 from.keys: [T] 위, [I] 모서리, [O] 평행 투영, [V] 모든 시점, [P] 화면
-what: 위치 정보
+what: 정보 보기
 what.mouse: 클릭
 what.touch: 탭
 selected: 선택한 설비
@@ -510,29 +510,29 @@ mark.bad: 불량: 값 없음
 mark.behind: 가려짐
 mark.alarm: 알람, 색은 우선순위
 mark.acknowledged: 확인된 알람
-mark.returned: 복귀 또는 유지
-crowd: 몰린 표식은 일부 생략되며, 가까이 가면 모두 보입니다. 알람은 생략되지 않습니다.
+mark.returned: 복귀 또는 래치
+crowd: 몰린 표식은 일부 생략되며, 확대하면 모두 보입니다. 알람은 생략되지 않습니다.
 
 [measure]
 first: 첫 번째 지점을 누르세요
 second: 두 번째 지점을 누르세요
 done: 다시 측정하려면 누르세요
-missed: 그곳에는 아무것도 없습니다: 설비를 누르세요
+missed: 설비가 없는 곳입니다: 설비를 누르세요
 end: 완료
-parts: 수평 {level} m, 높이 {rise} m
+parts: 수평 {level} m, 수직 {rise} m
 
 [snapshot]
 failed: 그림 없음: {why}
-unnamed: 비교하려면 이름을 붙여 보관한 값이 필요합니다
+unnamed: 비교하려면 이름을 붙여 저장한 값이 필요합니다
 shown: 화면 그대로 저장
 shown.note: 화면에 보이는 값과 픽셀 그대로이며, 범례, 표시, 시계는 없습니다.
 again: 범례와 표시를 넣어 저장
-again.note: 서버가 다시 그립니다. 둘 다 서명되어 있어, 바뀐 곳은 “plantcast verify”가 찾아냅니다.
-late: 서명된 그림이 오지 않았습니다
+again.note: 서버가 다시 그립니다. 둘 다 서명되어 있어 “plantcast verify”가 모든 변경을 찾아냅니다.
+late: 서명된 그림을 받지 못했습니다
 
 [share]
 title: 공유
-what: 무엇을 열까요
+what: 링크로 열 대상
 view: 이 화면
 view.why: 이 화면을 엽니다: 카메라, 물리량, 색, 시각.
 tag: 이 태그
@@ -540,16 +540,16 @@ tag.why: 태그 위치에서 열립니다. 인쇄하여 설비에 붙이세요.
 asset: 이 설비
 asset.why: 설비 위치에서 열립니다. 인쇄하여 그곳에 붙이세요.
 follow: 나를 따라 보기
-follow.why: 여는 사람은 내가 보는 동안 같은 화면을 봅니다.
+follow.why: 링크를 연 사람은 이 페이지가 열려 있는 동안 같은 화면을 봅니다.
 link: 링크
 copy: 복사
 copied: 복사됨
-code: 스캔할 수 있는 링크 코드
-nocode: 이 서버는 스캔 코드 없이 만들어졌습니다 (npm 없음).
+code: 링크 QR 코드
+nocode: 이 서버는 QR 코드 없이 빌드되었습니다 (npm이 없었음).
 local: 이 컴퓨터에서만 열립니다: 주소가 로컬 주소입니다.
 people: 함께 보는 사람
-alone: 이 화면(세션 {session})을 따라 보는 사람이 없습니다.
-followers(other): {count}명이 이 화면(세션 {session})을 따라 봅니다.
+alone: 따라 보는 사람이 없습니다.
+followers(other): {count}명이 따라 보고 있습니다.
 lead: 세션 {session}에 주도권 넘기기
 
 [factor]
@@ -557,43 +557,43 @@ range: 색 범위
 min: 최소
 max: 최대
 own: 그룹 기본값
-title: 필드 계산 방법
+title: 필드 계산
 strength: 세기
 decay: 감쇠
 power: 지수
-radius_m: 반경 m, 0: 자동
-reach_m: 도달 거리 m, 비움: 무제한
+radius_m: 반경(m), 0 = 자동
+reach_m: 도달 거리(m), 비움 = 무제한
 of: {tag} 하나만
 choose: 센서 하나: 먼저 선택하세요
 reset(other): 설정값으로 (센서 {count}개)
 
 [proof]
-fail: 미확인: 불합격
-changed: 미확인: 이후 변경됨
-pass: 확인됨
+fail: 루프체크 불합격
+changed: 루프체크 이후 변경됨
+pass: 루프체크 합격
 
 [eng]
-title: 엔지니어
-close: 엔지니어 패널 닫기
+title: 엔지니어링
+close: 엔지니어링 패널 닫기
 place: 배치
-prove: 확인
+prove: 루프체크
 method: 필드
-what: 할 일
+what: 작업
 find: 태그 찾기
-nowhere: 아직 위치 없음
+nowhere: 위치 없음
 on: {asset} 위
 choose: 태그를 선택한 다음 표면을 클릭하거나 표식을 끌어다 놓으세요.
 click: {tag}: 표면을 클릭하거나 표식을 끄세요.
 missed: 그곳에는 표면이 없습니다.
-moves: 시험 중, 본인에게만 보임
-nomoves: 옮긴 것이 없습니다. 시험하는 위치는 저장할 때까지 본인에게만 보입니다.
+moves: 초안 (본인만 보임)
+nomoves: 옮긴 것이 없습니다. 변경은 저장할 때까지 본인에게만 보입니다.
 off: 표면에서 {metres} m 떨어짐
-left: 태그 목록의 {asset} 위가 아님
+left: 목록에 적힌 {asset} 위가 아님
 waiting: 직선 거리, 표면 거리는 곧 이어짐
 straight: 직선 거리만
 ready: 표면을 따라
 undo: 실행 취소
-back: 모두 되돌리기
+back: 모두 버리기
 gaps: 빈틈
 save: 저장 …
 gaps.of: 빈틈: {quantity}
@@ -606,7 +606,7 @@ diff: {file}을(를) 저장할까요?
 diff.before: 이전
 diff.after: 이후
 diff.line: {n}행
-diff.note: 지금의 목록은 옆에 그대로 남습니다. 저장하면 모두에게 적용되며 몇 초가 걸립니다.
+diff.note: 지금의 목록은 백업으로 보관됩니다. 새 목록은 몇 초 안에 모두에게 적용됩니다.
 diff.conflict: {file}을(를) 다른 사람이 바꾸었고 아직 불러오지 않았습니다.
     저장하지 않았습니다. 바뀐 내용:
 diff.left: {tag}은(는) {left} 위에 있었고 이제 {asset} 위에 있습니다. 맞습니까?
@@ -617,14 +617,14 @@ saving: 준비 중입니다. 모두에게는 아직 이전의 설비가 보입�
 saved: 적용되었습니다. 이전 목록은 {kept}(으)로 보관됩니다.
 unsaved: 저장하지 않음: {text}
 device: 장치
-proven: {count}개 중 {done}개 확인됨
+proven: {count}개 중 {done}개 합격
 expected: 기댓값
 tolerance: 허용 오차 ±
 watch: 지켜보기
-watching: 지금 전송기 값을 강제로 바꾸세요.
-still: 아직 움직인 것이 없습니다.
-moved: {tag}이(가) 가장 많이 움직임: {by}.
-swapped: {wanted}이(가) 아니라 {tag}이(가) 움직였습니다. 서로 바뀌었나요?
+watching: 지금 전송기 출력을 강제로 바꾸세요.
+still: 아직 변한 지시값이 없습니다.
+moved: {tag}이(가) 가장 많이 변함: {by}.
+swapped: {wanted}이(가) 아니라 {tag}이(가) 변했습니다. 서로 바뀌었나요?
 compare: 비교
 fails: 불합격
 csv: CSV의 값 …

@@ -6,7 +6,7 @@ no_data: keine Daten
 uncertain: unsicher
 drawn_error: unsicher: gezeichnet
 drawn_error_2: mit bis zu {} Fehler
-unproven: ungeprüft
+unproven: ohne Loop-Check
 place_assumed: Ort angenommen
 direction_unknown: Richtung unbekannt
 priority_1: Alarm, Priorität 1
@@ -23,11 +23,11 @@ bad: SCHLECHT
 held_since: gehalten seit {}
 unknown_then: damals unbekannt
 from: Abstand von {}
-hot_spot: Erkannte Heißstelle: {}
+hot_spot: Erkennbarer Hotspot: {}
 hot_spot_size: von {} m, als {} % des Bereichs
 since: seit {}
 alarms: {} Alarme
-worst: schwerster {}
+worst: höchster {}
 no_values: keine Werte
 old_s: {} s alt
 old_min: {} min alt
@@ -41,7 +41,7 @@ no_data_then: KEINE DATEN
 unseen_one: {} nicht sichtbarer Alarm
 unseen: {} nicht sichtbare Alarme
 unseen_such_as: {} nicht sichtbare Alarme, wie
-look_default: Messtreu
+look_default: Farbtreu
 look_glossy: Glänzend
 look_flat: Flach
 look_materials: Werkstoffe
@@ -52,7 +52,7 @@ interpolation_fin: Leitung und Verlust an die Luft
 interpolation_gp: Wahrscheinlichstes Feld
 distance_geodesic: Geodätischer Abstand
 distance_euclidean: Euklidischer Abstand
-distance_heat: Geodätisch aus Wärme
+distance_heat: Geodätisch, Wärmemethode
 power: Exponent {}
 strength: Stärke {}
 decay: Abfall {}

@@ -6,8 +6,8 @@ no_data: no data
 uncertain: uncertain
 drawn_error: uncertain: drawn with
 drawn_error_2: up to {} of error
-unproven: unproven
-place_assumed: place assumed
+unproven: not loop-checked
+place_assumed: location assumed
 direction_unknown: direction unknown
 priority_1: alarm, priority 1
 priority_2: alarm, priority 2
@@ -16,18 +16,18 @@ priority_4: alarm, priority 4
 by_limits: by each tag's limits
 logarithmic: logarithmic scale
 deviation: standard deviation
-misread: may be misread
-glossy: glossy: light changes
+misread: can be misread
+glossy: glossy: light alters
 glossy_2: the colours
 bad: BAD
 held_since: held since {}
-unknown_then: not known then
+unknown_then: unknown at that time
 from: From {}
-hot_spot: Hot spot seen: {}
+hot_spot: Detectable hot spot: {}
 hot_spot_size: of {} m, as {} % of the range
 since: since {}
 alarms: {} alarms
-worst: worst {}
+worst: highest {}
 no_values: no values
 old_s: {} s old
 old_min: {} min old
@@ -41,7 +41,7 @@ no_data_then: NO DATA
 unseen_one: {} alarm out of sight
 unseen: {} alarms out of sight
 unseen_such_as: {} alarms out of sight, such as
-look_default: Default look
+look_default: True colours
 look_glossy: Glossy look
 look_flat: Flat look
 look_materials: Materials
@@ -49,10 +49,10 @@ interpolation_shepard: Shepard
 interpolation_paper: Algorithm 1 of the paper
 interpolation_harmonic: Conduction along the wall
 interpolation_fin: Conduction and loss to the air
-interpolation_gp: Most likely field
+interpolation_gp: Most probable field
 distance_geodesic: Geodesic distance
 distance_euclidean: Euclidean distance
-distance_heat: Geodesic distance by heat
+distance_heat: Geodesic, heat method
 power: Power {}
 strength: Strength {}
 decay: Decay {}

@@ -6,7 +6,7 @@ no_data: 데이터 없음
 uncertain: 불확실
 drawn_error: 불확실: 그린 값의
 drawn_error_2: 오차 최대 {}
-unproven: 미확인
+unproven: 루프체크 안 됨
 place_assumed: 위치 추정
 direction_unknown: 방향 모름
 priority_1: 알람, 우선순위 1
@@ -23,7 +23,7 @@ bad: 불량
 held_since: {}부터 유지
 unknown_then: 당시에는 모름
 from: {}에서의 거리
-hot_spot: 보이는 과열부: {}
+hot_spot: 감지 가능한 열점: {}
 hot_spot_size: {} m 크기, 범위의 {} %
 since: {} 이후
 alarms: 알람 {}건
@@ -41,7 +41,7 @@ no_data_then: 데이터 없음
 unseen_one: 보이지 않는 알람 {}건
 unseen: 보이지 않는 알람 {}건
 unseen_such_as: 보이지 않는 알람 {}건 중
-look_default: 계측 모양
+look_default: 색 그대로
 look_glossy: 광택 모양
 look_flat: 평면 모양
 look_materials: 재질
@@ -52,7 +52,7 @@ interpolation_fin: 열전도와 공기로의 손실
 interpolation_gp: 가장 그럴듯한 값
 distance_geodesic: 측지 거리
 distance_euclidean: 직선 거리
-distance_heat: 열에 의한 측지 거리
+distance_heat: 측지 거리, 열 방법
 power: 지수 {}
 strength: 세기 {}
 decay: 감쇠 {}

@@ -2,26 +2,26 @@
 // Words of plantcast-video, in English. The build makes a C header from it; a value takes the place of each {}.
 export default `
 starting: STARTING
-not_let_in: NOT LET IN
+not_let_in: ACCESS DENIED
 no_view: NO SUCH VIEW
 no_picture: NO PICTURE
 too_slow: THE SERVER IS TOO SLOW
-silent: THE SERVER IS SILENT
+silent: THE SERVER DOES NOT RESPOND
 no_connection: NO CONNECTION TO THE SERVER
 no_values: NO LIVE VALUES
 since: since {}
-nothing_yet: no picture has come yet
-token: the server does not take this token: {}
-tokens: the server looks at no more tokens of this address for a while
+nothing_yet: no picture received yet
+token: the server rejects this token: {}
+tokens: the server checks no more tokens from this address for a while
 answers: the server answers {}: {}
-views: there is no view '{}'; there are: {}
+views: there is no view '{}'; the views are: {}
 none: none
-took: a picture took it {} s, and may take {}; a smaller --size helps
-earlier: the server does not say how old its values are: it is of an earlier version
-no_png: what the server sent is no PNG of {}x{}
-no_answer: it does not answer
-no_url: its parameters make no URL
-no_value: the server is there, and no sensor that is shown tells a value
+took: a picture took {} s; the limit is {} s; a smaller --size helps
+earlier: the server does not report the age of its values: it is an older version
+no_png: the server did not send a PNG of {}x{}
+no_answer: no answer
+no_url: its parameters do not form a URL
+no_value: the server is up, but no sensor shown delivers a value
 said: {}
 age_s: values up to {} s old
 age_min: values up to {} min old

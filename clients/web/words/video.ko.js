@@ -2,7 +2,7 @@
 // Words of plantcast-video, in Korean. The build makes a C header from it; a value takes the place of each {}.
 export default `
 starting: 시작하는 중
-not_let_in: 접근이 허용되지 않음
+not_let_in: 접근 거부
 no_view: 그런 뷰가 없음
 no_picture: 화면 없음
 too_slow: 서버가 너무 느림
@@ -19,7 +19,7 @@ none: 없음
 took: 화면 하나에 {}초가 걸렸으며 한도는 {}초입니다. --size를 줄이면 도움이 됩니다
 earlier: 서버가 값의 경과 시간을 알리지 않습니다. 이전 버전의 서버입니다
 no_png: 서버가 보낸 것이 {}x{} PNG가 아닙니다
-no_answer: 응답이 없습니다
+no_answer: 응답 없음
 no_url: 매개변수로 URL을 만들 수 없습니다
 no_value: 서버는 연결되어 있으나 표시된 센서 중 값을 보내는 것이 없습니다
 said: {}

@@ -115,7 +115,7 @@ async function lookAtTools(look) {
     await page.getByRole('button', { name: 'Lücken', exact: true }).click();
     await page.locator('#engineer .gaps h3').waitFor();
     await look('engineer-gaps');
-    await page.locator('#engineer label', { hasText: 'Prüfen' }).click();
+    await page.locator('#engineer label', { hasText: 'Loop-Check' }).click();
     await page.locator('#engineer .part:not([hidden]) .tags button').first().click();
     await page.locator('#engineer .judge').waitFor();
     await look('engineer-prove');

@@ -110,10 +110,10 @@ test('a cut, ghosts and hidden equipment', options, async () => {
         const { confirmed } = globalThis.plantcast.session;
         return JSON.stringify([confirmed.ghost, confirmed.hidden]) === JSON.stringify(lists);
     }, [ghost, hidden]);
-    await page.locator('#shows button', { hasText: 'Ghost' }).click();
+    await page.locator('#shows button', { hasText: 'Transparent' }).click();
     await waitForShown(['T-101'], []);
     await settle(page);
-    assert.match(await page.locator('#shown span').textContent(), /^1 see-through$/);
+    assert.match(await page.locator('#shown span').textContent(), /^1 transparent$/);
     await shoot(page, 'ghost');
     await page.locator('#shows button', { hasText: 'Hide' }).click();
     await waitForShown([], ['T-101']);
@@ -176,7 +176,7 @@ test('what stands before a tag on all sides becomes a ghost; Backspace goes back
         await on.waitForFunction(() => !globalThis.plantcast.cameraController.fly);
         await settle(on);
         await on.waitForFunction(() => globalThis.plantcast.overlay.markers.find(({ tag }) => tag.name === 'TI-1')?.occluded === false);
-        assert.match(await on.locator('#shown span').textContent(), /^1 see-through$/);
+        assert.match(await on.locator('#shown span').textContent(), /^1 transparent$/);
         await shoot(on, 'seen-through');
         await on.locator('#viewport').focus();
         await on.keyboard.press('Backspace');

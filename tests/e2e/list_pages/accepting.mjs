@@ -56,24 +56,24 @@ const assumed = () => rows().filter((row) => /equipment\r?$/.test(row)).length;
 
 test('the filter says how many, which not and why, and marks them on the model', options, async () => {
     const all = count((i) => !isNowhere(i));
-    await says('#engineer .accept p', `${all} places would be accepted`);
+    await says('#engineer .accept p', `${all} locations would be accepted`);
     await says('#engineer .accept ul', '20 left out: no node and no position');
-    await page.getByLabel('Distance from surface').fill('0.1');
-    await says('#engineer .accept p', `${count((i) => !isNowhere(i) && !isOff(i))} places would be accepted`);
+    await page.getByLabel('Maximum distance from surface').fill('0.1');
+    await says('#engineer .accept p', `${count((i) => !isNowhere(i) && !isOff(i))} locations would be accepted`);
     await says('#engineer .accept ul', `${count((i) => !isNowhere(i) && isOff(i))} left out: farther from the surface`);
-    await page.getByLabel('Confidence, at least').fill('0.9');
+    await page.getByLabel('Minimum confidence').fill('0.9');
     const sure = count((i) => i < 250 && !isOff(i));
-    await says('#engineer .accept p', `${sure} places would be accepted`);
+    await says('#engineer .accept p', `${sure} locations would be accepted`);
     await page.locator('#engineer .accept select').selectOption('E-101');
     await page.getByPlaceholder('Name or description').fill('ta-1*');
     const some = count((i) => i >= 100 && i < 200 && !isOff(i) && assetOf(i) === 'E-101');
-    await says('#engineer .accept p', `${some} places would be accepted`);
+    await says('#engineer .accept p', `${some} locations would be accepted`);
     assert.equal(await page.evaluate(() => globalThis.plantcast.modules.there('engineer').parts.place.accepting.names.size), some);
     await settle(page);
     await shoot(page, 'accepting');
-    await page.getByLabel('Confidence, at least').fill('7');
+    await page.getByLabel('Minimum confidence').fill('7');
     await page.getByRole('button', { name: /^Accept/ }).isDisabled();
-    await page.getByLabel('Confidence, at least').fill('0.9');
+    await page.getByLabel('Minimum confidence').fill('0.9');
     assert.equal(assumed(), ASSUMED, 'nothing is written before');
 });
 
@@ -81,9 +81,9 @@ test('accepted: one list, one line in the audit trail, the others as they were',
     await page.locator('#engineer .accept select').selectOption('');
     await page.getByPlaceholder('Name or description').fill('');
     const sure = count((i) => i < 250 && !isOff(i));
-    await says('#engineer .accept p', `${sure} places would be accepted`);
+    await says('#engineer .accept p', `${sure} locations would be accepted`);
     await page.getByRole('button', { name: `Accept ${sure}`, exact: true }).click();
-    await says('#engineer .accept .accepted', `${sure} places accepted. The previous list is kept as tags.csv.1.`);
+    await says('#engineer .accept .accepted', `${sure} locations accepted. The previous list is kept as tags.csv.1.`);
     assert.equal(assumed(), ASSUMED - sure);
     const before = original.split('\n'), now = readFileSync(tagsFile, 'utf8').split('\n');
     before.forEach((row, n) => assert.equal(now[n],
@@ -106,8 +106,8 @@ test('undone, also after a reload of the page: the list is what it was, to the b
     await page.getByRole('button', { name: 'Undo: back to tags.csv.1 …' }).click();
     await page.locator('dialog.diff[open]').waitFor();
     await shoot(page, 'accepting-undo');
-    await page.getByRole('button', { name: 'Save and put in force' }).click();
-    await says('#engineer .accept .accepted', 'Undone. tags.csv.1 is in force again.');
+    await page.getByRole('button', { name: 'Save and apply' }).click();
+    await says('#engineer .accept .accepted', 'Undone. tags.csv.1 applies again.');
     assert.equal(await page.locator('dialog.diff[open]').count(), 0, 'the answer to the confirmation does not open the dialog again');
     assert.equal(readFileSync(tagsFile, 'utf8'), original);
     assert.notEqual(readFileSync(`${tagsFile}.2`, 'utf8'), original, 'what was undone is kept, too');

@@ -50,13 +50,13 @@ test('what comes beyond its limit is counted, marked and listed, the most urgent
     await page.waitForFunction(
         (hot) => globalThis.plantcast.session.model.alarms.list().some(({ tag, kind }) => tag.name === hot && kind === 'HH'),
         HOT, { timeout: 30000 });
-    await waitForWords('^\\d+ active alarms, \\d+ to be acknowledged$');
-    assert.match(await page.locator('#alarm-mode').textContent(), /Local alarms of this site/);
+    await waitForWords('^\\d+ active alarms, \\d+ unacknowledged$');
+    assert.match(await page.locator('#alarm-mode').textContent(), /Plantcast alarms/);
     await waitForRing(HOT);
     assert.deepEqual((({ kind, state }) => [kind, state])(await ring(HOT)), ['HH', 'unacknowledged']);
     await page.locator('#alarm-strip').click();
     const first = page.locator('#alarms-list li').first();
-    assert.match(await first.textContent(), new RegExp(`${HOT} High high, raised at ${limitOf(HOT).HH + 1}`));
+    assert.match(await first.textContent(), new RegExp(`${HOT} High-high, raised at ${limitOf(HOT).HH + 1}`));
     await settle(page);
     const [legend, list] = await Promise.all(['#legend', '#alarms'].map((id) => page.locator(id).boundingBox()));
     assert.ok(legend.x + legend.width <= list.x, 'the legend is read beside the list');
@@ -169,11 +169,11 @@ test('one row and one count for a tag; what has returned is not active, and draw
     await plant.ask(`set ${LOW} ${LL - 1}`);
     await page.waitForFunction((low) => [...globalThis.plantcast.session.model.alarms.rows.values()]
         .filter(({ tag }) => tag.name === low).length === 2, LOW, { timeout: 30000 });
-    await waitForWords('^1 active alarm, 1 to be acknowledged$');
+    await waitForWords('^1 active alarm, 1 unacknowledged$');
     assert.equal(await rowOf(LOW).count(), 1);
-    assert.match(await rowOf(LOW).textContent(), /Low low.*also Low \(Unacknowledged\)/s);
+    assert.match(await rowOf(LOW).textContent(), /Low-low.*also Low \(Unacknowledged\)/s);
     await plant.ask(`set ${LOW} ${(L + H) / 2}`);
-    await waitForWords('^0 active, 1 to be acknowledged$');
+    await waitForWords('^0 active, 1 unacknowledged$');
     assert.equal(await page.locator('#alarm-counts .hollow').count(), 1);
     await page.evaluate(() => globalThis.plantcast.session.setParams({ group: 'temperature' }));
     await waitForRing(LOW);
@@ -198,20 +198,20 @@ test('several are acknowledged at once, only those that are seen; a filter', opt
     const three = tags.filter(({ group, limits }) => group === 'temperature' && limits.H !== null).slice(0, 3).map(({ name }) => name);
     for (const name of three)
         await plant.ask(`set ${name} ${limitOf(name).H + 0.1}`);
-    await waitForWords('^3 active alarms, 3 to be acknowledged$');
+    await waitForWords('^3 active alarms, 3 unacknowledged$');
     await page.locator('#alarms-words').fill(three[0]);
     assert.equal(await page.locator('#alarms-list li').count(), 1);
     assert.ok(await page.locator('#alarms-many').isHidden(), 'one has a button of its own');
     await page.locator('#alarms-words').fill('');
     await page.locator('#alarms-which').selectOption('gone');
-    assert.equal(await page.locator('#alarms-none').textContent(), 'None of 3 passes the filter.');
+    assert.equal(await page.locator('#alarms-none').textContent(), 'No match among 3 alarms.');
     await page.locator('#alarms-which').selectOption('waiting');
     await page.locator('#alarms-all').check();
     await rowOf(three[0]).locator('.choose').uncheck();
     assert.equal(await page.locator('#alarms-acknowledge').textContent(), 'Acknowledge 2');
     await shoot(page, 'alarms-several');
     await page.locator('#alarms-acknowledge').click();
-    await waitForWords('^3 active alarms, 1 to be acknowledged$');
+    await waitForWords('^3 active alarms, 1 unacknowledged$');
     assert.deepEqual(await page.locator('#alarms-list li .what b').allTextContents(), [three[0]]);
     await page.locator('#alarms-which').selectOption('all');
 });
@@ -227,7 +227,7 @@ test('without a connection the strip says as of when, and offers nothing', optio
     assert.equal((await words()).replace(/^As of [\d:]+: /, ''), before);
     assert.ok(await page.locator('.stale #alarm-strip').isVisible());
     await page.waitForFunction(() => document.querySelectorAll('#alarms .do button').length === 0);
-    assert.match(await page.locator('#alarms-stale').textContent(), /^Not of now: as of \d\d:\d\d:\d\d/);
+    assert.match(await page.locator('#alarms-stale').textContent(), /^Out of date: as of \d\d:\d\d:\d\d/);
     assert.equal(await page.evaluate(() => document.body.classList.contains('alarm-blink')), false);
     await shoot(page, 'alarms-disconnected');
     await page.evaluate(() => globalThis.plantcast.session.connection.retryNow());

@@ -57,7 +57,7 @@ const button = (name, on = page) => on.locator('#engineer').getByRole('button', 
 
 test('a tag that stands nowhere is put onto the surface by a click, and its field is there', options, async () => {
     await page.locator('#engineer-toggle').click();
-    await says('#engineer .tags li', 'TI-9 spare.*stands nowhere yet');
+    await says('#engineer .tags li', 'TI-9 spare.*not placed');
     await page.locator('#engineer .tags button').first().click();
     await says('#engineer .hint', '^TI-9: click on the surface');
     await land(page); // waits because the panel's opening has moved the picture
@@ -110,21 +110,21 @@ const snapshot = async () => {
 
 test('the list is saved: what changes is shown, then it is in force', options, async () => {
     const old = readFileSync(tagsFile, 'utf8');
-    await says('#assets-list', 'E-101.*2 sensors.*Tags without equipment.*1 sensor');
+    await says('#assets-list', 'E-101.*2 sensors.*Unassigned tags.*1 sensor');
     await button('Save …').click();
     await says('dialog.diff[open]', 'line 5');
     await shoot(page, 'engineer-diff');
     await page.getByRole('button', { name: 'Cancel', exact: true }).click();
     assert.equal(readFileSync(tagsFile, 'utf8'), old);
     await button('Save …').click();
-    await page.getByRole('button', { name: 'Save and put in force' }).click();
-    await says('#engineer .part .note', 'In force. The list before it is tags\\.csv\\.1');
+    await page.getByRole('button', { name: 'Save and apply' }).click();
+    await says('#engineer .part .note', 'Applied. The previous list is kept as tags\\.csv\\.1');
     assert.equal(readFileSync(`${tagsFile}.1`, 'utf8'), old);
     assert.match(readFileSync(tagsFile, 'utf8'), /TI-9,400007,Float,°C,spare,temperature,E-101,0\.\d+,-0\.5,0\.\d+,1/);
     await page.waitForFunction(() => globalThis.plantcast.session.model.tag('TI-9').position !== null);
     assert.equal(await moved(), null);
     await says('#assets-list', 'E-101.*3 sensors');
-    assert.doesNotMatch(await text('#assets-list'), /without equipment/);
+    assert.doesNotMatch(await text('#assets-list'), /Unassigned/);
     await ready(page);
     instant = new Date().toISOString();
     await page.waitForFunction((us) => globalThis.plantcast.session.clockUs() > us + 3e6, Date.now() * 1000);
@@ -133,23 +133,23 @@ test('the list is saved: what changes is shown, then it is in force', options, a
 });
 
 test('walk: who moved is pointed out, swapped ones too; a value that fits proves the tag', options, async () => {
-    await page.locator('#engineer label', { hasText: 'Prove' }).click();
-    await says('#engineer .count', '^0 of 4 proven');
+    await page.locator('#engineer label', { hasText: 'Loop check' }).click();
+    await says('#engineer .count', '^0 of 4 passed');
     await page.locator('#engineer .part:not([hidden]) .tags button', { hasText: 'TI-1' }).click();
     await says('#engineer .judge output', '^now 80');
     await page.waitForTimeout(700); // waits for some readings, from which the noise is measured
     await button('Watch').click();
     await plant.tell('set TI-2 60');
-    await says('#engineer .judge .note', 'TI-2 moved, not TI-1: are they swapped');
+    await says('#engineer .judge .note', 'TI-2 changed, not TI-1: are they swapped');
     await settle(page);
     await shoot(page, 'engineer-swapped');
     await button('Watch').click();
     await plant.tell('set TI-1 90');
-    await says('#engineer .judge .note', '^TI-1 moved most: by 10');
+    await says('#engineer .judge .note', '^TI-1 changed most: by 10');
     await page.getByLabel('Expected').fill('90,2');
     await page.getByLabel('Tolerance').fill('0.5');
     await button('Compare').click();
-    await says('#engineer .count', '^1 of 4 proven');
+    await says('#engineer .count', '^1 of 4 passed');
     await says('#engineer .judge h3', '^TI-2$');
     await page.getByLabel('Expected').fill('10');
     await button('Compare').click();
@@ -162,14 +162,14 @@ test('expected values come from a CSV file; results are exported with name, time
     const choose = (name, body) =>
         page.locator('#engineer input[type="file"]').setInputFiles({ name, mimeType: 'text/csv', buffer: Buffer.from(body) });
     await choose('wrong.csv', 'Tag,Value\nTI-9,50\n');
-    await says('#engineer .part:not([hidden])', 'Columns Tag Name, Expected, Tolerance are needed');
+    await says('#engineer .part:not([hidden])', 'Columns Tag Name, Expected, Tolerance are required');
     await choose('loop.csv', 'Tag Name;Expected;Tolerance\r\nTI-9;50,3;0,5\r\nPI-1;5;0,1\r\n');
     await says('#engineer .part:not([hidden])', '2 expected values were read');
     await page.locator('#engineer .part:not([hidden]) .tags button', { hasText: 'TI-9' }).click();
     assert.deepEqual([await page.getByLabel('Expected').inputValue(), await page.getByLabel('Tolerance').inputValue()], ['50.3', '0.5']);
     await says('#engineer .judge output', '^now 50');
     await button('Compare').click();
-    await says('#engineer .count', '^2 of 4 proven');
+    await says('#engineer .count', '^2 of 4 passed');
     const download = page.waitForEvent('download');
     await button('Export results').click();
     const file = await download, rows = readFileSync(await file.path(), 'utf8').trim().split('\n');
@@ -186,10 +186,10 @@ test('what is not proven is said to be so to everybody, and stays through a relo
         const { selection, session } = globalThis.plantcast;
         selection.tag = session.model.tag('TI-2').name;
     });
-    await says('#card .proof', '^Unproven: failed$');
+    await says('#card .proof', '^Loop check failed$');
     assert.deepEqual(await page.evaluate(() => globalThis.plantcast.session.model.tags.map((tag) =>
         globalThis.plantcast.session.model.unproven(tag))), [null, 'fail', 'none', null]);
-    await says('#legend .keys', 'Unproven');
+    await says('#legend .keys', 'Not loop-checked');
     assert.notDeepEqual(await snapshot(), plain, 'in the server\'s pictures too, whose plant was loaded anew before');
     await settle(page);
     await shoot(page, 'engineer-unproven');
@@ -240,7 +240,7 @@ test('where the folder of the list may not be written, that is said, and nothing
     chmodSync(plant.folder, 0o555);
     try {
         await button('Save …').click();
-        await page.getByRole('button', { name: 'Save and put in force' }).click();
+        await page.getByRole('button', { name: 'Save and apply' }).click();
         await says('#engineer .part .note', 'Not saved: the daemon may not write into the folder of the tag list \\(tags\\.csv\\.2\\)');
     } finally {
         chmodSync(plant.folder, 0o755);
@@ -250,6 +250,6 @@ test('where the folder of the list may not be written, that is said, and nothing
     await settle(page);
     await shoot(page, 'engineer-refused');
     await button('Save …').click();
-    await page.getByRole('button', { name: 'Save and put in force' }).click();
-    await says('#engineer .part .note', 'In force. The list before it is tags\\.csv\\.2');
+    await page.getByRole('button', { name: 'Save and apply' }).click();
+    await says('#engineer .part .note', 'Applied. The previous list is kept as tags\\.csv\\.2');
 });

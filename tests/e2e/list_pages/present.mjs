@@ -55,7 +55,7 @@ const labels = (page) => page.evaluate(() => globalThis.plantcast.overlay.labels
 
 test('an alarm says at which value it was raised, and the present one', options, async () => {
     await plant.tell('set TI-1 95.5');
-    await waitForText(desk.page, '#alarm-newest', '^TI-1 High high, raised at 95\\.5 °C, now 95\\.5 °C \\(limit 90\\.0 °C\\)$');
+    await waitForText(desk.page, '#alarm-newest', '^TI-1 High-high, raised at 95\\.5 °C, now 95\\.5 °C \\(limit 90\\.0 °C\\)$');
     await plant.tell('set TI-1 70.25');
     await waitForText(desk.page, '#alarm-newest', 'TI-1 High.*now 70\\.3 °C');
     await plant.tell('set TI-1 40'); // the value is normal again, and the alarm is not acknowledged
@@ -144,7 +144,7 @@ test('a lost device raises an alarm of its own; rings keep their names and say s
 
 test('a refusal is said in the reader\'s language, over the stream and over HTTP', options, async () => {
     await german.page.evaluate(() => globalThis.plantcast.session.setParams({ selected: 'E-9' }));
-    await waitForText(german.page, '#toast', '^Der Server hat abgelehnt: in dieser Anlage gibt es „E-9“ nicht \\(Ausrüstung\\)$');
+    await waitForText(german.page, '#toast', '^Der Server hat abgelehnt: in dieser Anlage gibt es „E-9“ nicht \\(Anlagenteil\\)$');
     await shoot(german.page, 'refused-de');
     await german.page.evaluate(() => globalThis.plantcast.session.setParams({ range: [1, -1] }));
     await waitForText(german.page, '#toast', '^Der Server hat abgelehnt: der Bereich muss unter seinem Ende beginnen$');

@@ -179,9 +179,9 @@ test('the panel of the picture says what is drawn, and when not to trust it', op
     await page.click('#picture-toggle');
     await page.locator('#directions .note').waitFor();
     assert.match(await page.locator('#directions .note').textContent(), /interpolate/);
-    await page.locator('#directions label', { hasText: 'Strokes' }).click();
+    await page.locator('#directions label', { hasText: 'Streaks' }).click();
     await until('strokes', ({ rows }) => rows.some((row) => row[7] > 0));
-    assert.match(await page.locator('#directions .note').textContent(), /Not as paths/);
+    assert.match(await page.locator('#directions .note').textContent(), /not the paths of a fluid/);
     await shoot(page, 'strokes_panel');
     await page.locator('#directions label', { hasText: 'Arrows' }).click();
     await until('arrows', ({ rows }) => rows.length > 15 && rows.every((row) => row.length === 7));

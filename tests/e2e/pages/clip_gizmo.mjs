@@ -48,7 +48,7 @@ test('a plane is dragged by its arrow: it goes where the hand goes, and the came
     await page.mouse.move((x + to.x) / 2, (y + to.y) / 2);
     await page.mouse.move(to.x, to.y);
     await page.waitForFunction(() => Math.abs(globalThis.plantcast.session.params.clip.planes[0][3] + 0.4) < 0.02);
-    assert.equal(await page.locator('.cut-label').textContent(), `X ≥ ${(-(await readClip(page)).planes[0][3]).toFixed(2)} m stays`);
+    assert.equal(await page.locator('.cut-label').textContent(), `Keep X ≥ ${(-(await readClip(page)).planes[0][3]).toFixed(2)} m`);
     const now = await gripAt(page, 'plane0');
     assert.ok(Math.hypot(now[0] - to.x, now[1] - to.y) < 6, `${now} is not under the hand at ${to.x}, ${to.y}`);
     await settle(page);
@@ -60,7 +60,7 @@ test('a plane is dragged by its arrow: it goes where the hand goes, and the came
 });
 
 test('keys move it, as far as it goes; a screen reader is told where it is', options, async () => {
-    const camera = await readCamera(page), slider = page.getByRole('slider', { name: 'Move the cut: X' });
+    const camera = await readCamera(page), slider = page.getByRole('slider', { name: 'Move the section: X' });
     const said = async (name) => Number(await slider.getAttribute(`aria-value${name}`));
     const at = await said('now');
     await slider.focus();
@@ -139,7 +139,7 @@ test('in a split view the right half has arrows, too, and both halves are cut al
     const boxes = await page.locator('.grip').evaluateAll((all) => all.map((e) => e.getBoundingClientRect()).map((b) => b.x + b.width / 2));
     const picture = await page.locator('#viewport').boundingBox(), middle = picture.x + picture.width / 2;
     assert.ok(boxes[0] < middle && boxes[1] > middle, `${boxes} about ${middle}`);
-    assert.equal(await page.getByRole('slider', { name: 'Move the cut: X' }).count(), 1, 'once for who does not see them');
+    assert.equal(await page.getByRole('slider', { name: 'Move the section: X' }).count(), 1, 'once for who does not see them');
     const right = page.locator('.grip').nth(1), at = await right.boundingBox();
     const to = await page.evaluate(async () => {
         const { spotsOf } = await import('/core/clip_gizmo.js'), { grip, spot, half } = document.querySelectorAll('.grip')[1];

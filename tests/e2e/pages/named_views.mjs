@@ -65,13 +65,13 @@ test('one that is changed keeps what it was, and can be taken back', options, as
     await page.click('#named-list li:nth-child(1) .named-open');
     await isFrom(page, [8, 2, 30]);
     await page.click('#named-list summary');
-    await page.getByRole('button', { name: 'Save what is seen here' }).click();
+    await page.getByRole('button', { name: 'Update to current view' }).click();
     await page.waitForFunction(() => globalThis.plantcast.session.views[1].view.includes('camera=8,2,30'));
     await page.click('#named-list summary');
     await page.locator('.named-before li').waitFor();
     await settle(page);
     await shoot(page, 'named-views');
-    await page.getByRole('button', { name: 'Take back' }).click();
+    await page.getByRole('button', { name: 'Undo' }).click();
     await page.waitForFunction(() => globalThis.plantcast.session.views[1].view.includes('look=glossy'));
     assert.equal((await views())[1].view.includes('look=glossy'), true);
 });

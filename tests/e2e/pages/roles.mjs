@@ -115,7 +115,7 @@ for (const mode of ['display', 'mirror']) {
         await everyRole(async (page, role) => {
             await waitForMode(page, mode);
             await page.waitForFunction((words) => document.getElementById('alarm-mode').textContent === words,
-                mode === 'display' ? 'Shown here, acknowledged in the control system' : 'As the control system has them');
+                mode === 'display' ? 'View only: acknowledge in the control system' : 'Mirrored from the control system');
             if (mode === 'display') // `display` mode has alarms from limits; `mirror` only those of the control system
                 assert.deepEqual(await offered(page), [], role);
             assert.equal(await page.locator('#alarms [data-action]').count(), 0, role);

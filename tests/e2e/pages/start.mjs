@@ -51,7 +51,7 @@ test('a plant may begin with less than all of it; whoever asks for the rest keep
         await sign();
         await settle(page);
         assert.deepEqual(await sets(), { hidden: ['HOUSE'], isolate: [], ghost: ['P-101A'] });
-        assert.equal(await page.locator('#shown span').textContent(), '1 of 3 hidden, 1 see-through');
+        assert.equal(await page.locator('#shown span').textContent(), '1 of 3 hidden, 1 transparent');
         const { outline } = await page.evaluate(() => globalThis.plantcast.session.model.plant);
         assert.ok(outline.every((place) => Math.abs(place[1]) < 0.6), 'what starts hidden is not in the first view');
         await shoot(page, 'start');
@@ -104,7 +104,7 @@ test('a plant may begin with less than all of it; whoever asks for the rest keep
         await waitForPicture(page);
         await sign();
         assert.deepEqual(await sets(), { hidden: ['ROOF'], isolate: [], ghost: ['P-101A'] });
-        assert.equal(await page.locator('#shown span').textContent(), '1 of 3 hidden, 1 see-through');
+        assert.equal(await page.locator('#shown span').textContent(), '1 of 3 hidden, 1 transparent');
         assert.deepEqual(own.errors, []);
     } finally {
         await own.close();

@@ -162,12 +162,12 @@ test('the slider goes to an instant, and nobody can take it for now', options, a
     const { atUs, dataTimeUs } = await shown();
     assert.ok(Math.abs(atUs / 1e6 - (Date.now() / 1000 - 1800)) < 20 && dataTimeUs === atUs);
     assert.match(await page.locator('#banner').textContent(), /History.*\w{3} \d+, \d{4} \d\d:\d\d:\d\d/);
-    assert.match(await page.locator('#clock-name').textContent(), /^Then/);
+    assert.match(await page.locator('#clock-name').textContent(), /^Time shown/);
     assert.equal(await page.evaluate(() => getComputedStyle(document.getElementById('viewport'), '::after').borderTopWidth), '5px');
     assert.match(await slider.getAttribute('aria-valuetext'), /\d\d:\d\d:\d\d/);
     assert.match(await page.locator('#alarm-words').textContent(), /^Now: /);
     await page.locator('#alarm-strip').click();
-    assert.match(await page.locator('#alarms-then').textContent(), /as it was.*of now/, 'the list is not of then');
+    assert.match(await page.locator('#alarms-then').textContent(), /shows the past.*current alarms/, 'the list is not of then');
     await shoot(page, 'past-alarms');
     await page.locator('#alarms-close').click();
     await page.waitForFunction(() => location.hash.includes('at='));
@@ -305,7 +305,7 @@ test('while the daemon did not run nothing looks recorded: hatched, without data
     const seen = await other.page.evaluate(() => globalThis.plantcast.session.model.tags.map(({ index }) =>
         [globalThis.plantcast.session.model.readings[index].quality, globalThis.plantcast.session.model.alarms.gravest(index)]));
     assert.deepEqual(seen, Array(3).fill(['bad', null]));
-    assert.match(await other.page.locator('#banner .detail').textContent(), /No data was recorded then$/);
+    assert.match(await other.page.locator('#banner .detail').textContent(), /No data recorded at that time$/);
     await other.page.locator('#time-span').selectOption('900');
     await other.page.waitForFunction(() => [...document.querySelectorAll('#time-track .unrecorded')]
         .some((rect) => Number(rect.getAttribute('width')) < 60));

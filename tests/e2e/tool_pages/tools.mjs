@@ -46,7 +46,7 @@ test('values stand still, and go on again', options, async () => {
     await page.waitForFunction(() => globalThis.plantcast.session.picture.past);
     const then = await page.evaluate(() => globalThis.plantcast.session.picture.dataTimeUs);
     assert.match(await page.locator('#banner').textContent(), /History.*\d\d:\d\d:\d\d/);
-    assert.equal(await page.locator('#hold').getAttribute('aria-label'), 'Go on: live values');
+    assert.equal(await page.locator('#hold').getAttribute('aria-label'), 'Resume live values');
     await plant.tell('set TI-1 30');
     await page.waitForFunction((us) => globalThis.plantcast.session.clockUs() > us + 6e6, then);
     assert.equal(await page.evaluate(() => globalThis.plantcast.session.picture.dataTimeUs), then, 'nothing moves');
@@ -64,12 +64,12 @@ test('a distance between two places', options, async () => {
     await page.evaluate(() => globalThis.plantcast.session.setCamera({ eye: [0.8, -4, 1], target: [0, 0, 0], up: [0, 0, 1], fov: 30 }));
     await page.evaluate(() => globalThis.plantcast.viewport.invalidate());
     await settle(page);
-    assert.match(await page.locator('.measuring').textContent(), /first place/);
+    assert.match(await page.locator('.measuring').textContent(), /first point/);
     for (const [i, end] of ends.entries()) {
         const { x, y } = await placeOf(end);
         await page.mouse.click(x, y);
         await page.waitForFunction((words) => document.querySelector('.measuring').textContent.includes(words),
-            ['second place', 'measure again'][i]);
+            ['second point', 'measure again'][i]);
     }
     await page.locator('#measured').waitFor();
     const [, metres] = (await page.locator('#measured').textContent()).match(/^(0\.\d{3}) m level 0\.0\d\d m, rise −0\.\d{3} m$/);
@@ -104,7 +104,7 @@ test('on a tablet held upright: what is behind More, by taps', options, async ()
             const { x, y } = await drawnAt(on, end);
             await on.touchscreen.tap(x, y);
             await on.waitForFunction((words) => document.querySelector('.measuring').textContent.includes(words),
-                ['second place', 'measure again'][i]);
+                ['second point', 'measure again'][i]);
         }
         assert.ok(Math.abs(parseFloat(await on.locator('#measured').textContent()) - 0.4) < 0.02);
         await shoot(on, 'tablet-measure');
@@ -174,7 +174,7 @@ test('the legend says that values are not to be read from a glossy look', option
     assert.deepEqual(await notes(), []);
     await page.evaluate(() => globalThis.plantcast.session.setParams({ look: 'glossy' }));
     await page.locator('#legend .note').waitFor();
-    assert.deepEqual(await notes(), ['Glossy look: light changes the colours. Do not read values.']);
+    assert.deepEqual(await notes(), ['Glossy: light alters the colours. Do not read values.']);
     await page.evaluate(() => globalThis.plantcast.session.setParams({ look: 'default' }));
     await page.locator('#legend .note').waitFor({ state: 'detached' });
 });
@@ -204,7 +204,7 @@ test('an engineer sets range, factors and one sensor\'s own, and has them as con
     await page.locator('#engineer-toggle').click();
     await page.locator('#engineer label', { hasText: 'Field' }).click();
     await page.locator('#own-factors').waitFor();
-    for (const [id, choice] of [['distance', 'Euclidean'], ['interpolation', 'Paper'], ['fill', 'By neighbours'],
+    for (const [id, choice] of [['distance', 'Euclidean'], ['interpolation', 'Paper'], ['fill', 'From neighbours'],
         ['distance', 'Geodesic'], ['interpolation', 'Shepard'], ['fill', 'Hatched']]) {
         await page.locator(`#${id} label`, { hasText: choice }).click();
         await waitForParam(id, await page.locator(`#${id} input:checked`).inputValue());
@@ -248,7 +248,7 @@ test('links to the view, the tag and the equipment, each with a code that a came
     assert.match(links['This view'], /colormap=cividis.*range=0,120.*camera=/);
     assert.match(await page.locator('#share-note').textContent(), /this machine only/);
     await shoot(page, 'share');
-    assert.match(await page.locator('#share-people').textContent(), /Nobody follows this view, of session \d+\./);
+    assert.match(await page.locator('#share-people').textContent(), /Nobody is following you\./);
     await page.locator('#share .icon').click();
     const asked = await view(page);
     const other = await openPage(links['This view'], SCREEN);
@@ -290,7 +290,7 @@ test('what of a link is not in this plant is said, in the reader\'s language; th
         await shoot(phone, 'link-astray');
     });
     await opened(`${url}?lang=de#asset=E-9&group=pressure&distance=geodesic`, SCREEN,
-        /^Dieser Link passt nicht: in dieser Anlage gibt es „E-9“ nicht \(Ausrüstung\)\./, async (other) => {
+        /^Dieser Link passt nicht: in dieser Anlage gibt es „E-9“ nicht \(Anlagenteil\)\./, async (other) => {
             const { params } = await view(other);
             assert.deepEqual([params.group, params.distance, params.selected ?? null], ['pressure', 'geodesic', null]);
         });
@@ -327,7 +327,7 @@ test('who leads may load the page anew: those who follow stay, and go on', optio
             await leader.page.goto('about:blank');
             await follows(true);
             assert.equal(await second.page.evaluate(() => globalThis.plantcast.session.params.group), 'pressure', 'what is shown stays');
-            assert.match(await second.page.locator('#following').textContent(), /has gone: this is its last view/);
+            assert.match(await second.page.locator('#following').textContent(), /has ended: this is its last view/);
             assert.equal(second.page.url(), link);
             await settle(second.page);
             await shoot(second.page, 'following-gone');
@@ -357,13 +357,13 @@ test('others follow; the lead is handed over, and what is shown stays', options,
         const before = await view(page);
         await page.keyboard.press('k');
         await page.waitForFunction((words) => document.querySelector('#share[open] #share-people')?.textContent.includes(words),
-            `1 follows this view, of session ${id}`);
+            '1 person is following you');
         await shoot(page, 'share-lead');
         await page.locator('#share-people button').click();
         const heir = await second.page.evaluate(() => globalThis.plantcast.session.id);
         await page.waitForFunction((leader) => globalThis.plantcast.session.following?.session === leader, heir);
         await second.page.waitForFunction(() => globalThis.plantcast.session.following === null);
-        await page.waitForFunction((words) => document.getElementById('following').textContent.includes(words), `view of session ${heir}`);
+        await page.waitForFunction((words) => document.getElementById('following').textContent.includes(words), `(session ${heir})`);
         await second.page.evaluate(() => globalThis.plantcast.session.setParams({ group: 'pressure' }));
         await page.waitForFunction(() => globalThis.plantcast.session.params.group === 'pressure');
         await second.page.waitForFunction(() => { // the second session may have received the lead before its first picture

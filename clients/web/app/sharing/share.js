@@ -99,7 +99,7 @@ export class Share {
         const button = (session) => make('button', { type: 'button', 'data-session': session, onclick: lead(session) },
             say('share.lead', { session }));
         const words = following ? say('following.title', { session: following.session })
-            : say(followers.count > 0 ? 'share.followers' : 'share.alone', { count: followers.count, session: this.session.id });
+            : say(followers.count > 0 ? 'share.followers' : 'share.alone', { count: followers.count });
         this.people.replaceChildren(make('h3', {}, say('share.people')), make('p', {}, words),
             make('div', { class: 'leads' }, ...(following ? [make('button', { type: 'button', onclick: () => this.session.follow(null) },
                 say('following.own'))] : followers.sessions.map(button))));

@@ -160,7 +160,7 @@ export class Views {
                 axis: now.axis.toUpperCase(), sign: now.turned ? '≤' : '≥', at: numberText(now.at, 1) }));
         }
         const asset = model.asset(params.selected);
-        setText(byId('shows-what'), say('views.equipment', { what: asset ? asset.tag || asset.id : say('views.select') }));
+        setText(byId('shows-what'), asset ? say('views.equipment', { what: asset.tag || asset.id }) : say('views.select'));
         for (const button of byId('shows').querySelectorAll('[data-how]'))
             button.disabled = !asset;
         byId('show-all').disabled = Object.keys(showAll(params)).length === 0;
