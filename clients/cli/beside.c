@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Commands that are programs of their own, beside this one. */
+/* Runs commands that live in helper programs beside this one. */
 #include <errno.h>
 #include <limits.h>
 #include <stdio.h>
@@ -10,7 +10,7 @@
 #include "clients/link/daemon.h"
 #include "commands.h"
 
-/* Where no /proc says where this program is, the other one is looked for as a shell would. */
+/* Fallback without /proc: a bare name, which execvp() searches in PATH. */
 void run_beside(const char *ending, char **argv)
 {
     char path[PATH_MAX] = "plantcast";

@@ -11,28 +11,28 @@ int cmd_snapshot(int argc, char **argv);
 int cmd_probe(int argc, char **argv);
 /* Prints the tags of a daemon with value, quality and age. */
 int cmd_tags(int argc, char **argv);
-/* Reads one address of a field device and prints it in every type and byte order. address_base: 0, 1, or -1 (not given). rtu: RTU frames
-   over the connection. Returns the exit code. */
+/* Reads one address of a field device and prints the value in every type and byte order. address_base: 0, 1, or -1 (not given). rtu: RTU
+   frames over the connection. Returns the exit code. */
 int tags_probe(const char *device, const char *address, int address_base, bool rtu);
 /* Prints the variables of an OPC UA server as a tag list; argv[0] is --browse. */
 int tags_browse(int argc, char **argv);
 /* Imports recorded series into a plant's history, or exports them as CSV. */
 int cmd_history(int argc, char **argv);
-/* Says whether a daemon is ready. */
+/* Reports whether a daemon is ready. */
 int cmd_ready(int argc, char **argv);
-/* Has a daemon of this machine send its sessions to other nodes. */
+/* Makes a daemon on this machine send its sessions to other nodes. */
 int cmd_drain(int argc, char **argv);
-/* Has a daemon of this machine load its plant anew and says what came of it. */
+/* Makes a daemon on this machine reload its plant, and prints the result. */
 int cmd_reload(int argc, char **argv);
 /* Copies history, journal and configuration of a plant into a folder. */
 int cmd_backup(int argc, char **argv);
-/* Puts such a backup in place. */
+/* Restores a folder that cmd_backup() wrote. */
 int cmd_restore(int argc, char **argv);
-/* Watches the servers of many plants, and serves a page of them. */
+/* Watches the servers of many plants, and serves a page that lists them. */
 int cmd_fleet(int argc, char **argv);
 /* Verifies the audit trail of a daemon. */
 int cmd_audit(int argc, char **argv);
-/* Proposes places for more sensors; names those that drift; accepts assumed places. */
+/* Proposes locations for more sensors, lists drifting sensors, accepts assumed locations. */
 int cmd_sensors(int argc, char **argv);
 int cmd_sensors_accept(int argc, char **argv);
 int cmd_sensors_drift(int argc, char **argv);
@@ -41,10 +41,11 @@ int cmd_read(int argc, char **argv);
 /* Makes, lists and revokes access tokens of a daemon. */
 int cmd_token(int argc, char **argv);
 
-/* Has another program beside this one do a command, whose name is argv[0]: what it needs, or what it reads of strangers, is kept out of
-   this one. ending: of its name. Returns only if it cannot be run, with the reason printed. */
+/* Replaces this process by the helper program beside it (its own name plus `ending`), which runs the command argv[0]. Helpers keep large
+   dependencies and parsers of untrusted input out of this program. Returns only if the helper cannot be run, with the reason printed. */
 void run_beside(const char *ending, char **argv);
-/* Likewise plantcast-film, with the options that all commands share. */
+/* Replaces this process by plantcast-film, passing on the options that all commands share. Returns only if it cannot be run, with the
+   reason printed. */
 void run_film(int argc, char **argv);
 
 /* Fetches `path` (with its query, e.g. "/snapshot.png?width=640&group=temperature") from the daemon at url (http://HOST:PORT/) into the

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast clip`: a film of the past, picture by picture from a daemon or drawn here. */
+/* `plantcast clip`: makes a film of recorded history from pictures of a daemon or of the offline renderer. */
 #include <math.h>
 #include <png.h>
 #include <stdio.h>
@@ -19,16 +19,16 @@ enum { MOST_PICTURES = 1000000, SAY_EACH = 250 };
 struct film {
     struct snapshot_options *options;
     struct video *video;
-    struct offline_renderer offline; /* without a daemon */
+    struct offline_renderer offline; /* used without a daemon */
     struct view view;
     struct daemon_url url;
     struct text query;
-    const char *said; /* written into the pictures; "": nothing */
-    long count;       /* of pictures that were made */
-    struct film_statements *statements; /* of a signed film */
+    const char *said; /* text to draw into the pictures; "": none */
+    long count;       /* pictures made so far */
+    struct film_statements *statements; /* of a signed film; else NULL */
 };
 
-/* The file is made with the first picture, whose size tells its own. */
+/* Appends a picture. The first one creates the file, because its size is the film's. */
 static bool add(struct film *film, uint8_t *bgrx, int width_px, int height_px, int stride_bytes)
 {
     if (!film->video)
@@ -92,7 +92,7 @@ static bool download(struct film *film, int64_t at_us)
 
 typedef bool picture_fn(struct film *film, int64_t at_us);
 
-/* Makes the next pictures, as many as there are to be. all: how many the film will have. */
+/* Makes the next `count` pictures. all: total number of pictures in the film. */
 static bool shoot(struct film *film, picture_fn *picture, long count, double all)
 {
     const struct snapshot_options *options = film->options;
@@ -106,7 +106,7 @@ static bool shoot(struct film *film, picture_fn *picture, long count, double all
     return good;
 }
 
-/* Looks at a stop. */
+/* Switches to the view of a stop. */
 static bool turn(struct film *film, const json_t *stop)
 {
     struct snapshot_options *options = film->options;
@@ -117,7 +117,7 @@ static bool turn(struct film *film, const json_t *stop)
                                         : snapshot_query(options, &film->query));
     while (options->arg_count > own)
         mem_free(options->args[--options->arg_count]);
-    film->said = options->is_signed ? "" : tour_text(stop); /* what is signed stays as it is */
+    film->said = options->is_signed ? "" : tour_text(stop); /* drawing a text would invalidate the signature */
     return good;
 }
 
@@ -126,7 +126,7 @@ static long pictures_of(const struct film *film, const json_t *stop)
     return lround(fmax(1, tour_dwell_s(stop) * film->options->fps));
 }
 
-/* Beside a signed film. */
+/* Writes the stops' texts as subtitles of a signed film. */
 static bool write_texts(const struct film *film, const json_t *stops)
 {
     double *from_s = mem_array(json_array_size(stops) + 1, sizeof(*from_s));
@@ -139,7 +139,7 @@ static bool write_texts(const struct film *film, const json_t *stops)
     return good;
 }
 
-/* stops: of a tour; NULL: from one instant to another. */
+/* stops: of a tour; NULL: film from one instant to another. */
 static bool make(struct film *film, picture_fn *picture, const json_t *stops)
 {
     const struct snapshot_options *options = film->options;
@@ -166,7 +166,7 @@ static bool make(struct film *film, picture_fn *picture, const json_t *stops)
     return good;
 }
 
-/* Takes the answer about tours. */
+/* Takes ownership of `answer`, the tours as JSON. */
 static bool make_of(struct film *film, picture_fn *picture, char *answer)
 {
     const struct snapshot_options *options = film->options;
@@ -189,7 +189,7 @@ static int from_plant(struct film *film)
     return code;
 }
 
-/* Returns what the daemon says of walls and tours; NULL with the reason printed. */
+/* Returns the daemon's walls and tours as JSON, or NULL with the reason printed. */
 static char *ask_tours(struct film *film)
 {
     struct text body = { 0 };

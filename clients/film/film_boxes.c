@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A box: length, type, content; all numbers big-endian. A table says which boxes may be there, and with which content. */
+/* An MP4 box is length, type and content, with big-endian numbers. A table lists the allowed boxes and their content. */
 #include "film_boxes.h"
 
 #include <ctype.h>
@@ -13,8 +13,8 @@
 enum { HEAD = 8 };
 static const size_t MOST_MOOV_BYTES = (size_t)256 << 20;
 
-/* Content in hexadecimal digits. '?': any digit; 'W', 'H': the four digits of the width and of the height in pixels; '*' at the end: any
-   further bytes. `children`: where boxes within begin; 0: it has none. */
+/* One allowed box. Content is in hexadecimal digits; '?': any digit; 'W', 'H': the four digits of width and height in pixels; '*' at the
+   end: any further bytes. `children`: offset of the child boxes; 0: none. */
 struct box_rule {
     const char *type, *parent, *content;
     size_t children;
@@ -30,11 +30,11 @@ static const struct box_rule rules[] = {
     { "ftyp", "", "*", 0, true },
     { "free", "", "", 0, false },
     { "wide", "", "", 0, false },
-    { "mdat", "", NULL, 0, true }, /* samples: film_units_plain */
+    { "mdat", "", NULL, 0, true }, /* samples: checked by film_units_plain() */
     { "moov", "", "*", HEAD, true },
     { "mvhd", "moov", "00000000" ANY_8 ANY_8 "00010000" "0100" "0000" ZEROS_8 IDENTITY ZEROS_8 ZEROS_8 ZEROS_8 "????????", 0, true },
     { "udta", "moov", "*", HEAD, true },
-    { "meta", "udta", "00000000" "00000021" "68646c72" ZEROS_8 "6d647461" "*", 0, true }, /* texts by name: the statements */
+    { "meta", "udta", "00000000" "00000021" "68646c72" ZEROS_8 "6d647461" "*", 0, true }, /* named metadata texts: the statements */
     { "trak", "moov", "*", HEAD, true },
     { "tkhd", "trak", "00000003" ANY_8 ANY_8 "????????" ZEROS_8 "0000" "0000" "0000" "0000" IDENTITY "WWWW0000HHHH0000", 0, true },
     { "edts", "trak", "*", HEAD, false },
@@ -52,7 +52,7 @@ static const struct box_rule rules[] = {
     { "avc1", "stsd", "000000000000" "0001" "????????" ANY_8 "????????" "WWWWHHHH" "00480000" "00480000" "00000000" "0001" ANY_32
       "0018ffff" "*", HEAD + 78, true },
     { "avcC", "avc1", "01??????" "ff" "e1" "*", 0, true },
-    { "colr", "avc1", "6e636c78" "0001" "000d" "0000" "80|" "6e636c63" "0001" "000d" "0000", 0, true }, /* nclx of MP4, nclc of MOV */
+    { "colr", "avc1", "6e636c78" "0001" "000d" "0000" "80|" "6e636c63" "0001" "000d" "0000", 0, true }, /* nclx of MP4, or nclc of MOV */
     { "pasp", "avc1", "0000000100000001", 0, false },
     { "btrt", "avc1", "*", 0, false },
     { "stts", "stbl", "*", 0, true },
@@ -95,7 +95,7 @@ static bool digit_fits(const struct box_walk *walk, char expected, size_t run, u
     return expected == '?' || value == (unsigned)(isdigit((unsigned char)expected) ? expected - '0' : expected - 'a' + 10);
 }
 
-/* Alternatives are separated by '|'. */
+/* Matches the content against alternatives separated by '|'. */
 static bool content_fits(const struct box_walk *walk, const char *expected, const uint8_t *bytes, size_t count)
 {
     size_t i = 0, run = 0;
@@ -120,8 +120,8 @@ static int find_rule(const char *parent, const uint8_t *type)
     return i;
 }
 
-/* Returns whether a decoder's configuration (ISO/IEC 14496-15, 5.3.3.1) has one sequence and one picture parameter set, and no extension
-   of the former. */
+/* Returns whether a decoder configuration (ISO/IEC 14496-15, 5.3.3.1) has one sequence and one picture parameter set, and no extension of
+   the sequence parameter set. */
 static bool has_two_sets(const uint8_t *at, size_t count)
 {
     enum { SETS = 6, FORMATS = 4 };
@@ -132,7 +132,7 @@ static bool has_two_sets(const uint8_t *at, size_t count)
     return end == count || (end + FORMATS == count && at[count - 1] == 0);
 }
 
-/* Takes one box of the parent. content: NULL where the table asks for none. */
+/* Checks one child box of the parent. content: NULL if the table expects none. */
 static bool take_box(struct box_walk *walk, int rule, const uint8_t *type, const char *parent, const uint8_t *content, size_t count)
 {
     char *why = walk->why, name[5] = "";
@@ -150,7 +150,7 @@ static bool take_box(struct box_walk *walk, int rule, const uint8_t *type, const
            FAIL("its box %s says something else than that of our films", name);
 }
 
-/* The size, which all boxes have to agree with, stands in the innermost of them. */
+/* Reads the picture size from the innermost box (avc1); all other boxes must agree with it. */
 static void learn_size(struct box_walk *walk, const uint8_t *moov, size_t count)
 {
     for (size_t i = 4; i + 32 <= count; i++)
@@ -195,7 +195,7 @@ static bool take_moov(struct box_walk *walk, FILE *file, uint64_t count)
     return good;
 }
 
-/* Takes one of the outermost boxes, of which mdat may be as long as the disk. */
+/* Checks one top-level box. mdat is skipped, not read: it may be as long as the disk. */
 static bool take_outer(struct box_walk *walk, FILE *file, uint64_t *left)
 {
     char *why = walk->why;
@@ -248,7 +248,8 @@ bool film_boxes_plain(const char *path, struct film_size *size, char why[FILM_BO
 
 enum { UNIT_SLICE = 1, UNIT_SLICE_OF_KEY = 5, UNIT_MESSAGE = 6, MESSAGE_TEXT = 5, MESSAGE_RECOVERY = 6 };
 
-/* A message is its type and length, each of bytes 255 and a last one, and its content; an encoder writes one a unit. */
+/* Allows only harmless SEI messages. A message has a type and a length, each as bytes of 255 and a last byte, then its content; encoders
+   write one per unit. */
 static bool is_plain_message(const uint8_t *unit, size_t count, char why[FILM_BOXES_WHY_BYTES])
 {
     unsigned type = 0;
@@ -260,7 +261,7 @@ static bool is_plain_message(const uint8_t *unit, size_t count, char why[FILM_BO
     while (i < count && unit[i] == 255)
         length += unit[i++];
     length += i < count ? unit[i++] : 0;
-    for (; i < count; i++) { /* 0, 0, 3: the 3 is none of the message's bytes */
+    for (; i < count; i++) { /* in 0, 0, 3 the 3 is emulation prevention, not content */
         bool is_filler = zeros >= 2 && unit[i] == 3;
         zeros = unit[i] == 0 ? zeros + 1 : 0;
         content += !is_filler;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast-film`: films, by libavformat. `plantcast clip` and, for films, `plantcast verify` run it, and its name is the command. */
+/* `plantcast-film`: makes and verifies films with libavformat. `plantcast clip` and, for films, `plantcast verify` start it; argv[0] is the
+   command. */
 #include <string.h>
 
 #include "clients/link/daemon.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Statements of all pictures as one text: JSON, compressed, in base64. */
+/* Stores the statements of all pictures as one text: JSON, compressed, in base64. */
 #include "signed_film.h"
 
 #include <inttypes.h>
@@ -16,12 +16,13 @@
 #include "film_boxes.h"
 
 #define FILM_KEY "plantcast_statements"
-static const size_t MOST_BYTES = (size_t)64 << 20, MOST_TEXT_BYTES = (size_t)1 << 30; /* compressed, and not */
+static const size_t MOST_BYTES = (size_t)64 << 20, MOST_TEXT_BYTES = (size_t)1 << 30; /* limits of the compressed and the uncompressed
+                                                                                         text */
 
 /* --- writing ------------------------------------------------------------------------------------------------------------------- */
 
 struct film_statements {
-    struct text list; /* JSON, but for the last bracket */
+    struct text list; /* JSON without the closing bracket */
 };
 
 struct film_statements *film_statements_create(void)
@@ -83,14 +84,14 @@ struct film_reader {
     AVPacket *packet;
     AVFrame *frame;
     bool ended;
-    struct film_size size; /* at which players show it */
-    json_t *statements; /* [[statement, signature], ...] */
+    struct film_size size; /* display size */
+    json_t *statements; /* JSON array of [statement, signature] pairs */
     char why[SIGNED_PICTURE_WHY_BYTES];
 };
 
 #define FAIL(...) (snprintf(reader->why, sizeof(reader->why), __VA_ARGS__), false)
 
-/* Base64 of compressed JSON. */
+/* Decodes the statements from base64 and decompresses them. */
 static bool read_statements(struct film_reader *reader)
 {
     const AVDictionaryEntry *entry = av_dict_get(reader->format->metadata, FILM_KEY, NULL, AV_DICT_MATCH_CASE);
@@ -117,8 +118,8 @@ static bool read_statements(struct film_reader *reader)
     return json_is_array(reader->statements) || FAIL("its statements cannot be read");
 }
 
-/* Opens a film of one stream that every player shows unchanged. The decoder takes colours from the stream alone: those of the file are
-   forgotten, after film_boxes_plain has looked at them. */
+/* Opens a film with one stream that every player shows unchanged. The decoder takes colour information from the stream alone; the
+   container's is dropped after film_boxes_plain() has checked it. */
 static bool open_film(struct film_reader *reader, const char *path)
 {
     av_log_set_level(AV_LOG_QUIET);
@@ -153,7 +154,7 @@ static void close_film(struct film_reader *reader)
     avformat_close_input(&reader->format);
 }
 
-/* The next picture, into reader->frame. Returns false at the end, and with *reader->why where it cannot be decoded. */
+/* Decodes the next picture into reader->frame. Returns false at the end, or with reader->why set if decoding fails. */
 static bool next_picture(struct film_reader *reader)
 {
     for (;;) {
@@ -177,8 +178,8 @@ static bool next_picture(struct film_reader *reader)
     }
 }
 
-/* Returns whether the stream describes the picture's colours and shape as video.c has them described: in each picture, since a stream may
-   describe later ones differently. */
+/* Returns whether the stream describes the picture's colours and shape as video.c wrote them. Checked for each picture, because a stream
+   may change the description later. */
 static bool is_plain_picture(struct film_reader *reader)
 {
     const AVFrame *frame = reader->frame;
@@ -194,7 +195,7 @@ static bool is_plain_picture(struct film_reader *reader)
            FAIL("its box avc1 says another size than its pictures have");
 }
 
-/* Red, green, blue. NULL: players may show the picture differently. */
+/* Returns the pixels as red, green, blue (mem_free), or NULL if players may show the picture differently. */
 static uint8_t *pixels_of(struct film_reader *reader)
 {
     const AVFrame *frame = reader->frame;
@@ -216,16 +217,16 @@ struct film_check {
     const struct signing_key *key;
     const struct redraw_options *options;
     struct film_reader reader;
-    bool tour;               /* its view may change */
-    json_t *first;           /* the first statement */
-    json_t *views;           /* one after the other: query, and since when */
-    int64_t at_us, step_us;  /* of the picture before; between pictures, 0: not known yet */
-    int64_t pts, pts_step;   /* likewise, as players show them */
-    size_t count;            /* of pictures that are good */
+    bool tour;               /* whether the view may change */
+    json_t *first;           /* statement of the first picture */
+    json_t *views;           /* array of views in order: query and start time */
+    int64_t at_us, step_us;  /* instant of the previous picture; step between pictures, 0: not known yet */
+    int64_t pts, pts_step;   /* presentation time of the previous picture; step, 0: not known yet */
+    size_t count;            /* number of verified pictures */
     int code;
 };
 
-/* Of a query all but the instant. */
+/* Compares two queries except for the instant. */
 static bool same_view(const json_t *query, const json_t *other)
 {
     bool same = json_array_size(query) == json_array_size(other);
@@ -235,7 +236,7 @@ static bool same_view(const json_t *query, const json_t *other)
     return same;
 }
 
-/* Of a film one; of a tour one after the other. */
+/* Checks the view: constant in a film, changing in a tour. */
 static bool takes_view(struct film_check *check, const json_t *statement)
 {
     struct film_reader *reader = &check->reader;
@@ -249,7 +250,8 @@ static bool takes_view(struct film_check *check, const json_t *statement)
     return true;
 }
 
-/* The same plant, view and server as the first one, and as long after the one before as that after its own. */
+/* Checks that a picture has the plant, size and server of the first one, and that its instant and presentation time follow the previous one
+   by a constant step. */
 static bool follows(struct film_check *check, const json_t *statement)
 {
     static const char *const same[] = { "server", "plant", "configuration", "assets", "width", "height", "bare" };

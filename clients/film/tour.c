@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads tours as a daemon tells them, and writes their texts into pictures. */
+/* Reads tours from a daemon's JSON, and draws their texts into pictures. */
 #include "tour.h"
 
 #include <cairo.h>
@@ -54,7 +54,7 @@ bool tour_add_view(const json_t *stop, struct snapshot_options *options)
         fprintf(stderr, "plantcast: view '%s': %s\n", word(stop, "id"), error.text);
     for (size_t i = 0; i < address.count && good; i++) {
         char *equals = strchr(address.args[i], '=');
-        bool instant = !strncmp(address.args[i], "at=", 3); /* the film says what is shown */
+        bool instant = !strncmp(address.args[i], "at=", 3); /* skipped: the film sets the instant */
         *equals = 0;
         good = instant || snapshot_add_arg(options, address.args[i], equals + 1);
     }
@@ -69,7 +69,7 @@ static void write_instant(FILE *file, double s)
             (long long)(ms % 1000));
 }
 
-/* `<` and `&` begin what is not text. */
+/* Escapes `<` and `&` for WebVTT. */
 static void write_words(FILE *file, const char *text)
 {
     for (; *text; text++)
@@ -118,7 +118,7 @@ static double width_of(cairo_t *cairo, const char *text)
     return extents.x_advance;
 }
 
-/* Breaks at blanks, in place. Returns how many lines there are. */
+/* Breaks the text at blanks, in place. Returns the number of lines. */
 static int break_lines(cairo_t *cairo, char *text, double room, const char *lines[LINES])
 {
     int count = 1;

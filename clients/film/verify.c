@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast verify` of a film. */
+/* `plantcast verify` for films. */
 #include <stdio.h>
 
 #include "clients/cli/picture/verify.h"

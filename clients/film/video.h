@@ -1,20 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes a video file: H.264 by libavcodec, in the container that libavformat chooses by the file's name. Thread:
-   one. */
+/* Writes a video file: H.264 by libavcodec, in the container that libavformat chooses by the file extension. Thread: one. */
 #ifndef FILM_VIDEO_H
 #define FILM_VIDEO_H
 #include <stdbool.h>
 #include <stdint.h>
 
 struct video;
-/* Opens the file. Odd sides are cut to even numbers. lossless: nothing is cut, and what is decoded from it has the very colours of the
-   pictures, red, green and blue (H.264 High 4:4:4 Predictive; browsers do not play it). Returns NULL with the reason printed. */
+/* Opens the file. Odd sides are cropped to even numbers. lossless: crops nothing and preserves the exact RGB values (H.264 High 4:4:4
+   Predictive; browsers do not play it). Returns NULL with the reason printed. */
 struct video *video_create(const char *path, int width_px, int height_px, double fps, bool lossless);
-/* Puts a text beside the pictures, in .mp4 and .mov, before video_finish(). */
+/* Adds a metadata text (.mp4 and .mov only). Call before video_finish(). */
 void video_set_text(struct video *video, const char *key, const char *text);
 /* Encodes one picture. Returns false with the reason printed. */
 bool video_add(struct video *video, const uint8_t *bgrx, int stride_bytes);
-/* Writes what is left if `good`, else deletes the file. Returns false if the file is not complete. Frees the video; leaves NULL. */
+/* If `good`, flushes and completes the file, else deletes it. Returns false if the file is incomplete. Frees the video; leaves NULL. */
 bool video_finish(struct video **video, bool good);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* HTTP requests to a daemon. */
+/* HTTP requests to a daemon, by libwebsockets. */
 #include "daemon.h"
 
 #include <errno.h>
@@ -12,10 +12,10 @@
 
 enum { MAX_BODY_BYTES = 256 * 1024 * 1024, RECEIVE_BYTES = 16 * 1024 };
 
-static char authorization[TOKEN_MAX_CHARS + 16]; /* "": none */
+static char authorization[TOKEN_MAX_CHARS + 16]; /* value of the header; "": no token */
 static const char *ca_path, *token_path;
 
-/* Reads the first line of the file of --token-file. Returns false with the reason printed. */
+/* Reads the token from the first line of the --token-file. Returns false with the reason printed. */
 static bool read_token(void)
 {
     size_t count;
@@ -31,7 +31,7 @@ static bool read_token(void)
     return good;
 }
 
-/* The value of --NAME VALUE or --NAME=VALUE at *i; NULL: it is another option, or has none. */
+/* Returns the value of --NAME VALUE or --NAME=VALUE at *i, or NULL if it is another option or has no value. */
 static const char *value_of(const char *name, int argc, char **argv, int *i)
 {
     size_t n = strlen(name);
@@ -85,7 +85,7 @@ const char *daemon_authorization(void)
     return authorization[0] ? authorization : NULL;
 }
 
-/* path: without the first slash. False: it is too long, or has a query. */
+/* Stores the path prefix. path: without the leading slash. Returns false if it is too long or has a query. */
 static bool take_base(struct daemon_url *url, const char *path)
 {
     size_t length = strlen(path);

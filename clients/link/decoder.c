@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* JPEG by TurboJPEG, PNG by libpng, H.264 by h264_decoder.h; colours by libyuv. */
+/* Decodes JPEG by TurboJPEG, PNG by libpng, H.264 by h264_decoder.h; converts colours by libyuv. */
 #include "decoder.h"
 
 #include <png.h>
@@ -18,7 +18,7 @@ struct decoder {
     uint8_t *pixels;
     size_t pixel_bytes;
 #ifdef PLANTCAST_H264
-    const struct h264_decoder_functions *functions; /* NULL: not needed yet; and below */
+    const struct h264_decoder_functions *functions; /* NULL: H.264 not used yet; so are the members below */
     struct h264_decoder *h264;
 #endif
 };
@@ -90,7 +90,7 @@ static bool decode_png(struct decoder *decoder, const struct wire_frame *frame, 
 }
 
 #ifdef PLANTCAST_H264
-/* The coded picture may be wider and higher by the pixel that makes its sides even. */
+/* Decodes H.264. The coded picture may be one pixel wider and higher than the frame, because its sides are even. */
 static bool decode_h264(struct decoder *decoder, const struct wire_frame *frame, const uint8_t *payload)
 {
     char why[DECODER_WHY_BYTES];

@@ -10,16 +10,16 @@
 #define DECODER_WHY_BYTES H264_DECODER_WHY_BYTES
 
 struct decoder;
-/* Creates a decoder for all codecs of this build. NULL: out of memory. The caller destroys it. */
+/* Creates a decoder for all codecs of this build. Returns NULL when out of memory. The caller destroys it. */
 struct decoder *decoder_create(void);
 /* Frees the decoder. &NULL is fine; leaves NULL. */
 void decoder_destroy(struct decoder **decoder);
 /* Decodes one frame. Returns false if its bytes are not valid or its codec is not in this build. */
 bool decoder_decode(struct decoder *decoder, const struct wire_frame *frame, const uint8_t *payload);
-/* Returns the pixels of the frame that was decoded last, BGRX, its rows one after another: they belong to the decoder, until the next
-   one. */
+/* Returns the pixels of the last decoded frame: BGRX, rows without padding. They belong to the decoder and are valid until its next
+   call. */
 const uint8_t *decoder_pixels(const struct decoder *decoder);
-/* Returns whether this build decodes the codec here; false with the reason. */
+/* Returns whether this build decodes the codec on this machine; if not, writes the reason to `why`. */
 bool decoder_has(enum wire_codec codec, char why[DECODER_WHY_BYTES]);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* H.264 by libavcodec, on a processor or by VA-API. */
+/* Decodes H.264 by libavcodec, on the processor or by VA-API. */
 #include "h264_decoder.h"
 
 #include <libavcodec/avcodec.h>
@@ -9,12 +9,12 @@
 
 #include "base/mem.h"
 
-/* Where there are many cores, slices are decoded side by side, as a browser does. */
+/* On machines with many cores slices are decoded in parallel, as browsers do. */
 enum { MANY_CORES = 8, SLICE_THREADS = 8 };
 
 struct h264_decoder {
     const AVCodec *codec;
-    AVCodecContext *context; /* NULL: not begun */
+    AVCodecContext *context; /* NULL: not opened yet */
     AVPacket *packet;
     AVFrame *picture;
 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decodes H.264 by libavcodec, into planes: what the command line loads only when it is needed (h264_decoder_lazy.c). Thread: one at a time
+/* Decodes H.264 by libavcodec into planes. The command line loads this module only when needed (h264_decoder_lazy.c). Thread: one at a time
    per decoder. */
 #ifndef LINK_H264_DECODER_H
 #define LINK_H264_DECODER_H
@@ -10,21 +10,21 @@
 #define H264_DECODER_WHY_BYTES 320
 
 struct h264_decoder;
-struct h264_decoded { /* YUV 4:2:0 at full range; the decoder's own, until its next call */
+struct h264_decoded { /* YUV 4:2:0 at full range; owned by the decoder, valid until its next call */
     const uint8_t *at[3];
     int pitches[3];
     int width_px, height_px;
 };
 
 struct h264_decoder_functions {
-    /* Returns NULL, with the reason, if libavcodec decodes no H.264. */
+    /* Returns NULL, with the reason, if this libavcodec has no H.264 decoder. */
     struct h264_decoder *(*create)(char why[H264_DECODER_WHY_BYTES]);
     void (*destroy)(struct h264_decoder **decoder); /* &NULL is fine; leaves NULL */
     /* Decodes one access unit. Returns false if it is not valid. */
     bool (*decode)(struct h264_decoder *decoder, const uint8_t *bytes, size_t count, struct h264_decoded *out);
 };
 
-/* Returns the functions, for good; NULL, with the reason, where the module that has them cannot be loaded. */
+/* Returns the functions, valid for the life of the process; NULL, with the reason, if their module cannot be loaded. */
 const struct h264_decoder_functions *h264_decoder_functions(char why[H264_DECODER_WHY_BYTES]);
 
 #endif

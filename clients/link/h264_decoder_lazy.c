@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Takes the decoder from the module that is loaded when it is first asked for (encode/h264_lazy.c says why). */
+/* Loads the decoder's module on first use (encode/h264_lazy.c explains why). */
 #include "base/system/module.h"
 #include "h264_decoder.h"
 

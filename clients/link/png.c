@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* PNG by cairo, out of memory. */
+/* Decodes PNG from memory with cairo. */
 #include "clients/link/png.h"
 
 #include <string.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The life of an output's pipeline. */
+/* Starts, watches and restarts an output's pipeline. */
 #include "branch.h"
 
 #include <stdio.h>
@@ -18,7 +18,7 @@ static void drop(struct video_branch *branch)
     g_atomic_int_set(&branch->readers, 0);
 }
 
-/* Prints what it said, if it is an error. */
+/* Returns whether the pipeline reported an error, and prints it. */
 static bool has_failed(struct video_branch *branch)
 {
     GstBus *bus = gst_element_get_bus(branch->pipeline);

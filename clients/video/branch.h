@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* An output that is a pipeline of its own: if it fails, the others go on, and it starts again. Thread: that of the default main context. */
+/* An output with a GStreamer pipeline of its own: if it fails, other outputs continue, and it restarts. Thread: that of the default main
+   context. */
 #ifndef VIDEO_BRANCH_H
 #define VIDEO_BRANCH_H
 #include "options.h"
@@ -7,22 +8,22 @@
 
 struct video_branch {
     const char *name;
-    char *text; /* of the pipeline behind OUTPUTS_SOURCE */
+    char *text; /* pipeline description that follows OUTPUTS_SOURCE */
     struct outputs *outputs;
-    void (*prepare)(struct video_branch *branch, GstElement *pipeline); /* before it plays */
+    void (*prepare)(struct video_branch *branch, GstElement *pipeline); /* called before the pipeline plays */
     const struct video_options *options;
-    GstElement *pipeline; /* NULL: the pipeline failed, and is to start again at again_us */
+    GstElement *pipeline; /* NULL: the pipeline failed and restarts at again_us */
     gint64 again_us;
-    gint readers; /* atomic */
+    gint readers; /* number of connected readers; atomic */
 };
 
-/* Starts the pipeline. Takes branch->text. Returns false with the reason printed. */
+/* Starts the pipeline. Takes ownership of branch->text. Returns false with the reason printed. */
 bool branch_begin(struct video_branch *branch);
-/* Starts the pipeline again some seconds after it failed; call it once a second. */
+/* Restarts a failed pipeline after a delay. Call it once a second. */
 void branch_look(struct video_branch *branch);
 void branch_end(struct video_branch *branch);
 
-/* Listens for callers by SRT. */
+/* Sets up the branch that listens for SRT callers. */
 void srt_init(struct video_branch *srt, const struct video_options *options, struct outputs *outputs);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* BGRX to H.264 by x264, without reordering: one frame in, one access unit out. */
+/* Encodes BGRX to H.264 with x264 without reordering: one frame in, one access unit out. */
 #include "encoder.h"
 
 #include <gst/app/gstappsink.h>
@@ -12,7 +12,7 @@ struct video_encoder {
     GstAppSrc *in;
     struct outputs *outputs;
     int fps;
-    guint64 groups; /* of pictures, each begun by a key frame */
+    guint64 groups; /* groups of pictures so far; each begins with a key frame */
     guint64 frame_bytes;
 };
 
@@ -76,7 +76,7 @@ bool encoder_is_ready(const struct video_encoder *encoder)
     return gst_app_src_get_current_level_bytes(encoder->in) < MOST_WAITING * encoder->frame_bytes;
 }
 
-/* By the clock, whatever frames were left out before it. */
+/* Requests a key frame by the clock, regardless of dropped frames. */
 static void ask_for_key(struct video_encoder *encoder)
 {
     GstStructure *structure = gst_structure_new("GstForceKeyUnit", "timestamp", G_TYPE_UINT64, GST_CLOCK_TIME_NONE, "stream-time",

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast-video`: a view of a daemon as video. Draws a frame at each tick, a picture or a card, and has it encoded once. */
+/* `plantcast-video`: streams a view of a daemon as video. At each tick draws a frame, a picture or a text card, and encodes it once. */
 #include <glib-unix.h>
 #include <locale.h>
 #include <signal.h>
@@ -23,11 +23,11 @@ struct video_program {
     struct rtsp *rtsp;
     struct video_branch srt;
     struct metrics *metrics; /* NULL: off */
-    bool card; /* in the newest frame */
+    bool card; /* whether the newest frame is a text card */
     GSource *ticks;
     gint64 begin_us, alive_us;
     guint64 next; /* number of the next frame */
-    guint64 late; /* that were left out */
+    guint64 late; /* frames skipped because the tick was late */
     int code;
 };
 
@@ -86,7 +86,7 @@ static gint64 time_of(const struct video_program *program, guint64 index)
     return program->begin_us + (gint64)(index * G_USEC_PER_SEC / (guint64)program->options.fps);
 }
 
-/* Frames go by the clock: where one comes too late, those it missed are left out. */
+/* Draws the frame that the clock asks for; frames missed by a late tick are skipped. */
 static gboolean on_tick(gpointer data)
 {
     struct video_program *program = data;
@@ -121,7 +121,8 @@ static gboolean dispatch(GSource *source, GSourceFunc callback, gpointer data)
 static void begin_ticks(struct video_program *program)
 {
     static GSourceFuncs funcs = { .dispatch = dispatch };
-    gint64 rest_us = g_get_real_time() % G_USEC_PER_SEC; /* several of one picture draw at the same instants */
+    gint64 rest_us = g_get_real_time() % G_USEC_PER_SEC; /* aligns ticks to the clock, so that several programs that show one picture draw
+                                                            at the same instants */
     program->begin_us = g_get_monotonic_time() + G_USEC_PER_SEC - rest_us;
     program->ticks = g_source_new(&funcs, sizeof(GSource));
     g_source_set_callback(program->ticks, on_tick, program, NULL);

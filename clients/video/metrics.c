@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One answer per connection, each in a thread of its own: reads a request up to its blank line, answers, and closes. */
+/* One response per connection, each in its own thread: reads a request up to the blank line, answers, and closes. */
 #include "metrics.h"
 
 #include <gio/gio.h>
@@ -11,7 +11,7 @@ enum { MOST_REQUEST_BYTES = 4096, IDLE_S = 5, MOST_CONNECTIONS = 8 };
 
 struct metrics {
     GSocketService *service;
-    gint connections; /* that are open; atomic */
+    gint connections; /* open connections; atomic */
     GMutex lock;
     /* --- below: under lock */
     char *text;
@@ -29,7 +29,7 @@ static void metrics_clear(gpointer data)
     g_mutex_clear(&metrics->lock);
 }
 
-/* Threads that answer may outlive metrics_destroy(): the last that lets go frees. */
+/* Responding threads may outlive metrics_destroy(): the last reference frees. */
 static void metrics_unref(struct metrics *metrics)
 {
     g_atomic_rc_box_release_full(metrics, metrics_clear);
@@ -76,14 +76,14 @@ static gpointer serve(gpointer data)
     return NULL;
 }
 
-/* A GThreadedSocketService would do the same, but that of GLib 2.74 crashes when it has as many connections as it may. */
+/* Replaces GThreadedSocketService, which in GLib 2.74 crashes at its connection limit. */
 static gboolean on_connection(GSocketService *service, GSocketConnection *connection, GObject *from, gpointer data)
 {
     struct metrics *metrics = data;
     (void)service;
     (void)from;
     if (g_atomic_int_get(&metrics->connections) >= MOST_CONNECTIONS)
-        return TRUE; /* it is closed */
+        return TRUE; /* closes the connection */
     g_socket_set_timeout(g_socket_connection_get_socket(connection), IDLE_S);
     struct metrics_request *request = g_new(struct metrics_request, 1);
     *request = (struct metrics_request){ .metrics = g_atomic_rc_box_acquire(metrics), .connection = g_object_ref(connection) };

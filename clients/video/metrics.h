@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Serves counters as /metrics to programs of this machine. Thread: that of the default main context. */
+/* Serves counters as /metrics to programs on this machine. Thread: that of the default main context. */
 #ifndef VIDEO_METRICS_H
 #define VIDEO_METRICS_H
 #include <glib.h>
@@ -8,7 +8,7 @@ struct metrics;
 /* Listens on 127.0.0.1:port. Returns NULL with the reason printed. The caller destroys it. */
 struct metrics *metrics_create(int port);
 void metrics_destroy(struct metrics **metrics); /* &NULL is fine; leaves NULL */
-/* Sets what is answered from now on, in Prometheus' text form. Takes the text. */
+/* Sets the response from now on, in Prometheus text format. Takes ownership of the text. */
 void metrics_set(struct metrics *metrics, char *text);
 
 #endif

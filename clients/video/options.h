@@ -8,20 +8,20 @@
 enum { OPTIONS_MOST_READERS = 512 };
 
 struct video_options {
-    char *url;             /* of the daemon, with a slash at its end */
-    char *view, *query;    /* id of a view with a name; or names and values as /snapshot.png takes them; both NULL: the whole plant */
-    char *language;        /* of cards, strip and legend: en, ko or de */
-    char *token, *ca_path, *token_path; /* NULL: none */
-    char *listen;                       /* address of all outputs */
+    char *url;             /* daemon's URL, ends with a slash */
+    char *view, *query;    /* view: id of a saved view; query: parameters as /snapshot.png takes them; both NULL: the whole plant */
+    char *language;        /* language of cards, strip and legend: en, ko or de */
+    char *token, *ca_path, *token_path; /* NULL: not given */
+    char *listen;                       /* listening address of all outputs */
     int width_px, height_px, fps, kbps, every_ms;
     int rtsp_port, http_port, srt_port; /* 0: off */
-    char *user, *password;              /* of those who watch; NULL: nobody is asked */
-    int most_readers;                   /* of each output */
+    char *user, *password;              /* login required from viewers; NULL: no login */
+    int most_readers;                   /* limit per output */
     bool time_code;
 };
 
-/* Reads the command line and the files that it names. Returns -1, or the exit code with everything said. The caller finishes the options
-   in either case. Before any thread starts. */
+/* Parses the command line and reads the files that it names. Returns -1 to continue, or the exit code with errors printed. The caller
+   finishes the options in either case. Call before any thread starts. */
 int options_read(struct video_options *options, int *argc, char ***argv);
 void options_finish(struct video_options *options);
 

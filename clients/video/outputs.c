@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One encoded stream for any number of outputs. */
+/* Distributes one encoded stream to any number of outputs. */
 #include "outputs.h"
 
-enum { MOST_BYTES = 4 << 20 }; /* that wait in one output */
+enum { MOST_BYTES = 4 << 20 }; /* limit of bytes queued per output */
 static const GstClockTimeDiff SLACK = 500 * GST_MSECOND;
 
 struct output {
     GstAppSrc *src;
     bool begun, timed;
-    GstClockTimeDiff offset; /* from the encoder's time to its own */
+    GstClockTimeDiff offset; /* from the encoder's running time to the output's */
 };
 
 struct outputs {
@@ -64,7 +64,7 @@ void outputs_remove(struct outputs *outputs, GstAppSrc *src)
     g_mutex_unlock(&outputs->lock);
 }
 
-/* The time of its pipeline; false: it does not run. */
+/* Gets the running time of the source's pipeline. Returns false if the pipeline does not run. */
 static bool running_time(GstAppSrc *src, GstClockTime *out)
 {
     GstClock *clock = gst_element_get_clock(GST_ELEMENT(src));
@@ -92,7 +92,7 @@ static bool push(struct output *output, GstBuffer *unit)
     if (!output->timed || off > SLACK || off < -SLACK)
         output->offset = (GstClockTimeDiff)now - pts;
     output->timed = true;
-    GstBuffer *copy = gst_buffer_copy(unit); /* shares its memory */
+    GstBuffer *copy = gst_buffer_copy(unit); /* shares the payload */
     GST_BUFFER_PTS(copy) = GST_BUFFER_DTS(copy) = (GstClockTime)MAX(pts + output->offset, 0);
     gst_app_src_push_buffer(output->src, copy);
     return true;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One request at a time to the daemon: its time zone, the views with names, and pictures. */
+/* Sends one request at a time to the daemon: its time zone, the saved views, and pictures. */
 #include "source.h"
 
 #include <errno.h>
@@ -14,52 +14,53 @@
 #include "message/view_address.h"
 #include "video_words.h"
 
-/* A picture is of the instant at which it was asked for. The one that is shown stays until the next is there: asked for EVERY after it, and
-   received within SLOWEST; so it is never older than OLDEST. */
+/* Timing, microseconds. A picture shows the instant of its request. The next one is requested a fixed interval later and must arrive within
+   SLOWEST, so a shown picture is never older than OLDEST. OTHERS: time limit of other requests; VIEWS, LIMITED, DENIED: retry intervals of
+   views, of views without permission, and after a rejected token. */
 static const gint64 OLDEST_US = 2700000, SLOWEST_US = 1300000, OTHERS_US = 1200000, VIEWS_US = 5000000, LIMITED_US = 600000000,
                     DENIED_US = 8000000;
-enum { MOST_BYTES = 128 << 20 }; /* of an answer */
+enum { MOST_BYTES = 128 << 20 }; /* limit of a response */
 
 enum ask { ASK_PLANT, ASK_VIEWS, ASK_PICTURE, ASK_COUNT };
 
 struct video_source {
     const struct video_options *options;
-    struct http_request http; /* while `asking`, a thread of its own has it */
-    CURLcode code;            /* how the request ended */
+    struct http_request http; /* while `asking`, a request thread owns it */
+    CURLcode code;            /* result of the request */
     bool asking;
     _Atomic bool ended;
     enum ask asked;
-    gint64 asked_us, asked_utc_us, due_us[ASK_COUNT], wait_until_us; /* monotonic, but for utc */
+    gint64 asked_us, asked_utc_us, due_us[ASK_COUNT], wait_until_us; /* monotonic, except asked_utc_us */
 
     GTimeZone *zone;
-    char *view, *view_query, *view_title; /* of the view with a name, as it is kept and as a query; NULL: not known yet, or there is none */
+    char *view, *view_query, *view_title; /* saved view: as stored, as a query, and its title; NULL: not known yet, or no saved view */
     cairo_surface_t *picture;
     gint64 picture_us, age_ms;
-    bool valued; /* some value should take part: else there is none to be old */
+    bool valued; /* whether some value is expected in the picture; without one there is no age */
     char headline[120], detail[240], said[240];
-    gint64 since_us;    /* UTC: that there is a card; 0: there is a picture */
-    gint64 seen_utc_us; /* of the newest picture */
-    bool barred;        /* its right is gone, or the view: dark at once */
-    bool limited;       /* the token may not read views, and may be for pictures of this one: it is asked for by its id */
+    gint64 since_us;    /* UTC, start of the text card; 0: a picture is shown */
+    gint64 seen_utc_us; /* UTC instant of the newest picture */
+    bool barred;        /* access or the view was withdrawn: hide the picture at once */
+    bool limited;       /* the token may not list views but may show this one: request it by its id */
     guint64 pictures;
 };
 
 /* --- what is wrong ------------------------------------------------------------------------------------------ */
 
-/* One line, of whole letters. Frees what was said. */
+/* Stores the first line of `said` as valid UTF-8 in `out`. Frees `said`. */
 static void keep(char *said, char *out, gsize size)
 {
     said[strcspn(said, "\n")] = 0;
     char *valid = g_utf8_make_valid(said, -1);
     g_strlcpy(out, valid, size);
-    const char *whole; /* cut within a letter, it could not be drawn */
+    const char *whole; /* cutting within a character would make it undrawable */
     g_utf8_validate(out, -1, &whole);
     out[whole - out] = 0;
     g_free(valid);
     g_free(said);
 }
 
-/* The card speaks its language, the log English. */
+/* Sets card and log: the card in the chosen language, the log in English. */
 static void fail(struct video_source *source, enum video_word headline, enum video_word detail, const char *a, const char *b)
 {
     char said[sizeof(source->said)];
@@ -71,7 +72,7 @@ static void fail(struct video_source *source, enum video_word headline, enum vid
     g_strlcpy(source->said, said, sizeof(source->said));
 }
 
-/* Nothing of it may be seen any more. */
+/* Hides the picture, and withdraws all that was shown. */
 static void bar(struct video_source *source)
 {
     source->barred = true;
@@ -85,7 +86,8 @@ static void refuse(struct video_source *source, long status)
     if (status == 401 || status == 403) {
         fail(source, VIDEO_NOT_LET_IN, VIDEO_TOKEN, words, NULL);
         bar(source);
-        source->wait_until_us = source->asked_us + DENIED_US; /* tokens that are wrong too often are not looked at for a while */
+        source->wait_until_us = source->asked_us + DENIED_US; /* the daemon stops checking tokens of an address that sends wrong ones too
+                                                                 often */
     } else if (status == 429) {
         fail(source, VIDEO_NOT_LET_IN, VIDEO_TOKENS, NULL, NULL);
         source->wait_until_us = source->asked_us + DENIED_US;
@@ -117,8 +119,8 @@ static void take_plant(struct video_source *source, const json_t *o)
     }
 }
 
-/* A view as /snapshot.png takes it: without its instant, what is selected, and how the field is computed, which is an engineer's. NULL: a
-   picture cannot show it, and *error says why. */
+/* Returns a saved view as a query for /snapshot.png, without the instant, the selection, and the field settings, which need the role
+   engineer. g_free. Returns NULL, with the reason in *error, if a picture cannot show the view. */
 static char *query_of(const char *view, struct message_error *error)
 {
     static const char *const left_out[] = {
@@ -188,7 +190,7 @@ static guint32 big_endian(const guint8 *at)
     return (guint32)at[0] << 24 | (guint32)at[1] << 16 | (guint32)at[2] << 8 | at[3];
 }
 
-/* Returns the picture; NULL if the answer is none, or has another size than was asked for. */
+/* Returns the decoded picture, or NULL if the response is not a PNG of the requested size. */
 static cairo_surface_t *decode(const struct video_options *options, const struct text *body)
 {
     const guint8 *at = (const guint8 *)body->at;
@@ -242,12 +244,13 @@ static void on_answer(struct video_source *source)
     }
     if (source->asked == ASK_VIEWS && (status == 403 || status == 200))
         source->limited = status == 403;
-    if (source->asked == ASK_VIEWS && status == 403) { /* the picture says whether it is let in; the audit trail has each refusal */
+    if (source->asked == ASK_VIEWS && status == 403) { /* the picture request decides about access; each refusal is in the audit trail
+                                                          already */
         source->due_us[ASK_VIEWS] = source->asked_us + LIMITED_US;
         return;
     }
     if (status != 200) {
-        if (source->asked == ASK_PLANT && status != 401 && status != 403) /* tokens are the business of pictures */
+        if (source->asked == ASK_PLANT && status != 401 && status != 403) /* picture requests handle token errors */
             return;
         refuse(source, status);
         return;
@@ -266,7 +269,7 @@ static void on_answer(struct video_source *source)
 
 /* --- asking ------------------------------------------------------------------------------------------ */
 
-/* In a thread of the request's own: the main loop goes on drawing frames. */
+/* Runs the request in its own thread, while the main loop keeps drawing frames. */
 static void perform(GTask *task, gpointer object, gpointer data, GCancellable *cancel)
 {
     struct video_source *source = data;
@@ -318,7 +321,7 @@ static void ask(struct video_source *source, enum ask what, gint64 now_us)
     if (what == ASK_PICTURE)
         source->valued = strstr(url, "&split=") || (!strstr(url, "&look=materials") && !strstr(url, "&show=distance"));
     gint64 most_us = what == ASK_PICTURE ? OLDEST_US : OTHERS_US;
-    CURLcode good = curl_easy_setopt(source->http.handle, CURLOPT_URL, url); /* which it copies */
+    CURLcode good = curl_easy_setopt(source->http.handle, CURLOPT_URL, url); /* curl copies it */
     curl_easy_setopt(source->http.handle, CURLOPT_TIMEOUT_MS, (long)(most_us / 1000));
     g_free(url);
     if (good != CURLE_OK) {
@@ -333,7 +336,7 @@ static void ask(struct video_source *source, enum ask what, gint64 now_us)
     g_object_unref(task);
 }
 
-/* Pictures go before all but the view that they are of. */
+/* Starts the next request. Pictures come first, except before the view that they need. */
 static void go_on(struct video_source *source, gint64 now_us)
 {
     if (source->asking || now_us < source->wait_until_us)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast audit`: says whether an audit trail is whole. */
+/* `plantcast audit`: verifies that an audit trail is complete. */
 #include <getopt.h>
 #include <inttypes.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast backup` and `restore`: history, the journal of alarms and the configuration of a plant, into one folder and out of it. */
+/* `plantcast backup` and `restore`: copies history, alarm journal and configuration of a plant into one folder, and back. */
 #include <dirent.h>
 #include <errno.h>
 #include <getopt.h>
@@ -33,9 +33,9 @@ enum { MANIFEST_VERSION = 1, MANIFEST_MAX = 1 << 20 };
 
 struct backup_job {
     struct log *log;
-    const char *folder;  /* of the backup */
-    const char *history; /* --history */
-    json_t *files;       /* of the manifest: {"name":...,"bytes":...,"xxh128":...} */
+    const char *folder;  /* backup folder */
+    const char *history; /* value of --history */
+    json_t *files;       /* manifest entries: {"name":...,"bytes":...,"xxh128":...} */
 };
 
 static void print_usage(FILE *out)
@@ -68,14 +68,14 @@ static char *history_folder(const struct backup_job *job, const struct plant *pl
     return job->history ? mem_strdup(job->history) : plant_history_folder(plant);
 }
 
-/* As the plant file means it: below its own folder, or anywhere. */
+/* Returns a path as the plant file would write it: relative if it is below the plant file's folder, else absolute. */
 static const char *as_written(const struct plant *plant, const char *path)
 {
     size_t n = strlen(plant->folder);
     return !strncmp(path, plant->folder, n) && path[n] == '/' ? path + n + 1 : path;
 }
 
-/* What people make beside the history. */
+/* Files with user-made content in the history folder. */
 static const char *const lists[] = { NAMED_VIEWS_FILE, NOTES_FILE, WALL_REMOTE_FILE, PAIRINGS_FILE };
 enum { LISTS = sizeof(lists) / sizeof(lists[0]) };
 
@@ -108,7 +108,7 @@ static bool add(struct backup_job *job, copier *copy, const char *from, const ch
     return good;
 }
 
-/* The newest month last: what is written meanwhile is in there. */
+/* Copies the newest month last, so that readings recorded during the backup are included. */
 static bool add_history(struct backup_job *job, const char *folder)
 {
     size_t count;
@@ -137,7 +137,7 @@ static bool add_history(struct backup_job *job, const char *folder)
     return good;
 }
 
-/* NULL: beside the plant file. */
+/* Returns the history folder as the plant file writes it; NULL: the default, beside the plant file. */
 static const char *history_name(const struct plant *plant)
 {
     return plant->history.folder ? as_written(plant, plant->history.folder) : NULL;
@@ -172,7 +172,8 @@ static void remove_folder(const char *folder)
     rmdir(folder);
 }
 
-/* By its time the daemon says in /metrics when the last backup was. Who may only read the history leaves none. */
+/* Writes the time of this backup into the history folder; the daemon reports it in /metrics. Skipped where the user may only read the
+   folder. */
 static void leave_stamp(const char *history)
 {
     char *path = mem_printf("%s/" HISTORY_BACKUP_STAMP, history), now[TIMESTAMP_BYTES + 1];
@@ -183,7 +184,7 @@ static void leave_stamp(const char *history)
     mem_free(path);
 }
 
-/* The folder has its name once all is in it. */
+/* Writes into OUT.part and renames it once complete, so that a folder named OUT is always a complete backup. */
 static bool back_up(struct backup_job *job, const struct plant *plant, const char *out)
 {
     const char *tags = text_base_name(plant->tags_path);
@@ -234,7 +235,7 @@ static json_t *read_manifest(const char *folder)
     return manifest;
 }
 
-/* A name from a file is no way out of the folder. */
+/* Rejects names from the manifest that would leave the folder. */
 static bool is_plain(const char *name)
 {
     return name && *name && *name != '.' && !strchr(name, '/');
@@ -266,7 +267,8 @@ static bool is_free(const char *path)
     return lstat(path, &st) != 0 || say(path, "is in the way; nothing was restored");
 }
 
-/* Where a file of the backup goes. tags: as the plant file writes it; NULL: beside it. */
+/* Returns the destination path of a backup file. tags: path of the tag list as the plant file writes it; NULL: beside the plant file.
+   mem_free. */
 static char *place_of(const char *name, const char *plant_path, const char *history, const char *tags)
 {
     if (!strcmp(name, PLANT_FILE))
@@ -277,7 +279,7 @@ static char *place_of(const char *name, const char *plant_path, const char *hist
     return *path == '/' ? mem_strdup(path) : mem_printf("%.*s%s", (int)(text_base_name(plant_path) - plant_path), plant_path, path);
 }
 
-/* A folder, and no link to one; a new one belongs to whom the one around it belongs to. */
+/* Ensures that `path` is a real directory, not a symlink. A directory that root creates gets its parent's owner. */
 static bool make_folder(const char *path)
 {
     struct stat st, around;
@@ -306,7 +308,7 @@ static bool each_file(struct backup_job *job, const char *plant_path, const char
     return good;
 }
 
-/* Where the plant file, in its new place, will look for it. */
+/* Returns the history folder that the plant file will refer to at its new path. mem_free. */
 static char *future_history(const struct backup_job *job, const json_t *manifest, const char *plant_path)
 {
     const char *name = json_string_value(json_object_get(manifest, "history")), *slash = strrchr(plant_path, '/');
@@ -341,7 +343,7 @@ static bool is_database(const char *name)
     return length > 7 && !strcmp(name + length - 7, ".sqlite");
 }
 
-/* Copying a database reads all of it, and checks the copy. */
+/* Compares each restored file with its hash. Copying a database also reads and checks all of it. */
 static bool each_restored(struct backup_job *job, const char *plant_path, const char *history)
 {
     size_t i;
@@ -405,7 +407,7 @@ static bool verify(struct backup_job *job)
 
 /* --- the command line ------------------------------------------------------------------------------------------------------------ */
 
-/* -1: go on; else the exit code. */
+/* Returns -1 to continue, or the exit code. */
 static int parse(int argc, char **argv, struct backup_job *job, const char **out, bool *drill)
 {
     static const struct option options[] = { { "history", required_argument, NULL, 'd' },
@@ -448,7 +450,7 @@ int cmd_backup(int argc, char **argv)
     struct plant *plant = plant_load_or_print(argv[optind]);
     if (!plant)
         return 1;
-    umask(0077); /* readings, names and remarks are for whoever made it */
+    umask(0077); /* only the user who makes a backup may read it */
     job.log = log_create(LOG_WARN);
     job.files = json_array();
     code = back_up(&job, plant, out) ? 0 : 1;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a daemon answers, into a file. */
+/* Saves a daemon's response to a file. */
 #include <stdio.h>
 #include <string.h>
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast drain`: has a daemon of this machine send its sessions to other nodes. */
+/* `plantcast drain`: makes a daemon on this machine send its sessions to other nodes. */
 #include <errno.h>
 #include <getopt.h>
 #include <limits.h>
@@ -12,7 +12,7 @@
 #include "base/clock.h"
 #include "clients/cli/commands.h"
 
-enum { WAIT_S = 13 /* 2 s for a load balancer to hear of it, 10 s in which sessions are closed, and one */, LOOK_US = 50000 };
+enum { WAIT_S = 13 /* 2 s until a load balancer notices, 10 s for closing the sessions, 1 s in reserve */, LOOK_US = 50000 };
 
 static void print_usage(FILE *out)
 {
@@ -25,7 +25,7 @@ static void print_usage(FILE *out)
           out);
 }
 
-/* Other programs end by that signal. */
+/* Check the name first: SIGUSR1 would end any other program. */
 static bool is_daemon(pid_t pid)
 {
     char path[64], name[32] = "";

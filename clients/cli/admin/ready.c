@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast ready URL`: whether a daemon is ready, for health checks where there is no curl. */
+/* `plantcast ready URL`: reports whether a daemon is ready, for health checks without curl. */
 #include <stdio.h>
 #include <string.h>
 

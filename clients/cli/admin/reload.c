@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast reload`: has a daemon of this machine load its plant anew, and says what came of it. */
+/* `plantcast reload`: makes a daemon on this machine reload its plant, and prints the result. */
 #include <errno.h>
 #include <getopt.h>
 #include <jansson.h>
@@ -31,7 +31,7 @@ static void print_usage(FILE *out)
         out);
 }
 
-/* NULL: there is none yet of a reload that began then or later. */
+/* Returns NULL if no result is there yet of a reload that began at since_ns or later. */
 static json_t *read_result(const char *path, int64_t since_ns)
 {
     json_t *file = json_load_file(path, 0, NULL), *result = NULL;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast token`: makes, lists and takes back what lets somebody in. The daemon reads the file by itself. */
+/* `plantcast token`: creates, lists and revokes access tokens. The daemon notices changes of the file by itself. */
 #include <errno.h>
 #include <fcntl.h>
 #include <getopt.h>
@@ -55,7 +55,7 @@ static bool is_foreign(const struct stat *st)
     return st->st_uid != 0 && st->st_uid != geteuid();
 }
 
-/* Who may write a folder can put another file, or a link, in the place of one in it. NULL: nobody else may. */
+/* Returns why the folder of `path` is unsafe, or NULL. Users who may write to a folder can replace the files in it. */
 static const char *folder_fault(const char *path)
 {
     struct stat st;
@@ -71,7 +71,7 @@ static const char *folder_fault(const char *path)
     return fault;
 }
 
-/* NULL: it may be read, and another put in its place. */
+/* Returns why the token file must not be used, or NULL. */
 static const char *file_fault(const struct stat *st)
 {
     if (!S_ISREG(st->st_mode))
@@ -89,7 +89,7 @@ static char *read_all(int fd, size_t size)
     return text;
 }
 
-/* NULL: printed. A file that is not there is empty if it may be. */
+/* Returns NULL with the reason printed. A missing file reads as empty if may_be_new. */
 static char *read_file(const char *path, bool may_be_new)
 {
     struct stat st;
@@ -111,7 +111,7 @@ static char *read_file(const char *path, bool may_be_new)
     return text;
 }
 
-/* In one step, with the owner and rights that it had; a new one is its maker's alone. */
+/* Replaces the file atomically and keeps its owner and mode; a new file is readable only by its creator. */
 static int write_file(const char *path, const struct text *text)
 {
     struct stat st;

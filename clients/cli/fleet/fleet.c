@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast fleet`: one page and one /metrics over the servers of many plants. */
+/* `plantcast fleet`: serves one page and one /metrics for the servers of many plants. */
 #include <getopt.h>
 #include <libwebsockets.h>
 #include <signal.h>
@@ -21,10 +21,10 @@ enum { PORT = 8090, HEADER_BYTES = 2048, CHUNK = 16384, NAME_BYTES = 256 };
 struct fleet_site {
     struct fleet_poll *poll;
     const struct fleet_file *file;
-    const char *host; /* a name that it is reached by besides local ones; NULL: none */
+    const char *host; /* accepted Host name besides the local ones; NULL: none */
 };
 
-struct fleet_answer { /* the answer of one connection */
+struct fleet_answer { /* response of one connection */
     char *body;
     size_t bytes, sent;
 };
@@ -59,7 +59,7 @@ static const struct page_file {
     { "/fleet.css", "clients/fleet/fleet.css", "text/css; charset=utf-8" },
 };
 
-/* Returns the body (mem_free), and its type; NULL: there is no such thing. */
+/* Returns the body (mem_free) and sets its type; returns NULL if there is no such path. */
 static char *answer_to(const struct fleet_site *site, const char *path, size_t *bytes, const char **type)
 {
     static const char pictures[] = "/picture/";
@@ -109,7 +109,7 @@ static int begin_answer(struct lws *wsi, struct fleet_answer *answer, int status
     return 0;
 }
 
-/* A page of a foreign name that leads here (DNS rebinding) may not ask. */
+/* Rejects requests with a foreign Host header (DNS rebinding). */
 static bool is_for_us(const struct fleet_site *site, struct lws *wsi)
 {
     char host[NAME_BYTES], name[NAME_BYTES];
@@ -170,7 +170,7 @@ static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *use
             answer->body = NULL;
         }
         return 0;
-    case LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION: return -1; /* no WebSocket */
+    case LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION: return -1; /* reject WebSockets */
     default: return lws_callback_http_dummy(wsi, reason, user, in, length);
     }
 }

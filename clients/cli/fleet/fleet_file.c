@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reading the fleet file. */
+/* Reads the fleet file. */
 #include "fleet_file.h"
 
 #include <ctype.h>
@@ -13,7 +13,7 @@
 
 static const double POLL_S = 30, PICTURE_S = 300;
 
-/* The address as it is compared and used: scheme and host in lower case, without the usual port, with a slash at its end. */
+/* Returns the URL in canonical form: scheme and host in lower case, no default port, a slash at the end. mem_free. */
 static char *plain_url(const char *url)
 {
     char *plain = mem_printf("%s%s", url, *url && url[strlen(url) - 1] == '/' ? "" : "/");
@@ -42,7 +42,7 @@ static const char *wrong_with(const char *url)
     return NULL;
 }
 
-/* Whether what is sent there can be read on the way. */
+/* Returns whether requests to this URL travel unencrypted over a network. */
 static bool is_in_clear(const char *plain_url)
 {
     char host[256], name[256];
@@ -52,7 +52,7 @@ static bool is_in_clear(const char *plain_url)
     return !access_host_name(host, name, sizeof(name)) || !access_name_is_local(name);
 }
 
-/* What can stand in an address and in a metric as it is. */
+/* Returns whether the text needs no escaping in a URL or a metric. */
 static bool is_id(const char *id)
 {
     for (const char *at = id; *at; at++)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The fleet file (YAML): which plants' servers are watched. INSTALL.md describes it. Thread: one. */
+/* The fleet file (YAML), which lists the plants whose servers are watched. INSTALL.md describes it. Thread: one. */
 #ifndef CLI_FLEET_FLEET_FILE_H
 #define CLI_FLEET_FLEET_FILE_H
 #include <stddef.h>
@@ -9,17 +9,17 @@
 enum { FLEET_PLANTS = 1000 };
 
 struct fleet_plant {
-    char *id;                    /* what it is called in addresses and metrics */
-    char *name;                  /* for people; the id where none is given */
+    char *id;                    /* identifier in addresses and metrics */
+    char *name;                  /* display name; equals the id if none is given */
     char *url;                   /* ends with a slash */
     char *token_file, *ca_file;  /* NULL: none */
-    double poll_s, picture_s;    /* it allows no more; picture_s 0: no picture */
+    double poll_s, picture_s;    /* shortest intervals between two requests to this server, seconds; picture_s 0: no picture */
     int line;
 };
 
 struct fleet_file {
     char *path, *folder, *name;
-    double poll_s, picture_s;    /* of plants that say nothing */
+    double poll_s, picture_s;    /* default intervals of plants that give none */
     struct fleet_plant *plants;
     size_t count;
 };

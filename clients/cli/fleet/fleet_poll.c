@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The thread that asks. */
+/* The thread that sends the requests. */
 #include "fleet_poll.h"
 
 #include <pthread.h>
@@ -18,7 +18,7 @@ enum { METRICS_BYTES = 4 << 20, PICTURE_BYTES = 2 << 20, TIMEOUT_S = 15, PICTURE
 enum fleet_question { METRICS, PICTURE, KINDS };
 
 struct fleet_request {
-    struct http_request http; /* kept from one request to the next, with its connection */
+    struct http_request http; /* reused from one request to the next, with its connection */
     int plant;
     enum fleet_question kind;
     int64_t due_ns;
@@ -28,7 +28,7 @@ struct fleet_request {
 struct picture {
     char *at;
     size_t bytes;
-    uint64_t number; /* counts those that came */
+    uint64_t number; /* number of pictures received */
 };
 
 struct fleet_poll {
@@ -76,7 +76,7 @@ static bool make_request(const struct fleet_plant *plant, struct fleet_request *
     return true;
 }
 
-/* Returns NULL, or what is wrong with an answer that came whole. */
+/* Stores a complete response. Returns NULL, or what is wrong with it. */
 static const char *note_answer(struct fleet_poll *poll, struct fleet_request *request)
 {
     struct fleet_plant_state *known = &poll->states[request->plant];
@@ -105,7 +105,7 @@ static void note_failure(struct fleet_poll *poll, const struct fleet_request *re
 {
     struct fleet_plant_state *known = &poll->states[request->plant];
     struct picture *picture = &poll->pictures[request->plant];
-    if (request->kind == PICTURE) { /* an old one would pass for how the plant is now */
+    if (request->kind == PICTURE) { /* without this, an old picture would pass for the current state */
         mem_free(picture->at);
         picture->at = NULL;
         known->picture = 0;
@@ -117,7 +117,7 @@ static void note_failure(struct fleet_poll *poll, const struct fleet_request *re
     snprintf(known->why, sizeof(known->why), "%s", why);
 }
 
-/* A server that is busy says when to come again. */
+/* Returns the time to the next request. A busy server sets it with Retry-After. */
 static int64_t pause_ns(const struct fleet_poll *poll, const struct fleet_request *request)
 {
     const struct fleet_plant *plant = &poll->file->plants[request->plant];
@@ -162,7 +162,7 @@ static void begin(struct fleet_poll *poll, struct fleet_request *request)
 
 /* --- the thread ------------------------------------------------------------------------------------------------------------- */
 
-/* A picture is asked for only where the server answers. Returns when the next request is due. */
+/* Starts due requests. Pictures are requested only from servers that answer. Returns when the next request is due. */
 static int64_t begin_due(struct fleet_poll *poll, int64_t now_ns)
 {
     int64_t next_ns = now_ns + NS_PER_S;
@@ -217,7 +217,7 @@ struct fleet_poll *fleet_poll_start(const struct fleet_file *file)
         struct fleet_request *request = &poll->requests[i];
         request->plant = (int)(i / KINDS);
         request->kind = (enum fleet_question)(i % KINDS);
-        /* spread over a few seconds, so that they do not come all at once for ever */
+        /* spread over 5 s, so that the requests do not all coincide forever */
         request->due_ns = now_ns + (int64_t)(i / KINDS) * 5 * NS_PER_S / (int64_t)file->count;
     }
     curl_global_init(CURL_GLOBAL_DEFAULT);

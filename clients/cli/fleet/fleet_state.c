@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The state of plants' servers. */
+/* Parses and prints the state of plants' servers. */
 #include "fleet_state.h"
 
 #include <jansson.h>
@@ -11,7 +11,7 @@
 
 /* --- of one ----------------------------------------------------------------------------------------------------------------- */
 
-/* Returns what follows `name` at the beginning of a line, or NULL. */
+/* Returns the rest of `line` after the prefix `name`, or NULL. */
 static const char *after(const char *line, const char *name)
 {
     size_t length = strlen(name);
@@ -132,7 +132,7 @@ static int64_t asked_of(const struct fleet_plant_state *of)
     return of->asked;
 }
 
-/* What was true a while ago is not said as if it were now. */
+/* Defines a getter that returns INT64_MIN (no sample) while the server does not answer: old values must not pass for current ones. */
 #define WHILE_IT_ANSWERS(member) \
     static int64_t member##_of(const struct fleet_plant_state *of) \
     { \

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What is known of a plant's server, from its /metrics; and all of a fleet as JSON and as metrics. Pure. Thread: any. */
+/* State of a plant's server, read from its /metrics, and the state of a whole fleet as JSON and as metrics. Pure. Thread: any. */
 #ifndef CLI_FLEET_FLEET_STATE_H
 #define CLI_FLEET_FLEET_STATE_H
 #include <stdbool.h>
@@ -14,24 +14,24 @@ struct fleet_state {
     int64_t alarms[FLEET_PRIORITIES], unacknowledged, links, links_down, sessions;
     int64_t certificate_s, backup_s, free_bytes; /* seconds since 1970; 0: not known */
     bool recorded;                               /* history and alarms can be written */
-    bool reloaded;                               /* the plant file has no errors since it was loaded */
+    bool reloaded;                               /* the plant file had no errors at the last reload */
     char version[FLEET_TEXT_BYTES];
 };
 
-/* Reads the metrics of a plantcastd. Returns false if they are none. */
+/* Parses the metrics of a plantcastd. Returns false if the text is not from one. */
 bool fleet_state_read(const char *metrics, struct fleet_state *out);
 
 struct fleet_plant_state {
-    struct fleet_state state;   /* as it last was */
+    struct fleet_state state;   /* from the last answer */
     bool answers;
-    int64_t answered_us;        /* when it last did; 0: never */
-    int64_t silent_us;          /* since when it does not; 0: it does */
-    uint64_t picture;           /* number of its picture; 0: none, or the last request for one failed */
-    char why[256];              /* it does not answer */
-    int64_t asked;              /* how often it was */
+    int64_t answered_us;        /* time of the last answer; 0: never */
+    int64_t silent_us;          /* start of the time without an answer; 0: the server answers */
+    uint64_t picture;           /* number of the server's picture; 0: none, or the last request for one failed */
+    char why[256];              /* why the server does not answer */
+    int64_t asked;              /* number of requests so far */
 };
 
-/* Return JSON and the text of Prometheus. states: one for each plant of the file, in its order. */
+/* Return the fleet's state as JSON, or write it as Prometheus metrics. states: one per plant of the file, in the file's order. */
 char *fleet_json(const struct fleet_file *file, const struct fleet_plant_state *states, int64_t now_us);
 void fleet_metrics(const struct fleet_file *file, const struct fleet_plant_state *states, struct text *out);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draws a prepared plant, with values of a file or of the past. */
+/* Draws a prepared plant, with values from a file or from recorded history. */
 #include "offline_renderer.h"
 
 #include <stdio.h>
@@ -34,7 +34,7 @@ static bool load_baseline(struct offline_renderer *offline, struct snapshot_opti
     return good;
 }
 
-/* Without those of another picture. */
+/* Reads the values of this picture only; those of the previous picture are dropped. */
 static bool load_values(struct offline_renderer *offline, struct snapshot_options *options, struct diag *diag)
 {
     bool good = true;
@@ -92,7 +92,7 @@ bool offline_renderer_open_gl(struct offline_renderer *offline, const struct sna
     return offline->renderer != NULL;
 }
 
-/* Those of the plant, and images that stand where a name could. */
+/* Registers the plant's colour maps and image files that are given in place of a colour map's name. */
 static bool add_colormaps(const struct offline_renderer *offline, const struct snapshot_options *options)
 {
     static const char name[] = "colormap=";

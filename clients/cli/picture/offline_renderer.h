@@ -7,45 +7,45 @@
 #include "render/split_view.h"
 #include "snapshot.h"
 
-struct offline_renderer { /* freed in the opposite order */
+struct offline_renderer { /* freed in reverse order of the members */
     struct log *log;
     struct plant *plant;
     struct scene *scene;
-    struct snapshot *snapshot; /* what is drawn */
+    struct snapshot *snapshot; /* readings to draw */
     struct baselines *baselines;
-    uint32_t turn; /* counts sets of values */
+    uint32_t turn; /* number of the current set of values */
     struct workers *workers;
     struct field *field;
     struct gl *gl;
     struct renderer *renderer;
-    struct history_reader *reader; /* NULL: the past was not asked for */
+    struct history_reader *reader; /* NULL: no history was opened */
     struct history_tag *tags;
-    char *history;             /* its folder */
-    int64_t first_us, last_us; /* what was recorded lies between them */
+    char *history;             /* path of the history folder */
+    int64_t first_us, last_us; /* first and last recorded instant */
 };
 
 /* Opens the plant, its files, values and baseline, and sets *view from options->args. Returns 0, or the exit code with the reason printed.
    Close in both cases. */
 int offline_renderer_open(struct offline_renderer *offline, struct snapshot_options *options, struct view *view);
-/* As offline_renderer_open(), but without a view. Returns false with the reason printed. */
+/* Like offline_renderer_open(), but without a view. Returns false with the reason printed. */
 bool offline_renderer_open_plant(struct offline_renderer *offline, struct snapshot_options *options);
 /* Sets *view from options->args. Returns false with the reason printed. */
 bool offline_renderer_take_view(const struct offline_renderer *offline, const struct snapshot_options *options, struct view *view);
-/* As offline_renderer_open(), for the same plant and renderer with other values, baseline and view. */
+/* Like offline_renderer_open(), for the same plant and renderer with other values, baseline and view. */
 int offline_renderer_reopen(struct offline_renderer *offline, struct snapshot_options *options, struct view *view);
 /* Creates the GL context and the renderer. Returns false if it cannot, logged. */
 bool offline_renderer_open_gl(struct offline_renderer *offline, const struct snapshot_options *options);
 /* Opens the plant's recorded history. Returns false if there is none, with the reason printed. */
 bool offline_renderer_open_history(struct offline_renderer *offline,
                                    const struct snapshot_options *options);
-/* Sets the readings and the view to an instant of recorded history. Returns false if it cannot be read (logged) or nothing was recorded by
-   then (printed). */
+/* Sets the readings and the view to an instant of recorded history. Returns false if the history cannot be read (logged) or has no readings
+   before that instant (printed). */
 bool offline_renderer_seek(struct offline_renderer *offline, int64_t at_us, struct view *view);
 /* Draws the view. Returns the frame, which the caller releases (frame_unref), or NULL, logged. */
 struct frame *offline_renderer_draw(struct offline_renderer *offline, const struct snapshot_options *options, struct view *view);
 /* Writes the frame as PNG. Returns false if it cannot, logged. */
 bool offline_renderer_save(struct offline_renderer *offline, struct frame *frame, const char *path);
-/* Frees everything. One that was opened only in part is fine. */
+/* Frees all members. A renderer that was opened only in part is fine. */
 void offline_renderer_close(struct offline_renderer *offline);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The statement's query and readings through the offline renderer. */
+/* Runs the statement's query and readings through the offline renderer. */
 #include "redraw.h"
 
 #include <stdio.h>
@@ -11,7 +11,7 @@
 #include "render/overlay/overlay.h"
 #include "value/quality.h"
 
-/* All but the instant, which the statement names by itself: `at=-8h` would be another one today. */
+/* Takes all arguments except the instant, which the statement has separately: a relative `at=-8h` would mean another instant today. */
 static bool take_query(const json_t *statement, struct snapshot_options *options)
 {
     const json_t *args = json_object_get(statement, "query");
@@ -52,14 +52,15 @@ static bool same_assets(const json_t *statement, const struct scene *scene)
     return others == 0;
 }
 
-/* What cannot be used has no value to compare. */
+/* Compares quality and value. The values of bad readings do not count. */
 static bool same_reading(const struct reading *a, const struct reading *b)
 {
     bool usable = !quality_is_bad(a->quality);
     return a->quality == b->quality && (!usable || (float)a->value == (float)b->value);
 }
 
-/* Readings of the past were read from the history; those of then were recorded with the time at which they came. */
+/* Compares with recorded readings. A historical picture took its readings from the history; a live picture's readings were recorded with
+   their time of arrival. */
 static bool same_as_recorded(struct offline_renderer *offline, const struct redraw_options *options, const struct frame_record *record,
                              int64_t at_us)
 {
@@ -87,7 +88,7 @@ static bool same_as_recorded(struct offline_renderer *offline, const struct redr
     return same == count;
 }
 
-/* Those that differ by at most one step in each colour. */
+/* Counts the pixels that differ by at most one step in each colour channel. */
 static size_t count_agreeing(const struct frame *frame, const uint8_t *rgb)
 {
     size_t agreeing = 0;
@@ -99,7 +100,7 @@ static size_t count_agreeing(const struct frame *frame, const uint8_t *rgb)
     return agreeing;
 }
 
-/* The statement's size is that of rgb. */
+/* rgb has the statement's size. */
 static bool same_pixels(const struct frame *frame, const json_t *statement, const uint8_t *rgb)
 {
     size_t all = (size_t)frame->width_px * (size_t)frame->height_px;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast snapshot`: asks a daemon, or draws by itself. */
+/* `plantcast snapshot`: requests a picture from a daemon, or draws it offline. */
 #include "snapshot.h"
 
 #include <ctype.h>
@@ -15,7 +15,7 @@ static void add_encoded(struct text *path, const char *arg)
         text_add(path, isalnum((unsigned char)*arg) || strchr("-_.=,", *arg) ? "%c" : "%%%02X", (unsigned char)*arg);
 }
 
-/* What is asked of a daemon, behind its first name. */
+/* Writes the query of a daemon's /snapshot.png, without the leading '?'. */
 bool snapshot_query(struct snapshot_options *options, struct text *query)
 {
     if (options->offline_only) {

@@ -11,35 +11,35 @@
 
 enum { SNAPSHOT_MAX = 64 };
 struct snapshot_options {
-    const char *from, *out;   /* plant file or URL; file to write, or NULL if only a pick is asked for */
-    char *args[SNAPSHOT_MAX]; /* name=value, as in the query of /snapshot.png; owned */
+    const char *from, *out;   /* from: plant file or URL; out: file to write, or NULL if only a pick is requested */
+    char *args[SNAPSHOT_MAX]; /* view parameters as name=value, as in the query of /snapshot.png; owned */
     size_t arg_count;
     const char *values[SNAPSHOT_MAX]; /* CSV files */
     size_t value_count;
-    bool pick;            /* what is at place_px is printed */
+    bool pick;            /* whether to print what is at place_px */
     double place_px[2];
-    const char *baseline; /* CSV file; of a daemon: a name. NULL: none */
-    const char *prepared; /* NULL: beside the plant file */
+    const char *baseline; /* CSV file, or for a daemon the name of a saved baseline; NULL: none */
+    const char *prepared; /* folder of prepared files; NULL: beside the plant file */
     enum gl_kind gl;
     struct gl_device gl_device;
     bool has_gl_device;
-    const char *at;      /* as it was given; NULL: now */
-    int64_t at_us;       /* that instant */
-    const char *history; /* folder; NULL: as the plant file says */
-    const char *from_text, *to_text; /* of a clip; and below */
+    const char *at;      /* instant as written on the command line; NULL: now */
+    int64_t at_us;       /* `at` in microseconds since 1970 */
+    const char *history; /* history folder; NULL: the plant file's */
+    const char *from_text, *to_text; /* first and last instant of a clip, as written and in microseconds */
     int64_t from_us, to_us;
-    const char *tour; /* of a clip; NULL: one view */
+    const char *tour; /* id of a clip's tour; NULL: one view */
     double speed, fps;
-    bool is_signed; /* of a clip: the server's signatures are kept */
-    bool per_fragment, moving, no_overlay, offline_only; /* offline_only: something was asked for that a daemon does not offer */
+    bool is_signed; /* whether a clip keeps the server's signatures */
+    bool per_fragment, moving, no_overlay, offline_only; /* offline_only: an option was given that a daemon does not offer */
 };
 
-/* Parses the command line into *options. Returns -1 to go on, or an exit code. Finish the options in both cases. */
+/* Parses the command line into *options. Returns -1 to continue, or an exit code. Finish the options in both cases. */
 int snapshot_parse(int argc, char **argv, bool clip, struct snapshot_options *options);
 /* Frees what the options own. */
 void snapshot_options_finish(struct snapshot_options *options);
-/* Appends `&name=value...`, URL-encoded, as a daemon is asked. Returns false if the options ask for what a daemon does not offer, with the
-   reason printed. */
+/* Appends `&name=value...`, URL-encoded, for a request to a daemon. Returns false, with the reason printed, if an option is not available
+   from a daemon. */
 bool snapshot_query(struct snapshot_options *options, struct text *query);
 /* Adds a name=value argument. Returns false if there are too many. */
 bool snapshot_add_arg(struct snapshot_options *options, const char *name, const char *value);

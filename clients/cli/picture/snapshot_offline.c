@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One picture of a prepared plant, without a daemon. */
+/* Draws one picture of a prepared plant, without a daemon. */
 #include <stdio.h>
 
 #include "base/mem.h"
@@ -29,7 +29,7 @@ static void print_pick(struct offline_renderer *offline, const struct snapshot_o
     mem_free(answer);
 }
 
-/* The past, unless the values are told. */
+/* Seeks to a recorded instant if one is given and no values are. */
 static bool go_back(struct offline_renderer *offline, const struct snapshot_options *options, struct view *view)
 {
     return !options->at || options->value_count > 0 ||

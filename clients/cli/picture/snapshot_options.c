@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The command lines of `plantcast snapshot` and `plantcast clip`, which is many of them. */
+/* The command lines of `plantcast snapshot` and `plantcast clip`; a clip is a series of snapshots. */
 #include "snapshot.h"
 
 #include <getopt.h>
@@ -93,7 +93,7 @@ static const char offline_usage[] =
     "  --gl KIND               auto, egl-device, egl-surfaceless or osmesa\n"
     "  --gl-device N           GPU (see plantcastd --list-gl-devices)\n";
 
-/* Options that are parameters of /snapshot.png too, under that name. */
+/* Options that are also parameters of /snapshot.png, by the parameter's name. */
 static const struct {
     const char *option, *name;
 } shared[] = {
@@ -236,7 +236,7 @@ static bool parse_factor(const char *text, double least, double most, double *ou
     return end != text && !*end && *out >= least && *out <= most;
 }
 
-/* Not all belong to both commands. */
+/* Returns whether the option belongs to this command. */
 static bool belongs(bool clip, int option)
 {
     bool of_clip = option >= OPTION_FROM && option <= OPTION_FPS;
@@ -244,7 +244,7 @@ static bool belongs(bool clip, int option)
     return clip ? !of_snapshot : !of_clip;
 }
 
-/* False: the option's argument is wrong. */
+/* Applies one option. Returns false if its argument is wrong. */
 static bool take_own(struct snapshot_options *options, int option, const char *text)
 {
     options->offline_only = options->offline_only || option >= OPTION_VALUES;
@@ -296,7 +296,7 @@ static bool only_size(const struct snapshot_options *options)
     return only;
 }
 
-/* -1: go on. */
+/* Checks the combination of options. Returns -1 to continue, or the exit code. */
 static int judge(const struct snapshot_options *options, bool clip, int left)
 {
     if (left != 1)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast verify`: says whether a signed picture is what the server drew, and draws it again. */
+/* `plantcast verify`: verifies that a signed picture is what the server drew, and can redraw it. */
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
@@ -35,7 +35,7 @@ static void print_statement(const char *path, const json_t *statement)
     puts(json_array_size(args) ? "" : " the plant's own");
 }
 
-/* statement: verified, so the pixels are there. */
+/* statement: verified, so its size and pixels can be trusted. */
 static int redraw(const struct redraw_options *options, const json_t *statement, const char *png, size_t count)
 {
     char why[PNG_WHY_BYTES];
@@ -71,7 +71,7 @@ static int verify(const struct verify_options *options)
     return code;
 }
 
-/* By how it begins. */
+/* Detects a film by its first bytes. */
 static bool is_film(const char *path)
 {
     char head[8] = "";

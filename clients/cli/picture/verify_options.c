@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What `plantcast verify` is asked. */
+/* Options of `plantcast verify`. */
 #include <getopt.h>
 #include <stdio.h>
 

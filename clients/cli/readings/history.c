@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast history import|export`: recorded series in and out, as CSV. */
+/* `plantcast history import|export`: reads and writes recorded series as CSV. */
 #include <getopt.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -73,7 +73,7 @@ static bool parse_unit(const char *text, int64_t *unit_us)
     return false;
 }
 
-/* "90s", "1.5h"; without a unit: seconds. */
+/* Parses "90s" or "1.5h"; without a unit: seconds. */
 static bool parse_span(const char *text, int64_t *span_us)
 {
     char number[24];
@@ -89,7 +89,7 @@ static bool parse_span(const char *text, int64_t *span_us)
     return true;
 }
 
-/* In the largest unit in which the number is at least 1. */
+/* Prints a duration in the largest unit in which its number is at least 1. */
 static void print_span(int64_t span_us, char out[32])
 {
     double s = (double)span_us / US_PER_S;
@@ -206,7 +206,7 @@ static int run_export(const struct history_options *options, const struct plant 
 
 /* --- the command line ------------------------------------------------------------------------------------------------------------- */
 
-/* -1: go on; else the exit code. */
+/* Returns -1 to continue, or the exit code. */
 static int parse(int argc, char **argv, struct history_options *out)
 {
     static const struct option options[] = {

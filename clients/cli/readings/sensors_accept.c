@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast sensors accept`: accepts assumed places of many sensors at once in a plant's tag list, and takes that back. */
+/* `plantcast sensors accept`: accepts many assumed locations at once in a plant's tag list, and undoes that. */
 #include <getopt.h>
 #include <limits.h>
 #include <stdio.h>
@@ -40,7 +40,7 @@ static void print_usage(FILE *out)
           out);
 }
 
-/* Saves the list. Takes `before` and `after`; failed: why one of them is NULL. */
+/* Saves the list. Takes ownership of `before` and `after`; if one is NULL, `failed` has the reason. */
 static int save(const char *path, char *before, char *after, const struct refusal *failed)
 {
     struct tag_save saved = { .path = (char *)path, .before = before, .after = after };
@@ -143,7 +143,7 @@ static int run(const struct accept_options *options)
     if (!plant)
         return 1;
     struct log *log = log_create(LOG_WARN);
-    char real[PATH_MAX]; /* versions stand beside the file behind a symlink */
+    char real[PATH_MAX]; /* earlier versions are stored beside the target of a symlink */
     const char *path = realpath(plant->tags_path, real) ? real : plant->tags_path;
     int code = options->undo ? undo(options, path) : accept_in(options, plant, log, path);
     log_destroy(&log);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast tags URL`: a table of tags with value, quality and age; --probe is in tags_probe.c, --browse in tags_browse.c. */
+/* `plantcast tags URL`: prints a table of tags with value, quality and age; --probe is in tags_probe.c, --browse in tags_browse.c. */
 #include <getopt.h>
 #include <jansson.h>
 #include <stdio.h>
@@ -88,7 +88,7 @@ static void print_table(const json_t *tags)
         print_tag(json_array_get(tags, i), widths);
 }
 
-/* A page from index `first` on. NULL: said why. */
+/* Fetches the page that starts at index `first`. Returns NULL with the reason printed. */
 static json_t *fetch_page(const struct daemon_url *url, const char *name, size_t first)
 {
     struct text body = { 0 };
@@ -105,7 +105,7 @@ static json_t *fetch_page(const struct daemon_url *url, const char *name, size_t
     return page;
 }
 
-/* All pages as one. NULL: said why. */
+/* Fetches all pages and joins them. Returns NULL with the reason printed. */
 static json_t *fetch_all(const struct daemon_url *url, const char *name)
 {
     json_t *all = fetch_page(url, name, 0);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast tags --browse`: the variables of an OPC UA server, as a tag list to begin with. It only reads. */
+/* `plantcast tags --browse`: prints the variables of an OPC UA server as a draft tag list. It never writes to the server. */
 #include <getopt.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -57,7 +57,7 @@ static void print_variable(void *arg, const struct opcua_variable *variable)
     text_finish(&address);
 }
 
-/* opc.tcp://HOST:PORT/PATH; host: room for the parts. */
+/* Parses opc.tcp://HOST:PORT/PATH. host: buffer for the host name. */
 static bool read_url(const char *url, struct plant_source *source, char host[256])
 {
     static const char SCHEME[] = "opc.tcp://";
@@ -114,7 +114,7 @@ int tags_browse(int argc, char **argv)
     int code = 2;
     if (!read_options(argc, argv, &source, host, &code))
         return code;
-    int stop_fd = eventfd(0, EFD_CLOEXEC); /* never readable */
+    int stop_fd = eventfd(0, EFD_CLOEXEC); /* never readable: nothing stops the browse early */
     struct opcua_client *client = opcua_client_create(&source, 0, &nodes, &events, why);
     int status = client ? opcua_client_connect(client, stop_fd, clock_mono_ns() + CONNECT_NS, why) : -1;
     if (status == 0) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Readings from a CSV file. */
+/* Reads readings from a CSV file. */
 #include "values.h"
 
 #include <math.h>
@@ -13,7 +13,7 @@ struct columns {
     int tag, value, quality, unit;
 };
 
-/* Without a header the first row is data. */
+/* Finds the columns by the header. Without a header the first row is data. */
 static bool find_columns(const struct csv *csv, struct columns *columns)
 {
     columns->tag = csv_find(csv, "tag");
@@ -50,7 +50,7 @@ static const char *cell(const struct csv_row *row, int column)
     return column >= 0 && (size_t)column < row->count ? row->cells[column].text : "";
 }
 
-/* From the unit that the row says, else the tag's own. */
+/* Converts the value to the plant's unit, from the row's unit if given, else from the tag's own. */
 static bool take_unit(const struct csv *csv, const struct csv_row *row, const struct columns *columns, const struct plant_tag *tag,
                       double *value)
 {

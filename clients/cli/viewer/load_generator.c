@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One epoll loop for all blind viewers. */
+/* Runs all blind viewers in one epoll loop. */
 #include "load_generator.h"
 
 #include <errno.h>
@@ -14,15 +14,15 @@
 #include "viewer_impl.h"
 
 enum { EVENTS = 256 };
-static const int64_t PATIENCE_NS = 20 * NS_PER_S; /* to be connected */
-/* Between looks: what came meanwhile is taken at once. A look for each packet would wake this thread from within the daemon's send(),
-   which took a quarter of the daemon's time. */
+static const int64_t PATIENCE_NS = 20 * NS_PER_S; /* time limit for connecting */
+/* Interval between polls; packets that arrived meanwhile are handled together. Waking for each packet would run inside the daemon's send()
+   and took a quarter of its time. */
 static const int64_t PAUSE_NS = 2 * NS_PER_MS;
 
 struct load_generator {
     int epoll, count;
     struct viewer **viewers;
-    int64_t step_ns, next_ns; /* of time, for each of them */
+    int64_t step_ns, next_ns; /* step_ns: interval of the viewers' timers; next_ns: next tick */
 };
 
 static void leave(struct viewer *viewer)
@@ -82,7 +82,7 @@ static void on_event(const struct load_generator *load, const struct epoll_event
     struct viewer *viewer = event->data.ptr;
     if (!viewer->raw)
         return;
-    if (event->events & EPOLLOUT) /* connected */
+    if (event->events & EPOLLOUT) /* the connection is established */
         watch(load, viewer, EPOLLIN, EPOLL_CTL_MOD);
     on_messages(load, viewer);
     speak(viewer);
@@ -90,7 +90,7 @@ static void on_event(const struct load_generator *load, const struct epoll_event
         leave(viewer);
 }
 
-/* True: some of them are there still. */
+/* Fires the viewers' timers. Returns whether any viewer is still running. */
 static bool on_time(struct load_generator *load, int64_t now_ns)
 {
     bool any = false;

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Load generator: drives viewers that do not decode, all in the calling thread, so cheaply that hundreds fit beside the daemon that they
-   measure. */
+/* Load generator: runs viewers that do not decode, all in the calling thread, cheaply enough that hundreds fit on the same machine as the
+   daemon under test. */
 #ifndef CLI_VIEWER_LOAD_GENERATOR_H
 #define CLI_VIEWER_LOAD_GENERATOR_H
 #include "viewer.h"
 
-/* Runs all viewers to their ends, over plain TCP. Returns false if it could not begin, with the reason printed. */
+/* Runs all viewers until they finish, over plain TCP. Returns false if it could not start, with the reason printed. */
 bool load_generator_run(struct viewer **viewers, int count);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast probe`: many viewers at once, and a table of what they saw. */
+/* `plantcast probe`: runs many viewers at once and prints a table of their measurements. */
 #include "probe.h"
 
 #include <getopt.h>
@@ -97,7 +97,7 @@ static bool parse_motion(const char *text, enum motion *motion)
     return false;
 }
 
-/* What is taken blind is not decoded. */
+/* Returns whether this build can decode the codec; blind viewers do not need to. */
 static bool decodes(const struct probe *probe)
 {
     char why[DECODER_WHY_BYTES];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast probe`: what it is to do, and its report. */
+/* Options and report of `plantcast probe`. */
 #ifndef CLI_VIEWER_PROBE_H
 #define CLI_VIEWER_PROBE_H
 #include "viewer.h"
@@ -8,7 +8,7 @@ struct probe {
     struct daemon_url url;
     const char *url_text, *codec, *signs, *folder;
     int sessions, stalled, width_px, height_px;
-    int watching; /* the first of the sessions: those that do not stall */
+    int watching; /* number of viewers at the front of `viewers` that do not stall */
     double seconds, hz;
     enum motion motion;
     bool as_json, blind, follow, spread;
@@ -18,7 +18,7 @@ struct probe {
 
 extern const char *const probe_motions[MOTION_COUNT];
 
-/* Prints the results of viewers that have ended, as a table or JSON. Returns false if something failed or no frame came, with the reason
+/* Prints the results of finished viewers, as a table or JSON. Returns false if a viewer failed or no frame arrived, with the reason
    printed. */
 bool probe_report(const struct probe *probe);
 

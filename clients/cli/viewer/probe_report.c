@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a probe found, as a table or as JSON. */
+/* Prints a probe's results as a table or as JSON. */
 #include <jansson.h>
 #include <math.h>
 #include <stdio.h>
@@ -27,7 +27,7 @@ static void append(struct latency_samples *all, const struct latency_samples *so
     all->count += some->count;
 }
 
-/* of: sorted. NaN: none. */
+/* of: sorted samples. Returns NaN if there are none. */
 static double percentile(const struct latency_samples *of, double p)
 {
     if (!of->count)
@@ -43,7 +43,7 @@ static void sort(struct latency_samples *samples)
 
 struct summary {
     int frames, still_frames, signed_frames, errors, failed, given_up;
-    double fps, fps_lowest; /* mean and least over the sessions */
+    double fps, fps_lowest; /* mean and lowest over all sessions */
     double kb_per_frame, mbit_per_s, steady_kbit_per_s;
     struct latency_samples input, sensor, behind, first, stages[STAGE_COUNT];
 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A WebSocket client that knows no more than a daemon's stream needs: RFC 6455 without extensions. */
+/* A minimal WebSocket client for a daemon's stream: RFC 6455 without extensions. */
 #include "raw_websocket.h"
 
 #include <errno.h>
@@ -14,7 +14,7 @@
 #include "base/mem.h"
 #include "protocol/wire.h"
 
-/* The nonce of RFC 6455's own example, and its answer. */
+/* Nonce and accept value of the example in RFC 6455. */
 static const char KEY[] = "dGhlIHNhbXBsZSBub25jZQ==", ACCEPT[] = "s3pPLMBiTxaQ9kYGzzhZRbK+xOo=";
 enum { OP_TEXT = 1, OP_BINARY = 2, OP_CLOSE = 8, OP_PING = 9, OP_PONG = 10, MAX_HEAD_BYTES = 4096, MAX_TEXT_BYTES = 16 << 20 };
 
@@ -22,15 +22,15 @@ struct raw_websocket {
     int fd;
     enum { ASKING, ASKED, OPEN } state;
     char request[1024];
-    struct text head;     /* of the server's answer */
-    unsigned char in[10]; /* of a frame's header, so far */
+    struct text head;     /* head of the server's HTTP response */
+    unsigned char in[10]; /* bytes of the current frame's header so far */
     size_t in_count;
     bool in_payload, final;
-    int opcode;         /* of the frame */
-    size_t left;        /* of its payload */
-    bool binary, begun; /* the message that it belongs to */
+    int opcode;         /* opcode of the current frame */
+    size_t left;        /* payload bytes still to come */
+    bool binary, begun; /* of the current message: binary, and whether a frame of it has arrived */
     struct text message, control;
-    size_t count; /* of the message's bytes so far */
+    size_t count; /* bytes of the current message so far */
 };
 
 /* --- connecting ---------------------------------------------------------------------------------------------------------------- */
@@ -78,7 +78,7 @@ struct raw_websocket *raw_websocket_connect(const struct daemon_url *url, const 
     return raw;
 }
 
-/* Whole or not at all: what is said is short. */
+/* Sends all bytes or fails: messages are short enough for the send buffer. */
 static bool send_all(const struct raw_websocket *raw, const void *bytes, size_t count)
 {
     return send(raw->fd, bytes, count, MSG_NOSIGNAL) == (ssize_t)count;
@@ -96,7 +96,7 @@ static bool send_frame(const struct raw_websocket *raw, int opcode, const char *
         out[2] = (unsigned char)(count >> 8);
         out[3] = (unsigned char)count;
     }
-    memset(out + head - 4, 0, 4); /* a mask of zeros: nothing to be hidden from a cache on the way */
+    memset(out + head - 4, 0, 4); /* zero mask: no HTTP cache in between needs protection */
     memcpy(out + head, bytes, count);
     return send_all(raw, out, head + count);
 }
@@ -108,7 +108,7 @@ bool raw_websocket_send(struct raw_websocket *raw, const char *text, size_t coun
 
 /* --- what comes ------------------------------------------------------------------------------------------------------------------ */
 
-/* As read(), but 0 for nothing yet, and -1 for the end. bytes NULL: dropped. */
+/* Like recv(), but returns 0 if nothing is available and -1 at the end. bytes NULL: drop the data. */
 static ssize_t take(const struct raw_websocket *raw, void *bytes, size_t count, const char **why)
 {
     ssize_t got = recv(raw->fd, bytes, count, bytes ? 0 : MSG_TRUNC);
@@ -120,7 +120,7 @@ static ssize_t take(const struct raw_websocket *raw, void *bytes, size_t count, 
     return -1;
 }
 
-/* The answer to the request, a byte at a time: what follows is no part of it. */
+/* Reads the HTTP response byte by byte, to stop exactly at its end. */
 static int read_head(struct raw_websocket *raw, const char **why)
 {
     char byte;
@@ -165,7 +165,7 @@ static void begin_payload(struct raw_websocket *raw)
     raw->message.length = raw->count = 0;
 }
 
-/* As take(); above 0: it is complete. */
+/* Reads the frame header. Returns > 0 once complete, else as take(). */
 static ssize_t read_frame_header(struct raw_websocket *raw, const char **why)
 {
     while (raw->in_count < header_bytes(raw)) {
@@ -178,7 +178,7 @@ static ssize_t read_frame_header(struct raw_websocket *raw, const char **why)
     return 1;
 }
 
-/* As take(). */
+/* Reads the frame's payload. Returns as take(). */
 static ssize_t read_payload(struct raw_websocket *raw, const char **why)
 {
     static char bytes[64 * 1024];
@@ -204,7 +204,7 @@ static ssize_t read_payload(struct raw_websocket *raw, const char **why)
     return got;
 }
 
-/* False: it was the last. */
+/* Handles a control frame. Returns false if it was a close. */
 static bool on_control(struct raw_websocket *raw, const char **why)
 {
     const char *bytes = raw->control.at ? raw->control.at : "";

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Raw WebSocket client over plain TCP, for viewers that do not decode: of a binary message only the first bytes are read, the rest is
-   dropped in the kernel. libwebsockets looks at every byte, 0.3 ms for a frame of 40 kB; hundreds of viewers on the daemon's own machine
-   would measure that instead. Thread: one. */
+/* Raw WebSocket client over plain TCP, for viewers that do not decode: reads only the first bytes of a binary message and lets the kernel
+   drop the rest. libwebsockets touches every byte, 0.3 ms for a frame of 40 kB; with hundreds of viewers beside the daemon that cost would
+   dominate the measurement. Thread: one. */
 #ifndef CLI_VIEWER_RAW_WEBSOCKET_H
 #define CLI_VIEWER_RAW_WEBSOCKET_H
 #include "base/text/text.h"
@@ -9,24 +9,24 @@
 
 struct raw_websocket_message {
     bool binary;
-    size_t count;   /* of all of it */
-    const char *at; /* of a text all bytes, and a 0; of a binary message the first RAW_WEBSOCKET_KEPT_BYTES of them */
+    size_t count;   /* length of the whole message */
+    const char *at; /* text: all bytes and a terminating 0; binary: the first RAW_WEBSOCKET_KEPT_BYTES */
 };
 enum { RAW_WEBSOCKET_KEPT_BYTES = 128 };
 
 struct raw_websocket;
-/* Begins to connect to /stream. Returns the connection, which the caller destroys, or NULL with the reason in *why. */
+/* Starts connecting to /stream. Returns the connection, which the caller destroys, or NULL with the reason in *why. */
 struct raw_websocket *raw_websocket_connect(const struct daemon_url *url, const char **why);
-/* Sends a close frame if it can, and frees the connection. &NULL is fine; leaves NULL. */
+/* Sends a close frame if possible, and frees the connection. &NULL is fine; leaves NULL. */
 void raw_websocket_destroy(struct raw_websocket **raw);
 /* Returns the socket, for polling. */
 int raw_websocket_fd(const struct raw_websocket *raw);
 /* Returns whether the server has accepted the handshake, so that messages may be sent. */
 bool raw_websocket_is_open(const struct raw_websocket *raw);
-/* Reads from the socket when it is ready. Returns 1 with *message set until the next call (call again), 0 if there is nothing more for now,
-   or a negative number with the reason in *why if the connection is over; *why is not to be freed, and valid while `raw` is. */
+/* Reads from the socket when it is readable. Returns 1 with *message set until the next call (call again), 0 if nothing more is available
+   now, or a negative number with the reason in *why if the connection is closed. *why stays valid while `raw` exists; do not free it. */
 int raw_websocket_read(struct raw_websocket *raw, struct raw_websocket_message *message, const char **why);
-/* Sends one text message. Returns false if the connection is gone or takes nothing. */
+/* Sends one text message. Returns false if the connection is closed or its send buffer is full. */
 bool raw_websocket_send(struct raw_websocket *raw, const char *text, size_t count);
 
 #endif

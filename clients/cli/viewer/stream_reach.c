@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tells a proxy that does not pass WebSockets on from a daemon that cannot be reached. */
+/* Distinguishes a proxy that blocks WebSockets from an unreachable daemon. */
 #include "stream_reach.h"
 
 #include <stdio.h>
@@ -10,7 +10,7 @@
 
 enum { OPEN_S = 5 };
 
-/* Asks the stream over HTTP. Returns the status; *reached receives whether the daemon itself answered that it refused a WebSocket. */
+/* Requests the stream over HTTP. Returns the status; *reached receives whether the daemon itself answered that it refused a WebSocket. */
 static int ask_why(const struct daemon_url *url, struct text *body, bool *reached)
 {
     int status = daemon_get(url, "/stream?why", body);

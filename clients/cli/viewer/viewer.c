@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A client without a screen. */
+/* Receives messages and measures, without a screen. */
 #include <jansson.h>
 #include <math.h>
 #include <stdio.h>
@@ -11,7 +11,7 @@
 #include "viewer_impl.h"
 
 enum { MAX_MESSAGE_BYTES = WIRE_MAX_PAYLOAD_BYTES + WIRE_FRAME_HEADER_BYTES };
-static const int64_t PATIENCE_NS = 20 * NS_PER_S; /* for the first frame, and between frames of an orbit */
+static const int64_t PATIENCE_NS = 20 * NS_PER_S; /* timeout for the first frame, and between frames of an orbit */
 
 static void add(struct latency_samples *samples, double ms)
 {
@@ -53,7 +53,7 @@ static void on_pong(struct viewer *viewer, int64_t server_us)
     viewer->offset_us = server_us - (clock_utc_ns() - rtt_ns / 2) / 1000;
 }
 
-/* What it has no use for: most of what comes to many viewers. */
+/* Returns whether to skip the message unparsed; with many viewers most messages are of these types. */
 static bool is_passed_over(const struct text *text)
 {
     static const char *const types[] = { "tags", "markers" };
@@ -91,17 +91,18 @@ static void on_text(struct viewer *viewer)
     json_decref(o);
 }
 
-/* Every camera that was sent counts, those too that were overtaken before they were drawn: their sender has waited until now. */
+/* Records a sample for every camera up to this one, also those that were replaced before they were drawn: their sender waited until now
+   too. */
 static void record_input(struct viewer *viewer, uint32_t camera_seq, int64_t now_ns)
 {
-    if (camera_seq > viewer->camera_seq) /* never sent */
+    if (camera_seq > viewer->camera_seq) /* this camera was never sent */
         return;
     for (; viewer->shown_camera_seq < camera_seq; viewer->shown_camera_seq++)
         if (viewer->camera_seq - viewer->shown_camera_seq <= SENT_RING)
             add(&viewer->result.input, (double)(now_ns - viewer->sent_ns[(viewer->shown_camera_seq + 1) % SENT_RING]) / 1e6);
 }
 
-/* By the camera that it was drawn with. */
+/* Records how far this follower is behind its leader, by the camera of the frame. */
 static void record_behind(struct viewer *viewer, const struct wire_frame *frame, int64_t now_ns)
 {
     struct leader *lead = viewer->params.lead;
@@ -118,7 +119,7 @@ static void record_behind(struct viewer *viewer, const struct wire_frame *frame,
     pthread_mutex_unlock(&lead->lock);
 }
 
-/* From leaving the server to being here, by its own clock. */
+/* Records the network time from the server's send time to now, on the server's clock. */
 static void record_network(struct viewer *viewer, const struct wire_frame *frame)
 {
     struct viewer_result *result = &viewer->result;
@@ -150,7 +151,7 @@ static void record(struct viewer *viewer, const struct wire_frame *frame, int64_
     record_behind(viewer, frame, now_ns);
 }
 
-/* FOLDER/SESSION-FRAME.png. Only whole messages: a load generator keeps no more than their heads. */
+/* Writes FOLDER/SESSION-FRAME.png. Needs complete messages, which the load generator does not keep. */
 static void save_signed(struct viewer *viewer, const struct wire_frame *frame, const uint8_t *png)
 {
     char *path = mem_printf("%s/%03d-%06u.png", viewer->params.folder, viewer->params.number, frame->seq);
@@ -256,14 +257,14 @@ void viewer_on_time(struct viewer *viewer, int64_t now_ns)
         viewer_schedule(viewer, now_ns);
 }
 
-/* Ticks keep to a grid: what one is late, the next is not. */
+/* Fires on a fixed grid: a late tick does not delay the next. */
 static void on_timer(lws_sorted_usec_list_t *sul)
 {
     struct viewer *viewer = lws_container_of(sul, struct viewer, timer);
     int64_t now_ns = clock_mono_ns();
     viewer_on_time(viewer, now_ns);
     if (viewer->wsi && (viewer->done || viewer_has_output(viewer)))
-        lws_callback_on_writable(viewer->wsi); /* which closes it, if it is done */
+        lws_callback_on_writable(viewer->wsi); /* the callback closes the connection if the viewer is done */
     viewer->next_ns += (int64_t)(1e9 / viewer->params.hz);
     if (viewer->next_ns < now_ns)
         viewer->next_ns = now_ns;

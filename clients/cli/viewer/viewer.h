@@ -14,15 +14,15 @@ enum motion { MOTION_STILL, MOTION_ORBIT, MOTION_RANDOM, MOTION_COUNT };
 
 enum { VIEWER_SETTLES_S = 3, LEAD_CAMERAS = 256 };
 
-/* What followers know of the one they follow. */
+/* State that a leading viewer shares with its followers. */
 struct leader {
     pthread_mutex_t lock;
     /* --- below: under lock */
-    uint64_t session; /* 0: not connected yet */
+    uint64_t session; /* session of the leader; 0: not connected yet */
     struct {
         double eye[3];
         int64_t sent_ns;
-    } cameras[LEAD_CAMERAS]; /* the newest, by number */
+    } cameras[LEAD_CAMERAS]; /* latest cameras, by sequence number modulo LEAD_CAMERAS */
     uint32_t newest;
 };
 
@@ -31,16 +31,16 @@ struct viewer_params {
     int width_px, height_px;
     const char *codec; /* "jpeg", "h264" */
     enum motion motion;
-    double seconds, hz;  /* hz: cameras in a second */
-    double start_deg;    /* of the orbit; of the view, where it stands still and that is not 0 */
-    unsigned seed;       /* of random motion */
-    bool blind;          /* acknowledges without decoding */
-    const char *signs;   /* which frames are to come signed: `refined`, `all`; NULL: none */
-    const char *folder;  /* where signed frames are saved; NULL: nowhere */
-    int number;          /* of the viewer, in their names */
-    bool stalls;         /* reads nothing after the first frame */
-    struct leader *lead; /* NULL: follows nobody and leads nobody */
-    bool follows;        /* else it leads */
+    double seconds, hz;  /* hz: camera updates per second */
+    double start_deg;    /* start angle of the orbit; in a still view, the angle from home (0: home) */
+    unsigned seed;       /* seed of random motion */
+    bool blind;          /* whether to acknowledge without decoding */
+    const char *signs;   /* frames to request signed: `refined`, `all`; NULL: none */
+    const char *folder;  /* folder for signed frames; NULL: do not save */
+    int number;          /* number of this viewer, part of the file names */
+    bool stalls;         /* whether to stop reading after the first frame */
+    struct leader *lead; /* shared state of leader and followers; NULL: neither leads nor follows */
+    bool follows;        /* whether this viewer follows; else it leads */
 };
 
 struct latency_samples { /* milliseconds */
@@ -52,33 +52,34 @@ enum viewer_stage { STAGE_WAIT, STAGE_FIELD, STAGE_RENDER, STAGE_ENCODE, STAGE_N
 
 struct viewer_result {
     int frames, still_frames, errors, signed_frames;
-    int given_up;                     /* frames that the server did not send to their end */
-    int64_t text_bytes, steady_bytes; /* steady: of all messages but pongs, once VIEWER_SETTLES_S have gone by since the first frame */
-    int64_t bytes, first_ns, last_ns; /* of frames; monotonic */
-    struct latency_samples input;     /* from sending a camera to its frame decoded */
-    struct latency_samples sensor;    /* from a reading that changed, in the server, to its frame decoded */
-    struct latency_samples behind;    /* in a follower, from its leader's sending a camera to its frame decoded */
-    struct latency_samples first;     /* from connecting to the first frame decoded: one */
+    int given_up;                     /* frames that the server aborted */
+    int64_t text_bytes, steady_bytes; /* text_bytes: of text messages; steady_bytes: of all messages except pongs, from VIEWER_SETTLES_S
+                                         after the first frame */
+    int64_t bytes, first_ns, last_ns; /* frame bytes; time of the first and last frame, monotonic */
+    struct latency_samples input;     /* from sending a camera until its frame is decoded */
+    struct latency_samples sensor;    /* from a changed reading in the server until its frame is decoded */
+    struct latency_samples behind;    /* of a follower: from the leader sending a camera until its frame is decoded here */
+    struct latency_samples first;     /* from connecting until the first frame is decoded; one sample */
     struct latency_samples stages[STAGE_COUNT];
-    char failure[200]; /* "": went well */
+    char failure[200]; /* reason of failure; "": none */
 };
 
 struct viewer;
 /* Creates a viewer that is not connected. NULL: out of memory. The caller destroys it. */
 struct viewer *viewer_create(const struct viewer_params *params);
-/* Connects. From then on the context's thread drives it, until params.seconds after the first frame or until it fails. */
+/* Connects. The context's thread then runs the viewer until params.seconds after the first frame, or until it fails. */
 void viewer_connect(struct viewer *viewer, struct lws_context *context);
-/* Returns whether it has ended. */
+/* Returns whether the viewer has finished. */
 bool viewer_done(const struct viewer *viewer);
-/* Returns when its timer fires next, monotonic, if until then it only waits for what its socket brings (*fd; -1: for nothing); else 0. */
+/* If the viewer only waits for its socket (*fd; -1: none) or its timer, returns the monotonic time when the timer fires; else 0. */
 int64_t viewer_rests_until_ns(const struct viewer *viewer, int *fd);
-/* Returns what it measured. Belongs to the viewer. */
+/* Returns the viewer's measurements, which belong to the viewer. */
 const struct viewer_result *viewer_result(const struct viewer *viewer);
-/* Frees the viewer; after its context. &NULL is fine; leaves NULL. */
+/* Frees the viewer. Destroy its context first. &NULL is fine; leaves NULL. */
 void viewer_destroy(struct viewer **viewer);
 
 extern const struct lws_protocols viewer_protocols[];
-/* Sets what the viewer needs in the parameters of its libwebsockets context. */
+/* Sets what the viewer needs in the creation info of its libwebsockets context. */
 void viewer_prepare_context(const struct viewer *viewer, struct lws_context_creation_info *info);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a viewer says: hello, cameras, acknowledgements. */
+/* Sends a viewer's messages: hello, cameras, acknowledgements. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -36,7 +36,7 @@ static double uniform(struct viewer *viewer, double low, double high)
     return low + (high - low) * rand_r(&viewer->params.seed) / RAND_MAX;
 }
 
-/* Drags of up to 2 s, and pauses as long between them. */
+/* Alternates drags of up to 2 s with pauses of the same length. */
 static void next_leg(struct viewer *viewer, int64_t now_ns)
 {
     viewer->angle_deg += viewer->speed_deg * seconds_of(viewer->leg_end_ns - viewer->leg_ns);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Threads that drive viewers. */
+/* Threads that run viewers. */
 #include "viewer_threads.h"
 
 #include <poll.h>
@@ -13,7 +13,7 @@ enum { MAX_THREADS = 64, MAX_FILES = 8192, MAX_WAITING = 64 };
 struct viewer_thread {
     pthread_t thread;
     struct lws_context *context;
-    struct viewer **viewers; /* every `stride`-th, from the first on */
+    struct viewer **viewers; /* this thread's viewers: every `stride`-th of the array */
     int count, stride;
 };
 
@@ -25,8 +25,8 @@ static bool all_done(const struct viewer_thread *worker)
     return true;
 }
 
-/* libwebsockets waits for whole milliseconds only: what is left of one before the next timer fires it would spend on asking again and
-   again, which takes the processor from a daemon on the same machine. */
+/* Waits in poll() until the next timer. libwebsockets waits in whole milliseconds and would spin for the rest, taking processor time from a
+   daemon on the same machine. */
 static void wait_for_timer(const struct viewer_thread *worker)
 {
     struct pollfd sockets[MAX_WAITING];
@@ -58,8 +58,8 @@ static void *worker_main(void *arg)
     return NULL;
 }
 
-/* All before the first thread connects: libwebsockets keeps one number for all contexts by which a TLS connection finds its own, and each
-   new context changes it. */
+/* Creates all contexts before the first thread connects: libwebsockets has one global index from TLS connections to contexts, and each new
+   context changes it. */
 static bool worker_prepare(struct viewer_thread *worker)
 {
     struct lws_context_creation_info info = {

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Runs viewers on a few threads, each with some of them. */
+/* Runs viewers on a few threads, several per thread. */
 #ifndef CLI_VIEWER_VIEWER_THREADS_H
 #define CLI_VIEWER_VIEWER_THREADS_H
 #include "viewer.h"
 
-/* Runs all viewers to their ends. Returns false if not all could be started, with the reason printed. */
+/* Runs all viewers until they finish. Returns false if not all could be started, with the reason printed. */
 bool viewer_threads_run(struct viewer **viewers, int count);
-/* Raises the limit of open files to what the system allows, for many connections. */
+/* Raises the limit of open files to the system's maximum, for many connections. */
 void viewer_threads_raise_file_limit(void);
 
 #endif
