@@ -25,7 +25,7 @@ struct film {
     struct text query;
     const char *said; /* text to draw into the pictures; "": none */
     long count;       /* pictures made so far */
-    struct film_statements *statements; /* of a signed film; else NULL */
+    struct film_statements *statements; /* statements of a signed film; NULL: the film is not signed */
 };
 
 /* Appends a picture. The first one creates the file, because its size is the film's. */

@@ -46,13 +46,15 @@ static const struct box_rule rules[] = {
     { "vmhd", "minf", "00000001" ZEROS_8, 0, true },
     { "hdlr", "minf", "00000000" "????????" "75726c20" "*", 0, false },
     { "dinf", "minf", "*", HEAD, true },
-    { "dref", "dinf", "00000000" "00000001" "0000000c" "75726c20" "00000001", 0, true }, /* the samples are in this file */
+    { "dref", "dinf", "00000000" "00000001" "0000000c" "75726c20" "00000001", 0, true }, /* a data reference that says that the samples are
+                                                                                            in this file */
     { "stbl", "minf", "*", HEAD, true },
     { "stsd", "stbl", "00000000" "00000001" "*", HEAD + 8, true },
     { "avc1", "stsd", "000000000000" "0001" "????????" ANY_8 "????????" "WWWWHHHH" "00480000" "00480000" "00000000" "0001" ANY_32
       "0018ffff" "*", HEAD + 78, true },
     { "avcC", "avc1", "01??????" "ff" "e1" "*", 0, true },
-    { "colr", "avc1", "6e636c78" "0001" "000d" "0000" "80|" "6e636c63" "0001" "000d" "0000", 0, true }, /* nclx of MP4, or nclc of MOV */
+    { "colr", "avc1", "6e636c78" "0001" "000d" "0000" "80|" "6e636c63" "0001" "000d" "0000", 0, true }, /* colour information: nclx in MP4,
+                                                                                                           nclc in MOV */
     { "pasp", "avc1", "0000000100000001", 0, false },
     { "btrt", "avc1", "*", 0, false },
     { "stts", "stbl", "*", 0, true },
@@ -261,7 +263,7 @@ static bool is_plain_message(const uint8_t *unit, size_t count, char why[FILM_BO
     while (i < count && unit[i] == 255)
         length += unit[i++];
     length += i < count ? unit[i++] : 0;
-    for (; i < count; i++) { /* in 0, 0, 3 the 3 is emulation prevention, not content */
+    for (; i < count; i++) { /* the byte 3 after two zero bytes is emulation prevention, not content */
         bool is_filler = zeros >= 2 && unit[i] == 3;
         zeros = unit[i] == 0 ? zeros + 1 : 0;
         content += !is_filler;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The fleet page: asks its own server every five seconds, and shows a card for each plant.
+// The fleet page: polls its own server every five seconds and shows a card for each plant.
 import { chooseLanguage, wordsOf } from './words.js';
 
 const EVERY_MS = 5000, DAY_S = 86400, PRIORITIES = 4;
@@ -31,7 +31,7 @@ function counts(alarms) {
     return alarms.map((count, i) => count > 0 && chip(count, i)).filter(Boolean);
 }
 
-// What is said of a plant: [key, value, wrong].
+// Returns the facts on a plant's card: [key, value, whether it is a problem].
 function facts(plant, nowS) {
     const left = plant.certificate_s - nowS;
     return [

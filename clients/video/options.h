@@ -15,7 +15,7 @@ struct video_options {
     char *listen;                       /* listening address of all outputs */
     int width_px, height_px, fps, kbps, every_ms;
     int rtsp_port, http_port, srt_port; /* 0: off */
-    char *user, *password;              /* login required from viewers; NULL: no login */
+    char *user, *password;              /* name and password that clients must give; NULL: no login */
     int most_readers;                   /* limit per output */
     bool time_code;
 };

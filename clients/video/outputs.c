@@ -8,7 +8,7 @@ static const GstClockTimeDiff SLACK = 500 * GST_MSECOND;
 struct output {
     GstAppSrc *src;
     bool begun, timed;
-    GstClockTimeDiff offset; /* from the encoder's running time to the output's */
+    GstClockTimeDiff offset; /* difference from the encoder's running time to this output's */
 };
 
 struct outputs {

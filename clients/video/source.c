@@ -53,7 +53,7 @@ static void keep(char *said, char *out, gsize size)
     said[strcspn(said, "\n")] = 0;
     char *valid = g_utf8_make_valid(said, -1);
     g_strlcpy(out, valid, size);
-    const char *whole; /* cutting within a character would make it undrawable */
+    const char *whole; /* end of the last whole character: a text cut within a character cannot be drawn */
     g_utf8_validate(out, -1, &whole);
     out[whole - out] = 0;
     g_free(valid);

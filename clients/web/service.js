@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Of an installed page, by https only: the page's own files from the network, and where there is none as they last were, so that it opens
-// and says that it is disconnected. Files of one version are kept at a time: those of another would not fit. Nothing that the plant says is
-// ever kept.
+// Service worker of an installed page (https only): serves the page's files from the network or else from the cache, so that the page opens
+// offline and shows that it is disconnected. Only one version is cached. Plant data is never cached.
 const OURS = /^(\/|\/(index|wall)\.html|\/(app|core|words|vendor|made|wall)\/.*)$/;
 const PREFIX = 'plantcast-';
-let kept = null; // a promise of the store of the version that is shown
+let kept = null; // promise of the cache for the current version
 
 self.addEventListener('install', () => self.skipWaiting());
 self.addEventListener('activate', (event) => event.waitUntil(self.clients.claim()));
@@ -14,7 +13,8 @@ self.addEventListener('fetch', (event) => {
         event.respondWith(newest(event.request));
 });
 
-// The server's version, and no other is kept; without the server the one that is there. Others of this address have stores of their own.
+// Opens the cache of the server's version and deletes others; without the server, uses the existing one. Other pages of this host have
+// their own caches.
 async function choose() {
     const text = await fetch('made/version.js', { cache: 'no-store' }).then((answer) => (answer.ok ? answer.text() : ''), () => '');
     const names = (await caches.keys()).filter((name) => name.startsWith(PREFIX)), version = text.match(/version = '(\w+)'/)?.[1];

@@ -118,7 +118,7 @@ test('an engineer lets it in, and who did it is in the audit trail', options, as
     await desk.page.click('#devices button[type=submit]');
     const row = desk.page.locator('#devices-list li');
     await row.waitFor({ timeout: 30000 });
-    assert.match(await row.textContent(), /Display 1 of room, from 127\.0\.0\.1, let in by engineer-1/);
+    assert.match(await row.textContent(), /Display 1 of room, from 127\.0\.0\.1, paired by engineer-1/);
     id = await row.getAttribute('data-id');
     await wall.page.locator('.pane.alarms').waitFor({ timeout: 60000 });
     await wall.page.waitForFunction(() => document.querySelector('.pane.views iframe').contentWindow.plantcast?.session.picture, null,
@@ -271,7 +271,7 @@ test('a viewer notes, sends and points at nothing; who may stands in the audit t
     await post(wall.page, 'wall');
     for (const what of ['to note something', 'to send something to a wall'])
         assert.match(audit(), new RegExp(`refused.*room\\.1\\.1.*${what}: this needs the role operator`));
-    assert.equal(audit().split('to send something to a wall: that takes').length - 1, 2); // sending, and pointing
+    assert.equal(audit().split('to send something to a wall: this needs').length - 1, 2); // sending, and pointing
     await desk.page.waitForFunction(() => globalThis.plantcast.session.connection.state === 'open', null, { timeout: 60000 });
     await post(desk.page, 'page');
     assert.match(audit(), /engineer-1.*at E-101: Manhole open/);

@@ -22,6 +22,6 @@ test('north is y, or -z where y is up; east is x', () => {
 
 test('in words', async () => {
     await learnWords();
-    assert.equal(sunText({ turn: 225, height: 45 }), 'from SW, 45° high');
-    assert.equal(sunText({ turn: 350, height: 5 }), 'from N, 5° high');
+    assert.equal(sunText({ turn: 225, height: 45 }), 'from SW, 45° elevation');
+    assert.equal(sunText({ turn: 350, height: 5 }), 'from N, 5° elevation');
 });

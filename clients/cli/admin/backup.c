@@ -450,7 +450,7 @@ int cmd_backup(int argc, char **argv)
     struct plant *plant = plant_load_or_print(argv[optind]);
     if (!plant)
         return 1;
-    umask(0077); /* only the user who makes a backup may read it */
+    umask(0077); /* files of the backup are readable only by the user who makes it */
     job.log = log_create(LOG_WARN);
     job.files = json_array();
     code = back_up(&job, plant, out) ? 0 : 1;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The thread that sends the requests. */
+/* The polling thread of a fleet: sends the requests and stores the responses. */
 #include "fleet_poll.h"
 
 #include <pthread.h>
@@ -18,7 +18,7 @@ enum { METRICS_BYTES = 4 << 20, PICTURE_BYTES = 2 << 20, TIMEOUT_S = 15, PICTURE
 enum fleet_question { METRICS, PICTURE, KINDS };
 
 struct fleet_request {
-    struct http_request http; /* reused from one request to the next, with its connection */
+    struct http_request http; /* handle with its connection, reused for the next request to this server */
     int plant;
     enum fleet_question kind;
     int64_t due_ns;
@@ -105,7 +105,7 @@ static void note_failure(struct fleet_poll *poll, const struct fleet_request *re
 {
     struct fleet_plant_state *known = &poll->states[request->plant];
     struct picture *picture = &poll->pictures[request->plant];
-    if (request->kind == PICTURE) { /* without this, an old picture would pass for the current state */
+    if (request->kind == PICTURE) { /* a failed request drops the picture: an old one would pass for the current state */
         mem_free(picture->at);
         picture->at = NULL;
         known->picture = 0;

@@ -13,8 +13,8 @@ enum { FLEET_PRIORITIES = 4, FLEET_TEXT_BYTES = 64 };
 struct fleet_state {
     int64_t alarms[FLEET_PRIORITIES], unacknowledged, links, links_down, sessions;
     int64_t certificate_s, backup_s, free_bytes; /* seconds since 1970; 0: not known */
-    bool recorded;                               /* history and alarms can be written */
-    bool reloaded;                               /* the plant file had no errors at the last reload */
+    bool recorded;                               /* whether the server can write history and alarms */
+    bool reloaded;                               /* whether the plant file had no errors at the last reload */
     char version[FLEET_TEXT_BYTES];
 };
 
@@ -24,8 +24,8 @@ bool fleet_state_read(const char *metrics, struct fleet_state *out);
 struct fleet_plant_state {
     struct fleet_state state;   /* from the last answer */
     bool answers;
-    int64_t answered_us;        /* time of the last answer; 0: never */
-    int64_t silent_us;          /* start of the time without an answer; 0: the server answers */
+    int64_t answered_us;        /* time of the server's last answer, microseconds since 1970; 0: never */
+    int64_t silent_us;          /* since when the server does not answer, microseconds since 1970; 0: it answers */
     uint64_t picture;           /* number of the server's picture; 0: none, or the last request for one failed */
     char why[256];              /* why the server does not answer */
     int64_t asked;              /* number of requests so far */

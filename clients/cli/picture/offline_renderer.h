@@ -7,7 +7,7 @@
 #include "render/split_view.h"
 #include "snapshot.h"
 
-struct offline_renderer { /* freed in reverse order of the members */
+struct offline_renderer { /* members are freed in reverse order */
     struct log *log;
     struct plant *plant;
     struct scene *scene;

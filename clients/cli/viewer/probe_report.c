@@ -43,7 +43,7 @@ static void sort(struct latency_samples *samples)
 
 struct summary {
     int frames, still_frames, signed_frames, errors, failed, given_up;
-    double fps, fps_lowest; /* mean and lowest over all sessions */
+    double fps, fps_lowest; /* frames per second: mean and lowest over all sessions */
     double kb_per_frame, mbit_per_s, steady_kbit_per_s;
     struct latency_samples input, sensor, behind, first, stages[STAGE_COUNT];
 };

@@ -96,7 +96,7 @@ static bool send_frame(const struct raw_websocket *raw, int opcode, const char *
         out[2] = (unsigned char)(count >> 8);
         out[3] = (unsigned char)count;
     }
-    memset(out + head - 4, 0, 4); /* zero mask: no HTTP cache in between needs protection */
+    memset(out + head - 4, 0, 4); /* RFC 6455 demands a mask against HTTP caches; a mask of zeros leaves the data unchanged */
     memcpy(out + head, bytes, count);
     return send_all(raw, out, head + count);
 }

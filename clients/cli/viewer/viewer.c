@@ -11,7 +11,7 @@
 #include "viewer_impl.h"
 
 enum { MAX_MESSAGE_BYTES = WIRE_MAX_PAYLOAD_BYTES + WIRE_FRAME_HEADER_BYTES };
-static const int64_t PATIENCE_NS = 20 * NS_PER_S; /* timeout for the first frame, and between frames of an orbit */
+static const int64_t PATIENCE_NS = 20 * NS_PER_S; /* timeout for the first frame, and for each further frame while the camera orbits */
 
 static void add(struct latency_samples *samples, double ms)
 {

@@ -56,10 +56,10 @@ struct viewer_result {
     int64_t text_bytes, steady_bytes; /* text_bytes: of text messages; steady_bytes: of all messages except pongs, from VIEWER_SETTLES_S
                                          after the first frame */
     int64_t bytes, first_ns, last_ns; /* frame bytes; time of the first and last frame, monotonic */
-    struct latency_samples input;     /* from sending a camera until its frame is decoded */
-    struct latency_samples sensor;    /* from a changed reading in the server until its frame is decoded */
-    struct latency_samples behind;    /* of a follower: from the leader sending a camera until its frame is decoded here */
-    struct latency_samples first;     /* from connecting until the first frame is decoded; one sample */
+    struct latency_samples input;     /* latency from sending a camera until its frame is decoded */
+    struct latency_samples sensor;    /* latency from a changed reading in the server until its frame is decoded */
+    struct latency_samples behind;    /* in a follower: latency from the leader sending a camera until its frame is decoded here */
+    struct latency_samples first;     /* time from connecting until the first frame is decoded; one sample */
     struct latency_samples stages[STAGE_COUNT];
     char failure[200]; /* reason of failure; "": none */
 };

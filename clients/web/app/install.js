@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A page that was kept from another version of the server loads itself anew; where https allows, it can be installed.
+// Reloads a page that was cached from another version of the server; registers the service worker where https allows installing.
 import { store, stored } from './common/storage.js';
 
 const versionIn = (text) => text.match(/version = '(\w+)'/)?.[1];
 const fetched = (options) => fetch('made/version.js', options).then((answer) => (answer.ok ? answer.text() : ''), () => '');
-const ours = fetched({}).then(versionIn); // undefined: built without
+const ours = fetched({}).then(versionIn); // undefined: built without a version
 
-// Asked with each greeting, and with each part that is loaded later: the server may be another one meanwhile. True: the page goes, once
-// for each version, whatever comes back. key: under which that is kept, of a page that holds others.
+// Compares versions at each greeting and each late-loaded part, because the server may have been replaced. Returns true if the page
+// reloads; it does so once per version. key: storage name, another one for pages that contain others.
 export async function renewIfOld(key = 'renewed') {
     const mine = await ours, version = versionIn(await fetched({ cache: 'no-store' }));
     if (!mine || !version || version === mine || stored(key) === version || !store(key, version))
@@ -16,7 +16,7 @@ export async function renewIfOld(key = 'renewed') {
     return true;
 }
 
-// On plain http a page has no service worker, and needs none.
+// Registers the service worker; plain http does not allow one.
 export function serveInstalled() {
     if (location.protocol === 'https:')
         navigator.serviceWorker?.register('service.js').catch((error) => console.warn(`not installed: ${error.message}`));

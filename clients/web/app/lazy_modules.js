@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Loads the modules of the page that are not needed for the first picture when they are first used: the script, its style sheets, its
-// markup, and with the first of them the words of all.
+// Loads modules on first use that the first picture does not need: script, style sheets, markup, and with the first of them the shared
+// words.
 import { learnWords, say } from '../core/words.js';
 import { sayAll, styled } from './common/dom.js';
 import { renewIfOld } from './install.js';
 
-const FIRST_WAIT_MS = 1000, LONGEST_WAIT_MS = 8000; // between tries
+const FIRST_WAIT_MS = 1000, LONGEST_WAIT_MS = 8000; // retry interval, first and longest
 
-// Of each module: its file in this folder without the ending, its class, its style sheets, the element that its markup fills, and whether
-// it says only what the page says at once, or has a file of words of its own.
+// For each module: file in this folder without extension, class, style sheets, element that its markup fills, and whether it needs no lazy
+// words (wordless) or has its own file of words.
 const MODULES = {
     about: { file: 'assets/about', type: 'About', styles: ['assets/about'] },
     account: { file: 'sharing/account', type: 'Account', styles: ['help/help', 'sharing/account'] },
@@ -53,23 +53,23 @@ async function markupOf(file) {
 }
 
 export class LazyModules {
-    // page: what the parts are given. tell(text): to the person.
+    // page: passed to the parts. tell(text): shows a message to the user.
     constructor(page, tell) {
         Object.assign(this, { page, tell });
-        this.made = new Map();     // by name
-        this.awaited = new Map();  // likewise: promises of those that are on their way
-        this.uses = new Map();     // likewise: what is to be done with one once it is there, by kind
-        this.missed = new Set();   // names of those that somebody waits for, and was not told that they failed
-        this.pauses = new Set();   // between tries: functions that end them
+        this.made = new Map();     // created parts by name
+        this.awaited = new Map();  // name -> promise of a part being loaded
+        this.uses = new Map();     // name -> callbacks to run once the part is loaded, by kind
+        this.missed = new Set();   // names of parts that the user waits for and whose failure was not shown yet
+        this.pauses = new Set();   // functions that end a retry interval early
     }
 
-    // A part that is there already, or undefined.
+    // Returns a loaded part, or undefined.
     there(name) {
         return this.made.get(name);
     }
 
-    // What a person wants of a part, done once it is there. Of wishes of one kind the last is done: who presses again while it is on its
-    // way does not want it shut.
+    // Runs f with a part, loading it first. Of several callbacks of one kind only the last runs: pressing a button again while its panel
+    // loads must not close it.
     async use(name, f, kind = f) {
         if (this.made.has(name)) {
             f(this.made.get(name));
@@ -81,13 +81,13 @@ export class LazyModules {
         wishes?.forEach((wish) => wish(part));
     }
 
-    // Nobody wants any more what did not come.
+    // Drops the pending callbacks of parts that did not load.
     giveUp() {
         this.uses.clear();
         this.missed.clear();
     }
 
-    // A part, loaded if need be. Where that fails it is said, and tried until it comes.
+    // Returns a promise of a part, loading it if necessary. A failure is shown, and loading is retried until it succeeds.
     get(name) {
         if (!this.made.has(name)) {
             this.missed.add(name);
@@ -96,7 +96,7 @@ export class LazyModules {
         return this.prepare(name);
     }
 
-    // Without a word: nobody asked for it yet.
+    // Loads a part in advance; failures are silent because nobody asked for it yet.
     prepare(name) {
         if (!this.awaited.has(name))
             this.awaited.set(name, this.bring(name));
@@ -119,20 +119,20 @@ export class LazyModules {
         }
     }
 
-    // The server is there again, or somebody asks.
+    // Retries at once: the server is back, or the user asks again.
     retryNow() {
         for (const go of this.pauses)
             go();
         this.pauses.clear();
     }
 
-    // A browser may remember for good that it could not fetch a module by its address, so that another one is asked for again.
+    // Loads a part. Browsers may cache a failed module fetch by its URL forever, so retries use another query.
     async load(name, tries) {
         const { file, type, styles = [], fills, wordless, words } = MODULES[name], again = tries > 0 ? `?again=${tries}` : '';
         const [module, markup] = await Promise.all([import(`./${file}.js${again}`), fills && markupOf(file), wordless || learnWords(),
             words && learnWords(words), ...styles.map(styled)]);
         if (await renewIfOld())
-            return new Promise(() => {}); // what came may be of another version than what is here, which goes
+            return new Promise(() => {}); // never resolves: the page reloads, because script and page may be of different versions
         if (fills) {
             const element = document.getElementById(fills);
             element.innerHTML = markup;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Puts the page together: one session, the viewport, and the panels around it.
+// Assembles the page: one session, the viewport, and the panels around it.
 import { watchSleep } from './common/clock.js';
 import { byId, setText } from './common/dom.js';
 import { address, connection, narrow, page, probeCodecs, session, viewport } from './startup.js';
@@ -14,16 +14,18 @@ import { Tools } from './toolbar/tools.js';
 import { Toolbar } from './toolbar/toolbar.js';
 
 const ADDRESS_WAIT_MS = 400, TOAST_MS = 6000;
-const WATCH_AFTER_MS = 5000; // the first picture comes before
-const MANY_PICTURES = 30; // a codec for pictures that change pays from here on
-const COMMANDS = ['selectTag', 'showTag', 'flyToTag', 'fitView', 'selectAsset', 'showTrend', 'addTrend', 'showAsset']; // of parts, too
+const WATCH_AFTER_MS = 5000; // delay of the watchdog, so that the first picture loads before it
+const MANY_PICTURES = 30; // after this many pictures, an inter-frame codec pays off
+// names of commands that lazily loaded parts receive
+const COMMANDS = ['selectTag', 'showTag', 'flyToTag', 'fitView', 'selectAsset', 'showTrend', 'addTrend', 'showAsset'];
 
 const selection = { tag: address.tag, hover: null };
 const modules = new LazyModules(page, tell);
 const does = (name) => (...given) => modules.use('commands', (commands) => commands[name](...given));
 new Toolbar({ session, does });
 const rightOf = (params) => params.split && { ...params, ...params.split };
-const isShared = (params, right) => right && legend.contents(params) === legend.contents(right); // then the right one is enough
+// one legend is enough for two equal halves
+const isShared = (params, right) => right && legend.contents(params) === legend.contents(right);
 const legend = new Legend({ session, element: byId('legend'), lying: page.lying,
     paramsOf: (params) => !isShared(params, rightOf(params)) && params });
 new Legend({ session, element: byId('legend-right'), lying: page.lying, paramsOf: rightOf });
@@ -60,7 +62,7 @@ const BUTTONS = { fit: 'fit', home: 'home', measure: 'measure', snapshot: 'snaps
 for (const [id, name] of Object.entries(BUTTONS))
     byId(id).addEventListener('click', does(name));
 
-// The newest is what counts, also where what it means is still on its way.
+// Stores the pointer position, also while the commands are still loading.
 function point(place) {
     page.pointed = place;
     modules.there('commands')?.point(place);
@@ -84,7 +86,7 @@ viewport.onDrawn = (newPicture) => {
             probeCodecs();
     }
     if (newPicture && (session.picture.past || status.past))
-        status.show(); // what it shows and what is said of it change together
+        status.show(); // picture and status text change together
     if (newPicture || overlay.dirty) {
         for (const name of ['card', 'place', 'measure', 'clipGizmo', 'notes'])
             modules.there(name)?.show();
@@ -92,7 +94,7 @@ viewport.onDrawn = (newPicture) => {
     }
 };
 new ResizeObserver(refresh).observe(byId('viewport'));
-setInterval(() => modules.there('card')?.tag && refresh(), 500); // its age goes on
+setInterval(() => modules.there('card')?.tag && refresh(), 500); // updates the age on the card
 
 for (const name of ['tags', 'alarms', 'proofs'])
     session.on(name, refresh);
@@ -116,7 +118,7 @@ session.on('params', async () => {
         if (['difference', 'uncertainty', 'blind'].includes(half.show))
             modules.get('coverage');
     }
-    if (params.clip && !document.body.classList.contains('wall') && await modules.get('clipGizmo')) // by hand, but for a wall
+    if (params.clip && !document.body.classList.contains('wall') && await modules.get('clipGizmo')) // the clip gizmo, not on a wall
         refresh();
 });
 let moved = false;
@@ -133,7 +135,7 @@ session.on('welcome', () => {
     if (session.imports && pictures === 0)
         modules.get('import');
     document.body.classList.toggle('looker', session.role === 'open');
-    byId('time-toggle').hidden = true; // until the server says that it records
+    byId('time-toggle').hidden = true; // the history button stays hidden until the server says that it records
     status.show();
     arrive();
     if (selection.tag)
@@ -143,7 +145,7 @@ session.on('welcome', () => {
     viewport.invalidate();
 });
 session.on('status', () => status.show());
-// Who may not see it any more, or has left the page alone for too long, leaves nothing on it.
+// After a logout, or a lock for inactivity, clears the page so that it shows nothing.
 session.on('denied', ({ code }) => {
     document.body.classList.add('denied');
     modules.use('token', (token) => token.ask(code));
@@ -157,13 +159,13 @@ session.on('followers', () => modules.get('share'));
 session.on('following', () => session.leader !== null && modules.get('following'));
 session.on('ignored', (what) => console.warn(`ignored: ${what}`));
 
-// Parts that fill the panel of views come after it.
+// Loads a part inside the panel of views, after that panel.
 async function bring(name) {
     await modules.get('views');
     modules.get(name);
 }
 
-// A view that the address names, once the server has said which there are.
+// Opens the view that the URL names, once the server has sent the list of views.
 let named = new URLSearchParams(location.hash.slice(1)).get('view');
 session.on('views', () => {
     const id = named;
@@ -172,7 +174,7 @@ session.on('views', () => {
     named = null;
 });
 
-// Where a link leads, and what of it, or of the view before, is not in this plant.
+// Goes to the link's destination, and reports what of the link, or of the previous view, does not exist in this plant.
 let arrived = false, astray = [];
 session.on('astray', (message) => astray.push(message));
 function arrive() {
@@ -187,12 +189,12 @@ let toastTimer;
 session.on('error', async ({ text, about, code, refusal }) => {
     console.warn(`error about ${about}: ${text}`);
     if (about === 'ack')
-        return; // nothing that a person did
+        return; // not caused by the user
     const { put, refusalText } = await import('../core/refusals.js');
     tell(put('page.refused', { text: refusalText(text, refusal, code) }));
 });
 
-// It was done, and is not, or not all of it, on the server's disk.
+// An action was done, but is not, or not completely, on the server's disk.
 session.on('unkept', async ({ not_kept: count, why, refusal, unaudited, unaudited_refusal: missing }) => {
     const { put, refusalText } = await import('../core/refusals.js');
     tell(count ? put('page.unkept', { text: refusalText(why, refusal) })
@@ -208,7 +210,7 @@ function tell(text, ms = TOAST_MS) {
 
 // --- the page
 
-// Nobody has changed anything since the greeting: the address stays as it came.
+// Returns whether the user has changed nothing since the greeting; the URL then stays as it was.
 const isUntouched = () => !location.hash && session.paramsSeq <= 1 && !moved && !selection.tag && session.time.atUs === null;
 
 let addressTimer;
@@ -218,7 +220,7 @@ function saveAddress() {
     clearTimeout(addressTimer);
     addressTimer = setTimeout(async () => {
         if (session.leader !== null)
-            return; // the link says whom to follow
+            return; // keeps the URL: the link names the session to follow
         const { addressOf } = await import('../core/address.js');
         history.replaceState(null, '', location.pathname + location.search + addressOf(session, selection.tag));
     }, ADDRESS_WAIT_MS);
@@ -243,15 +245,16 @@ async function watch() {
     const { watchMainThread } = await import('./common/watchdog.js');
     watchMainThread({ scale: () => page.unit, reloads: document.body.classList.contains('wall') && parent === window });
 }
-if (!new URLSearchParams(location.search).has('pane')) // a pane hangs with its wall, which is watched
+// a wall's pane needs no watchdog: wall and pane share a main thread, and the wall's is watched
+if (!new URLSearchParams(location.search).has('pane'))
     setTimeout(() => watch().catch(console.warn), WATCH_AFTER_MS);
-// The list of equipment is there from the beginning where there is room for it.
+// Opens the equipment list at the start where there is room for it.
 const showAssets = () => !narrow.matches && !document.body.classList.contains('wall') && modules.get('assets');
 narrow.addEventListener('change', showAssets);
 showAssets();
 session.listen();
 refresh();
 
-// For the console and for tests of the whole.
+// For the console and for end-to-end tests.
 globalThis.plantcast = { ...page, legend, get cameraController() { return modules.there('cameraController'); },
     get trends() { return modules.there('trends'); }, get assets() { return modules.there('assets'); } };

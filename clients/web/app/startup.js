@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the first picture takes: connection, session and viewport. What is around them (main.js) comes meanwhile.
+// What the first picture needs: connection, session and viewport. main.js loads the rest meanwhile.
 import { Connection } from '../core/connection.js';
 import { browserDecoding } from '../core/decoding.js';
 import { Session } from '../core/session.js';
@@ -11,18 +11,18 @@ import { chooseTheme } from './common/theme.js';
 import { Viewport } from './viewport/viewport.js';
 
 const query = new URLSearchParams(location.search);
-if (query.has('wall') && !/^[\d.,]*$/.test(query.get('wall'))) { // a name, not inches and metres
+if (query.has('wall') && !/^[\d.,]*$/.test(query.get('wall'))) { // a wall's id, not its size in inches and metres
     location.replace(`wall.html${location.search}`);
-    await new Promise(() => {}); // the other page comes
+    await new Promise(() => {}); // never resolves: the browser is leaving for the wall's page
 }
 export const page = { unit: 1, onUnit: () => {} };
 
-// What decides how large the picture is comes before it.
+// Everything that affects the picture's size comes first.
 document.documentElement.lang = language;
 sayAll(document);
 const backdrop = chooseTheme(query);
-export const narrow = window.matchMedia('(max-width: 1023px)'); // there the list of equipment lies over the picture
-const turned = window.matchMedia('(any-pointer: coarse)'); // in the hand, perhaps while there is no server
+export const narrow = window.matchMedia('(max-width: 1023px)'); // on narrow screens the equipment list overlays the picture
+const turned = window.matchMedia('(any-pointer: coarse)'); // touch devices may turn narrow while the server is unreachable
 const fold = () => (narrow.matches || turned.matches) && styled('common/narrow').catch(() => {});
 narrow.addEventListener('change', fold);
 document.querySelector('.stage').classList.toggle('without-assets', narrow.matches);
@@ -33,7 +33,7 @@ if (query.has('wall'))
 const named = location.hash.length > 1 ? (await import('../core/address.js')).readAddress(location.hash) : {};
 export const address = { camera: null, params: {}, tag: null, time: {}, ...named };
 
-// JPEG is shown at once; whether H.264 works here is found out when it pays, unless the address asks for it.
+// JPEG can be shown at once. H.264 support is probed later, when it pays, unless the URL asks for it.
 const wantedCodec = query.get('codec') ?? 'auto';
 const decoding = browserDecoding();
 const codecs = () => decoding.codecs.filter((name) => name !== 'auto' || wantedCodec === 'auto');
@@ -56,7 +56,7 @@ const wanted = { ...address, params: { ...address.params, backdrop } };
 export const session = new Session({ connection, now: clock.now, wanted, codecs: codecs() });
 session.token = stored('token');
 session.leader = Number(new URLSearchParams(location.hash.slice(1)).get('follow')) || null;
-// After a reload those who follow us find us again; of two tabs only one may have the secret, so it is kept between pages alone.
+// After a reload, followers find this session again by its secret. It is stored only between pages, so that two tabs never share it.
 session.resume = sessionStorage.getItem('resume');
 session.anew = session.resume !== null;
 sessionStorage.removeItem('resume');
@@ -69,6 +69,6 @@ viewport.onDrawn = (newPicture) => {
         byId('waiting').hidden = true;
 };
 session.on('hello', () => viewport.forget());
-session.on('welcome', fold); // where it could not be fetched before
+session.on('welcome', fold); // retries after a failed fetch
 connection.start();
 Object.assign(page, { session, viewport, decoding });

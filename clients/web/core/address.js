@@ -4,7 +4,7 @@ import { valid } from './camera.js';
 import { clipText, numbersText, readNumbers, readSensors, sensorsText } from './query.js';
 
 const CHOICES = {
-    // null: any name; the server knows which there are
+    // null: any name; the server validates it
     group : null,
     interpolation : null,
     distance : null,
@@ -17,12 +17,12 @@ const CHOICES = {
     environment : null,
 };
 const SETS = { hide: 'hidden', only: 'isolate', ghost: 'ghost' }; // lists of assets
-const LISTS = { range: 2, light: 3, breaks: null, isolines: null }; // of so many numbers
-const FACTORS = { strength: 1, decay: 1, power: null, radius: 0, reach: null }; // what they are where nothing is said
+const LISTS = { range: 2, light: 3, breaks: null, isolines: null }; // parameter -> required number of values; null: any
+const FACTORS = { strength: 1, decay: 1, power: null, radius: 0, reach: null }; // parameter -> default value; null: the group's
 const PARAMS = { radius: 'radius_m', reach: 'reach_m' };
 const HALF = ['group', 'show', 'distance', 'interpolation', 'colormap', 'look'];
 
-// Returns the fragment for a view. own: values of parameters that are left out because they are the default, such as those of a group.
+// Returns the fragment for a view. own: default values of parameters, such as those of a group; equal values are left out.
 export function writeAddress({ camera, params = {}, tag = null, time = null, own = {} }) {
     const parts = [], differs = (name) => JSON.stringify(params[name]) !== JSON.stringify(own[name]);
     const put = (name, value) => parts.push(`${name}=${encodeURIComponent(value).replace(/%2C|%3A|%3B/g, decodeURIComponent)}`);
@@ -53,7 +53,7 @@ export function writeAddress({ camera, params = {}, tag = null, time = null, own
     if (params.selected)
         put('asset', params.selected);
     for (const [name, param] of Object.entries(SETS)) {
-        if (params[param] && differs(param)) // none is said, too, where the plant begins otherwise
+        if (params[param] && differs(param)) // an empty list is written too where the plant's default is not empty
             put(name, params[param].join(','));
     }
     if (params.clip)
@@ -69,7 +69,7 @@ export function writeAddress({ camera, params = {}, tag = null, time = null, own
 
 export const addressOf = ({ camera, params, time, ownParams: own }, tag) => writeAddress({ camera, params, tag, time, own });
 
-// group:pressure;look:flat
+// Parses a split such as group:pressure;look:flat
 function readSplit(text) {
     const pairs = text.split(';').map((part) => [part.slice(0, part.indexOf(':')), part.slice(part.indexOf(':') + 1)]);
     return Object.fromEntries(pairs.filter(([name, value]) => HALF.includes(name) && value));
@@ -92,8 +92,7 @@ function readCamera(text) {
     return (n.length === 10 || n.length === 11) && valid(camera) ? camera : null;
 }
 
-// Reads a fragment. Returns { camera or null, params (only those that are given), tag or null, time: { atUs } if one is given }, without
-// what is invalid.
+// Parses a fragment and skips invalid parts. Returns { camera or null, params (only those given), tag or null, time: { atUs } if given }.
 export function readAddress(hash) {
     const fields = new URLSearchParams(hash.replace(/^#/, ''));
     const params = {};

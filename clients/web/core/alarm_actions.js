@@ -2,7 +2,7 @@
 // Actions on alarms by role and state, and the list of shelved, suppressed and out-of-service alarms.
 import { calls, isGone } from './alarms.js';
 
-const ACTIONS = { // by state; what can be done where the site keeps its own alarms
+const ACTIONS = { // actions by alarm state, where Plantcast manages the alarms
     unacknowledged: ['acknowledge', 'shelve'], returned: ['acknowledge', 'shelve'], acknowledged: ['shelve'],
     latched: ['acknowledge', 'reset'],
     shelved: ['unshelve'], out_of_service: ['in_service'],
@@ -19,16 +19,16 @@ export function actionsFor({ state }, mode, role) {
 export const asideOf = ({ rows }) =>
     [...rows.values()].filter(({ state }) => !calls(state)).sort((a, b) => (a.tag.index ?? -1) - (b.tag.index ?? -1));
 
-// Returns all alarms that a row of the list stands for: the one that is shown for the tag, and its others.
+// Returns all alarms of a row in the list: the tag's displayed alarm, and its others.
 const allOf = (row) => [row, ...(row.others ?? [])];
 
-// Returns those alarms of a row that an action applies to.
+// Returns the alarms of a row to which an action applies.
 export const targetsOf = (row, action, mode, role) => allOf(row).filter((alarm) => actionsFor(alarm, mode, role).includes(action));
 
-// Returns the actions that apply to a row, each once.
+// Returns the distinct actions that apply to a row.
 export const rowActions = (row, mode, role) => [...new Set(allOf(row).flatMap((alarm) => actionsFor(alarm, mode, role)))];
 
-const IS = { // by choice of the filter
+const IS = { // predicates by filter choice
     all: () => true, waiting: ({ waiting }) => waiting, active: ({ state }) => !isGone(state), gone: ({ state }) => isGone(state),
 };
 

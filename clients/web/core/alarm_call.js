@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which alarm a wall's pane shows in place of its view: the gravest that nobody has acknowledged, then the oldest, also once its cause has
-// gone, behind all others; several in turn, and none in a flood, when jumping from place to place would show nothing.
+// Selects the alarm that a wall's pane shows in place of its view: unacknowledged alarms in turn, active before returned, then by urgency
+// and age. Shows none during a flood, when jumping around would help nobody.
 import { isGone } from './alarms.js';
 
-export const TURN_MS = 10000;  // at the least between two changes of the picture
-export const FLOOD = 10; // more alarms than that within FLOOD_US are a flood
+export const TURN_MS = 10000;  // minimum time between two changes of the picture
+export const FLOOD = 10; // more than this many alarms within FLOOD_US are a flood
 const FLOOD_US = 600e6;
 
 const byGravity = (a, b) => a.priority - b.priority || a.raisedUs - b.raisedUs;
@@ -12,7 +12,7 @@ const keyOf = ({ tag, kind }) => `${tag.index}/${kind}`;
 
 export class AlarmCall {
     constructor() {
-        this.shown = null;     // key of the alarm that is shown; null: the view
+        this.shown = null;     // key of the shown alarm; null: the view
         this.changedAt = -Infinity;
     }
 
@@ -20,7 +20,7 @@ export class AlarmCall {
         return alarms.filter((alarm) => !isGone(alarm.state) && nowUs - alarm.raisedUs <= FLOOD_US).length > FLOOD;
     }
 
-    // Returns the alarm to show, or null. alarms: those to be seen, one for each tag; nowMs: of a clock that never goes back.
+    // Returns the alarm to show, or null. alarms: the annunciated ones, one per tag; nowMs: a monotonic time.
     next(alarms, nowMs, nowUs) {
         const waiting = this.isFlood(alarms, nowUs) ? [] : alarms.filter(({ tag, waiting: calls }) =>
             calls && tag.asset && tag.position).sort((a, b) => isGone(a.state) - isGone(b.state) || byGravity(a, b));
@@ -35,11 +35,11 @@ export class AlarmCall {
     }
 }
 
-// Of a flood: equipment with its alarms, the gravest first: [{ asset, count, worst }].
+// Returns equipment with its alarms, the most urgent first: [{ asset, count, worst }].
 export function byEquipment(alarms) {
     const all = new Map();
     for (const alarm of alarms) {
-        const key = alarm.tag.asset ?? alarm.tag.name; // devices, and tags of no equipment, each for itself
+        const key = alarm.tag.asset ?? alarm.tag.name; // each device, and each tag without equipment, forms its own entry
         const known = all.get(key) ?? { asset: alarm.tag.asset, count: 0, worst: alarm };
         all.set(key, { ...known, count: known.count + 1, worst: byGravity(alarm, known.worst) < 0 ? alarm : known.worst });
     }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The alarms that are not normal, as the server sends them; which of them are annunciated, one for each tag, and in what order.
+// The abnormal alarms that the server sends; which of them are annunciated, one per tag, and in what order.
 
-const CALLS = ['unacknowledged', 'active', 'returned', 'latched', 'acknowledged']; // what is to be seen
+const CALLS = ['unacknowledged', 'active', 'returned', 'latched', 'acknowledged']; // annunciated states
 
 export const calls = (state) => CALLS.includes(state);
 const isWaiting = (state) => state === 'unacknowledged' || state === 'returned';
-export const isGone = (state) => state === 'returned' || state === 'latched'; // its cause: drawn hollow
-// Where an alarm is not of a tag but of the device that many come from.
+export const isGone = (state) => state === 'returned' || state === 'latched'; // returned to normal: drawn hollow
+// Stands in for the tag in an alarm of a device, the source of many tags.
 const deviceOf = (name) => ({ name, index: null, group: null, asset: null, description: '' });
 
 const isOuter = ({ kind }) => kind === 'HH' || kind === 'LL';
@@ -18,9 +18,10 @@ export class Alarms {
     constructor(tags) {
         Object.assign(this, { tags, mode: 'display', known: false });
         this.rows = new Map(); // "tag index/kind" -> alarm
-        this.then = null; // readings of an instant of the past: a tag's gravest is of then
-        this.byTag = new Map(); // tag index or name of a device -> its gravest that is to be seen, with `waiting` (any of its alarms)
-        // and `others` (the rest of them)
+        this.then = null; // readings of a past instant that is shown; they then determine each tag's alarm
+        // tag index or device name -> its most urgent annunciated alarm, with `waiting` (whether any is unacknowledged)
+        this.byTag = new Map();
+        // and `others` (its other alarms)
     }
 
     hear({ mode, all, alarms }) {
@@ -43,7 +44,7 @@ export class Alarms {
             [key, { ...gravest, others, waiting: [gravest, ...others].some(({ state }) => isWaiting(state)) }]));
     }
 
-    // One for each tag. Those with something not yet acknowledged first, then what is there, then by priority, the newest first.
+    // Returns one alarm per tag: unacknowledged first, then active, then by priority, newest first.
     list() {
         return [...this.byTag.values()].sort((a, b) => b.waiting - a.waiting || isGone(a.state) - isGone(b.state) ||
             a.priority - b.priority || b.raisedUs - a.raisedUs);
@@ -57,8 +58,8 @@ export class Alarms {
         return this.byTag.get(index) ?? null;
     }
 
-    // Of tags and devices: { active (the cause is there), waiting (for somebody to acknowledge), latched, of, gone: by priority, those
-    // whose cause is there and those whose cause has gone }
+    // Returns counts of tags and devices: { active, waiting (unacknowledged), latched, of: active ones by priority, gone: returned ones by
+    // priority }
     counts() {
         const list = this.list(), of = [0, 0, 0, 0], gone = [0, 0, 0, 0];
         for (const { priority, state } of list)

@@ -16,8 +16,8 @@ export function approachDistance({ min, max }) {
     return PART * middle < MOST_M ? Math.max(LEAST_M, PART * middle) : MOST_M;
 }
 
-// Returns the cameras that a first one becomes, turned about a point.
+// Returns copies of a camera, turned about a point.
 export const sidesOf = (first, point) => TURNS.map(([azimuth, rise]) => orbit(first, azimuth, rise, point));
 
-// Returns the cameras for a point of equipment with these bounds.
+// Returns the cameras to try for a point on equipment with these bounds.
 export const approaches = (camera, point, bounds) => sidesOf(face(camera, point, bounds, approachDistance(bounds)), point);

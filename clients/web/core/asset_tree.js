@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The tree of equipment as rows: areas, assets, their tags, and tags without an asset; and which of them are expanded.
 
-// Rows: { kind: area | asset | tag, level, id, open (areas and assets), item (asset or tag), text (of an area), setSize, place }.
+// A row is { kind: area | asset | tag, level, id, open (areas and assets), item (asset or tag), text (of an area), setSize, place }.
 export class Tree {
-    // loose: what tags without equipment are listed under.
+    // loose: heading for tags without equipment.
     constructor(model, loose) {
-        this.folded = new Set(); // areas
-        this.open = new Set();   // assets
+        this.folded = new Set(); // ids of collapsed areas
+        this.open = new Set();   // ids of expanded assets
         const known = new Map();
         for (const asset of model.assets) {
             const area = asset.area ?? '';
@@ -29,13 +29,13 @@ export class Tree {
             set.delete(id);
     }
 
-    // What belongs to an asset is shown.
+    // Expands an asset and its area.
     unfold(asset) {
         this.open.add(asset.id);
         this.folded.delete(asset.area ?? '');
     }
 
-    // find(asset): { asset, tags, byTag } by a search (search.js), null: not found; null: there is none.
+    // find(asset): search function (search.js) that returns { asset, tags, byTag } or null; null: no search.
     rows(find = null) {
         const rows = [];
         for (const { name, assets } of this.areas) {

@@ -13,19 +13,19 @@ const proxyOf = (headers) => headers.get('server')?.split(/[/ ]/)[0] || /^\S+ ([
 // url: of the WebSocket. Returns the reason; '' if the server does not answer over HTTP either.
 async function whyBlocked(url) {
     const address = new URL(url.replace(/^ws/, 'http'));
-    address.search = '?why'; // the server logs others that ask without a WebSocket
+    address.search = '?why'; // without ?why the server logs requests that are not WebSockets
     const answer = await fetch(address, { cache: 'no-store', signal: AbortSignal.timeout(ANSWER_MS) });
     if (answer.status >= 500)
         return '';
     const refused = answer.status === 426 ? /^refused: (.+)$/m.exec(await answer.text())?.[1] : null;
-    if (refused) // the handshake reached the server
+    if (refused) // the handshake reached the server: no proxy blocks it
         return refused;
     const proxy = proxyOf(answer.headers), isNginx = /nginx|openresty/i.test(proxy);
     const needs = isNginx ? put('page.blocked_lines', { lines: NGINX }) : put('page.blocked_page');
     return put('page.blocked', { proxy: proxy || put('page.blocked_proxy'), needs });
 }
 
-// Asks over HTTP, and gives the connection the reason that was found.
+// Finds the reason over HTTP and stores it in the connection.
 export async function explain(connection) {
     const tried = connection.unopened;
     connection.blocked = await whyBlocked(connection.url).catch(() => '');

@@ -2,20 +2,22 @@
 // Places the labels of alarm rings: each by itself, or several that are close together in one call-out (protocol/LABELS.md).
 import { boxAt, CLEARANCE, hasArea, meets, SLOTS } from './labels.js';
 
-const CLOSE = 26, STILL_CLOSE = 34;         // units between rings that share a call-out; between those that did in the picture before
-const MOST_GROUPS = 24, FARTHER = 1.25;     // so many labels of rings at most; distances grow by that until there are no more
-const STEP_X = 24, STEP_Y = 15, STEPS = 60; // units: where else a label may be, from the middle of its rings
-const FARTHEST = 170;                       // units, unless there is no other label to join
-const MOST_GROWTHS = 100;                   // times FARTHER: then the distances are larger than any picture
+// units: rings closer than CLOSE share a call-out; those that already do stay together up to STILL_CLOSE
+const CLOSE = 26, STILL_CLOSE = 34;
+const MOST_GROUPS = 24, FARTHER = 1.25;     // maximum number of ring labels; distances grow by FARTHER until the limit is met
+const STEP_X = 24, STEP_Y = 15, STEPS = 60; // units: grid of label positions around the centre of the rings
+const FARTHEST = 170;                       // units; beyond this a label is only placed if there is no other to join
+const MOST_GROWTHS = 100;                   // maximum number of growth steps; by then distances exceed any picture
 
-const OFFSETS = []; // [x, y, squared distance], the nearest first
+const OFFSETS = []; // [x, y, squared distance], nearest first
 for (let j = -STEPS; j <= STEPS; j++) {
     for (let i = -STEPS; i <= STEPS; i++)
         OFFSETS.push([i * STEP_X, j * STEP_Y, (i * STEP_X) ** 2 + (j * STEP_Y) ** 2]);
 }
-OFFSETS.sort((a, b) => a[2] - b[2]); // stable: by rows
+OFFSETS.sort((a, b) => a[2] - b[2]); // sort() is stable: offsets of equal distance keep the row order
 
-// [[index, ...], ...], each ascending, in the order of their first ones: what linked(i, k), k < i, joins.
+// Returns the connected components as [[index, ...], ...], each ascending, in the order of their first index. linked(i, k), k < i: whether
+// two are joined.
 function components(count, linked) {
     const first = Array.from({ length: count }, (_, i) => i);
     const root = (i) => (first[i] === i ? i : (first[i] = root(first[i])));
@@ -39,7 +41,8 @@ function group(members, measure) {
     const xs = members.map(({ x }) => x), ys = members.map(({ y }) => y);
     const [left, right, top, bottom] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
     const [one] = members, alone = members.length === 1, { width, height } = alone ? one : measure(members);
-    const before = members.find(({ callout }) => (callout === undefined) === alone); // it had such a label, or another kind
+    // a member that had such a label, or one of the other kind
+    const before = members.find(({ callout }) => (callout === undefined) === alone);
     return {
         members, x: (left + right) / 2, y: (top + bottom) / 2, across: (right - left) / 2, down: (bottom - top) / 2, width, height,
         ring: true, held: before?.held ?? -1, owner: alone ? one.id : null,
@@ -58,8 +61,8 @@ const hasFiniteBox = ({ x, y, across, down, width, height }) => [x, y, across, d
 const placeable = (items, area, unit) => (hasArea(area) && unit > 0 && unit < Infinity
     ? items.filter(({ x, y, width, height }) => [x, y, width, height].every(Number.isFinite)) : []);
 
-// all: items with rings, the most important first; measure(members): { width, height } of their call-out; taken: of labels.js.
-// Returns [{ members, box, slot }, ...]; every item at a finite place is a member of one of them. An area of 0x0 has no labels.
+// all: items with rings, most important first; measure(members): { width, height } of their call-out; taken: occupied space (labels.js).
+// Returns [{ members, box, slot }, ...]; each item at a finite position belongs to one. An area of 0x0 has no labels.
 export function placeRings(all, { area, unit, taken, measure }) {
     const order = placeable(all, area, unit);
     let lists, least = unit;
@@ -85,11 +88,11 @@ export function placeRings(all, { area, unit, taken, measure }) {
         const joined = components(groups.length, (i, k) => mates.get(i) === k || mates.get(k) === i)
             .map((list) => group(order.filter((item) => list.some((i) => groups[i].members.includes(item))), measure)).filter(hasFiniteBox);
         if (joined.length >= groups.length)
-            return out; // no two could be joined: the others stay without a label
+            return out; // no two can be joined: the rest stays without a label
         groups = joined;
     }
 
-    // null: nowhere near; Infinity: nowhere at all, and there is nothing to join.
+    // Finds a free position. Returns null: none nearby; Infinity: none at all, and no label to join.
     function find(one, out, alone) {
         const free = (slot, more, over) => {
             const box = boxOf(one, slot, unit), owner = slot < SLOTS.length ? one.owner : null;
@@ -105,7 +108,7 @@ export function placeRings(all, { area, unit, taken, measure }) {
                     return slot;
             }
         }
-        for (const over of alone ? [1, 2] : [1]) { // at last over its own rings
+        for (const over of alone ? [1, 2] : [1]) { // a single ring's label may, as a last resort, cover its own ring
             for (let n = 0; n < OFFSETS.length && (alone || OFFSETS[n][2] <= FARTHEST ** 2); n++) {
                 if (free(SLOTS.length + n, CLEARANCE * unit, over))
                     return SLOTS.length + n;
@@ -114,7 +117,7 @@ export function placeRings(all, { area, unit, taken, measure }) {
         return alone ? Infinity : null;
     }
 
-    // Over other things, but within the area.
+    // Returns a position inside the area that may cover other things.
     function forced(one) {
         const left = Math.max(area.left, Math.min(area.right - one.width, one.x - one.width / 2));
         const top = Math.max(area.top, Math.min(area.bottom - one.height, one.y - one.height / 2));

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Cameras (camera_moves.js moves them). A camera is { eye, target, up, fov }: metres in the plant frame, fov vertical in degrees; target is
-// the point that it orbits. One that has height_m, what its picture is high, is orthographic; fov is then kept for
-// later. Every function returns a new camera. Picture places are pixels from the top left.
+// the centre of orbits. A camera with height_m (the picture's height in metres) is orthographic and only stores fov. Every function returns
+// a new camera. Picture positions are pixels from the top left.
 import { along, cross, dot, finite, length, middle, scale, subtract, unit } from './vector.js';
 
 export const RADIANS = Math.PI / 180;
-export const LEAST_M = 1e-5; // of a distance and of a picture's height: what the server accepts
+export const LEAST_M = 1e-5; // minimum of a distance or a picture height that the server accepts
 export const MAX_COORDINATE_M = 1e7;
 export const USUAL_FOV = 45;
 
@@ -21,7 +21,7 @@ export function valid(camera) {
     return length(view) > 1e-9 && length(camera.up) > 1e-9 && length(cross(unit(view), unit(camera.up))) > 1e-6;
 }
 
-// Returns a camera that was moved, or the one before the move if the server would not accept it, as after a move in a picture of 0x0.
+// Returns the moved camera, or the previous one if the server would reject the move, as in a picture of 0x0.
 export const validOr = (moved, before) => (valid(moved) ? moved : before);
 
 // Returns whether two cameras are equal.
@@ -54,8 +54,8 @@ export function cameraOfMessage({ eye, target, up, fov, height_m }) {
     return { eye, target, up, fov: fov ?? USUAL_FOV, ...(height_m === undefined ? {} : { height_m }) };
 }
 
-// Returns a function that projects a point of the plant to [x, y, depth in metres] in the picture; null: it is behind the eye, or nowhere,
-// as in a picture of 0x0.
+// Returns a function that projects a point of the plant to [x, y, depth in metres] in the picture; null for points behind the camera or a
+// picture of 0x0.
 export function projector(camera, widthPx, heightPx) {
     const { forward, right, up } = basis(camera);
     const perMetre = 1 / metresPerPixel(camera, heightPx, 1), parallel = isParallel(camera);
@@ -68,14 +68,15 @@ export function projector(camera, widthPx, heightPx) {
     };
 }
 
-// Returns the part of the picture that the legend leaves free, in coordinates from -1 to 1. title: size of its letters.
+// Returns the window of the picture that the legend leaves free, in coordinates from -1 to 1. title: length of the legend's title in
+// letters.
 export const besideLegend = (width, height, lies, title = 14) => (lies ? { top: 1 - 2 * share(130, height) }
     : { right: 1 - 2 * share(Math.max(128, 7.6 * title + 24) + (height <= 320 ? 110 : 28), width) });
 const share = (part, whole) => (whole > 0 && part / whole <= 0.4 ? part / whole : 0.4);
 
-const FIT = 1.08; // leaves a rim
+const FIT = 1.08; // margin, as a factor
 
-// Returns a perspective camera that looks the same way, just far enough away that all points are within the window.
+// Returns a perspective camera with the same direction, just far enough away that all points are in the window.
 function fitPoints(camera, points, aspect, { left = -1, right = 1, bottom = -1, top = 1 }) {
     const axes = basis(camera), tall = Math.tan((camera.fov * RADIANS) / 2);
     const centre = middle(...[Math.min, Math.max].map((f) => [0, 1, 2].map((i) => f(...points.map((p) => p[i])))));
@@ -91,8 +92,8 @@ function fitPoints(camera, points, aspect, { left = -1, right = 1, bottom = -1, 
     return { ...camera, eye: along(target, axes.forward, -back), target };
 }
 
-// Returns the camera of the home view, which shows the whole plant. A view from the plant file is used as it is if all that it shows at
-// 16:9 is visible here; else it is moved back.
+// Returns the camera of the home view, which shows the whole plant. A home camera from the plant file is used unchanged if everything it
+// shows at 16:9 is visible here; else it is moved back.
 export function home({ home: { given, ...view }, outline }, width, height, window = {}) {
     const aspect = width / height, sees = (shape, { right = 1, top = 1 }) => {
         const project = projector(view, 2 * shape, 2);

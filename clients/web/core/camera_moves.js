@@ -4,8 +4,8 @@
 import { basis, heightAt, isParallel, LEAST_M, MAX_COORDINATE_M, metresPerPixel, RADIANS, USUAL_FOV, validOr } from './camera.js';
 import { add, along, cross, dot, length, middle, scale, subtract, unit } from './vector.js';
 
-export const USUAL_LIMITS = { near_m: 0.05, far_m: 1e5 }; // of zooming
-export const MAX_ELEVATION_DEG = 89; // straight up or down the horizon has no direction, and the picture would spin
+export const USUAL_LIMITS = { near_m: 0.05, far_m: 1e5 }; // limits of zooming
+export const MAX_ELEVATION_DEG = 89; // at 90 degrees the horizon has no direction, and the picture would spin
 
 // Rodrigues: v turned by `angle` radians about a unit axis, right-handed.
 function turn(v, axis, angle) {
@@ -15,13 +15,13 @@ function turn(v, axis, angle) {
 
 const corners = (box) => [0, 1, 2, 3, 4, 5, 6, 7].map((n) => [0, 1, 2].map((i) => (n & (1 << i) ? box.max[i] : box.min[i])));
 
-// Returns the box around all assets of a plant, those that its bounds leave out included.
+// Returns the box around all assets of a plant, including those outside the plant's bounds.
 export const wholeOf = ({ assets, plant }) => ({
     min: plant.bounds.min.map((m, i) => Math.min(m, ...assets.map(({ bounds }) => bounds.min[i]))),
     max: plant.bounds.max.map((m, i) => Math.max(m, ...assets.map(({ bounds }) => bounds.max[i]))),
 });
 
-// Returns the nearest and the farthest distance that one may zoom to in a plant: the usual ones, or as its size asks for.
+// Returns the zoom limits for a plant: the usual ones, widened for very small or large plants.
 export function zoomLimits(model) {
     const size = ({ min, max }) => length(subtract(max, min));
     return { near_m: Math.max(LEAST_M, Math.min(USUAL_LIMITS.near_m, size(model.plant.bounds) / 100)),
@@ -36,7 +36,7 @@ function fitParallel(camera, box, aspect, margin) {
     return validOr({ ...camera, height_m, eye: along(centre, forward, -(2 * reach(forward) + height_m)), target: centre }, camera);
 }
 
-// Fits a box into the picture with a margin, looking the same way at its centre.
+// Fits a box into the picture with a margin; keeps the viewing direction.
 export function fit(camera, box, aspect, margin = 1.08) {
     const { forward, right, up } = basis(camera);
     const centre = middle(box.min, box.max);
@@ -95,7 +95,7 @@ export function toPerspective(camera) {
     return validOr({ ...rest, fov, eye: along(rest.target, basis(camera).forward, -back) }, camera);
 }
 
-// Pans so that what is at that depth follows the pointer exactly.
+// Pans so that a point at that depth follows the pointer exactly.
 export function pan(camera, dxPx, dyPx, heightPx, depth = distance(camera)) {
     const { right, up } = basis(camera);
     const step = metresPerPixel(camera, heightPx, depth);
@@ -120,8 +120,8 @@ function zoomParallel(camera, factor, xPx, yPx, widthPx, heightPx, { near_m, far
     return validOr({ ...zoomed, eye: add(camera.eye, move), target: add(camera.target, move) }, camera);
 }
 
-// Zooms; factor < 1 goes nearer. What is under (xPx, yPx) stays there; the target moves to its depth, so that the next orbit is about what
-// was looked at.
+// Zooms; factor < 1 moves nearer. The point under (xPx, yPx) stays fixed. The target moves to its depth, so that the next orbit turns about
+// that point.
 export function zoom(camera, factor, xPx, yPx, widthPx, heightPx, depth = distance(camera), limits = USUAL_LIMITS) {
     if (isParallel(camera))
         return zoomParallel(camera, factor, xPx, yPx, widthPx, heightPx, limits);
@@ -135,7 +135,7 @@ export function enterBox(origin, direction, box) {
     let near = -Infinity, far = Infinity;
     for (let i = 0; i < 3; i++) {
         const a = (box.min[i] - origin[i]) / direction[i], b = (box.max[i] - origin[i]) / direction[i];
-        if (Number.isNaN(a) || Number.isNaN(b)) // parallel to this pair of faces and exactly in one of them
+        if (Number.isNaN(a) || Number.isNaN(b)) // 0/0: the ray is parallel to this pair of faces, and exactly in one of them
             continue;
         near = Math.max(near, Math.min(a, b));
         far = Math.min(far, Math.max(a, b));

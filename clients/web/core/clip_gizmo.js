@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Geometry of the clip gizmo: the grips of a clip, one for each plane, one for each side of a box and one for the whole box; where they are
-// and where dragging takes them.
+// Geometry of the clip gizmo: handles for each plane, each side of a box and the whole box; their positions and how dragging moves them.
 import { basis, isParallel } from './camera.js';
 import { AXES } from './section.js';
 import { add, along, cross, dot, finite, length, middle, mix, scale, subtract, unit } from './vector.js';
 
-const LEAST_BOX_M = 0.05, MARGIN = 1e-3; // a plane stays inside the plant by this part of it
-const NEAR_M = 0.02;                     // of the eye
-const STEEP = 0.03;                      // sine squared between sight and way: below, a hand cannot say how far
+const LEAST_BOX_M = 0.05, MARGIN = 1e-3; // MARGIN: a plane stays inside the plant by this fraction
+const NEAR_M = 0.02;                     // lines are clipped this many metres in front of the camera
+const STEEP = 0.03;                      // minimum squared sine between view and handle direction; below it a drag is undefined
 
 const isSound = ({ direction, at, low, high, corners }) => [at, low, high].every(Number.isFinite) && [direction, ...corners].every(finite);
-// A clip that was moved, or the one before if the move is not finite.
+// Returns the moved clip, or the previous one if the result is not finite.
 const soundOr = (moved, before) =>
     ((moved.planes ?? [moved.box.min, moved.box.max]).flat().every(Number.isFinite) ? moved : before);
 
@@ -19,7 +18,7 @@ const middleOf = (points) => scale(points.reduce(add), 1 / points.length);
 const cornersOf = ({ min, max }) =>
     [0, 1, 2, 3, 4, 5, 6, 7].map((n) => [0, 1, 2].map((i) => (n & (1 << i) ? max[i] : min[i])));
 
-// Where a plane p·direction = at meets a box: the corners of that polygon, in order.
+// Returns the ordered corners of the polygon where the plane p·direction = at meets a box.
 function crossing(direction, at, box) {
     const corners = cornersOf(box), found = [];
     for (let a = 0; a < 8; a++) {
@@ -63,15 +62,15 @@ function sideGrip(box, index, high, bounds) {
         high: high ? Math.max(bounds.max[index] + more, box.max[index]) : box.max[index] - LEAST_BOX_M };
 }
 
-// Returns the grips of a clip: [{ id, axis (null: oblique), turned (the smaller side stays), direction (unit vector), at, low, high (metres
-// along it), corners }], without those that are not finite.
+// Returns the finite handles of a clip: [{ id, axis (null: oblique), turned (keeps the smaller side), direction (unit vector), at, low,
+// high (metres along it), corners }].
 export function gripsOf(clip, bounds) {
     if (clip?.planes)
         return clip.planes.map((plane, index) => planeGrip(plane, index, bounds)).filter(isSound);
     return clip?.box ? [0, 1, 2].flatMap((i) => [false, true].map((high) => sideGrip(clip.box, i, high, bounds))).filter(isSound) : [];
 }
 
-// Returns the clip with a grip moved, within its limits.
+// Returns the clip with a handle moved, within its limits.
 export function moveGrip(clip, { index, size, turned, direction, low, high }, to) {
     const at = Math.max(low, Math.min(high, to));
     if (clip.planes) {
@@ -84,7 +83,7 @@ export function moveGrip(clip, { index, size, turned, direction, low, high }, to
     return soundOr({ box }, clip);
 }
 
-// Returns the grip of a whole box, at its centre; null if the clip is no box, or one that is not finite.
+// Returns the handle of a whole box, at its centre; null if the clip is not a finite box.
 export function wholeOf(clip) {
     const centre = clip?.box ? middle(clip.box.min, clip.box.max) : null;
     return finite(centre) ? { id: 'whole', corners: [centre], direction: [0, 0, 0], low: 0, high: 0 } : null;
@@ -104,7 +103,7 @@ export function facing(camera, point, { origin, direction }) {
     return finite(met) ? met : point;
 }
 
-// Returns the positions on its plane where a grip may be drawn, the centre first.
+// Returns candidate positions for a handle on its plane, the centre first.
 export function spotsOf({ corners }) {
     if (corners.length === 0)
         return [];
@@ -118,12 +117,13 @@ export function alongSight(point, direction, { origin, direction: towards }) {
     const w = subtract(point, origin), c = dot(towards, towards), b = dot(direction, towards), sine2 = 1 - (b * b) / c;
     if (sine2 < STEEP)
         return null;
-    const ahead = (dot(w, towards) - b * dot(w, direction)) / (c * sine2); // in front of the eye
+    // distance along the viewing ray; positive: in front of the camera
+    const ahead = (dot(w, towards) - b * dot(w, direction)) / (c * sine2);
     const way = (b * dot(w, towards) - c * dot(w, direction)) / (c * sine2);
     return ahead > 0 && Number.isFinite(way) ? way : null;
 }
 
-// Clips a line to what is in front of the eye; null if nothing is.
+// Clips a line to the part in front of the camera; null if there is none.
 export function beforeEye(camera, a, b) {
     if (isParallel(camera))
         return [a, b];

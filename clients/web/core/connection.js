@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A WebSocket that reconnects: with pauses between tries, a check that the server still answers, and its state for the page.
+// A WebSocket that reconnects with increasing waits, checks that the server still answers, and reports its state to the page.
 import { SUBPROTOCOL } from './wire.js';
 import { say } from './words.js';
 
 export const FIRST_WAIT_MS = 500, LONGEST_WAIT_MS = 8000, JITTER = 0.25;
-// A server with nothing to say answers at least these.
+// An idle server still answers pings.
 export const PING_MS = 2000;
 export const QUIET_MS = 5000;
 export const DEAD_MS = 12000;
@@ -15,26 +15,25 @@ const CLOSE_REASONS = {
 };
 
 export class Connection {
-    // open(url, protocol): a WebSocket. clock: { now(), setTimeout(f, ms), clearTimeout(id) }. Handlers: onState(connection),
-    // onOpen(), onText(string), onBytes(ArrayBuffer). onUnopened(): a WebSocket did not open, for
-    // at least the second time in a row; `blocked` holds the reason to show.
-    // spreadMs, to be set: up to so much is added to each wait.
+    // open(url, protocol): creates a WebSocket. clock: { now(), setTimeout(f, ms), clearTimeout(id) }. Handlers: onState(connection),
+    // onOpen(), onText(string), onBytes(ArrayBuffer). onUnopened(): at least the second WebSocket in a row did not open; `blocked` holds
+    // the reason to show. spreadMs: maximum random addition to each wait.
     constructor({ url, open, clock, random = Math.random }) {
         Object.assign(this, { url, openSocket: open, clock, random, spreadMs: 0, unopened: 0, blocked: '' });
         // stopped | connecting | open | waiting | barred (until retryNow)
         this.state = 'stopped';
-        // Open, but nothing was heard for QUIET_MS.
+        // open, but silent for QUIET_MS
         this.quiet = false;
         // Why the last connection ended.
         this.reason = '';
-        // Failed tries since the last good connection.
+        // Failed attempts since the last good connection.
         this.tries = 0;
         this.retryAt = null;
-        // The least wait before the next try, as the server asked, in ms.
+        // Minimum wait before the next attempt, as the server asked, in ms.
         this.leastWait = 0;
         // When the last good connection ended.
         this.lostAt = null;
-        // When somebody was last at the page; of the clock that runs on while a machine sleeps.
+        // Last user activity; by Date.now(), which continues while a machine sleeps.
         this.activeAt = Date.now();
         this.onState = this.onOpen = this.onText = this.onBytes = this.onUnopened = () => {};
     }
@@ -49,25 +48,25 @@ export class Connection {
         this.become('stopped');
     }
 
-    // Tries now instead of when the wait is over: the network came back, or somebody asks.
+    // Retries at once: the network is back, or the user asks.
     retryNow() {
         if (this.state === 'waiting' || this.state === 'barred')
             this.connect();
     }
 
-    // The server has no room: not before so long.
+    // Sets the minimum wait, as a full server demands.
     hold(ms) {
         this.leastWait = ms;
     }
 
-    // The server does not let us in as we are: no more tries until somebody has something new to say.
+    // Stops retrying after a refusal that only a user can resolve, with a new token for example.
     bar(reason) {
         this.drop();
         this.reason = reason;
         this.become('barred');
     }
 
-    // The peer has proved that it speaks with us: the next loss starts with the shortest wait again.
+    // Resets the backoff once the peer has proved that it works.
     settle() {
         this.tries = 0;
         this.lostAt = null;
@@ -111,7 +110,7 @@ export class Connection {
             if (back)
                 this.leastWait = back[1] * 1000;
             const known = CLOSE_REASONS[event.code];
-            // Not the first time: a server that was restarting is back by the second.
+            // Skips the first failure: a restarting server is back by the second attempt.
             const again = this.state === 'connecting' && !known && this.unopened++;
             this.lose(known ? say(known) : event.reason || this.blocked || say('reason.unreachable'));
             if (again)
@@ -125,7 +124,7 @@ export class Connection {
         this.unopened = 0;
         this.blocked = '';
         this.lastHeard = this.clock.now();
-        // Time of the first ping that nothing came after.
+        // Time of the first unanswered ping.
         this.pingAt = null;
         this.nextPing = this.lastHeard + PING_MS;
         this.watch();
@@ -160,8 +159,7 @@ export class Connection {
         }, 500);
     }
 
-    // Sends a ping when one is due. Returns for how long the server has been silent though it was asked: the timers of a page that
-    // nobody looks at may rest for a minute.
+    // Sends a due ping. Returns how long the server has been silent after a ping, because timers of a hidden page may pause for a minute.
     ask() {
         const now = this.clock.now();
         if (now >= this.nextPing) {
@@ -172,7 +170,7 @@ export class Connection {
         return this.pingAt !== null && now - this.pingAt >= ANSWER_MS ? now - this.lastHeard : 0;
     }
 
-    // We slept, or something else makes it doubtful that the peer is still there: until it speaks it counts as silent.
+    // After a sleep, or another doubt about the peer: counts it as silent until it answers.
     doubt() {
         if (this.state !== 'open')
             return;
@@ -182,7 +180,7 @@ export class Connection {
         this.watch();
     }
 
-    // Lets go of the socket at once: a close over a dead line can take minutes.
+    // Abandons the socket at once: a close over a dead line can take minutes.
     drop() {
         this.clock.clearTimeout(this.timer);
         const socket = this.socket;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Decides which markers are drawn where there are many (protocol/LABELS.md).
+// Thins out markers where there are many (protocol/LABELS.md).
 
-const MOST = 6, NEAR = 30, HELD = 0.8; // within so many units, of which so much counts for what was drawn in the picture before
+const MOST = 6, NEAR = 30, HELD = 0.8; // MOST: markers within NEAR units; HELD: weight of a marker drawn in the previous picture
 
-// items: { x, y, depth, occluded, kept (always drawn), held (drawn in the picture before) }. Returns those to draw, in their order.
+// items: { x, y, depth, occluded, kept (always drawn), held (drawn in the previous picture) }. Returns the items to draw, in order.
 export function thinOut(items, unit = 1) {
     const cell = NEAR * unit, cells = new Map(), drawn = new Set(items.filter(({ kept }) => kept));
     const key = ({ x, y }) => Math.floor(x / cell) * 65536 + Math.floor(y / cell);
@@ -28,7 +28,7 @@ export function thinOut(items, unit = 1) {
         return false;
     };
     drawn.forEach(put);
-    const others = items.filter(({ kept }) => !kept); // sorting is stable: then by index
+    const others = items.filter(({ kept }) => !kept); // sort() is stable: ties stay in index order
     others.sort((a, b) => a.occluded - b.occluded || b.held - a.held || a.depth - b.depth);
     for (const item of others) {
         if (!isCrowded(item)) {

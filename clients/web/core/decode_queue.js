@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Queue of frames to decode: one is being decoded; of the others only the newest key frame and those after it are kept. A slow decoder
-// makes pictures rarer, never later.
+// Queue of frames to decode: one is being decoded; of the waiting ones only the newest key frame and later ones are kept. A slow decoder
+// lowers the picture rate without adding delay.
 
 export class DecodeQueue {
-    // decode(frame): promise of a picture. ready(frame, picture, decodeMs) in order. failed(frame, error). now(): milliseconds.
+    // decode(frame): returns a promise of a picture. ready(frame, picture, decodeMs): called in order. failed(frame, error). now():
+    // milliseconds.
     constructor({ decode, ready, failed, now }) {
         Object.assign(this, { decode, ready, failed, now });
         this.waiting = [];
@@ -22,7 +23,7 @@ export class DecodeQueue {
             this.run();
     }
 
-    // Forgets all, also what is being decoded now: the connection it came from is gone.
+    // Drops all frames, including the one being decoded, when their connection is gone.
     clear() {
         this.waiting = [];
         this.generation++;

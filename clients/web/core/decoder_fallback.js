@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Chooses how H.264 is decoded, in hardware or software: tested once and remembered, with a fallback when it fails. Loaded when H.264 is
-// worth it.
+// Chooses hardware or software decoding of H.264: tested once and stored, with a fallback on failure. Loaded when H.264 pays off.
 import { H264Decoder, whatIsWrong } from './h264.js';
 
-const ACCELERATIONS = ['no-preference', 'prefer-software']; // hardware first, if there is any
+const ACCELERATIONS = ['no-preference', 'prefer-software']; // hardware first
 const KEPT = 'plantcast.h264';
 
-// What was learnt of this very browser: a way, 'none', or null.
+// Returns the stored result for this browser version: an acceleration, 'none', or null.
 function remembered({ store, agent }) {
     try {
         const known = JSON.parse(store?.getItem(KEPT) ?? 'null');
         return known?.agent === agent ? known.way : null;
     } catch {
-        return null; // a store that may not be read
+        return null; // storage may be forbidden
     }
 }
 
@@ -20,7 +19,7 @@ function remember({ store, agent }, way) {
     try {
         store?.setItem(KEPT, JSON.stringify({ agent, way }));
     } catch {
-        // it is tried again next time
+        // tested again next time
     }
 }
 

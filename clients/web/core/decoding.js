@@ -1,28 +1,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Decodes frames: JPEG and PNG by the browser itself, H.264 once decoder_fallback.js has found that it works.
+// Decodes frames: JPEG and PNG by the browser, H.264 once decoder_fallback.js has found a working decoder.
 
 export const PLAIN = ['jpeg', 'png'];
 const MIME = { jpeg: 'image/jpeg', png: 'image/png' };
-const AGAIN_MS = 10000; // two failures within so long: it does not work
+const AGAIN_MS = 10000; // two failures within this time count as a broken decoder
 
-// Turns frames into pictures that can be drawn. onCodecs(list): the codecs to ask the server for from now on. onLost(): a key frame is
-// needed.
+// Turns frames into drawable pictures. onCodecs(list): codecs to request from now on. onLost(): a key frame is needed.
 export class Decoding {
-    // env: { api (with VideoDecoder, or without), store, agent, now, makeBitmap(blob), tryOut(decoder) where not the usual one }.
+    // env: { api (with or without VideoDecoder), store, agent, now, makeBitmap(blob), tryOut(decoder) (optional) }.
     constructor(env) {
         Object.assign(this, { env, h264: null, lost: false, failedAt: -Infinity });
-        this.codecs = this.plain = PLAIN; // plain: those that need no decoder of ours
+        this.codecs = this.plain = PLAIN; // plain: codecs that need no VideoDecoder
         this.onCodecs = this.onLost = () => {};
     }
 
-    // Finds out whether H.264 works here.
+    // Tests whether H.264 works here.
     async probe() {
         if (this.env.api.VideoDecoder)
-            this.fallback = await import('./decoder_fallback.js').catch(() => null); // the server is away: JPEG it stays
+            this.fallback = await import('./decoder_fallback.js').catch(() => null); // the server is unreachable: stay with JPEG
         await this.fallback?.probe(this);
     }
 
-    // A promise of something with close() that a canvas draws.
+    // Returns a promise of a picture with close() that a canvas can draw.
     async decode(frame) {
         if (this.lost && !frame.key)
             throw new Error('the picture that it changes is missing');
@@ -62,7 +61,7 @@ export const browserDecoding = () => {
     try {
         store = globalThis.localStorage;
     } catch {
-        // not allowed to this page
+        // storage is forbidden
     }
     return new Decoding({
         api: globalThis, store, agent: navigator.userAgent, now: () => performance.now(),

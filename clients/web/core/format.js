@@ -25,10 +25,10 @@ function plainText(value, decimals) {
     return Number(text) === 0 ? text.replace('-', '') : text;
 }
 
-// Formats a number in the reader's locale, without thousands separators, which others read as decimal marks.
+// Formats a number in the reader's locale, without thousands separators, which could be read as decimal marks.
 export const numberText = (value, decimals) => (known(value) ? inLocale(plainText(value, decimals)) : '–');
 
-// The same without trailing zeros.
+// Formats a number without trailing zeros.
 export const shortNumberText = (value, decimals) =>
     (known(value) ? inLocale(plainText(value, decimals).replace(/(\.\d*?)0+$/, '$1').replace(/\.$/, '')) : '–');
 
@@ -52,17 +52,17 @@ export function ageText(ms) {
 }
 
 const two = (n) => String(n).padStart(2, '0');
-const clocks = new Map(); // by zone: to make one takes long
+const clocks = new Map(); // formatters by time zone, because creating one is slow
 
-// { date, day (of the year, without it), time, offset } of an instant in a time zone by its IANA name, as the reader writes a date; hours
-// are always 0 to 23. A zone that the browser does not know is shown as UTC, and says so.
+// Returns a function from an instant to { date, day (date without the year), time, offset } in a time zone given by its IANA name, in the
+// reader's date format; hours are 0 to 23. A zone unknown to the browser is shown as UTC, and labelled so.
 export function zoneClock(timeZone) {
     if (!clocks.has(timeZone))
         clocks.set(timeZone, makeClock(zoneOf(timeZone)));
     return clocks.get(timeZone);
 }
 
-// What the browser does not know is UTC.
+// Returns the zone, or UTC if the browser does not know it.
 export function zoneOf(name) {
     try {
         return new Intl.DateTimeFormat('en', { timeZone: name }).resolvedOptions().timeZone;
@@ -92,7 +92,7 @@ export const qualityText = (quality) => say(QUALITIES.includes(quality) ? `quali
 
 export const title = (text) => text.charAt(0).toUpperCase() + text.slice(1);
 
-// What a plant calls a quantity, in the reader's language where it is a usual one.
+// Returns the quantity's name, translated if it is a common one.
 export const quantityText = ({ quantity, id }) => sayIfKnown(`quantity.${(quantity || id).toLowerCase()}`, title(quantity || id));
 
 export const worst = (qualities) => QUALITIES[Math.max(-1, ...qualities.map((q) => QUALITIES.indexOf(q)))] ?? null;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pointers and the wheel to camera moves. Places in CSS pixels of the viewport. Each call returns a list of moves:
-// { orbit: [dx, dy] }, { pan: [dx, dy] }, { look: [dx, dy] }, { zoom: factor, at: [x, y] }, { click: [x, y] }. No momentum: what stops,
-// stops.
+// Turns pointer and wheel events into camera moves. Positions are CSS pixels of the viewport. Each call returns a list of moves: { orbit:
+// [dx, dy] }, { pan: [dx, dy] }, { look: [dx, dy] }, { zoom: factor, at: [x, y] }, { click: [x, y] }. There is no momentum.
 
 const CLICK_MS = 500;
 const SLOP_PX = { mouse: 3, pen: 5, touch: 8 };
@@ -13,7 +12,7 @@ const apart = ([a, b]) => Math.hypot(a.x - b.x, a.y - b.y);
 
 export class Gestures {
     constructor() {
-        this.pointers = new Map(); // id -> { x, y, mode }
+        this.pointers = new Map(); // pressed pointers: id -> { x, y, mode }
         this.moved = false;
     }
 
@@ -44,13 +43,13 @@ export class Gestures {
         return this.pointers.size === 2 ? this.pinch(before) : this.lookAround(before);
     }
 
-    // Three fingers: the eye stays where it is and looks elsewhere. Further fingers only hold on.
+    // Three fingers turn the view around the eye. Further fingers are ignored.
     lookAround(before) {
         const from = centre(before.slice(0, 3)), to = centre([...this.pointers.values()].slice(0, 3));
         return [{ look: [to[0] - from[0], to[1] - from[1]] }];
     }
 
-    // Two fingers: the plant stays under both of them.
+    // Two fingers pan and zoom so that the plant stays under both.
     pinch(before) {
         const then = before.slice(0, 2), now = [...this.pointers.values()].slice(0, 2);
         const from = centre(then), to = centre(now);
@@ -73,7 +72,7 @@ export class Gestures {
     }
 }
 
-// A track pad's pinch arrives as a wheel with ctrl held.
+// A track pad's pinch arrives as a wheel event with ctrl.
 export function wheelZoom({ deltaY, deltaMode = 0, ctrlKey = false }) {
     const px = deltaY * [1, LINE_PX, PAGE_PX][deltaMode];
     const power = px * (ctrlKey ? PINCH_PER_PX : WHEEL_PER_PX);

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a shift hands over: from notes and the journal of alarms.
+// Shift handover: sorts notes and the alarm journal.
 
 const WORKED = { acknowledge: 'acknowledged', shelve: 'shelved', unshelve: 'shelved', out_of_service: 'aside', in_service: 'aside' };
 
-// rows: of the journal, in any order. Returns { raised: [{ tag, kind, priority, count, first, last }, the most frequent first],
-// acknowledged,
-// shelved, aside: rows, the oldest first }.
+// rows: of the journal, in any order. Returns { raised: [{ tag, kind, priority, count, first, last }, most frequent first], acknowledged,
+// shelved, aside: rows, oldest first }.
 export function sortJournal(rows) {
     const raised = new Map(), out = { acknowledged: [], shelved: [], aside: [] };
     for (const row of [...rows].sort((a, b) => a.time_us - b.time_us || a.id - b.id)) {
@@ -20,7 +19,8 @@ export function sortJournal(rows) {
     return { ...out, raised: [...raised.values()].sort(order) };
 }
 
-// The whole journal of a span, page by page, as far as `most` rows: { rows, cut }. get(query): the answer of /api/v1/alarms/journal.
+// Reads the journal of a span page by page, up to `most` rows. Returns { rows, cut (rows were left out) }. get(query): fetches
+// /api/v1/alarms/journal.
 export async function readJournal(get, from, to, most = 20000) {
     const rows = [];
     for (let before = null; ;) {

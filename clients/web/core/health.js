@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The one answer to "may I trust this picture?": kind, words for it, and how long it has been so.
+// The one answer to "may I trust this picture?": kind, words, and since when.
 import { ageText, title, zoneClock } from './format.js';
 import { say } from './words.js';
 
 const seconds = (ms) => say('age.s', { n: Math.max(1, Math.ceil(ms / 1000)) });
 
-// { kind: connecting | live | simulated | past | partial | nodata | silent | lost, words, detail, banner (bool) }
+// Returns { kind: connecting | live | simulated | past | partial | nodata | silent | lost, words, detail, banner (bool) }
 export function health(session, now) {
     const { connection, model, picture } = session;
     const old = picture ? say('health.old', { age: ageText(now - session.freshAt) }) : '';
@@ -32,7 +32,7 @@ export function health(session, now) {
     return { kind: 'live', words: live, detail: '', banner: false };
 }
 
-// What is to be written on the picture itself: that some of it, or all, was not measured. '': all was, or it is of another time.
+// Returns the note to draw over the picture that all or some values are simulated; '' if none are, or the picture shows the past.
 export function simulatedText({ model, picture, time }) {
     const links = model?.links ?? [], simulated = links.filter((link) => link.simulated).length;
     if (simulated === 0 || time.atUs !== null || picture?.past)
@@ -40,7 +40,7 @@ export function simulatedText({ model, picture, time }) {
     return say(simulated < links.length ? 'simulated.partly' : 'simulated.all');
 }
 
-// The picture's own time where it is one of the past: until then it still shows now, and is not what the words would say.
+// Describes the past. The time is that of the picture on the screen if it shows the past, else the requested one.
 function past({ picture, time, model }) {
     const us = picture?.past ? picture.dataTimeUs : time.atUs;
     const { date, time: clock, offset } = zoneClock(model.plant.time_zone)(us / 1000);

@@ -4,7 +4,7 @@ import { calls } from './alarms.js';
 import { answerText } from './refusals.js';
 import { say } from './words.js';
 
-export const BAD = 2, UNCERTAIN = 1; // the two top bits of a status code
+export const BAD = 2, UNCERTAIN = 1; // qualities: the two top bits of an OPC UA status code
 const severity = (quality) => Math.min(BAD, quality >>> 30);
 
 // Requests a path with a query, and with the token if there is one. Returns a promise of the JSON.
@@ -42,7 +42,7 @@ export function line(series, fromUs, toUs) {
     return [xs, ys];
 }
 
-// A step holds until the next: a point just before it says so.
+// Adds a point. A step holds its value until the next point, so a point is added just before that.
 function putPoint(put, [us, value, quality], step, ys) {
     const shown = severity(quality) === BAD ? null : value;
     const before = ys.at(-1);
@@ -51,7 +51,7 @@ function putPoint(put, [us, value, quality], step, ys) {
     put(us, shown);
 }
 
-// No value at the end of a bucket (`last`) ends the line, also where the series ends in that bucket.
+// Adds a bucket. A bucket that ends without a value (`last`) breaks the line, even at the end of the series.
 function putStretch(put, [us, low, high, , first, last], lengthUs) {
     if (low === null)
         return put(us, null);
@@ -82,14 +82,14 @@ export function gaps(series, fromUs, toUs) {
     points.forEach((point, i) => {
         const next = points[i + 1]?.[0] ?? toUs, quality = length > 0 ? point[7] : point[2];
         if (length > 0 && point[6] > 0 && severity(quality) !== BAD)
-            add(point[0], point[0] + point[6], BAD); // somewhere in it
+            add(point[0], point[0] + point[6], BAD); // marks the whole bucket: the gap is at an unknown instant within
         add(length > 0 && severity(quality) === BAD ? Math.max(point[0], point[0] + length - point[6]) : point[0], next,
             length > 0 || point[1] !== null ? severity(quality) : BAD);
     });
     return out;
 }
 
-// Returns the tags that speak for each source, its first and its last: [{ source, tags: [name] }], of `most` sources at most.
+// Returns the tags that represent each source, its first and last: [{ source, tags: [name] }], for at most `most` sources.
 export function witnesses(tags, most = 16) {
     const ends = new Map();
     for (const { source, name } of tags.filter((tag) => tag.source))
@@ -97,7 +97,7 @@ export function witnesses(tags, most = 16) {
     return [...ends].slice(0, most).map(([source, pair]) => ({ source, tags: [...new Set(pair)] }));
 }
 
-// Returns when none of these had a value: [[from, to]], in microseconds.
+// Returns the periods without any value in all of these series: [[from, to]], microseconds.
 export function lost(all, fromUs, toUs) {
     let common = [[fromUs, toUs]];
     for (const series of all) {
@@ -108,8 +108,8 @@ export function lost(all, fromUs, toUs) {
     return all.length > 0 ? common : [];
 }
 
-// Returns the limits of some tags, each once: [{ scale, name, value, tags }]. scaleOf(tag): its axis; tags: those that have the limit,
-// empty if all have it on one axis.
+// Returns the distinct limits of tags: [{ scale, name, value, tags }]. scaleOf(tag): the tag's axis; tags: those that have the limit, empty
+// if all on that axis do.
 export function limitLines(tags, scaleOf) {
     const lines = new Map();
     for (const tag of tags) {
@@ -134,7 +134,7 @@ export function raised(rows) {
 export const nextTo = (marks, us, backwards) =>
     (backwards ? marks.findLast((mark) => mark.us < us) : marks.find((mark) => mark.us > us)) ?? null;
 
-// Groups marks that are closer together than nearUs: { us (of the gravest), priority, of: all of them }.
+// Groups marks closer together than nearUs: { us and priority of the most urgent, of: all of them }.
 export function clustered(marks, nearUs) {
     const out = [];
     for (const mark of marks) {
@@ -147,12 +147,12 @@ export function clustered(marks, nearUs) {
     return out.map(({ of }) => ({ ...of.reduce((gravest, mark) => (mark.priority < gravest.priority ? mark : gravest)), of }));
 }
 
-// Returns by how many seconds an arrow key moves a slider of that span: at most a minute.
+// Returns the seconds that an arrow key moves a slider of that span: at most a minute.
 export const arrowS = (spanS) => Math.max(1, Math.min(60, Math.round(spanS / 900)));
 
 const MOST_TICKS = 1000;
 
-// Returns round times between two, at most `most`: [us]. None between two that are not finite or centuries apart.
+// Returns at most `most` round times between two instants: [us]. None if an instant is not finite or they are centuries apart.
 export function ticks(fromUs, toUs, most, offsetUs = 0) {
     const steps = [1, 5, 10, 30, 60, 300, 600, 1800, 3600, 7200, 14400, 28800, 43200, 86400, 172800, 604800].map((s) => s * 1e6);
     const step = steps.find((one) => (toUs - fromUs) / one <= most) ?? steps.at(-1);

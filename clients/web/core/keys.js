@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Keyboard: the meaning of keys, and steady motion while a key is held.
 
-const MOTIONS = { // per second: [orbit right, orbit up] degrees, [pan right, pan up] in heights of the picture, zoom in natural logarithm
+const MOTIONS = { // per second: [orbit right, orbit up] degrees, [pan right, pan up] in picture heights, zoom as a natural logarithm
     ArrowLeft: { orbit: [-45, 0] }, ArrowRight: { orbit: [45, 0] }, ArrowUp: { orbit: [0, 45] }, ArrowDown: { orbit: [0, -45] },
     KeyA: { pan: [-0.5, 0] }, KeyD: { pan: [0.5, 0] }, KeyW: { pan: [0, 0.5] }, KeyS: { pan: [0, -0.5] },
     '+': { zoom: -1 }, '-': { zoom: 1 },
@@ -12,7 +12,7 @@ const COMMANDS = {
     t: 'top', i: 'corner', o: 'projection', v: 'views', p: 'picture', x: 'hide', g: 'ghost', l: 'only', u: 'showAll', m: 'timings',
     e: 'alarms', y: 'past', n: 'live', ' ': 'hold', r: 'measure', c: 'snapshot', k: 'share', z: 'theme',
 };
-export const TAP_S = 1 / 15; // a key moves at once by this much, and steadily once it has been held for
+export const TAP_S = 1 / 15; // a key moves this much at once, and steadily once held for longer
 export const HOLD_S = 0.25;
 
 function motionName({ key, code, shiftKey }) {
@@ -62,13 +62,13 @@ export class HeldKeys {
 
     press(motion) {
         if (this.held.has(motion))
-            return []; // the keyboard's own repeat
+            return []; // key repeat of the keyboard
         this.held.set(motion, 0);
         return [scaled(motion, TAP_S)];
     }
 
     release(event) {
-        const names = new Set([motionName(event), event.code, SHIFTED[event.code]]); // shift may have come or gone in between
+        const names = new Set([motionName(event), event.code, SHIFTED[event.code]]); // shift may have been pressed or released in between
         for (const name of names)
             this.held.delete(name);
     }

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Decides which labels are shown beside their markers, and where (protocol/LABELS.md).
 
-const SPACINGS = [0.16, 0.08, 0], HELD = 0.8; // of the area's width; what is held counts so much
+// SPACINGS: between labels, fractions of the area's width; HELD: factor for labels of the previous picture
+const SPACINGS = [0.16, 0.08, 0], HELD = 0.8;
 const MARK = 5, RING = 13, NEAR_GAP = 8, FAR_GAP = 22; // units
 export const CLEARANCE = 3;
-const ROOM = 0.06;                            // of the area
-const MOST_CELLS = 1000;                      // of the grid, to each side
-export const FIRST_FAR = 8;                   // from this slot on with a leader line
+const ROOM = 0.06;                            // fraction of the area that labels may fill
+const MOST_CELLS = 1000;                      // maximum number of grid cells per side
+export const FIRST_FAR = 8;                   // slots from here on need a leader line
 export const RANK_RING = 3;
 export const MOST_BAD = 12;
 
@@ -15,19 +16,19 @@ export const SLOTS = [ // side, upper edge in heights
     [1, -2], [-1, -2], [1, 1], [-1, 1], [1, -3.2], [-1, -3.2], [1, 2.2], [-1, 2.2],
 ];
 
-// Whether an area is finite and larger than 0x0: in any other nothing is placed.
+// Returns whether an area is finite and larger than 0x0; nothing is placed in others.
 export const hasArea = ({ left, top, right, bottom }) => right > left && bottom > top && right - left < Infinity && bottom - top < Infinity;
 
 export const meets = (a, b) => a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
 
-// A grid, so that thousands of labels do not each look at all others.
+// A grid of occupied boxes, so that thousands of labels need not all be compared.
 class Taken {
     constructor(cell, area) {
         Object.assign(this, { area, cell: Math.max(cell, (area.right - area.left) / MOST_CELLS, (area.bottom - area.top) / MOST_CELLS) });
         this.cells = new Map();
     }
 
-    // Cells of the part of a box that lies in the area or one cell around it: labels lie in the area.
+    // Returns the cells of a box, clipped to the area plus one cell: labels lie in the area.
     keys(box) {
         const keys = [], { cell, area } = this, from = (m, least) => Math.floor(Math.max(m - least, -cell) / cell);
         const to = (m, least, most) => Math.floor(Math.min(m - least, most - least + cell) / cell);
@@ -43,7 +44,7 @@ class Taken {
             this.cells.set(key, [...(this.cells.get(key) ?? []), box]);
     }
 
-    // over: what it may lie over: 1: marks without a ring; 2: any marks.
+    // over: marks that may be covered: 1: marks without a ring; 2: any marks.
     meets(box, owner, over = 0) {
         return this.keys(box).some((key) => (this.cells.get(key) ?? []).some((other) =>
             other.owner !== owner && !(other.mark <= over) && meets(box, other)));
@@ -60,9 +61,9 @@ export function boxAt({ x, y, width, height, ring, across = 0, down = 0 }, slot,
     return { left, top, right: left + width, bottom: top + height };
 }
 
-// all: items { id, x, y (the marker), width, height, rank, depth, held (slot or undefined), ring (of alarm colours around it), callout (the
-// one that it was in) }; area: { left, top, right, bottom }; rings: placeRings of callouts.js; measure(items): the size of a call-out.
-// Returns Map id -> { left, top, slot }; of rings also width, height and callout (undefined: it has a label of its own).
+// all: items { id, x, y (of the marker), width, height, rank, depth, held (previous slot or undefined), ring (whether it has an alarm
+// ring), callout (previous call-out) }; area: { left, top, right, bottom }; rings: placeRings of callouts.js; measure(items): size of a
+// call-out. Returns Map id -> { left, top, slot }; for rings also width, height and callout (undefined: an own label).
 export function placeLabels(all, { area, unit = 1, blocked = [], rings = null, measure = null }) {
     if (!hasArea(area) || !(unit > 0 && unit < Infinity))
         return new Map();
@@ -89,7 +90,8 @@ export function placeLabels(all, { area, unit = 1, blocked = [], rings = null, m
         return inside && !taken.meets(grown, item.id) ? box : null;
     };
     const place = (item) => {
-        for (let n = isHeld(item) && item.held < SLOTS.length ? -1 : 0; n < SLOTS.length; n++) { // not where a call-out was
+        // the previous slot comes first, unless it was one of a call-out
+        for (let n = isHeld(item) && item.held < SLOTS.length ? -1 : 0; n < SLOTS.length; n++) {
             const slot = n < 0 ? item.held : n, box = fits(item, slot);
             if (!box)
                 continue;

@@ -7,9 +7,9 @@ export function niceStep(range, most) {
     return power * [1, 2, 5, 10].find((m) => range / (m * power) <= most * (1 + 1e-9));
 }
 
-const MOST_MULTIPLES = 1000; // more are not on any scale
+const MOST_MULTIPLES = 1000; // no scale has more
 
-// Returns the multiples of a step from min to max; none where they would be countless.
+// Returns the multiples of a step from min to max; none if there would be too many.
 export function multiples(min, max, step) {
     const slack = (max - min) * 1e-9, list = [];
     if (!(step > 0 && (max - min) / step <= MOST_MULTIPLES && Math.abs(min / step) < Number.MAX_SAFE_INTEGER))
@@ -60,7 +60,7 @@ export function valueAt({ min, max, log }, place) {
 
 const inside = ({ min, max, breaks }) => (breaks ?? []).filter((value) => value > min && value < max);
 
-// Returns the values where bands meet.
+// Returns the values at the boundaries of bands.
 export function edges(scale) {
     const { min, max, interval } = scale;
     if (scale.breaks?.length > 0)
@@ -69,7 +69,7 @@ export function edges(scale) {
     return count <= 64 && Number.isFinite(min) ? Array.from({ length: count - 1 }, (_, i) => min + (i + 1) * interval) : [];
 }
 
-// The place whose colour the band of a value has. The last one ends at MAX, and MAX belongs to it.
+// Returns the position whose colour a value's band has. The last band ends at max and includes it.
 function bandPlace(scale, value) {
     const { min, max, interval } = scale;
     if (scale.breaks?.length > 0) {
@@ -81,7 +81,7 @@ function bandPlace(scale, value) {
     return (placeOf(scale, begin) + placeOf(scale, Math.min(begin + interval, max))) / 2;
 }
 
-const NOWHERE = [128, 128, 128]; // of what is no number
+const NOWHERE = [128, 128, 128]; // colour of values that are not numbers
 
 // Returns the colour of a value: [r, g, b].
 export function colourOf(scale, value) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Links that open the page on another device with the present view.
+// Links that open the current view on another device.
 import { writeAddress } from './address.js';
 
 // Returns URLs: { view, follow, tag and asset (if one is selected) }. Those of tag and asset contain nothing else, since QR codes with
@@ -12,7 +12,7 @@ export function shareLinks({ location, session, tag }) {
         links.tag = page + writeAddress({ tag });
     if (asset)
         links.asset = page + writeAddress({ params: { selected: asset } });
-    const { node } = session.model?.plant ?? {}; // one of several behind a balancer, which goes by the name
+    const { node } = session.model?.plant ?? {}; // name of the server's node, by which a load balancer routes followers to it
     links.follow = `${page}${node ? `?node=${node}` : ''}#follow=${session.following?.session ?? session.id}`;
     return links;
 }

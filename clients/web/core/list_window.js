@@ -21,7 +21,7 @@ export function rowAt(tops, y) {
     return low;
 }
 
-// Returns the visible rows with some more on both sides: [from, to).
+// Returns the range [from, to) of visible rows, plus `more` on both sides.
 export function rowsInSight(tops, scrollTop, height, more) {
     const count = tops.length - 1;
     return count === 0 ? [0, 0] : [Math.max(0, rowAt(tops, scrollTop) - more), Math.min(count, rowAt(tops, scrollTop + height) + 1 + more)];

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Loop check: finds the tag that moved when a transmitter was forced, by the largest change since arming compared with each tag's noise.
 
-const KEEP = 0.9;        // of what was known of a tag's noise, at each new value
-const FLOOR = 0.002;     // of a tag's span: less is no movement
-const LEAST_RATIO = 8;   // as many times its noise
+const KEEP = 0.9;        // weight of the previous noise estimate at each new value
+const FLOOR = 0.002;     // fraction of a tag's span; smaller changes are ignored
+const LEAST_RATIO = 8;   // minimum change, as a multiple of the tag's noise
 
 export class LoopCheckSession {
     constructor() {
-        this.noise = new Map(); // by index: how far it goes from one value to the next
+        this.noise = new Map(); // tag index -> average change from one value to the next
         this.last = new Map();
-        this.base = null;       // by index: values when it was armed; null: it is not
+        this.base = null;       // tag index -> value when the check was armed; null: not armed
     }
 
-    // values: by index, number or null (no usable reading).
+    // values: by tag index, number or null (no usable reading).
     observe(values) {
         values.forEach((value, index) => {
             if (value === null)
@@ -20,7 +20,7 @@ export class LoopCheckSession {
             const before = this.last.get(index);
             this.last.set(index, value);
             if (before === undefined || this.base)
-                return; // what happens once it is armed is what is looked for
+                return; // once armed, changes count as signal, not noise
             const step = Math.abs(value - before), known = this.noise.get(index);
             this.noise.set(index, known === undefined ? step : Math.max(known * KEEP, KEEP * known + (1 - KEEP) * step, step / 2));
         });
@@ -34,7 +34,7 @@ export class LoopCheckSession {
         this.base = null;
     }
 
-    // { index, by, ratio } of the one that moved most, or null. spanOf(index): of its scale.
+    // Returns { index, by, ratio } of the tag that changed most, or null. spanOf(index): width of the tag's range.
     stirred(spanOf) {
         let most = null;
         for (const [index, from] of this.base ?? []) {
@@ -47,7 +47,7 @@ export class LoopCheckSession {
     }
 }
 
-// Reads expected values from CSV text, by tag name; null if its columns are missing.
+// Reads expected values by tag name from CSV text; null if columns are missing.
 export function readExpected(text) {
     const lines = text.replace(/^\uFEFF/, '').split(/\r\n|\n|\r/).filter((line) => line.trim());
     const separator = [',', ';', '\t'].reduce((a, b) => (lines[0]?.split(b).length > lines[0]?.split(a).length ? b : a), ',');
@@ -57,7 +57,7 @@ export function readExpected(text) {
     const [name, expected, tolerance] = ['tag name', 'expected', 'tolerance'].map((column) => head.indexOf(column));
     if (name < 0 || expected < 0 || tolerance < 0)
         return null;
-    const point = (cell) => (separator === ',' ? cell : cell.replace(',', '.')); // a decimal comma is a decimal point
+    const point = (cell) => (separator === ',' ? cell : cell.replace(',', '.')); // a decimal comma counts as a decimal point
     const number = (cell) => (cell?.trim() ? Number(point(cell)) : NaN);
     return new Map(lines.slice(1).map(cells).map((row) => [row[name], { expected: number(row[expected]),
         tolerance: number(row[tolerance]) }])

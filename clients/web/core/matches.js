@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What tags were matched to (matches.csv of `plantcast match`), and what people decide about it.
+// Matches of tags to equipment (matches.csv of `plantcast match`), and the user's decisions about them.
 
 export const FILTERS = ['all', 'sure', 'likely', 'none', 'unplaced'];
 
-// Rows of cells of a CSV text; quoted cells may have commas, quotes and line feeds in them.
+// Returns the rows of a CSV text as lists of cells; quoted cells may contain commas, quotes and line feeds.
 export function readCsv(text) {
     const rows = [];
     let row = [], cell = '', quoted = false;
@@ -30,7 +30,7 @@ export function readCsv(text) {
     return rows;
 }
 
-// [{ tag, status, asset, reason, candidates }]; candidates: ids of assets, the proposed one first.
+// Returns [{ tag, status, asset, reason, candidates }]; candidates: asset ids, the proposed one first.
 export function readMatches(text) {
     const [header = [], ...rows] = readCsv(text);
     const column = (name) => header.indexOf(name);
@@ -41,16 +41,16 @@ export function readMatches(text) {
     }));
 }
 
-// Names that differ in their digits alone have one pattern.
+// Returns the pattern of a tag name: names that differ only in digits share one.
 export const patternOf = (tag) => tag.replace(/\d/g, '#');
 
-// Matches, and decisions about them that were not saved yet.
+// Matches, and unsaved decisions about them.
 export class Matches {
-    // placed(tag): whether a place is known of the tag of that name; null: it is none of the plant's sensors.
+    // placed(tag): whether the tag's position is known; null: the tag is not a sensor of the plant.
     constructor(placed = () => null) {
         this.placed = placed;
         this.all = [];
-        this.decisions = new Map(); // by tag: { status, asset }
+        this.decisions = new Map(); // unsaved decisions: tag -> { status, asset }
     }
 
     set(all) {
@@ -59,12 +59,12 @@ export class Matches {
         this.decisions = new Map([...this.decisions].filter(([tag]) => known.has(tag)));
     }
 
-    // As it will be once decisions are saved.
+    // Returns the match with the unsaved decision applied.
     of(match) {
         return this.decisions.get(match.tag) ?? match;
     }
 
-    // What nobody decided, and could be several, is doubtful.
+    // Returns the filter kind of a match: undecided with several candidates is 'likely'.
     kindOf(match) {
         const { status } = this.of(match), open = status === 'none' && !this.decisions.has(match.tag);
         return open && match.candidates.length > 0 ? 'likely' : status;
@@ -79,7 +79,7 @@ export class Matches {
         return Object.fromEntries(FILTERS.map((filter) => [filter, this.all.filter((match) => this.fits(match, filter)).length]));
     }
 
-    // Those whose tag, asset or reason has all words of a text.
+    // Returns the matches whose tag, asset or reason contains all words of a text.
     rows(filter, text = '') {
         const words = text.toLowerCase().split(/\s+/).filter(Boolean);
         return this.all.filter((match) => {
@@ -88,7 +88,7 @@ export class Matches {
         });
     }
 
-    // asset: '': it is on none. What is so already needs no decision.
+    // asset '': on no equipment. A decision equal to the match is dropped.
     decide(match, asset) {
         const status = asset ? 'sure' : 'none', isOpen = match.status === 'none' && match.candidates.length > 0;
         if (match.status === status && match.asset === asset && !isOpen)
@@ -97,22 +97,22 @@ export class Matches {
             this.decisions.set(match.tag, { status, asset });
     }
 
-    // Those that are doubtful, of the same pattern, and can be accepted at once, as [match, asset]: on what is proposed for each, or on
-    // what was decided for another of the pattern where it may be that too.
+    // Returns the doubtful matches of the same pattern that can be accepted at once, as [match, asset]: the proposed asset, or the one
+    // decided for another tag of the pattern if it is a candidate.
     alike({ tag }) {
         const pattern = patternOf(tag), decided = [...this.decisions].filter(([name, { asset }]) => asset && patternOf(name) === pattern);
         return this.all.filter((one) => patternOf(one.tag) === pattern && this.kindOf(one) === 'likely').map((one) => [one, one.asset ||
             decided.findLast(([, { asset }]) => one.candidates.includes(asset))?.[1].asset]).filter(([, asset]) => asset);
     }
 
-    // Of the decisions that were saved, those made anew since stay.
+    // Drops saved decisions, except those changed since they were sent.
     settle(decided) {
         for (const [tag, decision] of decided)
             if (this.decisions.get(tag) === decision)
                 this.decisions.delete(tag);
     }
 
-    // What is sent to be saved.
+    // Returns the decisions as CSV text for saving.
     text() {
         const cell = (said) => (/[",;\t\r\n]|^ /.test(said) ? `"${said.replaceAll('"', '""')}"` : said);
         const rows = [...this.decisions].map(([tag, { status, asset }]) => [tag, status, asset].map(cell).join(','));
@@ -120,7 +120,7 @@ export class Matches {
     }
 }
 
-// How wide, deep and high a plant is, in metres, if its numbers are of other units than they were taken for.
+// Returns the plant's width, depth and height in metres; `times` converts to another unit than was assumed.
 const METRES = { m: 1, mm: 0.001, cm: 0.01, in: 0.0254, ft: 0.3048 };
 export const sizeOf = ({ min, max }, times = 1) => max.map((x, i) => (x - min[i]) * times);
 export const timesOf = (from, to) => (METRES[to] && METRES[from] ? METRES[to] / METRES[from] : 1);

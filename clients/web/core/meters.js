@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the status bar measures: drawn pictures per second, and the time from an input to the picture that shows it.
+// Meters of the status bar: drawn pictures per second, and latency from an input to the picture that shows it.
 
 export class RateMeter {
     constructor(windowMs = 1000) {
@@ -21,7 +21,7 @@ export class RateMeter {
 export class LatencyMeter {
     constructor(keepMs = 3000) {
         this.keepMs = keepMs;
-        this.inputs = new Map(); // seq -> time of the input
+        this.inputs = new Map(); // camera sequence number -> time of the input that moved it
         this.samples = [];       // { time, ms }
     }
 
@@ -29,7 +29,7 @@ export class LatencyMeter {
         this.inputs.set(seq, inputTime);
     }
 
-    // A drawn picture answers its own camera and all before it; only its own input is measured, once.
+    // A drawn picture covers its own input and all before; only its own is measured, once.
     drawn(seq, now) {
         const input = this.inputs.get(seq);
         if (input !== undefined)
@@ -44,7 +44,7 @@ export class LatencyMeter {
         this.inputs.clear();
     }
 
-    // The median of the last moments of motion; null before any.
+    // Returns the median of recent motion; null if there was none.
     median(now) {
         while (this.samples.length > 1 && now - this.samples[0].time > this.keepMs)
             this.samples.shift();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is known of the plant: what `welcome` said, and the newest value, quality and age of every tag.
+// The client's model of the plant: the `welcome` message, and the latest value, quality and age of every tag.
 import { Alarms, graver } from './alarms.js';
 import { worst } from './format.js';
 import { decodeBase64 } from './wire.js';
@@ -12,33 +12,33 @@ export class Model {
         this.colormaps = welcome.colormaps.map((map) => ({ ...map, rgb: decodeBase64(map.rgb) }));
         this.readings = this.tags.map(() => ({ value: null, quality: 'bad', qualityName: '', ageMs: null, alarm: null, at: 0 }));
         this.environments = welcome.environments ?? ['sky'];
-        this.references = welcome.links ?? []; // where else one reads about assets and tags
+        this.references = welcome.links ?? []; // links to other systems about assets and tags
         this.assets = welcome.assets.map((asset) => ({ ...asset, tags: [] }));
         const starting = (how) => this.assets.filter(({ start }) => start === how).map(({ id }) => id);
-        this.start = { hidden: starting('hidden'), isolate: [], ghost: starting('ghost') }; // parameters, until somebody changes them
+        this.start = { hidden: starting('hidden'), isolate: [], ghost: starting('ghost') }; // initial parameters
         const assets = new Map(this.assets.map((asset) => [asset.id, asset]));
         for (const tag of this.tags)
             assets.get(tag.asset)?.tags.push(tag);
         this.alarms = new Alarms(this.tags);
-        this.placed = new Map(); // by name: what `placed` says
-        this.proofs = new Map(); // by index
+        this.placed = new Map(); // tag name -> entry of `placed`
+        this.proofs = new Map(); // by tag index
         this.provingBegun = false;
         this.links = [];
-        this.live = null; // nothing was said yet
-        this.stopped = false; // see stop
-        this.clockSet = true; // the server's clock is kept right
-        this.clockErrorMs = null; // within this; null: not known
-        this.leapS = 0; // a second that is added or taken away at the end of the month
-        this.oldest = null; // { ms, at }: no reading that is not bad was older than that
+        this.live = null; // null: no message yet
+        this.stopped = false; // see stop()
+        this.clockSet = true; // whether the server's clock is synchronised
+        this.clockErrorMs = null; // maximum clock error; null: unknown
+        this.leapS = 0; // leap second at the end of the month: 1 or -1; 0: none
+        this.oldest = null; // { ms, at }: upper bound on the age of all readings that are not bad
     }
 
-    // Of an instant of the past: ages and alarms are those of then, as `tags` has them.
+    // Freezes the model at a past instant: ages and alarms then come from `tags`.
     stop(stopped) {
         this.stopped = stopped;
         this.alarms.then = stopped ? this.readings : null;
     }
 
-    // Sensors that stand elsewhere for us; all others are where the plant has them.
+    // Applies draft positions of this session; all other sensors return to their saved positions.
     place(sensors) {
         this.placed = new Map(sensors.map((sensor) => [sensor.tag, sensor]));
         for (const tag of this.tags) {
@@ -55,7 +55,7 @@ export class Model {
             this.proofs.set(index, { state, timeUs, value, expected, tolerance, who, remark });
     }
 
-    // None has shown yet that this is what is measured there; null: nobody has begun to, or it is computed.
+    // Returns the loop check state of a tag that has not passed; null if it passed, is computed, or no loop check was ever begun.
     unproven(tag) {
         const state = this.proofs.get(tag.index)?.state ?? 'none';
         return this.provingBegun && tag.source && state !== 'pass' ? state : null;
@@ -97,12 +97,12 @@ export class Model {
         return changed;
     }
 
-    // The server tells a reading when it changes; that an unchanged one was read again, only for all of them at once.
+    // The server sends a reading when it changes; `oldest` says for all unchanged ones together that they were refreshed.
     notOlder(ms, now) {
         this.oldest = ms === null ? null : { ms, at: now };
     }
 
-    // Aged by the client's own clock since the server spoke of it; null: there never was a value.
+    // Returns the age by the client's own clock since the server's message; null if there never was a value.
     ageMs(index, now) {
         const { ageMs, at, quality } = this.readings[index];
         if (ageMs === null)
@@ -113,7 +113,7 @@ export class Model {
         return this.oldest && quality !== 'bad' ? Math.min(age, this.oldest.ms + (now - this.oldest.at)) : age;
     }
 
-    // Age of the oldest reading of a group that takes part in its picture; null: none does.
+    // Returns the age of the oldest usable reading of a group; null if there is none.
     oldestAgeMs(groupId, now) {
         let oldest = null;
         for (const { index, group } of this.tags) {
@@ -123,7 +123,7 @@ export class Model {
         return oldest;
     }
 
-    // The gravest alarm of its tags that is to be seen, or null.
+    // Returns the asset's most urgent annunciated alarm, or null.
     worstAlarm(asset) {
         const alarms = asset.tags.map((tag) => this.alarms.gravest(tag.index)).filter(Boolean);
         return alarms.sort(graver)[0] ?? null;

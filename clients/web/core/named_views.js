@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Views with names: from the text that one is kept as, to what a session shows and to the query of its picture; and the other way.
+// Saved views: converts between their text, a session's state, and the query for a picture.
 import { addressOf, readAddress } from './address.js';
 import { snapshotQuery } from './query.js';
 import { ENGINEERS } from './session.js';
 
 const ID_CHARS = 48, NOWHERE = { eye: [], target: [], fov: 0 };
 
-// The text that keeps what a session shows now: without the instant, which has gone by when it is looked at again.
+// Returns the session's view as text, without the instant.
 export const textOf = (session, tag = null) => {
     const { camera, params, ownParams } = session;
     return addressOf({ camera, params, time: null, ownParams }, tag).slice(1);
 };
 
-// { camera, params, tag } that bring a session to that view, whatever it shows. One without a camera is seen from home.
+// Returns { camera, params, tag } that bring a session to the view from any state. Without a camera, the home view is used.
 export function viewOf(session, text) {
     const { camera, params, tag } = readAddress(text), group = session.model.group(params.group) ?? session.group;
     const plain = { ...session.ownOf(group), range: null, ramp_interval: 0, breaks: group.breaks?.length ? 'group' : null,
@@ -24,7 +24,7 @@ export function viewOf(session, text) {
     return { camera: camera ?? session.homeIn(width / ratio, height / ratio), params: all, tag };
 }
 
-// The query for a small picture of it: from where the server looks, if it has no camera of its own.
+// Returns the query for a thumbnail; without a camera, the server uses the home view.
 export function pictureQuery(text, size) {
     const { camera, params } = readAddress(text);
     ENGINEERS.forEach((name) => delete params[name]);
@@ -34,7 +34,7 @@ export function pictureQuery(text, size) {
     return query;
 }
 
-// An id for a title, which no other view has.
+// Returns a unique id made from a title.
 export function idFor(title, views) {
     const plain = title.normalize('NFKD').replace(/\p{M}/gu, '').toLowerCase().replace(/[^a-z0-9]+/g, '-').replace(/^-+|-+$/g, '');
     const base = (plain || 'view').slice(0, ID_CHARS - 4), taken = new Set(views.map(({ id }) => id));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Finds what is under the pointer: a half of the picture, a marker.
+// Finds what is under the pointer: the half of the picture, or a marker.
 import { halves } from './split_view.js';
 
 // Returns the half of a split view that contains a position.

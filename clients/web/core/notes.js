@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What people noted: where it is in the plant, and until when it counts.
+// Shift notes: their position in the plant, and until when they are valid.
 
-// Returns [x, y, z], or null where what it is at is not in this plant (any more).
+// Returns [x, y, z], or null if the note's tag or equipment is no longer in this plant.
 export function placeOf(model, { position, tag, asset }) {
     if (position || tag)
         return position ?? model.tag(tag)?.position ?? null;
@@ -9,7 +9,7 @@ export function placeOf(model, { position, tag, asset }) {
     return min ? [(min[0] + max[0]) / 2, (min[1] + max[1]) / 2, max[2]] : null;
 }
 
-// Returns what it is at, in words; null: a place.
+// Returns the name of the note's tag or equipment; null: it is at a point.
 export const whereOf = (model, { tag, asset }) => tag ?? (asset ? model.asset(asset)?.tag || asset : null);
 
 // Returns the notes that are in force now; with atUs (an instant of the past that is shown), the notes that were in force then.

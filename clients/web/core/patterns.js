@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The patterns that say "no data" and "uncertain", as the server draws them (shaders/field.glsl).
+// The patterns for "no data" and "uncertain", as the server draws them (shaders/field.glsl).
 import { PATTERNS } from '../made/constants.js';
 
 const grey = (level) => [level, level, level];
@@ -9,10 +9,10 @@ const fract = (x) => x - Math.floor(x);
 const clamp = (x) => Math.max(0, Math.min(1, x));
 const mix = (a, b, t) => a.map((x, i) => Math.round(x + (b[i] - x) * t));
 
-// Returns the period of the pattern in a picture of that height.
+// Returns the period of the pattern, in pixels, for a picture of that height.
 export const patternPeriodPx = (heightPx) => Math.max(PATTERNS.PATTERN_LEAST_PX, heightPx / PATTERNS.PATTERN_PERIODS);
 
-// Coverage of the pattern at the middle of a pixel; y upwards, as GL has it.
+// Returns the coverage of the pattern at a pixel's centre; y upwards, as in GL.
 const stripes = (place, edge, period) => clamp((Math.abs(fract(place) - 0.5) - edge) * period + 0.5);
 const hatch = (x, y, period) => stripes((x + y) / (period * PATTERNS.HATCH_SLANT), PATTERNS.HATCH_EDGE, period);
 
@@ -26,7 +26,7 @@ export function hatchAt(x, row, heightPx, period) {
     return mix(HATCH[0], HATCH[1], hatch(x + 0.5, heightPx - row - 0.5, period));
 }
 
-// The same for the pattern of tags without limits in the operator's view.
+// Returns the colour of the pattern for tags without limits in the operator's view.
 export function ruleAt(row, heightPx, period) {
     return mix(RULE[0], RULE[1], stripes((heightPx - row - 0.5) / period, PATTERNS.RULE_EDGE, period));
 }

@@ -3,7 +3,7 @@
 import { qualityText } from './format.js';
 import { say, sayIfKnown } from './words.js';
 
-// "bad", "Bad_SensorFailure" -> "Bad: sensor failure". A code that has no words is shown as it is spelt.
+// Turns "bad", "Bad_SensorFailure" into "Bad: sensor failure". Codes without a translation are spelt out.
 export function statusText(quality, name = '') {
     const code = String(name ?? '').replace(/^(good|uncertain|bad)[_ :]*/i, '');
     const spelt = code.replace(/_/g, ' ').replace(/([a-z])([A-Z])/g, '$1 $2').trim().toLowerCase(), word = qualityText(quality);

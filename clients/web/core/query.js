@@ -4,7 +4,7 @@
 const round = (x) => Number(x.toFixed(4)) + 0;
 export const numbersText = (list) => list.map(round).join(',');
 
-// Reads a list of numbers; null if it is none, or not of that length.
+// Parses a list of numbers; null if invalid or of another length than `count`.
 export function readNumbers(text, count = null) {
     const list = (text ?? '').split(',').map((part) => (part.trim() === '' ? NaN : Number(part)));
     return list.every(Number.isFinite) && (count === null || list.length === count) ? list : null;
@@ -47,7 +47,7 @@ function text(name, value) {
 const isSaid = ([name, value]) => !APART.includes(name) && value !== null && value !== undefined &&
     !(Array.isArray(value) && value.length === 0 && !NAMES.includes(name));
 
-// Returns the query for a picture of what a session shows. carried: its parameters, as sent after a reconnect.
+// Returns the query for a picture of a session's view. carried: its parameters, as sent after a reconnect.
 export function snapshotQuery({ carried, camera, size, time }) {
     const query = { width: size.width, height: size.height };
     for (const [name, value] of Object.entries(carried).filter(isSaid))

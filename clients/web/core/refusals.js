@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Refusals of the server in the reader's language, by their code and arguments. Mistakes that only a program makes stay in English.
+// Refusals of the server in the reader's language, by code and arguments. Errors that only a program can cause stay in English.
 import { language, phrase, readWords } from './words.js';
 
 const words = readWords((await import(`../words/refused.${language}.js`)).default);
 export const put = (key, values) => phrase(words, null, key, values);
 
-// Returns the text to show. text: the server's English; refusal: { code, args } or nothing; kind: `code` of an `error`.
+// Returns the text to show. text: the server's English; refusal: { code, args } or undefined; kind: `code` of an `error`.
 export function refusalText(text, refusal, kind) {
     if (words[refusal?.code])
         return put(refusal.code, refusal.args);
     return words[`class.${kind}`] ? put(`class.${kind}`) : put('page.other', { text });
 }
 
-// Returns why a tag list was not put in force, from `tags_saved`.
+// Returns why a tag list was not applied, from `tags_saved`.
 export const whyNotSaved = ({ errors, refusal }) =>
     (refusal ? refusalText('', refusal) : errors.map((text) => refusalText(text)).join('; '));
 
-// Returns the text to show for an HTTP answer that refuses something.
+// Returns the text to show for an HTTP response that refuses a request.
 export async function answerText(answer) {
     const refusal = JSON.parse(answer.headers.get('plantcast-refusal') ?? 'null');
     return refusalText((await answer.text()).trim() || `HTTP ${answer.status}`, refusal);

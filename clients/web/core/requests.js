@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Occasional requests to the server; session.js sends what is needed all the time.
+// Occasional requests to the server; session.js sends the continuous ones.
 import { cameraMessage } from './camera.js';
 import { asAsked } from './session.js';
 
-// Asks for a camera that looks at something (id: asset, tag or null; side: as in plantcast.v1); answered by the event `fitted`.
+// Requests a camera for an asset, a tag or the whole plant (id: null); side: see plantcast.v1. The event `fitted` answers.
 export function askFit(session, { id = null, side = 'now', projection } = {}) {
     session.post({ type: 'fit', seq: ++session.fitSeq, id, side, ...(projection ? { projection } : {}) });
 }
@@ -15,8 +15,8 @@ export function travel(session, atUs, speed = 0) {
     session.post({ type: 'time', ...(atUs === undefined ? {} : { at_us: atUs && Math.round(atUs) }), speed });
 }
 
-// Asks what is at a pixel of the picture on the screen, or of that of another camera; the event `picked` has the answer to the newest
-// question, with its purpose.
+// Requests what is at a pixel of the current picture, or of another camera's; the event `picked` answers the latest request, with its
+// purpose.
 export function askPick(session, [x, y], purpose, camera = null) {
     if (!session.welcomed || !session.picture)
         return;
@@ -25,13 +25,13 @@ export function askPick(session, [x, y], purpose, camera = null) {
     session.connection.send({ type: 'pick', seq: ++session.pickSeq, x, y, camera: cameraMessage(from) });
 }
 
-// Does an action to alarms, [[tag, kind], ...]; answered by the event `alarmed`.
+// Applies an action to alarms, [[tag, kind], ...]; the event `alarmed` answers.
 export function actOnAlarm(session, action, alarms, more = {}) {
     session.post({ type: 'alarm', seq: ++session.alarmSeq, action, alarms, ...more });
 }
 
-// Sends a message of the engineer's panel: place, gaps, save_tags or prove; answered by the event of its type. Returns its number; 0 if not
-// connected.
+// Sends a message of the engineering panel: place, gaps, save_tags or prove; the event of the same type answers. Returns its number; 0 if
+// not connected.
 export function tellAsEngineer(session, type, fields = {}) {
     if (!session.welcomed)
         return 0;
@@ -39,7 +39,7 @@ export function tellAsEngineer(session, type, fields = {}) {
     return session.toldSeq;
 }
 
-// Hands the lead to a session that follows this one; confirmed by the event `following`.
+// Hands the lead to a session that follows this one; the event `following` confirms.
 export function giveLead(session, other) {
     session.post({ type: 'lead', session: other });
 }

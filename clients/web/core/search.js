@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Search in the list of equipment.
+// Search in the equipment list.
 
-const known = new WeakMap(); // of assets and tags: what a search looks in
+const known = new WeakMap(); // asset or tag -> text to search in
 function textOf(item, ...texts) {
     if (!known.has(item))
         known.set(item, texts.filter(Boolean).join(' ').toLowerCase());
     return known.get(item);
 }
 
-// Returns a function that filters assets for the rows of the tree: to { asset, tags to list, byTag: it is listed because of its tags }, or
-// to null. All words must be found in the asset, which is then listed with all its tags, or in a tag. Returns null if the search is empty.
+// Returns a function that maps an asset to { asset, tags to list, byTag: listed because of its tags }, or null. All words must be found in
+// the asset, which then lists all its tags, or in one tag. Returns null for an empty search.
 export function search(wanted) {
     const words = wanted.toLowerCase().split(/\s+/).filter(Boolean);
     return words.length === 0 ? null : (asset) => {

@@ -3,14 +3,14 @@
 
 export const AXES = ['x', 'y', 'z'];
 
-// Returns the clip that cuts across an axis at a position in metres and keeps what is beyond; turned: what is before.
+// Returns the clip across an axis at a position in metres that keeps the larger coordinates; turned: keeps the smaller ones.
 export function cut(axis, at, turned) {
     const plane = [0, 0, 0, turned ? at : -at];
     plane[AXES.indexOf(axis)] = turned ? -1 : 1;
     return { planes: [plane] };
 }
 
-// Returns the cut of such a clip; null if the clip is none or another one.
+// Returns { axis, at, turned } of such a clip; null for other clips.
 export function readCut(clip) {
     const plane = clip?.planes?.length === 1 ? clip.planes[0] : null;
     const index = plane ? plane.slice(0, 3).findIndex((n) => Math.abs(n) === 1) : -1;
@@ -20,13 +20,13 @@ export function readCut(clip) {
     return { axis: AXES[index], at: turned ? plane[3] : -plane[3], turned };
 }
 
-// A box around the middle of some bounds; part 1: as large as they are.
+// Returns a box clip centred in the bounds; part 1: the full size of the bounds.
 export function boxAround({ min, max }, part) {
     const side = (i, turn) => (min[i] + max[i]) / 2 + (turn * part * (max[i] - min[i])) / 2;
     return { box: { min: [0, 1, 2].map((i) => side(i, -1)), max: [0, 1, 2].map((i) => side(i, 1)) } };
 }
 
-// The part, the other way round. null: no box, or one that was drawn out by hand.
+// Returns the part of such a box; null if it is none, or was resized by dragging.
 export function readBox(clip, bounds) {
     if (!clip?.box)
         return null;
@@ -38,7 +38,7 @@ export function readBox(clip, bounds) {
 
 const without = (list, id) => (list ?? []).filter((other) => other !== id);
 
-// Parameters after `how` (hide, ghost, only) was pressed for an asset: pressed again it is as before.
+// Returns the parameters after `how` (hide, ghost, only) was pressed for an asset; pressing again undoes it.
 export function showAsset(params, how, id) {
     const name = { hide: 'hidden', ghost: 'ghost', only: 'isolate' }[how];
     const was = (params[name] ?? []).includes(id);

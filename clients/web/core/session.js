@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One viewer's conversation with the server: it owns the camera and the parameters, and says both again after a reconnect.
+// One viewer's session with the server: owns camera and parameters, and sends them again after a reconnect.
 import { besideLegend, cameraMessage, cameraOfMessage, home, same, valid } from './camera.js';
 import { quantityText } from './format.js';
 import { LatencyMeter, RateMeter } from './meters.js';
@@ -12,63 +12,64 @@ export const PARAMS = [
     'scale', 'breaks', 'isolines', 'look', 'light', 'environment', 'backdrop', 'arrows', 'selected', 'hidden', 'isolate', 'ghost', 'clip',
     'show', 'split',
 ];
-const SAID = [...PARAMS, 'sensor', 'baseline', 'baselines', 'sensors', 'unit']; // by the server
-export const ENGINEERS = ['fill', 'strength', 'decay', 'power', 'radius_m', 'reach_m', 'sensors']; // others may not ask for these
-const SHARED = ['light', 'environment', 'backdrop', 'arrows', 'selected', 'hidden', 'isolate', 'ghost', 'clip', 'split']; // by both halves
-// Kept as they are, whatever the plant begins with by then.
+const SAID = [...PARAMS, 'sensor', 'baseline', 'baselines', 'sensors', 'unit']; // parameters that the server reports
+export const ENGINEERS = ['fill', 'strength', 'decay', 'power', 'radius_m', 'reach_m', 'sensors']; // parameters for engineers only
+// parameters that both halves of a split view share
+const SHARED = ['light', 'environment', 'backdrop', 'arrows', 'selected', 'hidden', 'isolate', 'ghost', 'clip', 'split'];
+// Always sent, whatever the plant's defaults are.
 const SETS = ['hidden', 'isolate', 'ghost'];
 const GROUPS_OWN = ['interpolation', 'distance', 'fill', 'power', 'radius_m', 'reach_m', 'scale', 'isolines'];
-const OF_THE_INSTANT = ['tags', 'picked']; // their time is that of what is shown
+const OF_THE_INSTANT = ['tags', 'picked']; // messages whose time is the shown instant
 const NOW = { atUs: null, speed: 0, fromUs: null };
 const QUALITIES = ['good', 'uncertain', 'bad'];
 const MOST_BACKLOG_BYTES = 64 * 1024, RECENT_MS = 5000;
 
 const pick = (from, names) => Object.fromEntries(names.filter((name) => from[name] !== undefined).map((name) => [name, from[name]]));
 
-// A frame's camera has a field of view of 0 where it has none.
+// Returns a frame's camera as requested: frames of orthographic cameras have a field of view of 0.
 export const asAsked = (camera) => (camera.height_m === undefined ? camera : cameraOfMessage({ ...camera, fov: undefined }));
 
 export class Session {
-    // wanted: { camera or null, params, time } from the page's address. Events: hello (a new connection), welcome, params, shown, time,
-    // tags (indices), status, alarms, alarmed (message), frame (frame), camera, error (message), astray (message: a part of our view
-    // is refused, and not asked for again), denied (message: we need a token, or another one), ignored (what).
+    // wanted: { camera or null, params, time } from the page's URL. Events: hello (new connection), welcome, params, shown, time, tags
+    // (indices), status, alarms, alarmed (message), frame (frame), camera, error (message), astray (message: a part of our view was refused
+    // and dropped), denied (message: a token is needed), ignored (reason).
     constructor({ connection, now, wanted = { camera: null, params: {} }, codecs = ['jpeg', 'png'] }) {
         Object.assign(this, { connection, now, codecs });
         this.listeners = new Map();
         this.model = null;
         this.camera = wanted.camera;
         this.params = { ...wanted.params };
-        this.token = null;       // lets us in, where one is needed
-        this.resume = null;      // secret of our view on the server
-        this.anew = false;       // of that view we want only the number, by which others follow us
-        this.confirmed = null;   // what the server last said is in force
+        this.token = null;       // access token, where one is needed
+        this.resume = null;      // secret that resumes this session on the server
+        this.anew = false;       // whether to resume only the session's number, by which others follow it
+        this.confirmed = null;   // parameters that the server last confirmed
         this.size = { width: 640, height: 360 };
         this.visible = true;
-        this.unsent = {};        // parameters that were changed while nobody listened
-        this.asked = new Map();  // by seq, parameters before the newest: pictures may still show them
+        this.unsent = {};        // parameters changed while disconnected
+        this.asked = new Map();  // seq -> earlier parameters that pictures may still show
         this.cameraSeq = this.paramsSeq = this.fitSeq = this.pickSeq = this.alarmSeq = this.toldSeq = 0;
-        this.cameraNews = false; // the server does not know the camera yet
-        this.cameraInput = null; // when a hand made it; latency counts from there
+        this.cameraNews = false; // whether the camera changed and was not sent yet
+        this.cameraInput = null; // time of the input that set the camera; start of the latency
         this.markers = new Map();
-        this.serverTime = null;  // { us, at }
-        this.freshAt = null;     // when the server of the picture last spoke: how old it is once that stops
-        this.outlived = null;    // the picture of a connection that is gone
+        this.serverTime = null;  // { us, at }: server time, and when it arrived
+        this.freshAt = null;     // time of the last message from the server, for the picture's age once messages stop
+        this.outlived = null;    // picture of the previous connection
         this.rate = new RateMeter();
         this.latency = new LatencyMeter();
-        this.recent = [];        // pictures of the last moments, and how they came: { picture, decodeMs, hereUs }
-        this.skew = null;        // the server's clock less ours, in microseconds, by the shortest round trip: { us, roundTripMs }
-        this.id = null;          // by which others can follow this session
-        this.following = null;   // whose view is shown: { session, width, height, gone (it is the last of one who has gone) }
-        this.leader = null;      // whom to follow once there is a connection, and that one
-        this.lent = null;        // the camera is that of the picture: another's, or what he left us
-        this.followers = { count: 0, sessions: [] }; // who follows us
+        this.recent = [];        // recent pictures: { picture, decodeMs, hereUs }
+        this.skew = null;        // { us, roundTripMs }: server clock minus ours, at the shortest round trip
+        this.id = null;          // number of this session, by which others follow it
+        this.following = null;   // the followed view: { session, width, height, gone (its last view) }
+        this.leader = null;      // session to follow, also after a reconnect
+        this.lent = null;        // camera taken over from the followed session; null: none
+        this.followers = { count: 0, sessions: [] }; // sessions that follow this one
         this.forget();
         this.time = { ...NOW, ...wanted.time }; // what the server shows: atUs null: now; fromUs null: nothing is recorded
         connection.onOpen = () => {
             const compares = this.params.show === 'difference' && this.params.baseline?.name;
             this.hello(['camera', 'params', ...(compares ? ['baseline'] : [])]);
         };
-        this.unheard = null;     // texts, while nobody is there to hear what they say: [[when, text], ...]
+        this.unheard = null;     // texts queued by wait(): [[when, text], ...]; null: not waiting
         connection.onText = (text) => (this.unheard ? this.unheard.push([this.now(), text]) : this.hear(text));
         connection.onBytes = (bytes) => this.guard(() => {
             this.freshen();
@@ -81,19 +82,19 @@ export class Session {
         this.listeners.set(name, [...(this.listeners.get(name) ?? []), listener]);
     }
 
-    // Called with each greeting, and at once where there was one.
+    // Registers for `welcome`, and calls the listener at once if there was one.
     greeted(listener) {
         this.on('welcome', listener);
         if (this.model)
             listener();
     }
 
-    // Pictures are drawn meanwhile; what else is said waits for listen().
+    // Queues all messages except frames until listen() is called.
     wait() {
         this.unheard = [];
     }
 
-    // What waited is heard as of when it came.
+    // Handles the queued messages, with their times of arrival.
     listen() {
         const { now, unheard } = this;
         this.unheard = null;
@@ -128,19 +129,19 @@ export class Session {
 
     // --- to the server
 
-    // What is said to who has greeted us.
+    // Sends a message if the server has welcomed us.
     post(message) {
         if (this.welcomed)
             this.connection.send(message);
     }
 
-    // parts: what of our view to ask for.
+    // parts: the parts of our view to request.
     hello(parts) {
         const { shown } = this;
         this.welcomed = false;
         this.outlived = this.picture;
         if (this.unheard)
-            this.unheard = []; // of a connection that is gone
+            this.unheard = []; // drops the queued texts of the previous connection
         this.emit('hello');
         this.helloParts = parts;
         this.greetedSize = this.size;
@@ -150,7 +151,7 @@ export class Session {
         this.cameraSeq = this.paramsSeq = 0;
         this.asked = new Map([[-1, shown]]);
         if (this.picture)
-            this.picture.paramsSeq = -1; // of a connection that is gone
+            this.picture.paramsSeq = -1; // marks the picture as one of the previous connection, whose numbers no longer count
         this.greetedCamera = parts.includes('camera') ? this.camera : null;
         const message = { type: 'hello', ...this.size, ...this.proofs(), codecs: this.codecs };
         if (this.time.atUs !== null)
@@ -163,26 +164,26 @@ export class Session {
         this.connection.send(message);
     }
 
-    // Who we are, and whose view was ours: with it comes back what we do not say ourselves.
+    // Returns token and resume secret; resuming restores parameters that we do not send.
     proofs() {
         return { ...(this.token ? { token: this.token } : {}),
             ...(this.resume ? { resume: this.resume, idle_ms: Math.max(0, Date.now() - this.connection.activeAt) } : {}),
             ...(this.anew ? { anew: true } : {}) };
     }
 
-    // What need not be said of the parameters: a group has it by itself, or the plant begins with it.
+    // Default parameters: those of the group and the plant, which need not be sent.
     get ownParams() {
         return this.ownOf(this.group);
     }
 
-    // Likewise where another group is shown.
+    // Returns the default parameters for another group.
     ownOf(group) {
         const own = group ? { ...pick(group, GROUPS_OWN), range: [group.min, group.max], strength: 1, decay: 1 } : {};
         return { ...this.model?.start, ...own };
     }
 
-    // The parameters to ask for again: not those that only are the group's own, which may have been changed there since.
-    // What is compared with can have been forgotten meanwhile, and may then be left out.
+    // Returns the parameters to request after a reconnect, without defaults, which may have changed. `baseline` can be left out because the
+    // server may have forgotten the comparison.
     carried({ baseline = true } = {}) {
         const { params, ownParams: own } = this;
         const may = (name) => !this.role || this.role === 'engineer' || !ENGINEERS.includes(name);
@@ -200,7 +201,7 @@ export class Session {
         return wanted;
     }
 
-    // inputTime: when the hand moved; latency counts from there.
+    // inputTime: time of the input; start of the latency.
     setCamera(camera, inputTime = this.now()) {
         if (!valid(camera) || same(camera, this.camera))
             return;
@@ -227,7 +228,7 @@ export class Session {
         this.emit('params');
     }
 
-    // Those of single sensors that are named are changed, null undoes one, or all.
+    // Merges factors of single sensors into the current ones; null for a sensor removes it, null for all removes all.
     mergedSensors(change) {
         if (change === undefined)
             return {};
@@ -247,7 +248,7 @@ export class Session {
         this.post({ type: 'visible', visible });
     }
 
-    // Once per animation frame: the newest camera goes out, the ones in between never do.
+    // Sends only the newest camera, once per animation frame.
     flush() {
         if (!this.cameraNews || !this.welcomed || this.connection.backlogBytes > MOST_BACKLOG_BYTES)
             return;
@@ -257,7 +258,7 @@ export class Session {
         this.cameraInput = null;
     }
 
-    // null: nobody any more; our own view comes back.
+    // session: to follow; null: none, our own view returns.
     follow(session) {
         this.leader = session;
         if (session === null)
@@ -266,7 +267,7 @@ export class Session {
         this.emit('following');
     }
 
-    // Whether what is said is said of the picture that is seen.
+    // Whether messages refer to the picture on the screen.
     get isCurrent() {
         return this.welcomed && (!this.picture || this.picture !== this.outlived);
     }
@@ -276,7 +277,7 @@ export class Session {
             this.freshAt = this.now();
     }
 
-    // This frame is on the screen.
+    // Called when the frame is on the screen.
     drawn(frame, decodeMs) {
         const now = this.now();
         this.rate.count(now);
@@ -296,13 +297,13 @@ export class Session {
             this.emit('camera');
     }
 
-    // What cannot be decoded is acknowledged too: more of it would change nothing.
+    // Acknowledges frames that cannot be decoded too; otherwise the server would stop sending.
     passedOver(frame) {
         if (!frame.more)
             this.connection.send({ type: 'ack', seq: frame.seq });
     }
 
-    // The decoder lost its place: the next frame shall stand alone.
+    // Requests a key frame because the decoder lost its reference.
     askKeyFrame() {
         this.post({ type: 'key_frame' });
     }
@@ -328,7 +329,7 @@ export class Session {
             this.emit('unkept', message);
     }
 
-    // What changed between hello and welcome.
+    // Sends what changed between hello and welcome.
     catchUp() {
         if (!this.visible)
             this.setVisible(false);
@@ -338,7 +339,7 @@ export class Session {
             this.setParams(this.unsent);
     }
 
-    // The parameter that the server does not take; where it names none, a part of our view.
+    // Sends hello without a parameter that the server refused; if it named none, without a part of our view.
     helloWithout(name) {
         const isParam = name !== 'baseline' && this.params[name] !== undefined;
         if (isParam)
@@ -348,8 +349,8 @@ export class Session {
         this.hello(isParam ? this.helloParts : this.helloParts.slice(0, -1));
     }
 
-    // Map from "tag/half" to { occluded, value, quality } for a picture, and its `isolines`; those of earlier ones are forgotten. What is
-    // not in it has no marker there: hidden, cut away or behind the eye. null: nothing was said.
+    // Returns a Map from "tag/half" to { occluded, value, quality } for a picture, with its `isolines`; drops those of earlier pictures.
+    // Tags not in it have no marker: hidden, clipped or behind the camera. null: no markers known.
     markersOf(seq) {
         let newest = null;
         for (const known of [...this.markers.keys()].sort((a, b) => a - b).filter((key) => key <= seq)) {
@@ -361,15 +362,15 @@ export class Session {
 
     // --- what the screen asks
 
-    // In CSS pixels. legendLies(): null: no legend lies in the picture.
+    // Returns the home camera for a size in CSS pixels. legendLies(): whether the legend lies across the picture; null: no legend in the
+    // picture.
     homeIn(width, height) {
         const { plant, groups: [group] } = this.model, lies = this.legendLies?.() ?? null, title = `${quantityText(group)} ${group.unit}`;
         return home(plant, width, height, lies === null ? {} : besideLegend(width, height, lies, title.length));
     }
 
-    // What people share, which the server says after its greeting, if there is any.
-    // views with names: { id, title, view, fixed } or { ..., by, time_us }; walls: what desks sent to panes, and the displays that are
-    // there.
+    // Resets shared data, which the server sends after its greeting if there is any. views: { id, title, view, fixed } or { ..., by,
+    // time_us }; walls: what desks sent to panes, and the connected displays.
     forget() {
         Object.assign(this, { views: [], notes: [], pointed: [], walls: null });
     }
@@ -378,12 +379,12 @@ export class Session {
         return this.model?.group(this.params.group) ?? null;
     }
 
-    // The parameters of the picture on the screen: what was asked for since is still on its way.
+    // The parameters of the picture on the screen; newer ones may still be on their way.
     get shown() {
         return this.asked.get(this.picture?.paramsSeq) ?? this.params;
     }
 
-    // [min, max] of the colours, of one half.
+    // Returns [min, max] of the colours, for one half.
     rangeOf(params) {
         const group = this.model?.group(params.group);
         return params.range ?? (group ? [group.min, group.max] : [0, 1]);
@@ -393,18 +394,18 @@ export class Session {
         return this.rangeOf(this.params);
     }
 
-    // The server's clock, carried on by ours; null before it spoke.
+    // Returns the server's clock, extrapolated by ours; null before its first message.
     clockUs(now = this.now()) {
         return this.serverTime && this.serverTime.us + (now - this.serverTime.at) * 1000;
     }
 }
 
-// What the server says, by its type; `this` is the session.
+// Handlers of the server's messages by type; `this` is the session.
 const HANDLERS = {
     welcome(message) {
         const before = this.model;
         this.model = new Model(message);
-        this.markers.clear(); // also where the plant was loaded anew
+        this.markers.clear(); // drops the markers of the previous plant or connection
         this.forget();
         this.welcomed = true;
         this.id = message.session;
@@ -432,7 +433,7 @@ const HANDLERS = {
 
     params(message) {
         if (message.seq < this.paramsSeq)
-            return; // an answer to what was changed again since
+            return; // ignores the answer to an earlier change, since overridden
         this.confirmed = this.params = pick(message, SAID);
         this.emit('params');
     },
@@ -448,7 +449,7 @@ const HANDLERS = {
         this.model.notOlder(message.oldest_age_ms ?? null, this.now());
     },
 
-    // After the first message only what changed since the one before.
+    // Markers. After the first message only changes are sent.
     markers(message) {
         const newest = this.markers.get(Math.max(...this.markers.keys())) ?? new Map();
         const known = message.markers ? new Map(message.markers.map(([tag, , , occluded, half = 0, value = null, quality = null]) =>
@@ -501,7 +502,7 @@ const HANDLERS = {
         this.emit('alarms');
     },
 
-    // The server's word on what an engineer tries out: until it is saved, these sensors stand there for us alone.
+    // Draft positions of an engineer: until saved, only this session sees them.
     placed(message) {
         this.model.place(message.sensors);
         this.emit('placed', message);
@@ -532,11 +533,11 @@ const HANDLERS = {
             return;
         }
         if (message.about === 'hello' && !this.welcomed && this.helloParts.length > 0) {
-            this.emit('astray', message); // our view of before is of another plant, or of another version
+            this.emit('astray', message); // a part of our earlier view does not exist in this plant or version
             this.helloWithout(message.text.split(':')[0]);
             return;
         }
-        if (message.about === 'follow' && this.leader !== null) { // there is no such session, yet
+        if (message.about === 'follow' && this.leader !== null) { // the followed session does not exist (yet)
             this.emit('following');
             return;
         }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where the sun stands, as people say it: from which side (degrees from north through east) and how high, and as the server has it.
-// North is y in a plant frame that is Z up, -z in one that is Y up.
+// Converts the sun's position between azimuth and elevation in degrees (azimuth from north through east) and the server's vector. North is
+// y in a Z-up plant frame, -z in a Y-up frame.
 import { say } from './words.js';
 
 const WINDS = ['N', 'NE', 'E', 'SE', 'S', 'SW', 'W', 'NW'];

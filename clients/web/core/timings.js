@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where the time of the last pictures went, stage by stage.
+// Latency of recent pictures, stage by stage.
 
 export const STAGES = ['wait', 'field', 'render', 'encode', 'network', 'decode'];
-const STATED = ['wait', 'field', 'render', 'encode']; // by the server, in microseconds
+const STATED = ['wait', 'field', 'render', 'encode']; // stages reported by the server, in microseconds
 
 const rank = (sorted, share) => sorted[Math.min(sorted.length - 1, Math.ceil(share * sorted.length) - 1)];
 
-// Milliseconds by stage; null: not known. hereUs: the server's clock when the picture was decoded, or null.
+// Returns milliseconds by stage; null: unknown. hereUs: the server's clock at the time of decoding, or null.
 function stages({ picture, decodeMs, hereUs }) {
     const network = hereUs === null ? null : Math.max(0, (hereUs - picture.sentTimeUs) / 1000 - decodeMs);
     return { network, decode: decodeMs, ...Object.fromEntries(STATED.map((name) => [name, picture[`${name}Us`] / 1000])) };
 }
 
-// recent: pictures as a session has them. { p50, p95 } of a stage, or of `sensor`: from a reading that changed to the picture that was made
-// for it; null: none.
+// recent: pictures of a session. Returns { p50, p95 } of a stage, or of `sensor`: from a changed reading to its picture; null: none.
 export function timingOf(recent, name) {
     const whole = (one) => (one.picture.data ? Object.values(stages(one)).reduce((sum, ms) => sum + (ms ?? 0), 0) : null);
     const known = recent.map((one) => (name === 'sensor' ? whole(one) : stages(one)[name])).filter((ms) => ms !== null);
@@ -21,6 +20,6 @@ export function timingOf(recent, name) {
     return known.length > 0 ? { p50: rank(known, 0.5), p95: rank(known, 0.95) } : null;
 }
 
-// Of those within so long before now.
+// Returns the bit rate of pictures within that time.
 export const kbitPerS = (recent, now, withinMs = 5000) =>
     (recent.filter(({ picture }) => now - picture.at <= withinMs).reduce((sum, { picture }) => sum + picture.bytes, 0) * 8) / withinMs;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bytes of plantcast.v1 (protocol/PROTOCOL.md) to objects. The one place that looks at them; what it lets through is sound.
+// Parses bytes of plantcast.v1 (protocol/PROTOCOL.md) into validated objects; no other code reads raw bytes.
 
 export const SUBPROTOCOL = 'plantcast.v1';
 const FRAME_HEADER_BYTES = 112;
@@ -28,7 +28,7 @@ function time(view, offset) {
 
 const triple = (view, offset) => [0, 4, 8].map((o) => view.getFloat32(offset + o, true));
 
-// A field of view of 0 says orthographic.
+// A field of view of 0 means orthographic.
 function lens(view) {
     const fov = view.getFloat32(104, true), height_m = view.getFloat32(108, true);
     if (fov === 0) {
@@ -39,7 +39,7 @@ function lens(view) {
     return { fov };
 }
 
-// Throws WireError. The payload is a view into the same bytes.
+// Throws WireError. The payload is a view into the given bytes.
 export function decodeFrame(bytes) {
     const data = bytes instanceof Uint8Array ? bytes : new Uint8Array(bytes);
     need(data.length >= FRAME_HEADER_BYTES, `${data.length} bytes are no frame header`);
@@ -51,7 +51,7 @@ export function decodeFrame(bytes) {
         flags, codec: CODECS[view.getUint8(1)],
         key: (flags & FLAG_KEY) !== 0, still: (flags & FLAG_STILL) !== 0, noLiveData: (flags & FLAG_NO_LIVE_DATA) !== 0,
         data: (flags & FLAG_DATA) !== 0,
-        // It shows the instant dataTimeUs, not now.
+        // Shows the instant dataTimeUs, not now.
         past: (flags & FLAG_PAST) !== 0,
         // Another part of the same picture follows.
         more: (flags & FLAG_MORE) !== 0,
@@ -76,17 +76,17 @@ export function decodeFrame(bytes) {
     return frame;
 }
 
-// A message shorter than its header says: the server gave the frame up.
+// Returns whether the message is shorter than its header says: the server aborted the frame.
 export function isGivenUp(bytes) {
     const data = bytes instanceof Uint8Array ? bytes : new Uint8Array(bytes);
     const there = data.length - FRAME_HEADER_BYTES;
     return there >= 0 && new DataView(data.buffer, data.byteOffset, data.length).getUint32(4, true) > there;
 }
 
-// Does it hold the whole picture, so that nothing is to be seen of the one before?
+// Returns whether the frame covers the whole picture, so that nothing of the previous one remains.
 export const isWhole = (frame) => frame.width === frame.fullWidth && frame.height === frame.fullHeight;
 
-// One text message to an object with a type.
+// Parses a text message into an object with a type.
 export function decodeMessage(text) {
     let message;
     try {
@@ -103,7 +103,7 @@ export function decodeBase64(text) {
     return Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
 }
 
-// The size to ask for: device pixels, within what the server draws, the shape of the window kept.
+// Returns the size to request: device pixels, limited to what the server draws, with the window's aspect ratio.
 export function pictureSize(widthPx, heightPx) {
     const shrink = Math.min(1, MAX_SIDE_PX / widthPx, MAX_SIDE_PX / heightPx, Math.sqrt(MAX_PIXELS / (widthPx * heightPx)));
     const side = (px) => (px > 0 && px * shrink > MIN_SIDE_PX ? Math.floor(px * shrink) : MIN_SIDE_PX);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the page says, in the language of who reads it: of each language two files beside this folder, of what the page says at once and of
-// what its parts say that are loaded later.
+// Looks up the page's words in the reader's language. Each language has a file for words needed at once, and one for parts that are loaded
+// later.
 
 export const LANGUAGES = ['en', 'ko', 'de'];
 
-// { language, locale } by ?lang=, else by what the browser prefers, else English. The locale is the reader's own where it is of that
+// Returns { language, locale } by ?lang=, else by the browser's preference, else English. The locale is the reader's own if it fits the
 // language.
 export function chooseLanguage(search = '', preferred = []) {
     const tags = [new URLSearchParams(search).get('lang'), ...preferred].filter(Boolean);
@@ -17,12 +17,12 @@ function known(tag) {
     try {
         return Intl.getCanonicalLocales(tag ?? [])[0] ?? null;
     } catch {
-        return null; // no tag of a language
+        return null; // not a valid language tag
     }
 }
 
-// Lines of a file of words to a table: key to text with {names} in it, or to { one, other, ... } by the plural of `count`. [section] is
-// how the keys of the lines after it begin; a line that is indented goes on with the text before it.
+// Parses a file of words into a table: key to text with {names}, or to { one, other, ... } by the plural of `count`. [section] is a prefix
+// of the keys that follow; an indented line continues the text before it.
 export function readWords(text) {
     const table = {};
     let begin = '';
@@ -54,7 +54,7 @@ const rules = new Intl.PluralRules(reader.language);
 export const { language, locale } = reader;
 export const say = (key, values) => phrase(words, rules, key, values);
 
-// The words of parts that are loaded later, there from now on; a promise, which fails where they cannot be fetched. name: of their file.
+// Loads further words. Returns a promise, which rejects if the file cannot be fetched. name: of the file.
 const learnt = new Map();
 let failures = 0;
 export function learnWords(name = 'lazy') {
@@ -67,5 +67,5 @@ export function learnWords(name = 'lazy') {
     return learnt.get(name);
 }
 
-// Of what has a name of its own that may be known to us: that, else what it is called.
+// Returns the translation of a name if there is one, else `otherwise`.
 export const sayIfKnown = (key, otherwise) => (words[key] === undefined ? otherwise : say(key));

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The handover of a shift: what was noted, alarmed, acknowledged and shelved, for whoever comes next. The browser prints it, or keeps it
-// as a
-// PDF. ?from and ?to: as in /api/v1/history.
+// The shift handover page: notes, alarms, acknowledgements and shelved alarms for the next shift. The browser prints it or saves it as PDF.
+// ?from and ?to: as in /api/v1/history.
 import { zoneClock } from '../core/format.js';
 import { readJournal, sortJournal } from '../core/handover.js';
 import { ask } from '../core/history.js';
@@ -10,11 +9,11 @@ import { language, learnWords, say } from '../core/words.js';
 import { byId, make } from '../app/common/dom.js';
 import { store, stored } from '../app/common/storage.js';
 
-const HOURS = [8, 12, 24], MOST = 200; // rows of a table
+const HOURS = [8, 12, 24], MOST = 200; // maximum rows of a table
 const query = new URLSearchParams(location.search), token = stored('token');
 document.documentElement.lang = language;
 await learnWords();
-new BroadcastChannel('plantcast').onmessage = ({ data }) => { // the page that opened this one was locked
+new BroadcastChannel('plantcast').onmessage = ({ data }) => { // the page that opened this one was locked: clears this one too
     if (data === 'locked') {
         store('token', '');
         location.reload();
@@ -76,13 +75,13 @@ function pageOf({ plant, assets }, notes, journal, standing, [fromUs, toUs], mis
     ];
 }
 
-// Operators and engineers: it names people.
+// For operators and engineers only, because it names people.
 async function show() {
     const { role } = await get('me');
     if (!['operator', 'engineer'].includes(role))
         throw new Error(say('handover.denied'));
     const span = { from: query.get('from') ?? '-8h', to: query.get('to') ?? 'now' };
-    const missing = []; // what could not be had: a page that lacks it says so
+    const missing = []; // data that could not be loaded; the page lists it
     const orElse = (empty) => (error) => {
         missing.push(error.message);
         return empty;

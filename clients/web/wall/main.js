@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One display of a wall: its panes in their grid, a session of its own for what is said in words, and what it says when it hears nothing.
+// One display of a wall: panes in a grid, a session for text, and a warning when the server is silent.
 import { AlarmCall } from '../core/alarm_call.js';
 import { Connection } from '../core/connection.js';
 import { zoneClock } from '../core/format.js';
@@ -19,7 +19,8 @@ import { Pairing } from './pairing.js';
 import { tileOf } from './tile.js';
 
 const TICK_MS = 250, LOST_MS = 3000;
-const LEAST = { width: 560, height: 315 }, LETTERS_MM = 100; // units that a display has at the least; of what is said of a lost server
+// LEAST: minimum size of a display in units; LETTERS_MM: letter size of the lost-connection warning
+const LEAST = { width: 560, height: 315 }, LETTERS_MM = 100;
 const query = new URLSearchParams(location.search), number = Math.max(1, Number(query.get('display')) || 1);
 
 document.documentElement.lang = language;
@@ -33,14 +34,14 @@ const pairing = new Pairing({ element: byId('denied'), place: { wall: query.get(
 } });
 const token = pairing.kept ?? stored('token');
 if (token)
-    store('token', token); // the panes are pages of their own, which look for it there
+    store('token', token); // stored for the panes, which are separate pages
 const streamUrl = new URL('stream', location.href.replace(/^http/, 'ws').replace(/[?#].*$/, '')).href;
 const connection = new Connection({ url: streamUrl, open: (url, protocol) => new WebSocket(url, protocol), clock });
 connection.onUnopened = () => import('../core/blocked.js').then(({ explain }) => explain(connection), () => {});
 connection.spreadMs = SPREAD_MS;
 const session = new Session({ connection, now: clock.now, codecs: ['jpeg'] });
 session.token = token;
-session.size = { width: 16, height: 16 }; // it is there for the words
+session.size = { width: 16, height: 16 }; // tiny pictures: this session is for alarms and texts only
 session.on('frame', (frame) => session.drawn(frame, 0));
 
 let wall = null, shape = '', panes = [], scale = 1;
@@ -59,7 +60,7 @@ function sayWrong(text) {
     byId('grid').replaceChildren(make('p', { class: 'wrong' }, text));
 }
 
-// How large a unit is, which all letters are multiples of.
+// Sets the size of a unit, on which all font sizes are based.
 function fit() {
     if (!wall)
         return;
@@ -89,7 +90,7 @@ function build(walls) {
     return undefined;
 }
 
-// The server is to know which display this is.
+// Tells the server which display this is.
 const sayWho = () => wall?.displays[number - 1] && !session.model?.plant.only &&
     session.post({ type: 'display', wall: wall.id, display: number });
 
@@ -108,7 +109,8 @@ async function look() {
 
 // --- as time goes by
 
-const lostWords = make('p'), lostSelf = make('p', { class: 'self' }), OPENED = new Date().toLocaleTimeString('en-GB'); // by its own clock
+// by the display's own clock
+const lostWords = make('p'), lostSelf = make('p', { class: 'self' }), OPENED = new Date().toLocaleTimeString('en-GB');
 byId('lost').replaceChildren(lostWords, lostSelf);
 
 let lostAt = null;

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A display that is not let in: it shows six digits, which an engineer approves, or takes a token. Its secret is made here, and kept for
-// this wall and display.
+// Pairing of a display: shows a code, which an engineer enters, or takes a token. The secret is generated here and stored for this wall and
+// display.
 import { make, setText } from '../app/common/dom.js';
 import { say } from '../core/words.js';
 
 const ASK_MS = 2000, SECRET_BYTES = 32;
-const WHY = { 200: 'walls.asks', 400: 'walls.nowhere', 503: 'walls.crowded' }; // by status: what is said in place of digits
+const WHY = { 200: 'walls.asks', 400: 'walls.nowhere', 503: 'walls.crowded' }; // HTTP status -> text in place of the code
 
 export class Pairing {
-    // place: { wall, display }. enter(secret): tries to be let in with it, or with a token that somebody typed.
+    // place: { wall, display }. enter(secret): tries to connect with the secret, or with a token that the user typed.
     constructor({ element, place, enter }) {
         Object.assign(this, { element, place, enter, key: `plantcast.wall.${place.wall}.${place.display}`, asking: 0 });
         this.digits = make('p', { class: 'digits' });
@@ -25,7 +25,7 @@ export class Pairing {
         });
     }
 
-    // What was kept for this display, or for all of this machine: NULL if there is nothing.
+    // The secret stored for this display, or for the whole machine; null if there is none.
     get kept() {
         return localStorage.getItem('plantcast.wall') ?? localStorage.getItem(this.key);
     }
@@ -36,7 +36,7 @@ export class Pairing {
         this.enter(token);
     }
 
-    // Asks until it is let in. A token that was turned away is forgotten; its own secret is not, which may be let in again.
+    // Polls until paired. A rejected token is deleted; the display's own secret is kept, since it may be paired again.
     show() {
         if (!this.element.hidden)
             return;
@@ -63,7 +63,7 @@ export class Pairing {
             ({ status } = reply);
             answer = reply.ok ? await reply.json() : {};
         } catch {
-            // it is asked again
+            // retried at the next poll
         }
         if (turn !== this.asking)
             return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a pane of a wall shows, by kind. Each is { element, tick(now) }; views and trends are the page itself, in a frame of their own.
+// The panes of a wall, by kind. Each is { element, tick(now) }; views and trends are the normal page in an iframe.
 import { byEquipment } from '../core/alarm_call.js';
 import { isGone } from '../core/alarms.js';
 import { ageText, decimalsFor, numberText, qualityText, quantityText, unitText, zoneClock } from '../core/format.js';
@@ -15,7 +15,7 @@ const LEAST_PART = 0.4;
 const KINDS = { views: ViewsPane, trend: TrendPane, alarms: AlarmsPane, tiles: TilesPane, clock: ClockPane, text: TextPane,
     snapshot: SnapshotPane };
 
-// The name of an area as CSS takes it: a number is none, and some words mean something there.
+// Returns an area's name as a valid CSS identifier.
 export const areaOf = (name) => (name === '.' ? name : `area-${name.replace(/\./g, '_')}`);
 
 export function paneOf(pane, context) {
@@ -26,12 +26,12 @@ export function paneOf(pane, context) {
     return { element, kind: pane.kind, tick };
 }
 
-// As the strip of alarms says it. The server that is silent does not tell the present value.
+// Returns an alarm's value as the alarm bar shows it; without the present value while the server is silent.
 const nowText = (session, alarm) => limitText(session, alarm, !['lost', 'silent'].includes(health(session, clock.now()).kind));
 
 const ageOf = (ms) => say('walls.age', { age: ms === null ? '–' : ageText(ms) });
 
-// Of tags: which quantities, and how old the oldest reading is that counts.
+// Returns the quantities of tags, and the age of their oldest usable reading.
 function aboutTags({ model }, names) {
     const tags = names.map((name) => model.tag(name)).filter(Boolean);
     const groups = [...new Set(tags.map(({ group }) => model.group(group)))].filter(Boolean);
@@ -43,7 +43,7 @@ function aboutTags({ model }, names) {
 
 const timeOf = (session, us) => zoneClock(session.model.plant.time_zone)(us / 1000).time;
 
-// Of the oldest reading in a picture, for who is told of no readings.
+// Returns the age of the oldest reading in a picture, for sessions that receive no readings.
 function pictureAgeMs(session) {
     const { picture } = session;
     if (!picture || picture.oldestAgeMs === null)
@@ -51,7 +51,7 @@ function pictureAgeMs(session) {
     return picture.oldestAgeMs + Math.max(0, session.clockUs() - picture.sentTimeUs) / 1000;
 }
 
-// The page, without what is pressed.
+// The page in an iframe, without controls.
 function pageIn({ wall, theme, body }, kind, place) {
     const query = new URLSearchParams({ wall: `${wall.inches},${wall.distance_m}`, pane: kind, hangs: place, ...(theme ? { theme } : {}) });
     const frame = make('iframe', { src: `./?${query}`, tabindex: -1 });
@@ -59,25 +59,25 @@ function pageIn({ wall, theme, body }, kind, place) {
     return { get page() { return frame.contentWindow?.plantcast ?? null; } };
 }
 
-// --- views, and the place of an alarm
+// --- views, and the location of an alarm
 
 function ViewsPane(pane, context) {
     const { session, call, title, element, wall, display } = context, place = `${wall.id}/${display}/${pane.area}`;
     const inner = pageIn(context, 'view', place), remembered = `plantcast.at.${place}`;
     let at = (Number(sessionStorage.getItem(remembered)) || 0) % pane.items.length, changedAt = null, shown = null, shownIn = null;
-    const viewsOf = ({ model, views }) => model?.plant.only ?? views; // a token may be for some views only, which it names
+    const viewsOf = ({ model, views }) => model?.plant.only ?? views; // views that the token allows, if it is limited; else all saved views
     const titleOf = (id) => pane.title ?? viewsOf(session).find((view) => view.id === id)?.title ?? id;
     const words = make('span', { class: 'said' }), about = make('span', { class: 'about' }), why = make('p', { class: 'why' });
     title.append(words, about);
     context.body.append(why);
 
-    // Who sent or holds it, and since when.
+    // Returns who sent or holds the view, and since when.
     function byWhom({ desk, by, held, time_us: us }) {
         const who = [desk, by].filter(Boolean).join(', '), time = timeOf(session, us);
         return make('i', {}, say(held ? 'walls.held' : 'walls.sent', { who, time }));
     }
 
-    // wrong: what the view names that the plant does not have; another picture in its place would pass for it.
+    // wrong: what the view refers to and the plant does not have; showing another picture instead would mislead.
     function showView(page, order, wrong) {
         const id = pane.items[at];
         if (wrong)
@@ -95,7 +95,7 @@ function ViewsPane(pane, context) {
             ...(order ? [' ', byWhom(order)] : []));
     }
 
-    // Whether the picture is still of another group than that of the alarm.
+    // Returns whether the picture still shows another group than the alarm's.
     function ofOther({ model, shown: params }, alarm) {
         const group = model.tag(alarm.tag.name)?.group;
         return Boolean(group) && params.group !== group;
@@ -103,7 +103,7 @@ function ViewsPane(pane, context) {
 
     function showAlarm(page, alarm) {
         const tag = page.session.model.tag(alarm.tag.name);
-        // A view that was sent here may hide the place, or colour it in another range.
+        // A view sent from a desk may hide the location, or use another colour range.
         page.session.setParams({ ...(tag.group ? { group: tag.group } : {}), clip: null, split: null, range: null });
         page.flyToTag(tag);
         words.replaceChildren(badge(alarm.priority, isGone(alarm.state)), make('b', {}, ` ${say(`kind.${alarm.kind}`)} ${tag.name} `),
@@ -124,7 +124,7 @@ function ViewsPane(pane, context) {
         const rests = order || alarms.some(({ waiting }) => waiting) || (pane.on_alarm && call.isFlood(alarms, nowUs));
         if (!rests && pane.items.length > 1 && changedAt !== null && now - changedAt >= (pane.stops?.[at].dwell_s ?? pane.every_s) * 1000) {
             at = (at + 1) % pane.items.length;
-            sessionStorage.setItem(remembered, at); // a display that is loaded anew goes on
+            sessionStorage.setItem(remembered, at); // a reloaded display continues with the same view
             shown = null;
         }
         const { view, wrong, refusal } = viewsOf(page.session).find(({ id }) => id === pane.items[at]) ?? {};
@@ -134,7 +134,7 @@ function ViewsPane(pane, context) {
         const unshown = alarm || order?.view || !wrong ? null : { wrong, refusal };
         element.classList.toggle('unshown', Boolean(unshown));
         element.classList.toggle('called', Boolean(alarm));
-        element.classList.toggle('coming', Boolean(alarm) && ofOther(page.session, alarm)); // no legend of another quantity below its name
+        element.classList.toggle('coming', Boolean(alarm) && ofOther(page.session, alarm)); // hide the legend of the previous quantity
         if (wanted === shown && page === shownIn) {
             if (alarm)
                 setText(words.querySelector('.raised'), `${nowText(session, alarm)} `);
@@ -154,7 +154,7 @@ function ViewsPane(pane, context) {
 function TrendPane(pane, context) {
     const { session, wall, display, title } = context, inner = pageIn(context, 'trend', `${wall.id}/${display}/${pane.area}`);
     const about = make('span', { class: 'about' });
-    let begun = null; // in which page: a frame may be loaded anew
+    let begun = null; // window of the iframe whose trend was started; another one after a reload
     title.replaceChildren(pane.title ?? pane.items.join(', '), about);
     return { tick() {
         const { page } = inner;
@@ -185,7 +185,7 @@ function AlarmsPane(pane, { session, call, title, body }) {
             say('walls.many', { count, worst: `${say(`kind.${worst.kind}`)} ${worst.tag.name}` })),
         make('time', {}, timeOf(session, worst.raisedUs)));
 
-    // As many as there is room for; the rest is counted.
+    // Shows as many rows as fit, and counts the rest.
     function fill(rows) {
         list.replaceChildren(...rows);
         let hidden = 0;
@@ -214,8 +214,7 @@ function AlarmsPane(pane, { session, call, title, body }) {
     } };
 }
 
-// --- numbers with their limits, in the manner of ISA-101: grey, with a band for the usual range, a mark where the value is, and colour for
-// an alarm alone
+// --- numbers with limits in ISA-101 style: grey, with a band for the normal range, a mark at the value, and colour only for alarms
 
 function TilesPane(pane, { session, body, title }) {
     const about = make('span', { class: 'about' });
@@ -246,7 +245,7 @@ function TilesPane(pane, { session, body, title }) {
         }
     }
 
-    // Its colour is the priority; returned but not acknowledged is hollow.
+    // Sets the flag: its colour is the priority; hollow if returned but unacknowledged.
     function flagOf(tile, alarm) {
         const text = alarm ? `${alarm.priority} ${alarm.state}` : '';
         if (tile.flag.dataset.shows === text)
@@ -280,7 +279,7 @@ function TilesPane(pane, { session, body, title }) {
     } };
 }
 
-// Smaller letters where there is no room for as large ones as there should be.
+// Reduces the font size until the content fits.
 function fitIn(body) {
     for (let part = 1; part > LEAST_PART; part *= 0.94) {
         setVariable(body, '--part', part);

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A pane with the picture of another plant, which this plant's server asks that one's for; without one it says so in letters.
+// A pane with the picture of another plant, which this plant's server fetches; without a picture it says why.
 import { ageText } from '../core/format.js';
 import { ask } from '../core/history.js';
 import { say } from '../core/words.js';
 import { clock } from '../app/common/clock.js';
 import { make, setText } from '../app/common/dom.js';
 
-const ASK_MS = 1000, UNHEARD_MS = 5000; // so long without a word from this plant's server, nothing is known of the other
+const ASK_MS = 1000, UNHEARD_MS = 5000; // after this silence of this plant's server, the other plant's state is unknown
 
-// Returns { tick(now) }. timeOf(us): the plant's time.
+// Returns { tick(now) }. timeOf(us): formats the plant's time.
 export function SnapshotPane(pane, { session, title, body, timeOf }) {
     const [id] = pane.items, image = make('img', { alt: '', hidden: '' }), card = make('div', { class: 'gone' });
     const about = make('span', { class: 'about' }), name = make('span', { class: 'said' });
     let state = null, asks = false, askedAt = -Infinity;
-    let shown = null, changedAt = 0; // { picture, ageMs, at }; since when there is another one to be shown
+    let shown = null, changedAt = 0; // shown: { picture, ageMs, at }; changedAt: since when the title is to change
     title.replaceChildren(name, about);
     body.append(image, card);
 
@@ -28,7 +28,7 @@ export function SnapshotPane(pane, { session, title, body, timeOf }) {
     }
 
     async function look() {
-        const at = askedAt = clock.now(); // what it took to answer counts as age
+        const at = askedAt = clock.now(); // the response time counts as age
         asks = true;
         try {
             const { list: [said] } = await (await ask('api/v1/other_plants', { id }, session.token)).json();
@@ -38,13 +38,13 @@ export function SnapshotPane(pane, { session, title, body, timeOf }) {
             if (said.picture && said.picture !== shown?.picture)
                 await load(state);
         } catch {
-            // said as soon as nothing was heard for too long
+            // a failed request is reported once the silence is too long
         } finally {
             asks = false;
         }
     }
 
-    // Why its picture is not shown; '': it is.
+    // Returns why the picture is not shown; '' if it is.
     function whyNot(now) {
         if (!state)
             return 'waiting';

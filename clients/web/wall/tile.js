@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A display that is a tile of one picture over many: the picture without a frame, dots where readings are, labels of alarms, notes, where
-// a desk points; title and legend once on the wall. Who leads chooses what all show.
+// A display that is one tile of a picture over many displays: picture without border, dots at readings, alarm labels, notes, and a desk's
+// pointer; title and legend appear once on the wall. The leading display chooses what all show.
 import { isGone } from '../core/alarms.js';
 import { projector } from '../core/camera.js';
 import { Connection } from '../core/connection.js';
@@ -17,10 +17,10 @@ import { make, setText, setVariable } from '../app/common/dom.js';
 import { Legend } from '../app/viewport/legend.js';
 import { TileSession } from './tile_session.js';
 
-const UPRIGHT = { matches: false, addEventListener() {} }, SMALLEST = 0.6; // of a title's letters, where it is too long for one line
-const OLD_MS = 3000, POINTS_MS = 4000, REACH = 0.35; // of a tile's width: a label may begin on the tile beside
+const UPRIGHT = { matches: false, addEventListener() {} }, SMALLEST = 0.6; // minimum font scale of a title that is too long for one line
+const OLD_MS = 3000, POINTS_MS = 4000, REACH = 0.35; // fraction of a tile's width: a label may begin on the neighbouring tile
 
-// { element, kind, tick(now) }. pane: of /api/v1/walls, with `tile`; context: as of other panes.
+// Returns { element, kind, tick(now) }. pane: from /api/v1/walls, with `tile`; context: as for other panes.
 export function tileOf(pane, { session: words, call, wall, display, streamUrl }) {
     const { columns, rows } = pane.tile, canvases = [make('canvas', { class: 'front' }), make('canvas')];
     const marks = make('div', { class: 'marks' });
@@ -55,12 +55,13 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
     });
     requestAnimationFrame(flush);
 
-    // --- what is shown, by who leads
+    // --- what is shown, decided by the leading display
 
     let refused = '';
     session.on('error', ({ text, refusal, code }) => { refused = refusalText(text, refusal, code); });
 
-    let at = 0, changedAt = null, shown = null, called = null, wrong = null; // wrong: with the view that it shows, by who leads
+    // wrong: what the leading display could not resolve in its view
+    let at = 0, changedAt = null, shown = null, called = null, wrong = null;
     const timeOf = (us) => zoneClock(words.model.plant.time_zone)(us / 1000).time;
     session.on('fitted', (camera) => session.setCamera(camera));
 
@@ -97,9 +98,9 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
         [shown, changedAt] = [wanted, now];
     }
 
-    // --- what is said
+    // --- texts
 
-    // What it shows is known to the one that leads: the first display, but where that is shown in several places.
+    // Only the leading display knows what is shown: the first display, unless several places show it.
     function sayTitle() {
         const { model } = session, group = model.group(session.shown.group), { leads } = session.tiles, order = leads ? findOrder() : null;
         const alarms = words.model.alarms.list(), { active, waiting } = words.model.alarms.counts(), alarm = leads ? called : null;
@@ -129,7 +130,7 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
         setText(said, text);
     }
 
-    // Which displays are not there is said by the one that leads; what is wrong with itself, by each.
+    // The leading display lists missing displays; each display reports its own faults.
     function saySelf(now) {
         const own = session.tiles.late.find((one) => one.display === display), { picture } = session;
         const silent = session.freshAt !== null && now - session.freshAt > OLD_MS;
@@ -143,11 +144,11 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
         element.classList.toggle('blank', Boolean(own || silent || !picture));
     }
 
-    // --- what stands in the picture
+    // --- marks in the picture
 
-    let frame = null, pointer = null; // the picture that is shown; where a desk points: { position, by, until }
+    let frame = null, pointer = null; // frame: on the screen; pointer: of a desk: { position, by, until }
 
-    // Where a place of the plant is on this display, in shares of its sides; null: behind the eye, or far from here.
+    // Returns a function to a position on this display, as fractions of its sides; null: behind the camera, or far away.
     function placer() {
         const [left, top, width, height] = session.tiles.part ?? [0, 0, 1, 1];
         const project = projector(frame.camera, frame.fullWidth / width, frame.fullHeight / height);
@@ -173,7 +174,7 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
         return mark;
     }
 
-    // An alarm is marked wherever it is: also behind something, and of a quantity that is not shown.
+    // Marks an alarm everywhere: also behind something, and of a quantity that is not shown.
     function drawMarks() {
         const { model } = words, place = placer(), known = session.markersOf(frame.seq), marked = new Set(), out = [];
         const alarms = model.alarms.list().filter(({ state, waiting }) => waiting || !isGone(state));
@@ -202,7 +203,7 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
         marks.replaceChildren(...out);
     }
 
-    // Anew with each picture, and where what is marked has changed.
+    // Redraws the marks when a picture arrives or a marked item changes.
     let marksOf = '';
     function lookAtMarks() {
         if (pointer && clock.now() > pointer.until)

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The session of a tile of one picture over many displays: frames are kept until the server says when all tiles show them.
+// The session of a tile in a picture over many displays: frames are held until the server says when all tiles show them.
 import { DecodeQueue } from '../core/decode_queue.js';
 import { Session } from '../core/session.js';
 
-const PING_MS = 2000, CLOCK_MS = 60000, EARLY_MS = 4; // the next picture of the screen comes within 17 ms
+const PING_MS = 2000, CLOCK_MS = 60000, EARLY_MS = 4; // EARLY_MS: show up to this much early, since the screen's next refresh is 17 ms away
 
 export class TileSession extends Session {
-    // tile: { wall, display, columns, rows }. canvases: two, of which that with the class `front` is seen. Events besides those of a
-    // session: tiles (who is there), presented ({ frame, number (of the picture), us (when, by the server) }).
+    // tile: { wall, display, columns, rows }. canvases: two, the one with the class `front` is visible. Further events: tiles (which
+    // displays are connected), presented ({ frame, number (of the picture), us (server time) }).
     constructor({ tile, canvases, decoding, ...rest }) {
         super(rest);
-        Object.assign(this, { tile, canvases: [...canvases], decoding }); // the front one first
+        Object.assign(this, { tile, canvases: [...canvases], decoding }); // canvases: the visible one first
         this.tiles = { leads: false, part: null, missing: [], late: [] };
-        this.pongs = [];    // of the last minute: { at, us (the server's clock less ours), roundTripMs }
-        this.places = null; // of the markers of the frame that is shown: [tag, x, y, occluded, ...]
+        this.pongs = [];    // pongs of the last minute: { at, us (server clock minus ours), roundTripMs }
+        this.places = null; // marker positions of the shown frame: [tag, x, y, occluded, ...]
         this.reset();
         this.queue = new DecodeQueue({
             decode: (frame) => decoding.decode(frame),
@@ -31,13 +31,13 @@ export class TileSession extends Session {
         setInterval(() => this.post({ type: 'ping', t: this.now() }), PING_MS);
     }
 
-    // What was kept is of a connection that is gone.
+    // Drops the held frames of a lost connection.
     reset() {
         for (const { picture } of this.kept ?? [])
             picture.close?.();
-        this.kept = [];       // { frame, picture, decodeMs }, in order
-        this.order = null;    // { seq, picture, at_us } that is to be shown next
-        this.drawnLast = null; // { frame, decodeMs } of what is drawn already and not shown; null: nothing is
+        this.kept = [];       // held frames { frame, picture, decodeMs }, in order
+        this.order = null;    // picture to show next: { seq, picture, at_us }
+        this.drawnLast = null; // { frame, decodeMs } drawn on the hidden canvas; null: none
         this.markerRows = []; // { seq, rows }
     }
 
@@ -46,7 +46,7 @@ export class TileSession extends Session {
         return { ...(this.token ? { token: this.token } : {}), tile: { wall, display } };
     }
 
-    // Home of all of the picture, of which this is a part.
+    // Returns the home camera for the whole picture, of which this is a part.
     homeIn(width, height) {
         return super.homeIn(width * this.tile.columns, height * this.tile.rows);
     }
@@ -66,7 +66,7 @@ export class TileSession extends Session {
             this.markerRows.push({ seq: message.seq, rows: message.markers });
     }
 
-    // What is shown stays that of the picture, until one comes that is drawn by these.
+    // Takes parameters from the leading display. The picture on the screen keeps its own until one drawn with the new ones arrives.
     follow(message) {
         const { shown, picture } = this;
         super.heard(message);
@@ -86,7 +86,7 @@ export class TileSession extends Session {
         this.pongs.push({ at: now, roundTripMs, us: us - (now - roundTripMs / 2) * 1000 });
     }
 
-    // By the shortest round trip of the last minute: clocks drift, and queues only add.
+    // The server's time by the shortest round trip of the last minute: clocks drift, and queues only add delay.
     get serverUs() {
         const best = this.pongs.reduce((a, b) => (!a || b.roundTripMs < a.roundTripMs ? b : a), null);
         return best ? best.us + this.now() * 1000 : this.clockUs();
@@ -94,7 +94,7 @@ export class TileSession extends Session {
 
     keep(frame, picture, decodeMs) {
         this.kept.push({ frame, picture, decodeMs });
-        if (!frame.more) // from here on it can be shown at once
+        if (!frame.more) // the picture is complete and can be shown at its instant
             this.connection.send({ type: 'ack', seq: frame.seq, decode_ms: Math.round(decodeMs * 100) / 100 });
     }
 
@@ -113,7 +113,7 @@ export class TileSession extends Session {
         requestAnimationFrame(look);
     }
 
-    // Draws what is to be shown where it is not seen yet: at the instant itself, canvases only change places.
+    // Draws the next picture on the hidden canvas, so that at its instant the canvases only swap.
     prepare(seq) {
         const parts = this.kept.filter(({ frame }) => frame.seq <= seq), [front, back] = this.canvases;
         this.kept = this.kept.filter(({ frame }) => frame.seq > seq);

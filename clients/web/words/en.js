@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the page says at once, in English. [beginning] of keys, then key: text; {name} is put in, [X] is a key to press, (one) a plural.
+// Words that the page needs at once, in English. [section] prefixes the keys below it, then key: text. {name} is replaced, [X] is a key to
+// press, (one) is a plural form.
 export default `
 none: none
 novalue: no value

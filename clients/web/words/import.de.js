@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the panel says in which a plant is brought in, in German.
+// Words of the import panel, in German.
 export default `
 [import]
 close: Schließen

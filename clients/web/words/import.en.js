@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the panel says in which a plant is brought in, in English.
+// Words of the import panel, in English.
 export default `
 [import]
 close: Close

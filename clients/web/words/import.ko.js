@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the panel says in which a plant is brought in, in Korean.
+// Words of the import panel, in Korean.
 export default `
 [import]
 close: 닫기

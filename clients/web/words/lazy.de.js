@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the parts of the page say that are loaded when they are first used, in German.
+// Words of parts of the page that are loaded on first use, in German.
 export default `
 accept: Angenommene Orte bestätigen
 close: Schließen
@@ -71,10 +71,10 @@ fill: Flächen ohne Daten
 light: Licht: Sonne {where}
 turn: Azimut
 turn.why: Azimut der Sonne, Grad von Norden
-height: Höhenwinkel
+height: Höhe
 height.why: Höhenwinkel der Sonne, Grad
-around: Hintergrund
-around.why: Hintergrund
+around: Umgebung
+around.why: Umgebung
 split: Geteilte Ansicht
 right: Rechte Seite
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the parts of the page say that are loaded when they are first used, in English.
+// Words of parts of the page that are loaded on first use, in English.
 export default `
 accept: Accept assumed locations
 close: Close

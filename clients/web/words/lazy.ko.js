@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the parts of the page say that are loaded when they are first used, in Korean.
+// Words of parts of the page that are loaded on first use, in Korean.
 export default `
 accept: 가정한 위치 확정
 close: 닫기

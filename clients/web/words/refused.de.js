@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Refusals, in German. The first part is the server's too: by code, with the arguments of PROTOCOL.md.
+// Refusals, in German. Keys before the first [section] are codes of the server, with the arguments of PROTOCOL.md.
 export default `
 role_operator: dafür ist die Rolle Operator nötig
 role_engineer: dafür ist die Rolle Engineer nötig
@@ -10,7 +10,8 @@ no_device: in dieser Anlage gibt es „{name}“ nicht (Gerät)
 unknown: „{name}“ ist hier nicht bekannt
 uncut: „Paper“ wird nicht genau gezeichnet, wo {group} nur einen Sensor hat ({count} von {all} Anlagenteilen, zuerst {asset}). In
   der Anlagendatei hilft „singles: cut“ bei dieser Gruppe.
-far_uncut: Abstände werden nicht genau gezeichnet, wo {group} nur einen Sensor hat, wie an {asset}. In der Anlagendatei hilft „singles: cut“ bei dieser
+far_uncut: Abstände werden nicht genau gezeichnet, wo {group} nur einen Sensor hat, wie an {asset}.
+  In der Anlagendatei hilft „singles: cut“ bei dieser
   Gruppe.
 assumed: der Ort dieses Sensors an {asset} ist nicht angegeben: Abstände von ihm gibt es nicht
 elsewhere: die Alarme verwaltet ein anderes System

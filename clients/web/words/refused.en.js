@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Refusals, in English. The first part is the server's too: by code, with the arguments of PROTOCOL.md.
+// Refusals, in English. Keys before the first [section] are codes of the server, with the arguments of PROTOCOL.md.
 export default `
 role_operator: this needs the role operator
 role_engineer: this needs the role engineer
@@ -10,7 +10,8 @@ no_device: this plant has no device “{name}”
 unknown: “{name}” is unknown here
 uncut: “paper” cannot be drawn accurately where {group} has one sensor ({count} of {all} assets, the first {asset}). The plant file
   may say “singles: cut” at that group.
-far_uncut: distances cannot be drawn accurately where {group} has one sensor, as on {asset}. The plant file may say “singles: cut” at that group.
+far_uncut: distances cannot be drawn accurately where {group} has one sensor, as on {asset}.
+  The plant file may say “singles: cut” at that group.
 assumed: the location of this sensor on {asset} is not given, so it has no distances
 elsewhere: alarms are managed by another system
 anew: the plant is reloading; try again

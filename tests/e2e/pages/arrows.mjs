@@ -178,7 +178,7 @@ test('the panel of the picture says what is drawn, and when not to trust it', op
     const { page } = browser;
     await page.click('#picture-toggle');
     await page.locator('#directions .note').waitFor();
-    assert.match(await page.locator('#directions .note').textContent(), /interpolate/);
+    assert.match(await page.locator('#directions .note').textContent(), /Interpolated/);
     await page.locator('#directions label', { hasText: 'Streaks' }).click();
     await until('strokes', ({ rows }) => rows.some((row) => row[7] > 0));
     assert.match(await page.locator('#directions .note').textContent(), /not the paths of a fluid/);

@@ -70,7 +70,7 @@ test('keys move it, as far as it goes; a screen reader is told where it is', opt
     assert.ok(await said('now') < at);
     await page.keyboard.press('End');
     assert.equal(await said('now'), await said('max'));
-    assert.equal(await slider.getAttribute('aria-valuetext'), 'X ≥ 3.50 m stays');
+    assert.equal(await slider.getAttribute('aria-valuetext'), 'Keep X ≥ 3.50 m');
     await page.keyboard.press('Home');
     assert.equal(await said('now'), await said('min'));
     assert.equal(await slider.isVisible(), true, 'and is not lost');

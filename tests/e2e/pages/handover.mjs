@@ -62,7 +62,7 @@ test('it is printed on paper: no controls, as many pages as it takes', options, 
 
 test('a span is asked for, in other languages too; before it there was nothing', options, async () => {
     await page.goto(`${plant.url}handover.html?from=-2h&to=-1h&lang=de`);
-    await page.locator('h2', { hasText: 'Quittiert' }).waitFor({ timeout: 30000 });
+    await page.locator('h2', { hasText: /^Quittiert$/ }).waitFor({ timeout: 30000 });
     assert.equal(await page.locator('[data-part=acknowledged] tbody tr').count(), 0);
     await page.goto(`${plant.url}handover.html?from=tomorrow`);
     await page.locator('.wrong').waitFor();

@@ -92,7 +92,7 @@ test('they are put in another order, removed, and outlive the page', options, as
     await page.keyboard.press('Enter');
     await page.waitForFunction(() => document.querySelectorAll('#named-list li').length === 3);
     await page.click('#named-list li:nth-child(3) summary');
-    await page.locator('#named-list li:nth-child(3)').getByRole('button', { name: 'Up' }).click();
+    await page.locator('#named-list li:nth-child(3)').getByRole('button', { name: 'Up', exact: true }).click();
     await page.waitForFunction(() => globalThis.plantcast.session.views[1].id === 'second');
     await page.click('#named-list li:nth-child(2) summary');
     await page.locator('#named-list li:nth-child(2)').getByRole('button', { name: 'Remove' }).click();

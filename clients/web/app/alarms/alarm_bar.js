@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The bar that counts alarms in every view; its list is loaded when it is opened.
+// The alarm bar, which counts alarms in every view; the alarm list is loaded when it is first opened.
 import { decimalsFor, numberText, unitText, zoneClock } from '../../core/format.js';
 import { say } from '../../core/words.js';
 import { byId, make, setText } from '../common/dom.js';
@@ -8,8 +8,8 @@ export const badge = (priority, hollow = false) => make('span', {
     class: `priority p${priority}${hollow ? ' hollow' : ''}`, title: say(hollow ? 'alarms.gone' : 'alarms.priority', { priority }),
 }, String(priority));
 
-// The value at which an alarm was raised, the present value, and the limit, in words; empty for an alarm without a limit. fresh: messages
-// of the server arrive. If they do not, or while the past is shown, the present value is a dash.
+// Returns the value at which an alarm was raised, the present value, and the limit, in words; empty for an alarm without a limit. fresh:
+// whether messages from the server arrive. If they do not, or while the past is shown, the present value is a dash.
 export function limitText({ model, time }, { tag, value, limit }, fresh) {
     if (value === null || limit === null)
         return '';
@@ -32,7 +32,7 @@ export class AlarmBar {
         return this.session.model?.alarms ?? null;
     }
 
-    // false: the server does not speak to us; what is said is as of when it last did.
+    // fresh: false while the server is silent; the bar then shows the alarms as of its last message.
     setFresh(fresh) {
         this.fresh = fresh;
         document.body.classList.toggle('stale', !fresh);
@@ -40,7 +40,7 @@ export class AlarmBar {
         this.show();
     }
 
-    // What nobody has acknowledged blinks, slowly.
+    // Blinks slowly while any alarm is unacknowledged.
     tick() {
         const waiting = this.fresh && Boolean(this.alarms?.counts().waiting) &&
             !window.matchMedia('(prefers-reduced-motion: reduce)').matches;
@@ -82,5 +82,5 @@ export class AlarmBar {
     }
 }
 
-// When the server last spoke, by the plant's clock.
+// Returns the plant's time of the server's last message.
 export const asOf = (session) => zoneClock(session.model.plant.time_zone)(session.clockUs(session.freshAt) / 1000).time;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The list of alarms, one row for each tag, and what can be done about one, or about several.
+// The alarm list: one row per tag, with actions on one or several alarms.
 import { asideOf, inMessages, passes, rowActions, targetsOf } from '../../core/alarm_actions.js';
 import { isGone } from '../../core/alarms.js';
 import { ageText, zoneClock } from '../../core/format.js';
@@ -10,14 +10,14 @@ import { byId, make, setText } from '../common/dom.js';
 import { fillSelect } from '../common/choices.js';
 import { asOf, badge, limitText } from './alarm_bar.js';
 
-const SHOWN = 200; // rows at once
+const SHOWN = 200; // maximum number of rows in the document
 const WHICH = ['all', 'waiting', 'active', 'gone'];
 
 export class AlarmList {
-    // showTag(tag), flyToTag(tag), overlay (whether what is shown is fresh): as the page has them.
+    // showTag(tag), flyToTag(tag), overlay (for its `fresh`): from the page.
     constructor({ session, modules, overlay, showTag, flyToTag }) {
         Object.assign(this, { session, modules, overlay, showTag, flyToTag });
-        this.chosen = new Map(); // rows to be acknowledged together: tag -> what was to be acknowledged of it when it was chosen
+        this.chosen = new Map(); // rows selected for acknowledgement: tag -> its unacknowledged alarms at selection, as text
         this.filter = { which: 'all', words: '' };
         const priorities = [1, 2, 3, 4].map((priority) => [priority, say('alarms.priority', { priority })]);
         fillSelect(byId('alarms-which'), [...WHICH.map((name) => [name, say(`which.${name}`)]), ...priorities], 'all');
@@ -33,7 +33,7 @@ export class AlarmList {
         byId('shelve-form').addEventListener('submit', (event) => this.shelve(event));
         byId('shelve-cancel').addEventListener('click', () => byId('shelve').close());
         session.on('welcome', () => {
-            ['alarms-list', 'alarms-aside'].forEach((id) => byId(id).replaceChildren()); // they were of another plant
+            ['alarms-list', 'alarms-aside'].forEach((id) => byId(id).replaceChildren()); // rows of the previous plant
             this.show();
         });
         session.on('alarms', () => this.show());
@@ -56,7 +56,7 @@ export class AlarmList {
 
     setOpen(open) {
         for (const name of open ? ['engineer', 'import'] : [])
-            this.modules.there(name)?.close(); // it stands in the same place
+            this.modules.there(name)?.close(); // other panels that use the same space close
         byId('alarms').hidden = !open;
         byId('alarm-strip').setAttribute('aria-expanded', open);
         this.show();
@@ -66,12 +66,12 @@ export class AlarmList {
             byId('alarm-strip').focus();
     }
 
-    // Whose role can do something; nobody's while the server does not speak to us.
+    // The role that decides about actions; null while the server is silent.
     get role() {
         return this.overlay.fresh ? this.session.role : null;
     }
 
-    // Ages go on.
+    // Updates the ages shown.
     tick() {
         if (!this.open)
             return;
@@ -110,13 +110,13 @@ export class AlarmList {
         this.showChosen();
     }
 
-    // What the filter searches.
+    // Returns the text that the filter searches.
     textOf({ tag, kind }) {
         const asset = this.session.model.asset(tag.asset);
         return [tag.name, tag.description, kind, say(`kind.${kind}`), tag.asset, asset?.tag, asset?.description].filter(Boolean).join(' ');
     }
 
-    // Rows that say what they said stay where they are, under the hand that presses in them.
+    // Keeps the elements of unchanged rows, so that a button does not move while it is being pressed.
     fill(id, alarms) {
         const list = byId(id), before = new Map([...list.children].map((row) => [row.said, row]));
         const rows = alarms.map((alarm) => {
@@ -134,12 +134,12 @@ export class AlarmList {
 
     // --- several at once
 
-    // What is to be acknowledged of a row, as a text; '': nothing, or not by us.
+    // Returns a row's unacknowledged alarms as a text; '' if there are none or this user may not acknowledge.
     waitsFor(row) {
         return targetsOf(row, 'acknowledge', this.alarms.mode, this.role).map(({ id, raisedUs }) => `${id}@${raisedUs}`).join();
     }
 
-    // A row that has something new to acknowledge has to be looked at again.
+    // Deselects rows that have a new alarm since they were selected: the user has not seen it.
     forgetChanged(all) {
         const now = new Map(all.map((row) => [row.tag.name, this.waitsFor(row)]));
         for (const [name, was] of this.chosen)
@@ -172,7 +172,7 @@ export class AlarmList {
             box.checked = this.chosen.has(box.value);
     }
 
-    // Those that are seen: what the filter hides is not acknowledged.
+    // Acknowledges the visible selected rows only; rows hidden by the filter are not acknowledged.
     acknowledgeChosen() {
         const rows = this.rows.filter(({ tag }) => this.chosen.has(tag.name));
         const alarms = rows.flatMap((row) => targetsOf(row, 'acknowledge', this.alarms.mode, this.role));
@@ -182,7 +182,7 @@ export class AlarmList {
         this.showChosen();
     }
 
-    // Where what had the focus has gone, its alarm has it, else the next one.
+    // Runs f, and restores the keyboard focus to the same alarm, or to the next row if that alarm is gone.
     keepFocus(f) {
         const held = document.activeElement, row = held.closest('#alarms li'), place = row && [...row.parentElement.children].indexOf(row);
         f();
@@ -201,7 +201,7 @@ export class AlarmList {
         return say('alarms.since', { time, age: ageText((now - raisedUs) / 1000) });
     }
 
-    // Who did what about it last, until when, and why.
+    // Returns who last acted on the alarm, until when, and the reason.
     note({ state, who, reason, untilUs, held }) {
         const clock = zoneClock(this.session.model.plant.time_zone);
         const until = untilUs === null ? '' : say('alarms.until', { time: clock(untilUs / 1000).time.slice(0, 5) });
@@ -209,7 +209,7 @@ export class AlarmList {
         return [until, by, reason, held ? say('alarms.held') : ''].filter(Boolean).join(', ');
     }
 
-    // The rest of what its tag has.
+    // Returns the other alarms of the row's tag, in words.
     also({ others = [] }) {
         return others.length === 0 ? '' : say('alarms.also', { what: others.map(({ kind, state }) =>
             `${say(`kind.${kind}`)} (${say(`state.${state}`)})`).join(', ') });
@@ -224,7 +224,7 @@ export class AlarmList {
         const { tag, kind, state, priority } = alarm, { mode } = this.alarms, actions = rowActions(alarm, mode, this.role);
         const reading = make('span', { class: 'raised' }, this.readingText(alarm));
         const asset = this.session.model.asset(tag.asset), age = make('span', { class: 'since' }, this.since(alarm));
-        const title = say('alarms.fly', { tag: tag.name }), nowhere = tag.index === null; // a device is at no place of the model
+        const title = say('alarms.fly', { tag: tag.name }), nowhere = tag.index === null; // a device has no position in the model
         const how = nowhere ? { class: 'alarm-go' } : { type: 'button', class: 'alarm-go', title, onclick: () => this.flyTo(tag) };
         const note = [this.note(alarm), this.also(alarm)].filter(Boolean).join('; ');
         const fly = make(nowhere ? 'div' : 'button', how, badge(priority, isGone(state)),
@@ -243,12 +243,12 @@ export class AlarmList {
 
     flyTo(tag) {
         if (this.small.matches)
-            this.setOpen(false); // there is room for the place or for the list
+            this.setOpen(false); // narrow screens have room for only one of plant and alarm list
         this.showTag(tag);
         this.flyToTag(tag);
     }
 
-    // Of all alarms of the row.
+    // Applies an action to all alarms of the row.
     act(action, row) {
         const alarms = targetsOf(row, action, this.alarms.mode, this.role);
         if (action !== 'shelve') {

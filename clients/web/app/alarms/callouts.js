@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Call-outs: what the rings of alarms that are close together say as one, in two lines. Also labels of alarms that are held.
+// Call-outs: a two-line label for several alarm rings that are close together; also labels of held alarms.
 import { graver } from '../../core/alarms.js';
 import { placeRings } from '../../core/callouts.js';
 import { zoneClock } from '../../core/format.js';
 import { say } from '../../core/words.js';
 import { INK, INK_2, LABEL_HEIGHT } from '../viewport/overlay.js';
 
-const LINE = 16; // from line to line, in units
+const LINE = 16; // line height, in units
 
 const byGravity = (a, b) => graver(a.alarm, b.alarm) || a.tag.index - b.tag.index;
 
@@ -17,7 +17,7 @@ export class Callouts {
         refresh();
     }
 
-    // The label of a ring whose reading is bad: its alarm stays as it was when the last value came. null: there was none.
+    // Returns the label of an alarm whose reading is bad: the alarm holds its state since the last value. null: there never was a value.
     held(tag, { kind }) {
         const { session } = this, { model, time } = session, ageMs = model.ageMs(tag.index, session.now());
         const nowUs = time.atUs ?? session.clockUs();
@@ -28,7 +28,7 @@ export class Callouts {
         return [[kind, 700, null], [say('callout.held', { time: since }), 400, INK_2]];
     }
 
-    // Parts of the two lines, as the overlay's labels have them, and whose alarm is named.
+    // Returns the parts of the two lines, in the format of the overlay's labels; the first line names the most urgent alarm.
     lines(members) {
         const [worst] = [...members].sort(byGravity), { model } = this.session;
         const assets = new Set(members.map(({ tag }) => tag.asset)), count = say('callout.count', { count: members.length });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is known of the selected equipment, under the list of it, and where else one reads about it.
+// Details of the selected equipment below the equipment list, with links to other systems.
 import { numberText } from '../../core/format.js';
 import { linkUrl } from '../../core/references.js';
 import { say } from '../../core/words.js';

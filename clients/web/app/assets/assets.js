@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The list of equipment: areas, assets and their sensors with what they say. On narrow screens it is loaded when it is first opened; what
-// hands and keys do in it, and search (rows.js), once they come near.
+// The equipment list: areas, assets and their sensors with values. On narrow screens it is loaded when first opened. Pointer, keyboard and
+// search (rows.js) are loaded on first use.
 import { decimalsFor, numberText, qualityText, unitText } from '../../core/format.js';
 import { Tree } from '../../core/asset_tree.js';
 import { say } from '../../core/words.js';
@@ -9,7 +9,7 @@ import { narrow } from '../startup.js';
 import { LongList } from './list.js';
 
 const SEARCH_MS = 80, ASSET_PX = 53;
-const KEYS = /^(Arrow(Up|Down|Left|Right)|Home|End|Page(Up|Down)|Enter| )$/; // those of its rows; others go on
+const KEYS = /^(Arrow(Up|Down|Left|Right)|Home|End|Page(Up|Down)|Enter| )$/; // keys handled by the rows; other keys propagate
 const keyOf = ({ kind, id }) => `${kind}/${id}`;
 
 export class Assets {
@@ -36,7 +36,7 @@ export class Assets {
         window.matchMedia('(pointer: coarse)').addEventListener('change', () => this.filter());
     }
 
-    // f: done by what knows what to do with rows.
+    // Calls f with the row controller, loading it first if necessary.
     does(f) {
         this.modules.use('rows', f);
     }
@@ -52,7 +52,7 @@ export class Assets {
                 return;
             this.does((rows) => rows.press(event.key));
             event.preventDefault();
-            event.stopPropagation(); // the plant stands still meanwhile
+            event.stopPropagation(); // keeps the key from moving the camera
         });
     }
 
@@ -70,10 +70,10 @@ export class Assets {
         const { model } = this.session, before = this.tree;
         this.tree = new Tree(model, say('assets.loose'));
         if (before)
-            Object.assign(this.tree, { open: before.open, folded: before.folded }); // a new connection finds it as it was
+            Object.assign(this.tree, { open: before.open, folded: before.folded }); // a reconnect keeps the expanded areas and assets
         setText(byId('assets-count'), String(model.assets.length));
         this.selected = undefined;
-        this.list.renew(() => this.mark()); // the same name may be of something else now
+        this.list.renew(() => this.mark()); // after a reload a name may belong to another item
     }
 
     filter() {
@@ -155,7 +155,7 @@ export class Assets {
         setAlarm(element, model.alarms.gravest(tag.index));
     }
 
-    // Once per picture of the page, however much comes in.
+    // Schedules one update per animation frame, however many messages arrive.
     soon() {
         this.mark();
         this.asked ??= requestAnimationFrame(() => {

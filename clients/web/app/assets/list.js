@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A long list of which only what is in sight is in the page, with one row that the keyboard is at (rows.js moves it).
+// A virtual list: only rows in sight are in the document. One row is active for the keyboard (rows.js moves it).
 import { rowsInSight, stack } from '../../core/list_window.js';
 import { make } from '../common/dom.js';
 
-const MORE = 8; // rows beyond both edges
+const MORE = 8; // extra rows beyond both edges
 
 export class LongList {
-    // make(row): its element; fill(row, element): what changes in it; height(row) in CSS pixels; keyOf(row): what it is. The element
-    // `root` scrolls.
+    // make(row): creates the element; fill(row, element): updates its content; height(row): CSS pixels; keyOf(row): its identity. The
+    // element `root` scrolls.
     constructor({ root, make: build, fill, height, keyOf }) {
         Object.assign(this, { root, build, fill, height, keyOf, rows: [], tops: stack([]), shown: new Map(), active: null });
         this.space = make('div', { role: 'none', class: 'space' });
@@ -16,7 +16,7 @@ export class LongList {
         new ResizeObserver(() => this.show()).observe(root);
     }
 
-    // All rows are made anew by change(), which sets them; the keyboard stays where it is.
+    // Rebuilds all rows with change(), which calls set(); keeps scroll position and focus.
     renew(change) {
         const { root } = this, hasFocus = root.contains(document.activeElement);
         this.space.replaceChildren();
@@ -26,7 +26,7 @@ export class LongList {
             this.shown.get(this.active)?.focus({ preventScroll: true });
     }
 
-    // Elements stay those of their rows.
+    // Sets the rows. A row that persists keeps its element.
     set(rows) {
         this.rows = rows;
         this.tops = stack(rows.map(this.height));
@@ -43,7 +43,7 @@ export class LongList {
         for (let i = from; i < to; i++)
             wanted.add(i);
         if (this.active !== null)
-            wanted.add(this.places.get(this.active)); // or the keyboard would lose its place
+            wanted.add(this.places.get(this.active)); // keep the active row's element, or keyboard users would lose their position
         const before = this.shown;
         this.shown = new Map();
         for (const i of [...wanted].sort((a, b) => a - b))

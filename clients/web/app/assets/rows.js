@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What hands and keys do in the list of equipment: they search, go from row to row, open and close them, select and lead
-// there.
+// Pointer, keyboard and search in the equipment list: moving between rows, expanding, selecting, and flying to an item.
 import { scrollTo } from '../../core/scroll.js';
 import { search } from '../../core/search.js';
 import { narrow } from '../startup.js';
@@ -11,7 +10,7 @@ export class Rows {
         this.list = this.assets.list;
     }
 
-    // As the row of a key is now, and where; undefined: there is none.
+    // Returns the index of the row with this key; undefined if there is none.
     placeOf(key) {
         return this.list.places?.get(key);
     }
@@ -45,7 +44,7 @@ export class Rows {
         }
     }
 
-    // The row at a place is where the keyboard is from now on; nothing is done where there is none.
+    // Makes row i the active row; does nothing if there is no such row.
     goTo(i, focus = true) {
         const { list } = this, row = list.rows[i];
         if (!row)
@@ -57,7 +56,7 @@ export class Rows {
             list.shown.get(list.active).focus({ preventScroll: true });
     }
 
-    // A row has the focus.
+    // Called when a row receives the focus.
     isAt(key) {
         if (key !== this.list.active)
             this.goTo(this.placeOf(key), false);
@@ -67,7 +66,7 @@ export class Rows {
         this.goTo(this.placeOf(key), this.list.root.contains(document.activeElement));
     }
 
-    // Right opens or goes in, left closes or goes out.
+    // Right expands a row or moves into it, left collapses it or moves to its parent.
     press(key) {
         const { rows, root, active, height } = this.list, i = this.placeOf(active), last = rows.length - 1;
         if (i === undefined)

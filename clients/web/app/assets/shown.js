@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A sign over the picture that not all of the plant is shown, and the way back. Loaded when something is hidden, isolated or a ghost.
+// A notice over the picture that part of the plant is hidden, with a button that shows all. Loaded when something is hidden, isolated or
+// transparent.
 import { showAll } from '../../core/section.js';
 import { say } from '../../core/words.js';
 import { byId, make, setText, setVariable } from '../common/dom.js';
@@ -30,10 +31,10 @@ export class Shown {
         setText(this.words, [gone > 0 && say('shown.hidden', { hidden: gone, all: all.length }),
             ghosts > 0 && say('shown.ghosts', { count: ghosts })].filter(Boolean).join(', '));
         this.stand();
-        this.refresh(); // labels keep off it
+        this.refresh(); // labels avoid it
     }
 
-    // Under the legend where that lies above the whole picture.
+    // Positions the notice below the legend where the legend lies across the top of the picture.
     stand() {
         const legend = byId('legend'), lies = legend.offsetWidth > byId('viewport').clientWidth / 2;
         setVariable(this.element, '--under', `${lies ? legend.offsetTop + legend.offsetHeight + AWAY_PX : 0}px`);

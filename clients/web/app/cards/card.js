@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The card of one sensor: what it is, what it says, whether that may be trusted, and how old it is.
+// The card of one sensor: description, value, quality, reliability and age.
 import { ageText, decimalsFor, numberText, unitText } from '../../core/format.js';
 import { statusText } from '../../core/quality.js';
 import { say } from '../../core/words.js';

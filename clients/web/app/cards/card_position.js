@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where a card stands over the picture.
+// Positions a card over the picture.
 import { byId } from '../common/dom.js';
 
 const AWAY_PX = 16, WIDTH_PX = 248, RIM_PX = 8;
 
-// Beside its place [x, y] in CSS pixels, where it covers no legend if there is room for that, else on the side with more of it; and under
-// what is said of the whole picture; null: in a corner.
+// Places the card beside the point `at` [x, y] in CSS pixels: on the side where it does not cover the legend, else on the side with more
+// room, and below the banner. at null: in a corner.
 export function standBeside(element, { width, height }, at) {
     const banner = byId('banner'), top = RIM_PX + (banner.hidden ? 0 : banner.offsetTop + banner.offsetHeight);
     element.style.maxHeight = `${Math.max(0, height - top - RIM_PX)}px`;

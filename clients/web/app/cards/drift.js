@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How far a sensor drifted in a week away from what the others say of it, as the daemon finds it in what was recorded (PROTOCOL.md,
-// /api/v1/drift): a line of a card with the week as a curve, and those that were found in a list.
+// Drift of a sensor against its neighbours over a week, computed by the daemon from recorded readings (PROTOCOL.md, /api/v1/drift): a line
+// on a card with the week as a curve, and a list of drifting sensors.
 import { decimalsFor, numberText, unitText } from '../../core/format.js';
 import { ask } from '../../core/history.js';
 import { say } from '../../core/words.js';
 
 const WIDTH = 168, HEIGHT = 28, AGAIN_MS = 600000;
-const kept = new Map(); // query: { at, rows }; it changes once an hour
+const kept = new Map(); // query -> { at, rows }; results change once an hour
 
-// A promise of rows; none where nothing is recorded or the daemon cannot say.
+// Returns a promise of rows; empty if nothing is recorded or the daemon cannot tell.
 export async function driftOf(session, query) {
     const key = JSON.stringify(query), known = kept.get(key);
     if (!session.recorded || session.time.atUs !== null)
@@ -22,7 +22,7 @@ export async function driftOf(session, query) {
     return rows ?? [];
 }
 
-// Such as +1.4 °C ± 0.2; null: nothing can be said.
+// Returns a text such as +1.4 °C ± 0.2, or null if the drift is unknown.
 function changeText({ change, error }, group) {
     const digits = Math.max(1, decimalsFor(group.max - group.min));
     return `${change < 0 ? '−' : '+'}${numberText(Math.abs(change), digits)} ${unitText(group.unit)} ± ${numberText(error, digits)}`;
@@ -34,10 +34,11 @@ export function driftText(row, group) {
     return say(`drift.${row.verdict}`, { by: changeText(row, group) });
 }
 
-// Reading less what the others say, by hour: null where either is not known. Pure.
+// Returns the hourly residuals, reading minus prediction; null where either is unknown. Pure.
 export const residuals = (hours) => hours.map(([, value, predicted]) => (value === null || predicted === null ? null : value - predicted));
 
-// The points of each stretch without a gap, for a polyline; what is less than a drift would be does not fill the height. Pure.
+// Returns the points of each stretch without a gap, for a polyline. The vertical scale is at least 6 sigma, so that noise does not fill the
+// height. Pure.
 export function stretches(values, sigma) {
     const known = values.filter((value) => value !== null), low = Math.min(...known), high = Math.max(...known), all = [[]];
     const span = Math.max(high - low, 6 * sigma || 0) || 1;
@@ -52,7 +53,7 @@ export function stretches(values, sigma) {
     return all.filter((points) => points.length > 1).map((points) => points.join(' '));
 }
 
-// The week as a curve; null: there is nothing to draw.
+// Returns the week as a curve, or null if there is nothing to draw.
 export function driftCurve(row) {
     if (row.scatter === null)
         return null;

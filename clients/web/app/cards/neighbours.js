@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the other sensors say of one (predicted without it), as the daemon works it out: one line of a card, and the list of those that
-// disagree most.
+// The prediction of a sensor by its neighbours (leave-one-out), computed by the daemon: a line on a card, and a list of the largest
+// deviations.
 import { decimalsFor, numberText, unitText } from '../../core/format.js';
 import { ask } from '../../core/history.js';
 import { say } from '../../core/words.js';
@@ -10,9 +10,9 @@ import { driftOf, driftText } from './drift.js';
 const AGAIN_MS = 3000, LISTED = 5;
 
 const sensors = (query, token) => ask('api/v1/neighbours', query, token).then((answer) => answer.json()).then((rows) => rows.sensors)
-    .catch(() => []); // what was said before is no longer so
+    .catch(() => []); // after a failed request show no prediction rather than an old one
 
-// Such as 81.3 °C ± 2.0, and how far off the reading is; null: nothing is known.
+// Returns a text such as 81.3 °C ± 2.0 and the deviation of the reading, or null if there is no prediction.
 export function neighbourText(row, group) {
     if (!row || row.predicted === null)
         return null;
@@ -23,7 +23,8 @@ export function neighbourText(row, group) {
     return say(row.residual < 0 ? 'neighbours.below' : 'neighbours.above', { predicted, by: `${number(Math.abs(row.residual))} ${unit}` });
 }
 
-// Asks again and again while isSeen(), but not in the past: the daemon knows of now. onRows(rows).
+// Polls while isSeen() returns true, but not while the past is shown: the daemon only predicts the present. onRows(rows): called with each
+// answer.
 export class Neighbours {
     constructor(session, isSeen, onRows) {
         Object.assign(this, { session, isSeen, onRows, query: null });
@@ -52,7 +53,7 @@ export class Neighbours {
     }
 }
 
-// Of the shown group, those whose readings are farthest from what the others say.
+// The sensors of the shown group that deviate most from their neighbours' prediction.
 export class Disagreeing {
     constructor({ session, selectTag }) {
         Object.assign(this, { session, selectTag });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The card of a place on the plant: whose surface it is, what the field says there, by which sensors, and how sure that is.
+// The card of a point on the plant: its equipment, the field's value there, the sensors that contribute, and the uncertainty.
 import { projector } from '../../core/camera.js';
 import { decimalsFor, numberText, unitText } from '../../core/format.js';
 import { halves } from '../../core/split_view.js';
@@ -12,19 +12,19 @@ import { closeButton, fill } from '../common/widgets.js';
 const SAME_M = 0.05;
 
 export class Place {
-    // showAsset(how, asset): hides it, shows it alone, ...
+    // showAsset(how, asset): hides the asset, makes it transparent or isolates it.
     constructor({ session, viewport, showAsset }) {
         Object.assign(this, { session, viewport, showAsset });
         this.element = byId('place');
         this.picked = null;
-        this.asked = null; // 'new' or 'again'
+        this.asked = null; // kind of the pending pick request: 'new' or 'again'; null: none
         session.on('picked', (picked) => this.hear(picked));
         session.on('tags', () => this.ask());
         session.on('params', () => this.ask());
         session.on('welcome', () => this.close());
     }
 
-    // CSS pixels of the viewport.
+    // Opens the card at (x, y), CSS pixels of the viewport.
     open(x, y) {
         this.asked = 'new';
         this.half = this.session.shown.split && x >= this.viewport.width / 2 ? 1 : 0;
@@ -40,7 +40,7 @@ export class Place {
         askPick(this.session, this.viewport.pixelOf(x, y), 'place');
     }
 
-    // Values go on: what is said of the place is said anew.
+    // Requests the point's value again when readings change.
     ask() {
         const at = this.picked && this.project();
         if (at && this.asked === null) {
@@ -51,15 +51,15 @@ export class Place {
 
     hear(picked) {
         if (this.asked === null)
-            return; // closed meanwhile
-        if (picked.purpose !== 'place') { // another question came between
+            return; // the card was closed meanwhile
+        if (picked.purpose !== 'place') { // the answer belongs to another pick request
             this.asked = null;
             return;
         }
         const again = this.asked === 'again';
         this.asked = null;
         if (again && !this.isSamePlace(picked)) {
-            this.close(); // something stands before it now, or it is not shown any more
+            this.close(); // the point is now covered or hidden
             return;
         }
         this.picked = picked.asset === null ? null : picked;
@@ -115,7 +115,7 @@ export class Place {
         this.close();
     }
 
-    // In step with the picture.
+    // Moves the card with the picture.
     show() {
         if (this.picked)
             standBeside(this.element, this.viewport, this.project());

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rows of buttons and lists to choose from, as the toolbar and the panels have them.
+// Segmented buttons and selection lists for the toolbar and the panels.
 import { make } from './dom.js';
 
-// A row of buttons of which one is pressed; radio buttons underneath, so the keyboard works as everywhere. choices: [value, text, title].
+// Fills a row of buttons of which one is pressed; radio buttons underneath give the usual keyboard behaviour. choices: [value, text,
+// title].
 export function fillSegments(fieldset, name, choices, onChoose) {
     const row = make('div', { class: 'row' });
     for (const [value, text, title] of choices) {

@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The page's one clock: monotonic, and it goes on while the device sleeps.
+// The page's monotonic clock, corrected for time that the device slept.
 import { Wake } from '../../core/wake.js';
 
 let sleptMs = 0;
 export const clock = {
     now: () => performance.now() + sleptMs,
-    of: (timeStamp) => timeStamp + sleptMs, // of an event
+    of: (timeStamp) => timeStamp + sleptMs, // converts an event's timeStamp
     setTimeout: (f, ms) => setTimeout(f, ms),
     clearTimeout: (id) => clearTimeout(id),
 };
 
-// Where the browser lets us.
+// Keeps the screen on where the browser allows it.
 export function keepScreenOn() {
     const ask = () => !document.hidden && navigator.wakeLock?.request('screen').catch(() => {});
     document.addEventListener('visibilitychange', ask);
     ask();
 }
 
-// onWake(): what was known before is old.
+// onWake(): called after the device slept, when all known values are outdated.
 export function watchSleep(onWake) {
     const wake = new Wake({
         now: () => performance.now(), date: () => Date.now(),

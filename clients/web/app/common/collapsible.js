@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Panels under the toolbar that a button opens.
+// Panels below the toolbar that a button opens.
 
-// A press of its button opens it; one elsewhere, but for the plant, or Escape closes it. Whoever comes by the keyboard
-// is led into it, and back to the button. { set(open), toggle(event of the press) }.
+// Connects a panel with its button. Another press, a press elsewhere except on the plant, or Escape closes the panel. For keyboard users,
+// focus moves into the panel and back to the button. Returns { set(open), toggle(event) }.
 export function collapsiblePanel(panel, button, onChange) {
     const set = (open) => {
         panel.classList.toggle('open', open);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Numbers and choices that panels ask for: the range of the colours (picture.js), and how a field is computed (field_settings.js).
+// Number and choice fields of panels: the colour range (picture.js), and the field settings (field_settings.js).
 import { unitText } from '../../core/format.js';
 import { say } from '../../core/words.js';
 import { byId, make, setText } from './dom.js';
@@ -7,19 +7,19 @@ import { byId, make, setText } from './dom.js';
 const explained = (kind, ...values) => values.map((value) => [value, say(`${kind}.${value}`), say(`${kind}.${value}.why`)]);
 export const distances = (group) => explained('distance', 'geodesic', 'euclidean', 'heat')
     .filter(([value], i) => i < 2 || group?.prepared?.includes(value));
-// The first two can be chosen everywhere, the others where they were prepared for the group.
+// The first two are always available, the others only where they were prepared for the group.
 export const interpolations = (group) => explained('interpolation', 'shepard', 'paper', 'harmonic', 'fin', 'gp')
     .filter(([value], i) => i < 2 || group?.prepared?.includes(value));
 export const fills = () => explained('fill', 'none', 'neighbours');
 
-// onNumber(number, or null where nothing is written).
+// onNumber: called with the number, or null if the field is empty.
 export function numberField(id, words, attributes, onNumber) {
     const input = make('input', { type: 'number', id, step: 'any', inputmode: 'decimal', ...attributes,
         onchange: () => input.checkValidity() && onNumber(input.value === '' ? null : input.valueAsNumber) });
     return { input, label: make('label', { class: 'choice' }, make('span', {}, words), input) };
 }
 
-// Not while a person writes there.
+// Leaves the field alone while the user types in it.
 export function writeNumber({ input }, value) {
     if (document.activeElement !== input)
         input.value = value ?? '';

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is kept in this browser. It may forbid that: nothing is then known the next time.
+// Values stored in this browser. The browser may refuse storage; they are then lost on reload.
 
 const KEYS = { theme: 'localStorage', token: 'sessionStorage', renewed: 'sessionStorage', accepted: 'sessionStorage',
-    renewedWall: 'sessionStorage', desk: 'localStorage', wall: 'localStorage' }; // for good, or as long as this tab lives
+    // values in localStorage are permanent, those in sessionStorage last until the tab closes
+    renewedWall: 'sessionStorage', desk: 'localStorage', wall: 'localStorage' };
 
 export function stored(name) {
     try {
@@ -12,7 +13,7 @@ export function stored(name) {
     }
 }
 
-// Whether it is kept.
+// Returns whether the text was stored.
 export function store(name, text) {
     try {
         globalThis[KEYS[name]].setItem(`plantcast.${name}`, text);

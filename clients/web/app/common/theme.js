@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Dark or light.
+// Dark and light theme.
 import { styled } from './dom.js';
 import { stored } from './storage.js';
 
 export function wear(theme) {
     document.documentElement.dataset.theme = theme;
     if (theme === 'dark')
-        styled('common/dark').catch(() => {}); // its sheet is asked for again with the next change
+        styled('common/dark').catch(() => {}); // a style sheet that failed to load is requested again at the next change of theme
     return theme;
 }
 
-// ?theme=dark or light, else as it was left; returns which.
+// Chooses ?theme=dark or light, else the stored theme. Returns the theme.
 export function chooseTheme(query) {
     return wear((query.get('theme') ?? stored('theme')) === 'dark' ? 'dark' : 'light');
 }

@@ -6,7 +6,7 @@ import { make } from './dom.js';
 
 const BEAT_MS = 1000, BAND_PX = 92;
 
-// scale: returns the size of the words relative to a desk. reloads: true for a wall, where nobody is there to reload the page.
+// scale(): size of the words relative to a desktop page. reloads: true on a wall, where nobody is there to reload the page.
 export async function watchMainThread({ scale = () => 1, reloads = false } = {}) {
     if (!('transferControlToOffscreen' in HTMLCanvasElement.prototype))
         return;

@@ -4,8 +4,8 @@
 // timers are slow).
 'use strict';
 
-// Ticks, not a clock: while the machine sleeps, neither this worker nor the page runs. The warning stands for some ticks before the reload,
-// which may otherwise come before anybody has seen it.
+// Counted in ticks, not by a clock, because while the machine sleeps neither this worker nor the page runs. The warning is shown for some
+// ticks before the reload, so that people can see it.
 const TICK_MS = 1000, SILENT_TICKS = 10, RELOAD_TICKS = 13;
 let veil = null, band = null, words = null, keeper = null, scale = 1;
 let silent = 0, rests = false, isSaid = false;
@@ -17,10 +17,10 @@ onmessage = ({ data }) => {
         ({ scale } = data);
         [band.width, band.height] = [data.width, data.height];
     }
-    if (typeof data === 'string') // a hidden page may also change its size
+    if (typeof data === 'string') // not a size, which a hidden page may send too
         rests = data === 'rest';
     silent = 0;
-    // Wipes the warning. Also draws once at the start: a canvas's first picture, its size and its font need the main thread.
+    // Clears the warning. Also draws once at the start, because a canvas's first frame, its size and its font need the main thread.
     if (isSaid || data.width)
         draw();
     if (data.width)

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Small pieces that panels, cards and dialogs are made of.
+// Helpers for panels, cards and dialogs.
 import { say } from '../../core/words.js';
 import { icon, make } from './dom.js';
 
-// Its children from now on; null is none.
+// Replaces the element's children; null children are skipped.
 export const fill = (element, ...children) => element.replaceChildren(...children.filter((child) => child !== null));
 
-// A text with one {name} left to be a node.
+// Splits a text at its placeholder and inserts a node there.
 export function around(text, node) {
     const [before, after] = text.split('\u0000');
     return [before, node, after];

@@ -8,16 +8,16 @@ import { make, setText } from '../common/dom.js';
 import { store, stored } from '../common/storage.js';
 import { fill } from '../common/widgets.js';
 
-const ASK_MS = 300; // after the last change of the filter
+const ASK_MS = 300; // milliseconds after the last change of the filter
 
 export class Accepting {
     constructor({ session, refresh }) {
         Object.assign(this, { session, refresh });
-        this.names = new Set(); // of tags that would be accepted
-        this.found = null;      // the newest `places_accepted` of the filter as it is
-        this.sent = null;       // 'accept' or 'restore', until `tags_saved`
-        this.kept = stored('accepted') || null; // version of the list before the last acceptance, also of before a reload
-        this.restores = false;  // a `tags_diff` of a version is asked for
+        this.names = new Set(); // tags that would be accepted
+        this.found = null;      // latest `places_accepted` for the current filter
+        this.sent = null;       // 'accept' or 'restore', until `tags_saved` arrives
+        this.kept = stored('accepted') || null; // version of the list before the last acceptance; survives a page reload
+        this.restores = false;  // whether a `tags_diff` of an earlier version was requested
         this.build();
         session.on('places_accepted', (message) => this.onFound(message));
     }
@@ -40,7 +40,7 @@ export class Accepting {
             this.count, this.refused, make('div', { class: 'line' }, this.go, this.undo), this.note);
     }
 
-    // The plant may be another one, with fewer assumed places.
+    // Shows the filter for the current plant, which may have fewer assumed locations than before.
     show() {
         const assumed = this.session.model.tags.filter(({ place }) => place === 'equipment'), counts = new Map();
         assumed.forEach(({ asset }) => counts.set(asset, (counts.get(asset) ?? 0) + 1));
@@ -65,14 +65,14 @@ export class Accepting {
     ask() {
         clearTimeout(this.timer);
         if (this.sent)
-            return; // end() or onSaved() asks
+            return; // end() or onSaved() asks again
         this.onFound(null);
         if (this.element.open && [this.within, this.confidence].every((field) => field.validity.valid))
             this.timer = setTimeout(() => { this.asked = tellAsEngineer(this.session, 'accept_places', this.filter); }, ASK_MS);
     }
 
-    // The server answers an acceptance with `places_accepted`, too: with the same hash if the list is being put in force, with another
-    // one if the list has changed since.
+    // The server also answers an acceptance with `places_accepted`: with the same hash if it is applying the list, with another hash if the
+    // list has changed meanwhile.
     onFound(message) {
         if (message && message.seq !== this.asked)
             return;
@@ -97,7 +97,7 @@ export class Accepting {
         this.send('accept', 'accept_places', { ...this.filter, confirm: this.found.hash });
     }
 
-    // Ends a request that put no list in force.
+    // Ends a request that applied no list.
     end(text) {
         if (this.sent) {
             this.sent = null;
@@ -122,7 +122,7 @@ export class Accepting {
         this.go.disabled = true;
         setText(this.note, say('eng.saving'));
         this.asked = tellAsEngineer(this.session, type, fields);
-        if (!this.asked) // no connection
+        if (!this.asked) // not connected
             this.end('');
     }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The engineer's panel: sensors are placed, and proven; how the field is computed. Loaded when it is first opened.
+// The engineering panel: placing sensors, loop checks, and field settings. Loaded when first opened.
 import { say } from '../../core/words.js';
 import { ACCENT } from '../viewport/overlay.js';
 import { byId, make } from '../common/dom.js';
@@ -41,7 +41,7 @@ export class Engineer {
     toggle() {
         const [alarms, imports] = ['alarms', 'import'].map((name) => this.page.modules.there(name));
         if (!this.open && alarms?.open)
-            alarms.setOpen(false); // they stand in the same place
+            alarms.setOpen(false); // alarm list and engineering panel use the same space
         if (!this.open)
             imports?.close();
         this.element.hidden = this.open;
@@ -51,7 +51,7 @@ export class Engineer {
         this.page.refresh();
     }
 
-    // As if its choice had been pressed.
+    // Chooses a part of the panel as if its button had been pressed.
     take(part) {
         this.element.querySelector(`input[value="${part}"]`).click();
     }
@@ -64,7 +64,7 @@ export class Engineer {
         this.page.refresh();
     }
 
-    // What is selected is another.
+    // Called when the selection changes.
     onSelection() {
         if (this.part === 'method')
             this.parts.method.show();
@@ -78,19 +78,19 @@ export class Engineer {
         return this.open && this.part === part && this.parts[part][name] === tag.name;
     }
 
-    // Whether its assumed place is one of those that would be accepted.
+    // Returns whether the tag's assumed location would be accepted by the current filter.
     isAccepted(tag) {
         return this.open && this.part === 'place' && this.parts.place.accepting.names.has(tag.name);
     }
 
-    // Whether mark() draws anything: it is not left out where markers crowd.
+    // Returns whether mark() draws something; such a marker is not thinned out.
     isMarked(tag) {
         return this.page.session.model.placed.has(tag.name) || this.isAccepted(tag) || this.isAt('place', 'tag', tag) ||
             this.isAt('prove', 'stirred', tag);
     }
 
-    // Over its marker: a dashed ring where it is tried out, a blue one where its assumed place would be accepted, a whole one where it
-    // is chosen, a double one where it moved.
+    // Draws rings over a tag's marker: dashed for a draft position, blue if its assumed location would be accepted, solid if it is
+    // selected, double if its reading changed in a loop check.
     mark(tag) {
         const c = this.page.overlay.context, moved = this.page.session.model.placed.has(tag.name);
         const stirred = this.isAt('prove', 'stirred', tag);

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How the field is computed, for engineers: distance, interpolation, places without data, and factors of all sensors and of one.
+// Field settings for engineers: distance, interpolation, areas without data, and factors of all sensors or of one.
 import { say } from '../../core/words.js';
 import { make, setText } from '../common/dom.js';
 import { distances, fills, interpolations, numberField, writeNumber } from '../common/number_fields.js';
 import { fillSegments, markSegment } from '../common/choices.js';
 
 const FACTORS = {
-    strength: [0, 100], decay: [0, 100], power: [0.5, 16], radius_m: [0, 1e6], reach_m: [1e-6, 1e6], // as the server takes them
+    strength: [0, 100], decay: [0, 100], power: [0.5, 16], radius_m: [0, 1e6], reach_m: [1e-6, 1e6], // ranges that the server accepts
 };
 const OWN = ['strength', 'decay'];
 const pairs = (all) => make('div', { class: 'pairs' }, ...all.map(([, { label }]) => label));
@@ -29,14 +29,14 @@ export class Method {
         session.on('welcome', () => this.show());
     }
 
-    // What is chosen is explained beneath.
+    // A choice with the explanation of the selected value below it.
     choice(name, words, all) {
         const fieldset = make('fieldset', { class: 'segments', id: name }, make('legend', {}, words));
         fillSegments(fieldset, name, all, (value) => this.session.setParams({ [name]: value }));
         return { name, fieldset, all, why: make('p', { class: 'quiet' }) };
     }
 
-    // What was prepared for the group.
+    // Offers the methods that were prepared for the group.
     offer(group) {
         this.offerOf('distance', distances(group));
         this.offerOf('interpolation', interpolations(group));

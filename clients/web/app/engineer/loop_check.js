@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tags are proven one after another, device by device: what moved when a transmitter was forced, and whether it is what it should be.
+// Loop checks tag by tag, device by device: shows which reading changed when a transmitter was forced, and whether it has the expected
+// value.
 import { decimalsFor, numberText, unitText } from '../../core/format.js';
 import { readExpected, LoopCheckSession } from '../../core/loop_check.js';
 import { ask } from '../../core/history.js';
@@ -13,9 +14,9 @@ export class LoopCheck {
     constructor({ session, showTag, refresh }) {
         Object.assign(this, { session, showTag, refresh });
         this.loopCheck = new LoopCheckSession();
-        this.tag = null;             // by name
-        this.stirred = null;         // likewise
-        this.expected = new Map();   // out of a CSV
+        this.tag = null;             // name of the tag under loop check; null: none
+        this.stirred = null;         // name of the tag whose reading changed most; null: none
+        this.expected = new Map();   // tag -> expected value, read from a CSV file
         this.build();
         session.on('tags', () => this.onTags());
         session.on('proofs', () => this.show());
@@ -55,7 +56,7 @@ export class LoopCheck {
                 button('eng.export', () => this.exportAll())));
     }
 
-    // Of the device, in the order of the tag list.
+    // The tags of the chosen device, in the order of the tag list.
     get tags() {
         return this.session.model.tags.filter(({ source }) => source === this.device.value);
     }
@@ -127,7 +128,7 @@ export class LoopCheck {
     onTags() {
         const { model } = this.session;
         if (this.session.time.atUs !== null)
-            return; // what was is not what is forced now
+            return; // ignore readings while the past is shown: they are not the forced ones
         this.loopCheck.observe(model.readings.map(({ value, quality }) => (quality === 'bad' ? null : value)));
         if (this.element.offsetParent === null)
             return;
@@ -146,7 +147,7 @@ export class LoopCheck {
         }
     }
 
-    // A decimal comma is a decimal point.
+    // Sends the result. A decimal comma counts as a decimal point.
     send(fail) {
         const read = (input) => (input.value.trim() ? Number(input.value.replace(',', '.')) : NaN);
         const expected = read(this.wanted), tolerance = read(this.tolerance);
@@ -160,7 +161,7 @@ export class LoopCheck {
                 ? { remark: this.remark.value } : {}) });
     }
 
-    // On to the next that is not proven.
+    // Shows the result and selects the next tag that has not passed.
     onProved({ tag, passed, value, why, refusal }) {
         const { model } = this.session, { tags } = this, at = tags.findIndex(({ name }) => name === tag);
         const text = value === null ? say('novalue') : this.text(model.tag(tag), value);

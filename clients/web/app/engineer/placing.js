@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sensors are placed: chosen from a list, put onto the surface by a click or dragged there, and the list is saved.
+// Places sensors: choose from a list, click on the surface or drag the marker, then save the list.
 import { numberText } from '../../core/format.js';
 import { whyNotSaved } from '../../core/refusals.js';
 import { askPick, tellAsEngineer } from '../../core/requests.js';
@@ -9,7 +9,7 @@ import { fill } from '../common/widgets.js';
 import { Accepting } from './accepting.js';
 
 const SHOWN_TAGS = 60, GRAB_PX = { mouse: 14, pen: 18, touch: 26 };
-const SAVING = ['save_tags', 'accept_places', 'restore_tags']; // messages
+const SAVING = ['save_tags', 'accept_places', 'restore_tags']; // message types that save
 const metres = (m) => numberText(m, m < 1 ? 3 : 2);
 const along = ({ along: state = 'waiting' } = {}) => say(`eng.${state}`);
 const percent = (share) => numberText(100 * share, share > 0 && share < 0.1 ? 1 : 0);
@@ -17,9 +17,9 @@ const percent = (share) => numberText(100 * share, share > 0 && share < 0.1 ? 1 
 export class Placing {
     constructor({ session, viewport, overlay, selection, selectTag, showTag, refresh }) {
         Object.assign(this, { session, viewport, overlay, selection, selectTag, showTag, refresh });
-        this.moves = [];   // { tag, asset, position }
-        this.undone = [];  // what the moves were, step by step
-        this.tag = null;   // the one to be placed, by name
+        this.moves = [];   // draft positions: { tag, asset, position }
+        this.undone = [];  // undo stack of `moves`
+        this.tag = null;   // name of the tag to place
         this.dragging = null;
         this.accepting = new Accepting({ session, refresh });
         this.build();
@@ -56,9 +56,9 @@ export class Placing {
         session.on('gaps', (message) => this.showGaps(message));
         session.on('tags_diff', (message) => this.showDiff(message));
         session.on('tags_saved', (message) => this.onSaved(message));
-        session.on('error', ({ about }) => { if (about === 'place') this.step(); }); // it stays where it was
+        session.on('error', ({ about }) => { if (about === 'place') this.step(); }); // a rejected position: the sensor stays where it was
         session.on('error', ({ about }) => { if (SAVING.includes(about)) this.stopSaving(); });
-        session.on('hello', () => this.stopSaving()); // the answer went to the connection that was lost
+        session.on('hello', () => this.stopSaving()); // the answer was lost with the previous connection
         session.on('welcome', () => this.onWelcome());
         session.on('params', () => this.show());
         const on = (name, f) => this.viewport.element.addEventListener(name, f, { capture: true });
@@ -68,10 +68,10 @@ export class Placing {
         on('pointercancel', (event) => this.drop(event));
     }
 
-    // The plant was loaded anew: what was not saved is tried out on top of it.
+    // After a reload of the plant, sends the unsaved draft positions again.
     onWelcome() {
         if (this.saving)
-            return; // what became of it is on its way
+            return; // the server will send the result of the save
         const known = ({ tag, asset }) => this.session.model.tag(tag) && this.session.model.asset(asset);
         this.moves = this.moves.filter(known);
         this.undone = [];
@@ -103,7 +103,7 @@ export class Placing {
         return true;
     }
 
-    // At most one step back for each click or drag, however many places it went over.
+    // Adds one undo step per click or drag, however many positions it passes.
     put(asset, position) {
         if (!this.tag)
             return;
@@ -166,7 +166,7 @@ export class Placing {
         this.refresh();
     }
 
-    // The equipment that the plant has it on, if it is tried out on other equipment.
+    // Returns the tag's saved equipment if the draft position is on other equipment.
     left({ tag, asset }) {
         const known = this.session.model.tag(tag), own = (known?.saved ?? known)?.asset;
         return own && own !== asset ? own : null;
@@ -181,7 +181,7 @@ export class Placing {
                 off ? say('eng.off', { metres: metres(placed.distance_m) }) : along(placed)));
     }
 
-    // Those that stand nowhere come first.
+    // Lists the tags; those without a position come first.
     showTags() {
         const { model, params } = this.session, wanted = this.find.value.trim().toLowerCase();
         const fits = ({ name, description, group }) =>
@@ -198,7 +198,7 @@ export class Placing {
         this.tag = this.tag === tag.name ? null : tag.name;
         if (this.tag)
             this.showTag(tag);
-        this.selectTag(null); // its card would lie over the surface
+        this.selectTag(null); // the tag's card would cover the surface to click on
         this.show();
     }
 
@@ -218,7 +218,7 @@ export class Placing {
 
     showDiff({ file, conflict, hash, lines, more }) {
         if (hash !== null && hash === this.confirmed)
-            return; // the list that is being put in force
+            return; // the difference is of the list that is already being applied
         this.stopSaving();
         const close = () => this.dialog.close();
         const change = ([number, before, after]) => make('div', { class: 'change' }, make('span', {}, say('eng.diff.line', { n: number })),
@@ -237,7 +237,7 @@ export class Placing {
             this.dialog.showModal();
     }
 
-    // Ends saving a list that was not put in force.
+    // Ends a save that applied no list.
     stopSaving() {
         if (this.saving)
             setText(this.note, '');

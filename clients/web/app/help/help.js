@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The help: what hands and keys do, and what the markers mean. Made when it is first asked for.
+// The help dialog: pointer and keyboard controls, and the meaning of the markers. Built when first opened.
 import { say } from '../../core/words.js';
 import { byId, make, makeSvg } from '../common/dom.js';
 import { closeButton } from '../common/widgets.js';
 
-// The name of a row, and the words or keys in its columns; '' where there is none.
+// Name of each row, and words or keys of its columns; '' for none.
 const ROWS = [
     ['help.turn', 'help.turn.mouse', 'help.turn.touch', '[←] [→] [↑] [↓]'],
     ['help.move', 'help.move.mouse', 'help.move.touch', '[W] [A] [S] [D]'],
@@ -37,7 +37,7 @@ const MARKS = [
     ['help.mark.returned', 'path', { class: 'ring p1 thin', d: 'M0-10.5A10.5 10.5 0 1 0 .1-10.5zM0-7A7 7 0 1 0 .1-7z' }],
 ];
 
-// A text with [keys] of the keyboard in it, as nodes.
+// Turns a text with [keys] into nodes.
 const withKeys = (text) => text.split(/(\[[^\]]+\])/).filter(Boolean).map((part) =>
     (/^\[.+\]$/.test(part) ? make('kbd', {}, part.slice(1, -1)) : part));
 const cell = (text) => make('td', {}, ...withKeys(/^(help|bar)\./.test(text) ? say(text) : text));

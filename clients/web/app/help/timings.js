@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The panel of measurements, on a key: which session this is, and where the time of its pictures goes.
+// The performance panel, opened by a key: this session's number, and the latency of its pictures by stage.
 import { numberText } from '../../core/format.js';
 import { kbitPerS, STAGES, timingOf } from '../../core/timings.js';
 import { say } from '../../core/words.js';
@@ -16,7 +16,7 @@ export class TimingsPanel {
         setInterval(() => !this.element.hidden && this.show(), 500);
     }
 
-    // Open or shut.
+    // Opens or closes the panel.
     toggle() {
         this.element.hidden = !this.element.hidden;
         if (!this.element.hidden)

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Requests of those who bring a plant in, and how far the server is.
+// Import requests, and polling of the server's progress.
 import { answerText } from '../../core/refusals.js';
 import { say } from '../../core/words.js';
 
 const LOOK_MS = 700;
 
 export class Exports {
-    // onState(state): what the server says of itself; onEnd(state, sent): an order has ended;
-    // sent: what was asked, { path, query }, if it is one of this page's, else null.
+    // onState(state): called with the server's import state; onEnd(state, sent): called when a job has ended; sent: this page's request, {
+    // path, query }, else null.
     constructor({ session, onState, onEnd }) {
         Object.assign(this, { session, onState, onEnd, state: null, sent: null });
     }
@@ -28,7 +28,7 @@ export class Exports {
         return this.ask(path, { method: 'POST', query, body });
     }
 
-    // Looks until nothing is under way. sent: the order that was just taken.
+    // Polls until no job is running. sent: the request that was just accepted.
     async look(sent = null) {
         clearTimeout(this.timer);
         const before = this.state;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The panel in which a plant is brought in: its exports, its size beside a person, and what its tags were matched to.
+// The import panel: model and tag files, the size of the plant beside a person, and the matches of the tags.
 import { numberText } from '../../core/format.js';
 import { sizeOf, timesOf } from '../../core/matches.js';
 import { say } from '../../core/words.js';
@@ -12,10 +12,10 @@ import { Source } from './source.js';
 import { TagTable } from './tag_table.js';
 
 const UNITS = ['', 'm', 'mm', 'cm', 'in', 'ft'], AXES = ['', 'y', 'z'];
-// As `plantcast match --encoding` takes them; others are for the command line.
+// Encodings of `plantcast match --encoding` offered here; others are for the command line.
 const ENCODINGS = ['UTF-8', 'GB18030', 'Big5', 'Shift-JIS', 'EUC-JP', 'EUC-KR', 'Windows-1250', 'Windows-1251', 'Windows-1252',
     'Windows-1253', 'Windows-1254', 'KOI8-R', 'CP866', 'CP850', 'UTF-16LE', 'UTF-16BE'];
-const PLACEHOLDER = 'person'; // the only asset of a plant that nothing was imported into
+const PLACEHOLDER = 'person'; // the only asset of a plant without an import
 
 const choice = (key, values, onchange) => {
     const select = make('select', { onchange }, ...values.map((value) =>
@@ -24,10 +24,10 @@ const choice = (key, values, onchange) => {
 };
 const button = (key, onclick, attributes = {}) => make('button', { type: 'button', onclick, ...attributes }, say(key));
 const megabytes = (bytes) => say('import.bytes', { mb: numberText(bytes / 1e6, bytes < 1e7 ? 2 : 0) });
-// Of what the programs printed: where files are is known.
+// Removes the folder of exports from the programs' output.
 const plain = (text) => text.replace(/\S*\/exports\//g, '');
 
-// Returns the encoding of each file, found in what the programs printed: "tags.csv: read as Windows-1251", and a second likely one.
+// Returns the encoding of each file as the programs printed it: "tags.csv: read as Windows-1251", and a second likely one.
 const readAs = (said) => [...new Set([...plain(said).matchAll(/^(.*): read as ([^,\n]+)(?:, but it may be ([^:\n]+))?/gm)]
     .map(([, file, name, other]) => say(other ? 'import.encoding.unsure' : 'import.encoding.read', { file, name, other })))].join(' · ');
 
@@ -98,7 +98,7 @@ export class Import {
     }
 
     toggle() {
-        for (const name of ['alarms', 'engineer']) { // they stand in the same place
+        for (const name of ['alarms', 'engineer']) { // the import panel takes the space of alarm list and engineering panel
             const other = this.page.modules.there(name);
             if (!this.open && other?.open)
                 other.toggle();
@@ -115,7 +115,7 @@ export class Import {
         (this.open ? this.pick : this.button).focus({ preventScroll: true });
     }
 
-    // A plant is there, another one perhaps.
+    // Updates the panel for a plant, which may be another one than before.
     greet() {
         const { assets } = this.page.session.model;
         this.isNew = assets.length === 1 && assets[0].id === PLACEHOLDER;
@@ -133,7 +133,7 @@ export class Import {
         try {
             this.report.set((await this.exports.report()).models);
         } catch (error) {
-            if (error.status === 404) // no model was read yet; other errors leave the report as it is
+            if (error.status === 404) // no model was read yet; other errors leave the report unchanged
                 this.report.set([]);
         }
     }
@@ -142,7 +142,7 @@ export class Import {
         try {
             this.table.set(this.isNew ? '' : await this.exports.matches());
         } catch (error) {
-            if (error.status === 404) // none were matched yet; else what was decided stays
+            if (error.status === 404) // no tags were matched yet; other errors leave the decisions unchanged
                 this.table.set('');
         }
     }
@@ -160,7 +160,7 @@ export class Import {
         this.upload([...event.dataTransfer.files]);
     }
 
-    // Runs what a person asked for; what goes wrong is said.
+    // Runs a user's request and shows its error.
     async try(f) {
         setText(this.wrong, '');
         try {
@@ -224,7 +224,7 @@ export class Import {
             setText(this.wrong, plain(state.failed ?? ''));
     }
 
-    // Of the models in force. What was chosen and is not applied stays until those change.
+    // Shows the settings of the active models. Choices not yet applied stay until the settings change.
     takeUnits({ units, up, encoding, mesh_units }) {
         if (this.known?.encoding !== encoding) {
             if (encoding && ![...this.encoding.options].some(({ value }) => value === encoding))

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What lies over the picture while a plant is brought in: boxes around the equipment that a tag may be on, and a person of 1.8 m.
+// Drawn over the picture during an import: boxes around candidate equipment of a tag, and a person of 1.8 m.
 import { basis, projector } from '../../core/camera.js';
 import { halves } from '../../core/split_view.js';
 import { say } from '../../core/words.js';
 
 const INK = '#1d252d', LIGHT = '#ffffff', LIT = '#2a5f8f', LEAST_PERSON_PX = 12, BESIDE_M = 0.8;
 const FACES = [[0, 1, 3, 2], [4, 5, 7, 6], [0, 1, 5, 4], [2, 3, 7, 6], [0, 2, 6, 4], [1, 3, 7, 5]];
-// Metres to the right of the middle, and above the ground.
+// Outline in metres: right of the middle, and above the ground.
 const BODY = [[-0.2, 1.42], [0.2, 1.42], [0.3, 0.82], [0.23, 0.8], [0.17, 1.15], [0.16, 0.82], [0.14, 0], [0.03, 0], [0, 0.75],
     [-0.03, 0], [-0.14, 0], [-0.16, 0.82], [-0.17, 1.15], [-0.23, 0.8], [-0.3, 0.82]];
 const HEAD = Array.from({ length: 16 }, (_, i) => [0.1 * Math.sin(i * Math.PI / 8), 1.66 + 0.14 * Math.cos(i * Math.PI / 8)]);
@@ -19,7 +19,7 @@ export class Lit {
         overlay.drawMore = () => this.draw();
     }
 
-    // assets: the first is the chosen one. person: whether there is one.
+    // assets: the first is the chosen one. person: whether to draw the person.
     show({ assets = this.assets, person = this.person }) {
         Object.assign(this, { assets, person });
         this.refresh();
@@ -55,7 +55,7 @@ export class Lit {
         return this.assets.length > 1 ? `${i + 1}  ${tag || id}` : tag || id;
     }
 
-    // Returns the uppermost corner, where its name stands; null: it is partly behind the eye.
+    // Returns the uppermost corner, for the name; null if the box is partly behind the camera.
     drawBox(asset, at, chosen) {
         const points = corners(asset.bounds).map(at), c = this.overlay.context;
         if (points.includes(null))
@@ -79,7 +79,7 @@ export class Lit {
     write(text, x, y) {
         const c = this.overlay.context;
         if (x < 0 || x > this.overlay.wide || y > this.overlay.high)
-            return; // what it names is out of the picture
+            return; // nothing to draw: the box is outside the picture
         c.font = `600 13px ${this.overlay.font}`;
         const width = c.measureText(text).width + 10;
         const left = Math.min(Math.max(4, x - width / 2), this.overlay.wide - width - 4), bottom = Math.max(24, y);
@@ -89,7 +89,7 @@ export class Lit {
         c.fillText(text, left + 5, bottom - 4);
     }
 
-    // On the ground before the side of the plant that is nearest to the eye.
+    // Draws the person on the ground, beside the side of the plant that is nearest to the camera.
     drawPerson({ min, max }, camera, at) {
         const middle = [0, 1].map((axis) => (min[axis] + max[axis]) / 2), { right } = basis(camera);
         const sides = [[min[0] - BESIDE_M, middle[1]], [max[0] + BESIDE_M, middle[1]], [middle[0], min[1] - BESIDE_M],
@@ -106,7 +106,7 @@ export class Lit {
             c.stroke();
             c.fill();
         }
-        if (feet[1] - top[1] < LEAST_PERSON_PX) { // where it is, at least
+        if (feet[1] - top[1] < LEAST_PERSON_PX) { // too small to draw: at least mark the spot
             c.beginPath();
             c.arc(feet[0], feet[1], LEAST_PERSON_PX, 0, 2 * Math.PI);
             Object.assign(c, { strokeStyle: LIT, lineWidth: 2 });

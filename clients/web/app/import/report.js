@@ -9,7 +9,7 @@ import { fill } from '../common/widgets.js';
 const UNITS = ['mm', 'cm', 'm', 'in', 'ft'];
 const metres = (length, unit) => shortNumberText(length * timesOf('m', unit), length * timesOf('m', unit) < 10 ? 4 : 1);
 
-// A list that is filled when it is opened first: it may have thousands of lines.
+// A list that is filled when first opened, because it may have thousands of lines.
 function fold(key, count, lines) {
     const list = make('ul', {});
     const details = make('details', { 'data-kind': key }, make('summary', {}, say(`import.report.${key}`, { count })), list);
@@ -18,7 +18,7 @@ function fold(key, count, lines) {
 }
 
 export class Report {
-    // answer(unit): files that state no unit are in this one.
+    // answer(unit): called with the unit that the user chose for files that state none.
     constructor({ answer }) {
         this.answer = answer;
         this.element = make('section', { class: 'report', hidden: true });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The table of tags: what each was matched to, filtered, gone through by hand or keyboard, decided and saved.
+// The table of tags with their matches: filter, decide by pointer or keyboard, and save.
 import { FILTERS, Matches, patternOf, readMatches } from '../../core/matches.js';
 import { rowAt } from '../../core/list_window.js';
 import { scrollTo } from '../../core/scroll.js';
@@ -46,7 +46,7 @@ export class TagTable {
             make('div', { class: 'line' }, this.count, this.back, this.keep));
     }
 
-    // null: the tag is no sensor.
+    // Returns whether a sensor has a position; null if the tag is not a sensor.
     isPlaced(name) {
         const tag = this.page.session.model?.tag(name);
         return tag?.asset && tag.group ? Boolean(tag.position) && tag.place !== 'equipment' : null;
@@ -56,7 +56,7 @@ export class TagTable {
         this.matches.set(readMatches(text));
         this.element.hidden = this.matches.all.length === 0;
         this.chosen = this.matches.all.find(({ tag }) => tag === this.chosen?.tag) ?? null;
-        this.light(); // where they are now
+        this.light(); // redraws the highlighted boxes after a reload of the plant
         this.list.renew(() => this.refresh());
     }
 
@@ -70,7 +70,7 @@ export class TagTable {
         this.refresh();
     }
 
-    // decided: what was sent, and is saved now.
+    // decided: decisions that have now been saved.
     settle(decided) {
         this.matches.settle(decided);
         this.refresh();
@@ -120,7 +120,7 @@ export class TagTable {
         return this.matches.decisions.has(row.tag) || row.reason === 'by hand' ? say('import.byhand') : row.reason;
     }
 
-    // The first of what lights up is where it is, or most likely is.
+    // Selects a row. The first highlighted asset is the matched or most likely one.
     choose(row) {
         this.chosen = row;
         this.goTo(this.list.places.get(row.tag));
@@ -152,7 +152,7 @@ export class TagTable {
         list.shown.get(row.tag)?.focus({ preventScroll: true });
     }
 
-    // Letters, so that they can be pressed without looking; the digits choose a candidate.
+    // Single letters are quick to press; digits choose a candidate.
     press(event) {
         if (event.ctrlKey || event.altKey || event.metaKey)
             return;
@@ -176,7 +176,7 @@ export class TagTable {
         else
             return;
         event.preventDefault();
-        event.stopPropagation(); // the plant stands still meanwhile
+        event.stopPropagation(); // keeps the key from moving the camera
     }
 
     chooseAt(i) {
@@ -187,7 +187,7 @@ export class TagTable {
 
     // --- deciding
 
-    // On to the next row: the one that is decided may leave the filter.
+    // Accepts the asset and moves to the next row, because the decided row may leave the filter.
     accept(asset) {
         if (asset === undefined)
             return;
@@ -209,7 +209,7 @@ export class TagTable {
         this.refresh();
     }
 
-    // One piece of equipment, so that clicks fall on it: what is around it is looked through, all else is hidden.
+    // Isolates one asset so that clicks hit it: its neighbours become transparent, all else is hidden.
     showAlone(id) {
         const { session } = this.page, { model, params } = session, asset = model.asset(id);
         if (!asset)
@@ -220,7 +220,7 @@ export class TagTable {
         session.setParams({ isolate: [id], ghost: around.slice(0, MOST_AROUND).map((other) => other.id) });
     }
 
-    // What was shown before, unless somebody chose otherwise meanwhile.
+    // Restores what was shown before, unless the user changed it meanwhile.
     showAgain() {
         const { session } = this.page, { isolate = [], ghost, alone } = this.shown ?? {};
         this.shown = null;
@@ -228,7 +228,7 @@ export class TagTable {
             session.setParams({ isolate, ghost });
     }
 
-    // Where it is on its equipment is said in the engineer's panel.
+    // Opens the engineering panel to place the tag on its equipment.
     place() {
         const tag = this.page.session.model.tag(this.chosen.tag);
         if (!tag?.group)

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Brings a tag into sight: from a side where nothing stands before it; else what stands there becomes a ghost for as long as one looks
-// at the tag.
+// Finds a camera with a free view of a tag; if there is none, makes the assets in front transparent while the tag is being looked at.
 import { approaches } from '../../core/approach.js';
 import { halfAt } from '../../core/nearest.js';
 import { askPick } from '../../core/requests.js';
 import { length, subtract } from '../../core/vector.js';
 
-const ANSWER_MS = 700, TRIES = 3; // another question may have come between
+const ANSWER_MS = 700, TRIES = 3; // a pick is retried because another pick request may replace it
 const SEARCH_MS = 1500, MOST_SEEN_THROUGH = 4, MOST_GHOSTS = 8;
 const AROUND = [[-0.12, 0], [0.12, 0], [0, -0.12], [0, 0.12], [-0.2, -0.2], [0.2, -0.2], [-0.2, 0.2], [0.2, 0.2]], BEFORE = 0.9;
-const NEAR_M = 0.05; // what is hit there is the sensor's own surface
+const NEAR_M = 0.05; // a surface hit this close to a sensor is the one it sits on
 
 const has = (list, id) => (list ?? []).includes(id);
 const without = (list, id) => (list ?? []).filter((other) => other !== id);
@@ -17,18 +16,18 @@ const without = (list, id) => (list ?? []).filter((other) => other !== id);
 export class Approach {
     constructor({ session, viewport }) {
         Object.assign(this, { session, viewport });
-        this.ghosts = [];    // ids of what stands before the tag: ours, not a person's
-        this.number = 0;     // of the newest approach; others are overtaken
+        this.ghosts = [];    // ids of assets made transparent automatically because they hide the tag (not by the user)
+        this.number = 0;     // number of the latest approach; earlier ones are abandoned
         this.heard = null;
         session.on('picked', (picked) => picked.purpose === 'sight' && this.heard?.(picked));
     }
 
-    // Whoever takes the camera is not led on.
+    // Abandons the approach when the user moves the camera.
     stop() {
         this.number++;
     }
 
-    // Equipment that is not shown is shown from now on, if a tag stands on it.
+    // Shows an asset that is hidden or transparent.
     reveal({ id }) {
         const { params } = this.session, change = {};
         for (const name of ['hidden', 'ghost'])
@@ -40,7 +39,7 @@ export class Approach {
             this.session.setParams(change);
     }
 
-    // These instead of those before; what a person made a ghost stays one.
+    // Replaces the automatically transparent assets; assets that the user made transparent stay so.
     setGhosts(ids) {
         const now = this.session.params.ghost ?? [], own = now.filter((id) => !has(this.ghosts, id));
         this.ghosts = ids.filter((id) => !has(own, id));
@@ -49,15 +48,15 @@ export class Approach {
             this.session.setParams({ ghost });
     }
 
-    // fly(camera) is told where to go: at once, and again where that turns out to be behind something.
+    // Calls fly(camera) with a destination at once, and again if that view turns out to be blocked.
     async go(tag, asset, fly) {
         const number = ++this.number, isOvertaken = () => number !== this.number;
         this.setGhosts([]);
         this.reveal(asset);
         const cameras = approaches(this.session.camera, tag.position, asset.bounds);
         fly(cameras[0]);
-        const behind = []; // other equipment, not only what it stands on itself
-        const latest = performance.now() + SEARCH_MS; // on a slow network what was found until then will do
+        const behind = []; // blocking assets, without the tag's own
+        const latest = performance.now() + SEARCH_MS; // deadline: on a slow network use the best view found so far
         let best = null, least = Infinity;
         for (const camera of cameras) {
             const found = await this.look(camera, tag), covered = found?.seen ? await this.coverAround(camera, asset, least) : Infinity;
@@ -87,7 +86,7 @@ export class Approach {
         this.setGhosts([]);
     }
 
-    // True: nothing but ghosts stands before it now.
+    // Makes blocking assets transparent one by one. Returns true once the view is free.
     async seeThrough(camera, tag, asset, isOvertaken) {
         const ghosts = [];
         this.setGhosts([]);
@@ -102,7 +101,7 @@ export class Approach {
         }
     }
 
-    // What a camera would see in its middle: { seen (the tag), asset (what is in front, or null) }; null: no answer.
+    // Returns what a camera sees at its centre: { seen (whether the tag), asset (what is in front, or null) }; null: no answer.
     async look(camera, tag) {
         const picked = await this.ask(camera, [0, 0]);
         if (!picked)
@@ -112,7 +111,7 @@ export class Approach {
         return { seen: isThere || (sensor === tag.name && !occluded), asset };
     }
 
-    // At how many places around the middle other equipment stands before it; counted no further than `most`.
+    // Counts the sample points around the centre where another asset is in front, up to `most`.
     async coverAround(camera, { id }, most) {
         const far = length(subtract(camera.target, camera.eye));
         let count = 0;
@@ -125,7 +124,7 @@ export class Approach {
         return count;
     }
 
-    // place: from the middle, in heights of the picture. null: no answer.
+    // Picks at an offset from the centre, in picture heights. Returns null if there is no answer.
     async ask(camera, [right, down]) {
         const { session, viewport } = this, { width } = halfAt(session.params, viewport.width, 0), { height } = viewport;
         for (let tries = 0; tries < TRIES; tries++) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Hands to camera: pointers, wheel and keys over the viewport, and flights between views.
-// Loaded when hands first come near (input.js).
+// Turns pointer, wheel and key input over the viewport into camera moves and flights. Loaded when a pointer or key first comes near
+// (input.js).
 import { LEAST_M, same } from '../../core/camera.js';
 import { flight, FLIGHT_MS } from '../../core/camera_flight.js';
 import { Gestures, wheelZoom } from '../../core/gestures.js';
@@ -14,39 +14,39 @@ import { clock } from '../common/clock.js';
 import { probeCodecs } from '../startup.js';
 import { isOnPicture } from './input.js';
 
-const DEGREES_PER_HEIGHT = 180; // a drag over the whole height of the picture
+const DEGREES_PER_HEIGHT = 180; // orbit angle of a drag over the whole height of the picture
 const DOUBLE_CLICK_MS = 350, DOUBLE_CLICK_PX = 24;
-const ANCHOR_MS = 600, ANCHOR_PX = 10; // a wheel that goes on, about the same place
-const LEAST_ARRIVAL_DEG = 15;   // nobody wants to arrive below the floor
-const MOST_BACK = 30;           // flights that can be taken back
-const WRITTEN = 'input:not([type="radio"], [type="checkbox"], [type="range"]), select, textarea'; // keys write there
+const ANCHOR_MS = 600, ANCHOR_PX = 10; // a wheel turn continues the previous one within this time and distance
+const LEAST_ARRIVAL_DEG = 15;   // minimum elevation of an arriving camera, to stay above the floor
+const MOST_BACK = 30;           // maximum number of flights to go back through
+const WRITTEN = 'input:not([type="radio"], [type="checkbox"], [type="range"]), select, textarea'; // fields that take typed text
 
-// The same but for rounding.
+// Returns whether two cameras are equal up to rounding.
 const isNear = (a, b) => ['eye', 'target'].every((name) => length(subtract(a[name], b[name])) < 0.02 * length(subtract(b.eye, b.target)));
 
 export class CameraController {
-    // handlers: called for input that moves no camera: { click(x, y, kind), point({ x, y } or null), command(name), group(index) }.
+    // handlers: for input that does not move the camera: { click(x, y, kind), point({ x, y } or null), command(name), group(index) }.
     constructor({ viewport, session, handlers }) {
         Object.assign(this, { viewport, session, handlers });
         this.gestures = new Gestures();
         this.keys = new HeldKeys();
         this.fly = null;
-        this.before = [];   // { camera, ghosts }: from where flights began
+        this.before = [];   // stack for going back: { camera, ghosts } before each flight
         this.approach = new Approach({ session, viewport });
         this.lastTick = null;
         this.lastClick = null;
-        this.anchor = null; // what a hand took hold of: { x, y, time, point }; the point as the boxes have it until the server says it
+        this.anchor = null; // point that the pointer grabbed: { x, y, time, point }; estimated from bounding boxes until the server answers
         session.on('picked', ({ purpose, position }) => {
             if (purpose === 'anchor' && this.anchor)
                 Object.assign(this.anchor, { point: position ?? this.anchor.point, sure: true });
         });
         window.addEventListener('blur', () => this.keys.clear());
         new ResizeObserver(() => this.stayHome()).observe(viewport.element);
-        session.on('params', () => this.stayHome()); // a split view has halves of another shape
-        probeCodecs(); // there will be motion
+        session.on('params', () => this.stayHome()); // a change to or from a split view changes the picture's shape
+        probeCodecs(); // motion is about to begin
     }
 
-    // An event of input.js.
+    // Handles an event from input.js.
     handle(event) {
         this[event.type](event);
     }
@@ -66,7 +66,7 @@ export class CameraController {
         this.gestures.down({ ...place, kind: event.pointerType, button: event.button, shift: event.shiftKey, ctrl: event.ctrlKey });
     }
 
-    // What is under the pointer is what is turned about and zoomed to; of the sky, what was turned about before.
+    // Grabs the point under the pointer as the centre of orbit and zoom; over the sky, the previous centre stays.
     takeHold({ x, y, time }) {
         const { camera } = this.session;
         if (!camera || !this.session.model)
@@ -77,7 +77,7 @@ export class CameraController {
         askPick(this.session, this.viewport.pixelOf(x, y), 'anchor');
     }
 
-    // depth: of the nearest box there; null: none.
+    // Returns the half, the position in it, and the depth of the nearest box there; depth null: none.
     under(camera, x, y) {
         const half = halfAt(this.session.shown, this.viewport.width, x), at = x - half.left;
         const boxes = this.session.model?.assets.map((asset) => asset.bounds) ?? [];
@@ -139,9 +139,9 @@ export class CameraController {
             return;
         const meaning = keyMeaning(event);
         if (!meaning || (meaning.motion?.startsWith('Arrow') && event.target.closest('fieldset')))
-            return; // arrows inside a group of buttons choose among them
+            return; // leaves arrow keys within a group of radio buttons to the browser
         if (event.key === ' ' && event.target.closest('button, input, a'))
-            return; // it presses what has the focus
+            return; // leaves Enter and Space to the focused button
         event.preventDefault();
         if (meaning.motion) {
             this.land();
@@ -188,7 +188,7 @@ export class CameraController {
             this.session.model ? zoomLimits(this.session.model) : undefined);
     }
 
-    // How far off that is which the hand holds; undefined: nothing.
+    // Returns the depth of the grabbed point; undefined if nothing is grabbed.
     heldDepth(camera) {
         const depth = this.anchor?.point ? depthOf(camera, this.anchor.point) : 0;
         return depth > LEAST_M ? depth : undefined;
@@ -200,7 +200,7 @@ export class CameraController {
         return halfAt(this.session.params, this.viewport.width, 0).width / this.viewport.height;
     }
 
-    // A person takes over.
+    // Ends a flight when the user takes over.
     land() {
         this.fly = null;
         this.approach.stop();
@@ -219,7 +219,7 @@ export class CameraController {
         this.viewport.invalidate();
     }
 
-    // Whoever is on the way somewhere comes back to where they began.
+    // Remembers where a flight starts; a second flight on the way keeps the first start.
     remember() {
         if (!this.fly)
             this.before = [...this.before.slice(1 - MOST_BACK), { camera: this.session.camera, ghosts: this.approach.ghosts }];
@@ -239,7 +239,7 @@ export class CameraController {
         return this.session.homeIn(width, this.viewport.height);
     }
 
-    // Who looks at the whole plant goes on doing so in a picture of another shape.
+    // Keeps the whole plant in view when the picture changes shape.
     stayHome() {
         const { session } = this;
         if (!session.model)

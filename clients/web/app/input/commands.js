@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What clicks, keys and buttons do: the selection, the flight to what is chosen, and the parts of the page that they open. Loaded when
-// hands first come near.
+// Commands behind clicks, keys and buttons: selecting, flying to the selection, and opening parts of the page. Loaded on first use.
 import { nearestMarker } from '../../core/nearest.js';
 import { travel } from '../../core/requests.js';
 import { byId } from '../common/dom.js';
@@ -8,11 +7,11 @@ import { store } from '../common/storage.js';
 import { wear } from '../common/theme.js';
 import { bandsOf } from '../toolbar/toolbar.js';
 
-const ARRIVAL_MARGIN = 1.7; // around one piece of equipment
+const ARRIVAL_MARGIN = 1.7; // margin around one asset, as a factor
 const REACH_PX = { mouse: 14, pen: 18, touch: 26 };
-const HELD_US = 3.5e6;      // what is newer than that counts as now
+const HELD_US = 3.5e6;      // an instant less than this many microseconds ago counts as now
 
-// Those of the shown group that stand somewhere and whose distances can be shown: not of single ones whose equipment was left whole.
+// Returns the tags of the shown group that have a position and distances. A single sensor on an asset that was not subdivided has none.
 export function sensorsOf({ model, params }) {
     const all = model.tags.filter(({ group, asset, position }) => group === params.group && asset && position);
     if (model.group(params.group)?.singles !== 'whole')
@@ -30,14 +29,14 @@ export class Commands {
     }
 }
 
-// Returns which it is now.
+// Toggles the theme and returns it.
 function changeTheme() {
     const theme = document.documentElement.dataset.theme === 'dark' ? 'light' : 'dark';
     store('theme', theme);
     return wear(theme);
 }
 
-// By name; those of the page, and those of keys (core/keys.js).
+// Returns the commands by name: those of the page, and those of keys (core/keys.js).
 function commandsOf({ session, modules, selection, overlay, saveAddress, refresh }) {
     function selectTag(tag) {
         selection.tag = tag?.name ?? null;
@@ -110,7 +109,7 @@ function commandsOf({ session, modules, selection, overlay, saveAddress, refresh
             openPlace(x, y, session.camera);
     }
 
-    // By another camera something else would be there.
+    // Ignores the click if the camera has moved: another point would be there.
     const openPlace = (x, y, camera) => modules.use('place', (place) => camera === session.camera && place.open(x, y));
 
     function point(place) {
@@ -124,7 +123,7 @@ function commandsOf({ session, modules, selection, overlay, saveAddress, refresh
         }
     }
 
-    // What `show` needs besides: a sensor that is chosen, else the first of the group; the instant of now.
+    // Adds the parameters that a `show` needs: the selected sensor, else the first of the group; the current instant.
     function showParams(show) {
         const { model, params } = session;
         const chosen = [selection.tag, params.sensor].map((name) => model.tag(name)).find((tag) => tag?.group === params.group);

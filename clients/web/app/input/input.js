@@ -1,22 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Passes pointer and keyboard input to the camera controller, which is loaded when a pointer or a key is first used; input from before that
-// is kept and passed on then.
+// Passes pointer and keyboard input to the camera controller. The controller is loaded on the first input, which is queued and replayed.
 const ON_PICTURE = ['pointerdown', 'pointermove', 'pointerup', 'pointercancel', 'pointerleave', 'wheel'];
 const ON_PAGE = ['keydown', 'keyup'];
 const NEAR = ['pointerover', 'focusin', 'keydown'];
-const STALE_MS = 2000; // what was done so long ago nobody means any more
+const STALE_MS = 2000; // input queued for longer than this is dropped
 
-// Controls that lie over the picture keep their own clicks.
+// Returns whether an event is for the picture, not for a control over it.
 export const isOnPicture = (event) => !event.target.closest('button, .card, .banner, .legend');
 
-// Who does that waits for something to happen.
+// Returns whether the event asks for a reaction, unlike mere pointer motion.
 const isMeant = ({ type, key, target }) => type === 'pointerdown' || type === 'wheel' ||
     (type === 'keydown' && /^(.|Arrow.*)$/.test(key) && !target.closest('input, select, textarea'));
 
-// What cannot wait for the camera controller.
+// Handles what cannot wait until the controller is loaded.
 function takeAtOnce(event, element) {
     if (event.type === 'wheel' || event.button === 1)
-        event.preventDefault(); // it would scroll
+        event.preventDefault(); // prevents scrolling
     if (event.type === 'pointerdown' && isOnPicture(event)) {
         element.setPointerCapture(event.pointerId);
         element.focus({ preventScroll: true });
@@ -24,7 +23,7 @@ function takeAtOnce(event, element) {
 }
 
 export function listenToInput(element, modules) {
-    let pending = [], drag = { from: Infinity, to: 0 }; // a drag is as fresh as its end
+    let pending = [], drag = { from: Infinity, to: 0 }; // times of the queued drag; it is dropped only if its end is too old
 
     function handle(event) {
         takeAtOnce(event, element);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Measuring between two places of the plant: a click each, and a line between them that stays with the picture.
+// Measures the distance between two clicked points of the plant; the line moves with the picture.
 import { projector } from '../../core/camera.js';
 import { halves } from '../../core/split_view.js';
 import { measure, metresText } from '../../core/measure.js';
@@ -33,7 +33,7 @@ export class Measure {
         this.show();
     }
 
-    // CSS pixels of the viewport. The third place begins anew.
+    // x, y: CSS pixels of the viewport. A third click starts a new measurement.
     click(x, y) {
         if (this.places.length === 2)
             this.places = [];
@@ -54,7 +54,7 @@ export class Measure {
         return say(['measure.first', 'measure.second', 'measure.done'][this.places.length]);
     }
 
-    // In step with the picture.
+    // Moves the line with the picture.
     show() {
         setText(this.note.querySelector('span'), this.words);
         const { picture, shown } = this.session;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Notes of the crew: pins in the picture, which a wall shows too, and their list and form in the panel of views. Also where a desk points.
+// Shift notes: pins in the picture, also on walls; their list and form in the panel of views. Also shows where a desk points.
 import { projector } from '../../core/camera.js';
 import { zoneClock } from '../../core/format.js';
 import { inForce, placeOf, whereOf } from '../../core/notes.js';
@@ -15,8 +15,8 @@ const MAY = ['operator', 'engineer'], POINTS_MS = 4000, TICK_MS = 500, LONGEST =
 export class Notes {
     constructor({ session, selection, viewport, modules, hangs, tell, flyToTag, selectAsset }) {
         Object.assign(this, { session, selection, viewport, modules, hangs, flyToTag, selectAsset });
-        this.pins = new Map(); // by id: { element, position }
-        this.pointer = null;   // likewise, and until
+        this.pins = new Map(); // pins of notes: id -> { element, position }
+        this.pointer = null;   // { element, position, until } of a desk's pointer; null: none
         this.list = make('ul', { id: 'notes-list' });
         this.text = make('input', { maxlength: LONGEST, placeholder: say('notes.text'), 'aria-label': say('notes.text'), id: 'note-text' });
         this.at = make('select', { id: 'note-at', 'aria-label': say('notes.at') });
@@ -38,14 +38,14 @@ export class Notes {
         this.point();
     }
 
-    // Notes are made and removed now: not while the past is shown.
+    // Whether the user may add and remove notes: not while the past is shown.
     get may() {
         return MAY.includes(this.session.role) && this.session.time.atUs === null;
     }
 
     // --- making one
 
-    // What it can be at: what is chosen.
+    // Returns what a note can be attached to: the selected tag, equipment or point.
     get places() {
         const { model, params } = this.session, picked = this.modules.there('place')?.picked, out = [];
         if (model?.tag(this.selection.tag))
@@ -91,7 +91,7 @@ export class Notes {
         return inForce(this.session.notes, this.session.clockUs(), this.session.time.atUs);
     }
 
-    // Some may end meanwhile, and others be at what is there only now.
+    // Drops notes that have ended, and offers the current selection.
     tick() {
         this.offer();
         if (this.notes.length !== this.list.children.length)
@@ -185,7 +185,7 @@ export class Notes {
         }
     }
 
-    // A wall enlarges the pins.
+    // Size of pins: larger on a wall.
     get scale() {
         return document.body.classList.contains('wall') ? Number(document.body.style.getPropertyValue('--wall')) || 1 : 1;
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the sensors cover, whatever they say: how far the field may err, and what nobody would see. With the legend's rarer titles. Loaded
-// where one of these is shown, and with the panel of the picture, where they are chosen.
+// Sensor coverage, independent of the readings: how far the field may be off, and which hot spots no sensor would show. Includes the
+// legend's rarer titles. Loaded where one of these is shown, and with the panel of the picture.
 import { shortNumberText, zoneClock } from '../../core/format.js';
 import { say } from '../../core/words.js';
 import { fillSegments, markSegment } from '../common/choices.js';
@@ -23,10 +23,10 @@ export class Coverage {
                 say('coverage.blind.note', { size: shortNumberText(session.model.group(group).hot_spot_m, 3) })];
         session.on('params', () => this.update());
         this.update();
-        session.emit('shown'); // legends
+        session.emit('shown'); // makes the legends redraw
     }
 
-    // From when on a difference is: the name of what was kept, and the plant's time then; null: it is not known.
+    // Returns the name of a saved comparison and the plant's time when it was saved; null if unknown.
     since({ baseline }) {
         if (!baseline?.time_us)
             return null;
@@ -36,7 +36,7 @@ export class Coverage {
         return say('coverage.since', { when: baseline.name ? `${baseline.name}, ${when}` : when });
     }
 
-    // Into the panel, at its first use.
+    // Adds the controls to the panel, at its first use.
     fill() {
         this.shown = [];
         byId('scale').before(this.element);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A picture to keep: the plant drawn once more by the server; or, where it signs, the very frame that is on the screen.
+// Saves a picture: redrawn by the server, or, if the server signs, the exact frame on the screen.
 import { ask } from '../../core/history.js';
 import { snapshotQuery } from '../../core/query.js';
 import { language, say } from '../../core/words.js';
@@ -14,7 +14,7 @@ export class Snapshot {
         Object.assign(this, { session, tell, pending: null });
         session.on('frame', (frame) => frame.flags & FLAG_SIGNED && this.pending?.frames.set(frame.seq, frame));
         session.on('hello', () => this.pending?.fail(new Error(say('reason.unreachable'))));
-        // Why not is told by who tells all refusals.
+        // Only ends the pending request; the page's error handler shows the reason.
         session.on('error', ({ about, code }) => (about === 'sign' || code === 'not_signed') && this.pending?.fail(null));
     }
 
@@ -26,7 +26,7 @@ export class Snapshot {
     }
 
     async choose() {
-        await styled('help/help').catch(() => {}); // the server is away: plain, then
+        await styled('help/help').catch(() => {}); // the server is unreachable: go on without styles
         this.dialog ??= this.makeDialog();
         this.dialog.showModal();
     }
@@ -45,7 +45,7 @@ export class Snapshot {
         return dialog;
     }
 
-    // picture(): a promise of { blob, us }: a PNG file, and its instant.
+    // picture(): returns a promise of { blob, us }: a PNG file, and its instant in microseconds.
     async saveBy(picture) {
         const { model } = this.session;
         try {
@@ -69,7 +69,7 @@ export class Snapshot {
         return { blob: await answer.blob(), us: time.atUs ?? session.clockUs() };
     }
 
-    // The next refined frame comes signed; once it is on the screen, its file is what is saved.
+    // Requests the next refined frame signed; once it is on the screen, saves its file.
     async onScreen() {
         const { session } = this, frames = new Map();
         let timer;

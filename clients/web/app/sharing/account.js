@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Who one is for the server, signing in at an identity provider, and signing out.
+// The account dialog: role on the server, signing in through an identity provider, and signing out.
 import { ask } from '../../core/history.js';
 import { say } from '../../core/words.js';
 import { make } from '../common/dom.js';
@@ -11,7 +11,7 @@ export async function whoAmI(session) {
     return (await ask('api/v1/me', {}, session.token)).json();
 }
 
-// Goes to the identity provider, and comes back to what is seen now. A token of before counts no longer.
+// Signs in at the identity provider and returns to the current view. Drops any token.
 export function signInButton(label) {
     const go = () => {
         store('token', '');

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Arriving by a link: it goes to the tag or the equipment that the link names, and says what of it is not in this plant.
+// Opens a link: goes to the tag or equipment that it names, and reports what does not exist in this plant.
 import { put, refusalText } from '../../core/refusals.js';
 
 const NOTE_MS = 20000;
@@ -9,7 +9,7 @@ export class Arrival {
         this.page = page;
     }
 
-    // link: { camera, params, tag } that opened the page; null: not the first time. refused: `error` messages about our view.
+    // link: { camera, params, tag } that opened the page; null after the first time. refused: `error` messages about our view.
     come(link, refused) {
         const { session, selection, selectTag, tell } = this.page, { model } = session;
         const why = refused.map(({ text, refusal }) => refusalText(text, refusal)), unknown = selection.tag && !model.tag(selection.tag);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The view of another: it keeps its shape, and says whose it is.
+// Following another session's view: keeps its aspect ratio, and shows whose view it is.
 import { say } from '../../core/words.js';
 import { byId, setText, setVariable } from '../common/dom.js';
 
@@ -14,7 +14,7 @@ export class Following {
         this.show();
     }
 
-    // Who is not there may come back: a page that is loaded anew, or a server.
+    // Asks again for a session that is gone: it may return after a page reload or a server restart.
     ask() {
         const { leader, following } = this.session;
         if (leader !== null && !following)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sharing: links to what is seen, with a code for the camera of a tablet; who follows this view, and giving the lead to one of them.
+// The share dialog: links to the current view, with a QR code; the followers of this view, and handing the lead to one of them.
 import { shareLinks } from '../../core/links.js';
 import { giveLead } from '../../core/requests.js';
 import { say } from '../../core/words.js';
@@ -7,8 +7,8 @@ import { byId, make, makeSvg, setText } from '../common/dom.js';
 import { fillSegments, markSegment } from '../common/choices.js';
 import { closeButton } from '../common/widgets.js';
 
-const QUIET_MODULES = 4; // of white around the code, as readers expect
-let library; // of codes: asked for with the first one
+const QUIET_MODULES = 4; // white margin around the code, as scanners expect
+let library; // QR code library, loaded on first use
 
 export class Share {
     constructor({ session, selection }) {
@@ -35,7 +35,7 @@ export class Share {
         document.body.append(this.dialog);
     }
 
-    // How many look along is said by the button itself.
+    // Shows the number of followers on the button.
     count() {
         const { count } = this.session.followers;
         byId('share-open').toggleAttribute('data-count', count > 0);
@@ -88,7 +88,7 @@ export class Share {
         try {
             await navigator.clipboard.writeText(this.link.value);
         } catch {
-            document.execCommand('copy'); // on plain http there is no clipboard
+            document.execCommand('copy'); // the clipboard API needs https
         }
         setText(this.copied, say('share.copied'));
     }

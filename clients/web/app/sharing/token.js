@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Asks for a token where the server wants one, and keeps it as long as this tab lives.
+// Asks for a token where the server requires one, and stores it until the tab closes.
 import { say } from '../../core/words.js';
 import { byId, make, setText } from '../common/dom.js';
 import { around } from '../common/widgets.js';
@@ -13,7 +13,7 @@ export class TokenDialog {
         const command = make('code', {}, 'plantcast token add');
         byId('token-note').replaceChildren(...around(say('token.note', { command: '\u0000' }), command));
         session.on('welcome', () => dialog.close());
-        dialog.addEventListener('close', () => { // by Escape: there is nothing to see without it
+        dialog.addEventListener('close', () => { // closed by Escape: reopen, nothing can be shown without a token
             if (session.connection.state === 'barred')
                 dialog.showModal();
         });
@@ -26,19 +26,20 @@ export class TokenDialog {
         });
     }
 
-    // code: of what the server refused.
+    // code: of the server's refusal.
     async ask(code) {
         const dialog = byId('token'), field = byId('token-text');
         if (code === 'locked') {
             this.session.token = null;
             store('token', '');
-            new BroadcastChannel('plantcast').postMessage('locked'); // to the handover
+            new BroadcastChannel('plantcast').postMessage('locked'); // locks the handover page too
         }
         setText(byId('token-why'), say({ bad_token: 'token.bad', locked: 'token.locked' }[code] ?? 'token.needed'));
         field.value = '';
         const nothing = { sign_in: null, notice: null }, late = new Promise((done) => setTimeout(done, 3000, nothing));
+        // asks without the token, since a wrong one would be rejected
         const me = await Promise.race([whoAmI({ token: null }).catch(() => nothing), late]);
-        if (!document.body.classList.contains('denied')) // let in meanwhile, from another tab
+        if (!document.body.classList.contains('denied')) // access was granted meanwhile, from another tab
             return;
         this.showNotice(me.notice);
         if (!dialog.open)
@@ -47,14 +48,14 @@ export class TokenDialog {
         this.offerSignIn(me.sign_in);
     }
 
-    // What the site wants everybody to have read.
+    // Shows the site's notice for all users.
     showNotice(text) {
         byId('token').querySelector('.notice')?.remove();
         if (text)
             byId('token-title').after(make('p', { class: 'notice' }, text));
     }
 
-    // Where people sign in, a token is the exception. Without a token: a wrong one would not be told.
+    // Offers signing in as the main way if the server has an identity provider; a token is then the exception.
     offerSignIn(label) {
         byId('token').querySelector('.sign-in')?.remove();
         if (!label)

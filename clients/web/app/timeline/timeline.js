@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The time bar: a slider over what was recorded, with gaps, sources that were lost, and the alarms that were raised, which lead to their
-// instants; play, speed, a date field, and the way back to now.
+// The time bar: a slider over recorded history with gaps, lost sources and raised alarms, which are clickable; play, speed, a date field,
+// and the way back to live.
 import { ageText, zoneClock } from '../../core/format.js';
 import { arrowS, ask, clustered, lost, nextTo, raised, ticks, witnesses } from '../../core/history.js';
 import { fieldInstant, fieldText } from '../../core/instant.js';
@@ -11,12 +11,14 @@ import { fillSelect } from '../common/choices.js';
 
 const SPANS = [[900, 'min', 15], [3600, 'h', 1], [28800, 'h', 8], [86400, 'h', 24], [604800, 'd', 7], [2592000, 'd', 30]];
 const SPEEDS = [1, 10, 60, 300, 600, 3600];
-const MARKS_MS = 15000, MARKS_MOST = 2000, HAND_MS = 400, NOW_US = 3.5e6; // what is newer than that counts as now
-const TRACK = { top: 15, height: 10 }, LOST_POINTS = 300; // of a tag's history, to see when its source was lost
-const MARK_PX = 9, SEARCH_MOST = 10000, PAGES = 24, NAMED = 8; // the least between two marks; rows of the journal at once; as often at most
+// NOW_US: an instant less than this many microseconds ago counts as now
+const MARKS_MS = 15000, MARKS_MOST = 2000, HAND_MS = 400, NOW_US = 3.5e6;
+const TRACK = { top: 15, height: 10 }, LOST_POINTS = 300; // LOST_POINTS: number of history points per tag for finding lost sources
+// MARK_PX: minimum distance of marks; SEARCH_MOST: journal rows per request; PAGES: maximum number of requests
+const MARK_PX = 9, SEARCH_MOST = 10000, PAGES = 24, NAMED = 8;
 
 export class Timeline {
-    // tell(text): to the person.
+    // tell(text): shows a message to the user.
     constructor({ session, tell }) {
         Object.assign(this, { session, tell, open: false, toUs: null, marks: [], gaps: [], lost: [], wanted: null, draggedAt: -Infinity });
         this.slider = byId('time-slider');
@@ -73,12 +75,12 @@ export class Timeline {
         this.show();
     }
 
-    // The slider spans the time up to now; around an instant where that does not hold it.
+    // Sets the slider's span: the time up to now, or around an instant that lies before that.
     turnTo(atUs) {
         const now = this.session.clockUs() ?? Date.now() * 1000;
         const ends = atUs !== null && atUs < now - this.spanUs ? Math.min(now, atUs + this.spanUs / 2) : now;
         this.toUs = ends;
-        this.slider.max = this.spanUs / 1e6; // by seconds
+        this.slider.max = this.spanUs / 1e6; // in seconds
         this.askMarks();
         this.show();
     }
@@ -93,7 +95,7 @@ export class Timeline {
         this.show();
     }
 
-    // Once for each picture of the page, however often the hand moves.
+    // At most one update per animation frame, however often the pointer moves.
     drag() {
         const at = this.toUs - this.spanUs + Number(this.slider.value) * 1e6;
         if (this.wanted === null)
@@ -111,7 +113,7 @@ export class Timeline {
         travel(this.session, us > this.session.clockUs() - NOW_US ? null : us);
     }
 
-    // From where it is: a small step, or, with the Page keys, a part of the span.
+    // Moves by a small step or, with the Page keys, by a part of the span.
     press(event) {
         const steps = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1 }[event.key];
         const pages = { PageDown: -1, PageUp: 1 }[event.key];
@@ -145,7 +147,7 @@ export class Timeline {
             this.tell(say(backwards ? 'time.first' : 'time.last'));
     }
 
-    // Rows of the journal come the newest first.
+    // Returns the next alarm. Journal rows come newest first.
     async alarmFrom(us, backwards) {
         let before = null;
         for (let i = 0; backwards && i < PAGES; i++) {
@@ -162,7 +164,8 @@ export class Timeline {
             const found = next === null || length < 2e6 ? nextTo(raised(rows), us, false) : null;
             if (found)
                 return found;
-            [from, length] = next === null ? [from + length, length * 4] : [from, length / 8]; // few enough rows
+            // too many journal rows: shortens the span; few enough: moves on to the next, longer span
+            [from, length] = next === null ? [from + length, length * 4] : [from, length / 8];
         }
         return null;
     }
@@ -188,12 +191,12 @@ export class Timeline {
             this.journal({ ...span, limit: MARKS_MOST }).then(({ rows }) => raised(rows)),
             ask('api/v1/history/gaps', span, token).then((answer) => answer.json()).then((said) => said.gaps),
             this.askLost(span),
-        ].map((one) => one.catch(() => []))); // nothing of it, or not for us: the slider goes without
+        ].map((one) => one.catch(() => []))); // a failed or refused request leaves that kind of mark out
         Object.assign(this, { marks, gaps, lost: all });
         this.draw();
     }
 
-    // [{ source, spans }]
+    // Returns [{ source, spans }] of lost sources.
     async askLost(span) {
         const sources = witnesses(this.session.model?.tags ?? []), tags = sources.flatMap((one) => one.tags);
         if (tags.length === 0)
@@ -232,7 +235,7 @@ export class Timeline {
         this.draw();
     }
 
-    // Marks, ticks, and where nothing was recorded or sources were lost (each has a row), over the slider's own length.
+    // Draws marks, ticks, gaps and lost sources (one row each) along the slider.
     draw() {
         const track = byId('time-track'), width = track.clientWidth;
         if (!this.open || !this.clock || width === 0)
@@ -259,7 +262,7 @@ export class Timeline {
             hatch(from, begin);
         for (const [begins, ends] of this.gaps)
             hatch(begins, ends);
-        const thumb = x(from + Number(this.slider.value) * 1e6); // what is hatched lies over the slider's own
+        const thumb = x(from + Number(this.slider.value) * 1e6); // redraws the thumb, which the hatching would cover
         if (nodes.some((node) => node.localName === 'rect'))
             nodes.push(makeSvg('circle', { class: 'thumb', cx: thumb, cy: 20, r: 8 }));
         for (const us of ticks(from, this.toUs, Math.max(2, width / 110))) {
@@ -270,7 +273,7 @@ export class Timeline {
         }
         const groups = clustered(this.marks, MARK_PX * this.spanUs / (width - 18)), words = ({ us, tag, kind }) =>
             `${tag} ${kind}, ${this.clock(us / 1000).time}`;
-        for (const { us, priority, of } of groups.sort((a, b) => b.priority - a.priority)) { // the gravest on top
+        for (const { us, priority, of } of groups.sort((a, b) => b.priority - a.priority)) { // the most urgent on top
             const all = of.slice(0, NAMED).map(words).concat(of.length > NAMED ? [say('alarms.more', { count: of.length - NAMED })] : []);
             const look = { class: `alarm p${priority}`, d: `M${x(us)} 15l-5.5-11h11z` };
             nodes.push(makeSvg('path', { ...look, onclick: () => travel(this.session, us) }, makeSvg('title', {}, all.join('\n'))));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Status bar, connection state and banner: always there, in words, aged by this page's own clock.
+// Status bar, connection state and banner: always visible, in words, with ages by this page's own clock.
 import { ageText, zoneClock } from '../../core/format.js';
 import { health, simulatedText } from '../../core/health.js';
 import { say } from '../../core/words.js';
@@ -7,7 +7,7 @@ import { clock } from '../common/clock.js';
 import { byId, make, setText, setVariable } from '../common/dom.js';
 
 export class Status {
-    // onFreshness(bool): whether what is shown comes from a server that speaks to us.
+    // onFreshness(bool): whether the shown values come from a server that still sends messages.
     constructor({ session, onFreshness }) {
         Object.assign(this, { session, onFreshness });
         this.fresh = true;
@@ -51,8 +51,7 @@ export class Status {
             setVariable(picture, '--below', `${strip.getBoundingClientRect().bottom - picture.getBoundingClientRect().top}px`);
     }
 
-    // The clock is the one of what is shown.
-    // How right the server's clock is.
+    // Returns the explanation of the clock: whether the server's clock is synchronised, and how well.
     clockState(isSet) {
         const { model } = this.session;
         if (!isSet)

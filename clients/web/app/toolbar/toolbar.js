@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The toolbar: what is shown and how. It shows the parameters in force and asks for others.
+// The toolbar: shows the parameters in force, and requests others.
 import { numberText, quantityText, title, unitText } from '../../core/format.js';
 import { multiples, rampChoices } from '../../core/legend.js';
 import { say } from '../../core/words.js';
@@ -12,14 +12,14 @@ export const LOOKS = choices('look', 'default', 'glossy', 'flat', 'materials');
 
 const decimalsOf = (step) => Math.max(0, Math.ceil(-Math.log10(step) - 1e-9));
 
-// The group's own bands by name: where they meet.
+// Returns the boundaries of the group's own bands by name.
 export function bandsOf({ group }) {
     const limits = Object.values(group?.limits ?? {}).filter((limit) => limit !== null).sort((a, b) => a - b);
     return { group: group?.breaks ?? [], limits };
 }
 
 export class Toolbar {
-    // does(name): what does a command (commands.js).
+    // does(name): runs a command (commands.js).
     constructor({ session, does }) {
         this.session = session;
         byId('colormap').addEventListener('change', (event) => session.setParams({ colormap: event.target.value }));
@@ -54,7 +54,7 @@ export class Toolbar {
         fillSelect(byId('show'), SHOWS, params.show ?? 'value');
     }
 
-    // Which of the group's own bands are shown.
+    // Returns the name of the group's bands that are in use, or 'chosen'.
     breaksName() {
         const { params } = this.session;
         const same = ([, breaks]) => JSON.stringify(params.breaks) === JSON.stringify(breaks);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What of the toolbar is folded away where there is no room for it: the settings of the display, and tools behind a button.
+// Collapses parts of the toolbar where there is no room: the display settings, and tools behind a button.
 import { byId } from '../common/dom.js';
 import { collapsiblePanel } from '../common/collapsible.js';
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Trends of tags: what was recorded of the last hour, shift, day or week, with limits, gaps in quality and units; several compared.
+// Trend charts of tags: recorded values of the last hour, shift, day or week, with limits, gaps and units; several can be compared.
 import { decimalsFor, numberText, shortNumberText, unitText, zoneClock, zoneOf } from '../../core/format.js';
 import { ask, BAD, gaps, limitLines, line } from '../../core/history.js';
 import { travel } from '../../core/requests.js';
@@ -11,11 +11,11 @@ import { dots, hatch, LOOKS } from './chart_style.js';
 const SPANS = [['3600', 'hour'], ['28800', 'shift'], ['86400', 'day'], ['604800', 'week']];
 const DASHES = [[], [8, 4], [2, 3], [10, 3, 2, 3], [5, 5], [1, 4]];
 const MOST = DASHES.length, FRESH_MS = 5000, AXIS_PX = 58;
-const EXPAND = 2; // uPlot's: nulls
+const EXPAND = 2; // uPlot's mode that expands gaps (nulls) to neighbouring instants
 const LIMIT_PX = 15;
-const isPane = () => document.body.classList.contains('pane-trend'); // of a wall's display: there all the room is the chart's
+const isPane = () => document.body.classList.contains('pane-trend'); // whether this is a trend pane of a wall, which the chart fills
 const highPx = () => (isPane() ? Math.max(80, byId('trend-chart').clientHeight)
-    : Math.round(Math.max(120, Math.min(210, 0.2 * innerHeight)))); // as #trend-chart has it
+    : Math.round(Math.max(120, Math.min(210, 0.2 * innerHeight)))); // the same height as #trend-chart in the style sheet
 
 // Loads the chart library with the first trend. A failed load is not kept: the next refresh tries again.
 let library;
@@ -69,26 +69,26 @@ export class Trends {
         return !this.element.hidden;
     }
 
-    // In place of what is there.
+    // Shows this tag alone.
     only(tag) {
         this.tags = [tag];
         this.open();
     }
 
-    // These, for a span of its own.
+    // Shows these tags, over a given span.
     compare(tags, spanS) {
         Object.assign(this, { tags: tags.slice(0, MOST), spanS });
         this.open();
     }
 
-    // One more beside those that are there.
+    // Adds a tag to the chart.
     add(tag) {
         if (this.takes(tag))
             this.tags = [...this.tags, tag];
         this.open();
     }
 
-    // Whether there are others that it can be added to.
+    // Returns whether the tag can be added to the open chart.
     takes(tag) {
         return this.isOpen && this.tags.length < MOST && !this.tags.includes(tag);
     }
@@ -131,7 +131,7 @@ export class Trends {
         return unitText(tag.unit || this.session.model.group(tag.group)?.unit);
     }
 
-    // Until now; or, in the past, around the instant that is shown.
+    // Time range of the chart: up to now; while the past is shown, around that instant.
     get window() {
         const now = this.session.clockUs(), { atUs } = this.session.time, span = this.spanS * 1e6;
         const to = atUs !== null && atUs < now - span ? Math.min(now, atUs + span / 2) : now;
@@ -176,7 +176,7 @@ export class Trends {
     data(uPlot) {
         const tables = this.series.map((one) => line(one, ...this.span));
         const filled = tables.map((table) => (table[0].length > 0 ? table : [[this.span[0] / 1e6], [null]]));
-        return uPlot.join(filled, filled.map(() => [EXPAND, EXPAND])); // a gap of one lasts over the instants of the others
+        return uPlot.join(filled, filled.map(() => [EXPAND, EXPAND])); // a gap in one series extends over the instants of the others
     }
 
     draw(uPlot) {
@@ -236,7 +236,7 @@ export class Trends {
         };
     }
 
-    // Limits near the values belong into the picture, far ones would only flatten it.
+    // Returns the range of an axis. It includes limits near the values; distant limits would only flatten the curve.
     range(unit, low, high) {
         if (low === null || high === null)
             return [0, 1];
@@ -251,7 +251,8 @@ export class Trends {
         return [min - margin, max + margin];
     }
 
-    // No value: hatched, as in the picture of the plant; uncertain: dotted along the bottom. Of several tags each in a row of its own.
+    // Draws periods without a value hatched, as in the plant's picture, and uncertain ones dotted along the bottom; with several tags, one
+    // row each.
     drawGaps({ ctx, bbox, valToPos }) {
         const rows = this.series.length;
         ctx.save();
@@ -294,7 +295,7 @@ export class Trends {
         ctx.restore();
     }
 
-    // On its line, on a ground of its own over everything else; where lines are near each other, beside the name before.
+    // Writes each limit's name at its line, over everything else; where lines are close together, beside the previous name.
     nameLimits(chart) {
         const { ctx, bbox } = chart, px = devicePixelRatio, height = LIMIT_PX * px, placed = [];
         ctx.save();

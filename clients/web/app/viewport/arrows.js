@@ -1,28 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Arrows of a group whose sensors have directions: as long as the field's value, and a cross where it is not known where to; or strokes,
-// along which dashes run, on a canvas of their own.
+// Arrows of a group with directions: the length is the field's value, a cross marks an unknown direction. Alternatively streaks with
+// running dashes, on their own canvas.
 import { decimalsFor, shortNumberText, unitText } from '../../core/format.js';
 import { halves } from '../../core/split_view.js';
 import { say } from '../../core/words.js';
 import { make } from '../common/dom.js';
 import { INK } from './overlay.js';
 
-const LONGEST_PX = (width) => 0.95 * Math.max(48, width / 24); // of the picture; the server leaves a little more between them
+const LONGEST_PX = (width) => 0.95 * Math.max(48, width / 24); // longest arrow for a picture width; the server spaces arrows slightly wider
 const HEAD = 7, CROSS = 'M-3 -3L3 3M-3 3L3 -3', DOT = 'M-.6 0A.6 .6 0 1 0 .6 0A.6 .6 0 1 0 -.6 0';
-const UNCERTAIN = [3, 2.5], UNCERTAIN_PX = 24; // its dashes, and how long it is in a legend
-const DASH = [5, 11], FASTEST_PX = 60; // a second, of the larger end of the range
+const UNCERTAIN = [3, 2.5], UNCERTAIN_PX = 24; // dash pattern of an uncertain arrow, and its length in a legend
+const DASH = [5, 11], FASTEST_PX = 60; // FASTEST_PX: dashes' speed in pixels per second at the upper end of the range
 const isUnknown = (dx, dy) => dx === 0 && dy === 0;
 
-// Along x, its middle at 0.
+// An arrow along x, centred at 0.
 function shape(length) {
     const head = Math.min(HEAD, length / 2), tip = length / 2;
     return new Path2D(`M${-tip} 0H${tip}M${tip - 0.85 * head} ${-head / 2}L${tip} 0L${tip - 0.85 * head} ${head / 2}`);
 }
 
-// With its tip at 0, along x.
+// An arrow head along x, with its tip at 0.
 const head = () => new Path2D(`M${-0.85 * HEAD} ${-HEAD / 2}L0 0L${-0.85 * HEAD} ${HEAD / 2}`);
 
-// An arrow for a legend.
+// Returns a canvas with an arrow for a legend.
 function sample(length, dashes = []) {
     const canvas = make('canvas', { 'aria-hidden': 'true' }), ratio = window.devicePixelRatio, c = canvas.getContext('2d');
     Object.assign(canvas, { width: (length + 4) * ratio, height: 12 * ratio });
@@ -93,7 +93,7 @@ export class Arrows {
         Object.assign(stroke, { end: at, to, uncertain: stroke.uncertain || uncertain });
     }
 
-    // White dashes along dark strokes, below all that is written, as long as there are any and motion is wanted.
+    // Animates white dashes along dark streaks, below all labels, while there are any and the user has not asked for reduced motion.
     run() {
         const { canvas } = this.overlay, moves = this.strokes.length > 0 && !this.still.matches;
         this.running.hidden = !moves;
@@ -138,7 +138,7 @@ export class Arrows {
         c.setLineDash([]);
     }
 
-    // In each legend, the longest arrow in its true length, and what dashes and a cross are where there are some.
+    // Adds to each legend the longest arrow at its true length, and the meaning of dashes and crosses where they occur.
     explain() {
         const { shown, picture } = this.session;
         const rows = this.session.markersOf(picture.seq)?.arrows ?? [];
@@ -149,7 +149,7 @@ export class Arrows {
             if (!legend || legend.hidden || !wanted)
                 return key?.remove();
             const value = this.longestIn(params), length = LONGEST_PX(width) * this.scale[0];
-            const strokes = shown.arrows === 'strokes'; // their length says nothing
+            const strokes = shown.arrows === 'strokes'; // streaks need no length in the legend, only arrows do
             const text = strokes ? '' : `${shortNumberText(value, decimalsFor(value))}\u202f${unitText(params.unit ?? group.unit)}`;
             const own = rows.filter(([, , , , , , of]) => of === half), unknown = own.some(([, , dx, dy]) => isUnknown(dx, dy));
             const dashed = own.some(([, , , , , uncertain]) => uncertain), says = `${text}/${length}/${unknown}/${dashed}`;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The legend: the colours as the server uses them, with units, limits, and the patterns for what is not known.
+// The legend: the server's colours with units, limits, and the patterns for missing data.
 import { decimalsFor, quantityText, shortNumberText, unitText } from '../../core/format.js';
 import { colourOf, edges, LIMIT_BANDS, placeOf, scaleTicks, spread, valueAt } from '../../core/legend.js';
 import { hatchAt, patternPeriodPx, ruleAt, stippleAt } from '../../core/patterns.js';
@@ -23,7 +23,7 @@ const solid = (colour) => (c, width, height) => {
     c.fillRect(0, 0, width, height);
 };
 
-// As the overlay draws the marker of a tag that is unproven.
+// The marker of a tag that is not loop-checked, as the overlay draws it.
 const brokenMark = (c, width, height) => {
     const radius = 0.38 * height;
     c.beginPath();
@@ -36,7 +36,7 @@ const brokenMark = (c, width, height) => {
     c.stroke();
 };
 
-// Likewise of a tag whose place is assumed.
+// The marker of a tag with an assumed location, as the overlay draws it.
 const doubleMark = (c, width, height) => {
     for (const [radius, line] of [[0.26, 0.11], [0.45, 0.07]]) {
         c.beginPath();
@@ -61,26 +61,27 @@ function at(element, place) {
     return element;
 }
 
-// By `show`, of the quantity's name and the parameters: title, what stands behind it, a note. Of rarer ones: coverage.js.
+// By `show`, from the quantity's name and the parameters: [title, suffix, note]. Rarer titles are in coverage.js.
 export const TITLES = { distance: (name, { sensor }) => [say('legend.distance', { tag: sensor ?? '–' })] };
-// A picture that depends on no reading is never uncertain. Its least value, in parts of the range; blind: 5 % and rounding.
+// Shows that do not depend on readings and so are never uncertain; values: lowest value as a fraction of the range (blind: 5 % plus
+// rounding).
 const LEAST = { distance: 0, uncertainty: 0, blind: 0.05005 };
 const LIMIT_PLACES = { LL: -2, L: -1, H: 1, HH: 2 };
 
 export class Legend {
-    // paramsOf: from the picture's parameters to those of the half that this legend is for; null: there is none.
+    // paramsOf: maps the picture's parameters to those of the half that this legend explains; null: none.
     constructor({ session, element, paramsOf, lying = window.matchMedia('(max-width: 719px)') }) {
         Object.assign(this, { session, element, paramsOf, lying });
         this.lying.addEventListener('change', () => this.show(true));
         this.shown = '';
-        this.long = 240; // CSS pixels of the bar
+        this.long = 240; // length of the bar in CSS pixels
         new ResizeObserver(() => this.fit()).observe(element);
         for (const name of ['params', 'shown', 'proofs'])
             session.on(name, () => this.show());
         window.matchMedia(`(resolution: ${window.devicePixelRatio}dppx)`).addEventListener('change', () => this.show(true));
     }
 
-    // A bar of another length: what is written beside it stands as far apart in pixels.
+    // Redraws for a new length of the bar, because labels keep their distance in pixels.
     fit() {
         const bar = this.element.querySelector('.bar'), long = this.lying.matches ? bar?.clientWidth : bar?.clientHeight;
         if (!long || long === this.long)
@@ -94,7 +95,7 @@ export class Legend {
         return spread(places, Math.min(gap, 1 / Math.max(1, places.length - 1)));
     }
 
-    // What decides how it looks.
+    // Returns everything that determines the legend's look, as a key.
     contents(params) {
         const { group, show, colormap, ramp_interval, scale, breaks, isolines, look, unit } = params;
         return JSON.stringify([group, show, this.title(params), colormap, ramp_interval, this.session.rangeOf(params), scale,
@@ -104,7 +105,7 @@ export class Legend {
     show(again = false) {
         const { model } = this.session, params = model && this.paramsOf(this.session.shown);
         const group = params && model.group(params.group);
-        this.element.hidden = !group || params.look === 'materials'; // no field, nothing to explain
+        this.element.hidden = !group || params.look === 'materials'; // no field: nothing to explain
         if (!group)
             return;
         const range = this.session.rangeOf(params);
@@ -126,14 +127,14 @@ export class Legend {
 
     title(params) {
         const name = quantityText(this.session.model.group(params.group));
-        const sign = { difference: 'Δ ', uncertainty: '± ', blind: '? ' }[params.show] ?? ''; // until coverage.js is there
+        const sign = { difference: 'Δ ', uncertainty: '± ', blind: '? ' }[params.show] ?? ''; // until coverage.js is loaded
         return TITLES[params.show]?.(name, params) ?? [sign + name];
     }
 
     notes(params, map, isOperator) {
         const { look, scale } = params, off = this.session.drawnError;
         return [
-            // In the unit of the title.
+            // The error is formatted in the unit of the legend's title.
             off && say('legend.drawn', { off }),
             this.title(params)[2],
             isOperator && say('legend.operator'),
@@ -149,7 +150,7 @@ export class Legend {
             since && make('span', { class: 'since' }, ` ${since}`));
     }
 
-    // below: whether there may be values below the range.
+    // below: whether values below the range are possible.
     scale(rule, lines, limits, below) {
         const { map, min, max } = rule;
         const decimals = (value) => decimalsFor(rule.log ? value : max - min);
@@ -164,7 +165,7 @@ export class Legend {
             ...(below ? end('below', map.below, `< ${text(min)}`) : []));
     }
 
-    // Between limits there are no values: places from -3 to 3.
+    // The scale between limits, which has no values: positions from -3 to 3.
     limitScale() {
         const place = (value) => (value + 3) / 6, band = (p) => LIMIT_BANDS.find(({ to }) => p * 6 - 3 < to) ?? LIMIT_BANDS[4];
         const names = Object.keys(LIMIT_PLACES), places = Object.values(LIMIT_PLACES).map(place);
@@ -172,7 +173,7 @@ export class Legend {
             this.bar({ min: -3, max: 3 }, Object.values(LIMIT_PLACES), (p) => band(p).colour), this.ticksAt(places, places, names));
     }
 
-    // A texture along the bar, finer than any screen shows it, with a line at each value that has one.
+    // Draws the bar as a texture finer than screen pixels, with a line at each isoline's value.
     bar(rule, lines, colourAt) {
         const canvas = make('canvas', { class: 'bar', role: 'img', 'aria-label': say('legend.colours', { min: rule.min, max: rule.max }) });
         const lying = this.lying.matches;
@@ -196,7 +197,7 @@ export class Legend {
         return this.ticksAt(places, this.apart(places, 15, 32), values.map(text));
     }
 
-    // Numbers beside the bar, joined to it by lines where they had to move apart.
+    // Places numbers beside the bar; leader lines connect numbers that had to move apart.
     ticksAt(from, to, texts) {
         const lying = this.lying.matches, line = (a, b) => (lying ? { x1: 100 * a, y1: 0, x2: 100 * b, y2: 1 }
             : { x1: 0, y1: 100 - 100 * a, x2: 1, y2: 100 - 100 * b });
@@ -206,12 +207,13 @@ export class Legend {
         return make('div', { class: 'ticks' }, svg, ...texts.map((text, i) => at(make('span', {}, text), to[i])));
     }
 
-    // A line at the limit itself, its name beside it.
+    // Draws a line at each limit, with its name beside it.
     limits(rule, limits, text) {
         const { min, max } = rule;
         const inside = Object.entries(limits).filter(([, value]) => value !== null && value >= min && value <= max);
         inside.sort((a, b) => a[1] - b[1]);
-        const names = (inside.length - 1) * 15 > this.long ? [0, inside.length - 1] : [...inside.keys()]; // else over one another
+        // otherwise the names would overlap
+        const names = (inside.length - 1) * 15 > this.long ? [0, inside.length - 1] : [...inside.keys()];
         const places = this.apart(inside.map(([, value]) => placeOf(rule, value)), 15, 27);
         return make('div', { class: 'limits' }, ...inside.flatMap(([name, value], i) => [
             at(make('i', {}), placeOf(rule, value)),
@@ -228,7 +230,7 @@ export class Legend {
         return this.session.model.tags.some((tag) => tag.group === group && tag.position && tag.place === 'equipment');
     }
 
-    // In small, the pattern is drawn no coarser than can be recognised.
+    // Draws the patterns in small, never coarser than recognisable.
     keys(params, colour) {
         const { show } = params;
         const period = (height) => Math.min(height / 2, patternPeriodPx(this.session.size.height));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The notice that some equipment lies so far from the rest that the first view leaves it out.
+// A notice that some equipment is so far from the rest that the first view excludes it.
 import { wholeOf } from '../../core/camera_moves.js';
 import { farText } from '../../core/measure.js';
 import { say } from '../../core/words.js';
@@ -16,7 +16,7 @@ export class Outside {
         this.show();
     }
 
-    // Names of assets that reach out of the plant's bounds, which the first view frames.
+    // Returns the names of assets that extend beyond the plant's bounds, which the first view frames.
     names() {
         const { assets, plant: { bounds: { min, max } } } = this.session.model;
         const rim = Math.max(...max.map((m, i) => m - min[i])) / 100;

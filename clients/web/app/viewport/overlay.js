@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Markers and labels, drawn crisply over the picture with the camera that the picture was drawn with.
+// Draws markers and labels sharply over the picture, with the camera of that picture.
 import { isGone } from '../../core/alarms.js';
 import { projector } from '../../core/camera.js';
 import { thinOut } from '../../core/declutter.js';
@@ -25,7 +25,7 @@ function polygon(c, points) {
     c.closePath();
 }
 
-// Smaller where they crowd, so that the plant is still seen.
+// Returns a smaller radius where markers are dense, so that the plant stays visible.
 function markerRadius(markers) {
     const xs = markers.map((marker) => marker.x), ys = markers.map((marker) => marker.y);
     const area = (Math.max(...xs) - Math.min(...xs)) * (Math.max(...ys) - Math.min(...ys));
@@ -37,15 +37,15 @@ export class Overlay {
         Object.assign(this, { canvas, viewport, session, selection });
         this.context = canvas.getContext('2d');
         this.font = getComputedStyle(document.body).fontFamily;
-        this.unit = 1;     // CSS pixels: larger on a wall
-        this.calm = document.body.classList.contains('pane'); // only what is abnormal has a label
-        this.all = [];     // { tag, x, y, depth, occluded, reading }, in units: of the shown group, and with alarms
-        this.markers = []; // those of them that are drawn
+        this.unit = 1;     // size of a unit in CSS pixels; larger on a wall
+        this.calm = document.body.classList.contains('pane'); // in a pane only abnormal readings have a label
+        this.all = [];     // { tag, x, y, depth, occluded, reading }, in units: tags of the shown group, and tags with alarms
+        this.markers = []; // the drawn subset of `all`
         this.places = new Map();
         this.widths = new Map();
-        this.onRings = () => {}; // there are several, or one without a label: call-outs are needed
+        this.onRings = () => {}; // called when call-outs are needed: several rings, or a ring without a label
         this.dirty = true;
-        this.fresh = true; // false: the values are those of a lost connection
+        this.fresh = true; // whether values are current; false: those of a lost connection
     }
 
     get wide() {
@@ -56,7 +56,7 @@ export class Overlay {
         return this.viewport.height / this.unit;
     }
 
-    // Sensors of the shown group, where the last drawn picture has them.
+    // Projects the sensors of the shown group into the last drawn picture.
     project() {
         const { model, picture, shown } = this.session;
         if (!model || !picture)
@@ -68,7 +68,7 @@ export class Overlay {
     projectHalf({ params, left, width }, number, known) {
         const { model, picture } = this.session;
         const scale = [this.wide / picture.shownWidth, this.high / picture.fullHeight];
-        const rim = params.split ? 0 : 20; // what lies beyond would be seen in the other half
+        const rim = params.split ? 0 : 20; // in a split view, markers beyond the edge would appear in the other half
         const project = projector(picture.camera, width, picture.fullHeight);
         const markers = [];
         for (const tag of model.tags) {
@@ -79,13 +79,16 @@ export class Overlay {
             if (!place || place[0] < -rim || place[1] < -rim || place[0] > width + rim || place[1] > picture.fullHeight + rim)
                 continue;
             const newest = model.readings[tag.index];
-            const pictured = said.quality ? { ...newest, value: said.value, quality: said.quality } : newest; // as the picture has it
+            // prefers value and quality that came with the picture over newer ones
+            const pictured = said.quality ? { ...newest, value: said.value, quality: said.quality } : newest;
             const difference = params.show === 'difference' && shown, away = params.show === 'distance' && shown;
             markers.push({
                 tag, x: (left + place[0]) * scale[0], y: place[1] * scale[1], depth: place[2], half: number,
                 occluded: said.occluded, reading: difference || away ? newest : pictured, alarm,
-                change: difference && (said.quality === 'bad' ? null : said.value ?? null), // false: the reading itself is shown
-                distance_m: away && (said.value ?? null), // likewise; null: none, as on other equipment
+                // change to a saved comparison; null: unknown; false: not shown
+                change: difference && (said.quality === 'bad' ? null : said.value ?? null),
+                // distance from the chosen sensor; null: none, as on other equipment; false: not shown
+                distance_m: away && (said.value ?? null),
                 origin: away && tag.name === params.sensor,
             });
         }
@@ -96,10 +99,11 @@ export class Overlay {
         return this.all.find((marker) => marker.tag === tag) ?? null;
     }
 
-    // Each half for itself: those that are drawn, the farthest first.
+    // Thins out the markers of each half; returns the drawn ones, farthest first.
     thinned() {
         const id = ({ tag, half }) => tag.index * 2 + half, { selected } = this.session.params;
-        const before = new Set(this.markers.filter(({ kept, held }) => held || !kept).map(id)); // not what was only kept
+        // not markers that were drawn only because they are always kept
+        const before = new Set(this.markers.filter(({ kept, held }) => held || !kept).map(id));
         for (const marker of this.all) {
             const { tag, alarm, origin, reading } = marker;
             marker.kept = alarm || origin || reading.quality !== 'good' || tag.asset === selected || this.isChosen(tag) ||
@@ -110,7 +114,7 @@ export class Overlay {
         return drawn.sort((a, b) => b.depth - a.depth);
     }
 
-    // CSS pixels of the viewport.
+    // Converts units to CSS pixels of the viewport.
     placeOf({ x, y }) {
         return { x: x * this.unit, y: y * this.unit };
     }
@@ -142,7 +146,7 @@ export class Overlay {
         this.isolines?.draw([...this.blocked(), ...boxes, ...marks]);
     }
 
-    // What lies over the picture already.
+    // Returns the boxes of elements that lie over the picture.
     blocked() {
         const origin = this.viewport.element.getBoundingClientRect();
         const boxes = [...this.viewport.element.querySelectorAll('.legend, .banner, .card, .simulated-note, .chip')]
@@ -152,7 +156,7 @@ export class Overlay {
             left: (box.left - origin.left) / unit, right: (box.right - origin.left) / unit,
             top: (box.top - origin.top) / unit, bottom: (box.bottom - origin.top) / unit,
         }));
-        const middle = this.wide / 2; // no label in both halves
+        const middle = this.wide / 2; // blocks the line between the halves, so that no label spans both
         return this.session.shown.split ? [...own, { left: middle - 1, right: middle + 1, top: 0, bottom: this.high }] : own;
     }
 
@@ -160,7 +164,7 @@ export class Overlay {
         return tag.name === this.selection.tag || tag === this.selection.hover;
     }
 
-    // Places the labels of each half. Call-outs are loaded when there are rings that may need them.
+    // Places the labels of each half. Call-outs are loaded when rings may need them.
     place(labels) {
         const { shown } = this.session, { wide: width, high: height, callouts } = this, blocked = this.blocked();
         const placed = halves(shown, width).map((half, number) => placeLabels(labels.filter((label) => label.half === number), {
@@ -173,7 +177,7 @@ export class Overlay {
         return all;
     }
 
-    // All marks in sight and all rings, in order of tags; the card speaks for the chosen.
+    // Returns labels for all visible markers and all rings, in the order of tags; the selected tag has a card instead.
     labels() {
         const marks = this.markers.filter((marker) => !marker.occluded || marker.alarm);
         const inSight = marks.filter(({ occluded }) => !occluded);
@@ -195,7 +199,7 @@ export class Overlay {
         });
     }
 
-    // Pieces of a label: [text, weight, colour].
+    // Returns the parts of a label: [text, weight, colour].
     parts({ tag, reading, change, distance_m, alarm }, withName) {
         const parts = withName ? [[tag.name, 400, INK_2]] : [];
         const held = alarm && reading.quality === 'bad' && this.callouts?.held(tag, alarm);
@@ -220,7 +224,7 @@ export class Overlay {
     }
 
     width([text, weight]) {
-        const key = weight + text.replace(/\d/g, '0'); // figures are equally wide
+        const key = weight + text.replace(/\d/g, '0'); // digits have equal width
         if (!this.widths.has(key)) {
             this.setFont(weight);
             this.widths.set(key, this.context.measureText(text.replace(/\d/g, '0')).width);
@@ -232,8 +236,8 @@ export class Overlay {
         this.context.font = `${weight} 12.5px ${this.font}`;
     }
 
-    // Its colour says the priority, its form the state: thick, and slowly blinking while nobody has acknowledged it; thin; hollow once its
-    // cause has gone.
+    // Draws a ring: its colour is the priority; thick and slowly blinking while unacknowledged, thin once acknowledged, hollow after return
+    // to normal.
     drawAlarm({ priority, state, waiting }) {
         const c = this.context, blinks = waiting && document.body.classList.contains('alarm-blink');
         const wide = !waiting || blinks ? 2 : 4, colour = ALARM_COLOURS[priority - 1][0], solid = [[INK, wide + 2], [colour, wide]];
@@ -267,7 +271,7 @@ export class Overlay {
         c.strokeStyle = INK;
         c.stroke();
         c.setLineDash([]);
-        if (tag.place === 'equipment') { // a second ring: somewhere here
+        if (tag.place === 'equipment') { // a second ring: the location is assumed
             c.beginPath();
             c.arc(0, 0, radius + 3, 0, 2 * Math.PI);
             c.lineWidth = 1;
@@ -330,7 +334,7 @@ export class Overlay {
         c.stroke();
     }
 
-    // A line of text.
+    // Draws one line of text.
     drawParts(parts, { left, top }, alarm) {
         const c = this.context, y = Math.round(top);
         c.textBaseline = 'middle';
@@ -354,7 +358,7 @@ export class Overlay {
         }
     }
 
-    // As wide as a label with this text.
+    // Returns the width of a label with this text.
     lineWidth(parts) {
         return Math.ceil(parts.reduce((sum, part) => sum + this.width(part), 0) + 2 * PADDING + (parts.length - 1) * 5);
     }

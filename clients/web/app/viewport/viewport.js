@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The picture on the screen: asks for the right size, decodes, draws in step with the display, acknowledges what was drawn.
+// The picture on the screen: requests the right size, decodes, draws in step with the display, acknowledges drawn frames.
 import { DecodeQueue } from '../../core/decode_queue.js';
 import { isWhole, pictureSize } from '../../core/wire.js';
 
 const RESIZE_WAIT_MS = 100;
-// What the browser states exactly, unless it leaves out the page's zoom, as emulated screens do.
+// Returns the exact size from the browser, unless it ignores page zoom, as emulated screens do.
 function devicePixels(cssPx, exact) {
     const px = Math.round(cssPx * window.devicePixelRatio);
     return exact !== undefined && Math.abs(exact - px) <= 2 ? exact : px;
@@ -17,7 +17,7 @@ export class Viewport {
     constructor({ element, canvas, session, decoding }) {
         Object.assign(this, { element, canvas, session });
         this.context = canvas.getContext('2d', { alpha: false });
-        this.decoded = []; // pictures, and parts of one that is not complete yet
+        this.decoded = []; // decoded pictures, and parts of an incomplete one
         this.scheduled = false;
         this.onTick = this.onDrawn = () => {};
         this.slot = new DecodeQueue({
@@ -35,7 +35,7 @@ export class Viewport {
         this.watchSize();
     }
 
-    // CSS pixels.
+    // Size in CSS pixels.
     get width() {
         return this.element.clientWidth;
     }
@@ -44,7 +44,7 @@ export class Viewport {
         return this.element.clientHeight;
     }
 
-    // CSS pixels to those of the picture that was asked for.
+    // Converts CSS pixels to pixels of the requested picture.
     pixelOf(x, y) {
         const size = this.session.following ?? this.session.size;
         return [(x * size.width) / this.width, (y * size.height) / this.height];
@@ -65,7 +65,7 @@ export class Viewport {
         try {
             observer.observe(this.element, { box: 'device-pixel-content-box' });
         } catch {
-            observer.observe(this.element); // Safari
+            observer.observe(this.element); // Safari does not know device-pixel-content-box
         }
     }
 
@@ -80,7 +80,7 @@ export class Viewport {
             this.invalidate();
     }
 
-    // The connection is gone: what still waits belongs to its numbering.
+    // Drops queued frames when the connection is lost: a new connection numbers frames anew.
     forget() {
         this.slot.clear();
         for (const { picture } of this.decoded)
@@ -100,8 +100,8 @@ export class Viewport {
         });
     }
 
-    // Parts of a picture wait for the rest of it. Until one of the place's shape comes, it is as high as that and not distorted;
-    // picture.shownWidth: what of it would be as wide.
+    // Draws complete pictures; parts wait for the rest. A picture of another shape is scaled to the viewport's height, undistorted;
+    // picture.shownWidth: the viewport's width in pixels of the picture.
     draw() {
         const complete = this.decoded.findLastIndex(({ frame }) => !frame.more) + 1, drawn = this.decoded.splice(0, complete);
         for (const { frame, picture } of drawn) {
@@ -109,7 +109,7 @@ export class Viewport {
                 this.canvas.width = frame.fullWidth;
                 this.canvas.height = frame.fullHeight;
             }
-            const { x, y, width, height } = frame; // a coded picture may be wider and higher by one
+            const { x, y, width, height } = frame; // the coded picture may be one pixel wider and higher
             this.context.drawImage(picture, 0, 0, width, height, x, y, width, height);
             picture.close();
         }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is cut away, by hand: arrows on the plane, or on the sides and in the middle of the box, for mouse, finger, pen and keys, in step
-// with the picture, in each half of it.
-// Loaded when something is cut for the first time.
+// The clip gizmo: arrow handles on the clip plane, or on the sides and the centre of the clip box, for mouse, touch, pen and keys, moving
+// with the picture in each half. Loaded when something is first clipped.
 import { projector } from '../../core/camera.js';
 import { numberText } from '../../core/format.js';
 import { alongSight, beforeEye, facing, gripsOf, moveBox, moveGrip, spotsOf, wholeOf } from '../../core/clip_gizmo.js';
@@ -11,12 +10,12 @@ import { along, subtract } from '../../core/vector.js';
 import { say } from '../../core/words.js';
 import { byId, make, makeSvg, setText } from '../common/dom.js';
 
-const RIM_PX = 34; // no grip nearer to the edge of the picture
-const APART_PX = 46; // nor nearer to another
+const RIM_PX = 34; // minimum distance of a handle from the picture's edge
+const APART_PX = 46; // minimum distance between handles
 const STEPS = { ArrowRight: 0.01, ArrowUp: 0.01, ArrowLeft: -0.01, ArrowDown: -0.01, PageUp: 0.1, PageDown: -0.1, Home: -2, End: 2 };
-// Axis and sign.
+// Axis and direction of each key.
 const WAYS = { ArrowRight: [0, 1], ArrowLeft: [0, -1], ArrowUp: [1, 1], ArrowDown: [1, -1], PageUp: [2, 1], PageDown: [2, -1] };
-const STEP = 0.01; // of the plant's length along that axis
+const STEP = 0.01; // fraction of the plant's length along that axis, per key press
 const ARROW = 'M-13 0h26M-13 0l6-5.5M-13 0l6 5.5M13 0l-6-5.5M13 0l-6 5.5';
 const CROSS = `${ARROW}M0-13v26M0-13l-5.5 6M0-13l5.5 6M0 13l-5.5-6M0 13l5.5-6`;
 
@@ -25,18 +24,18 @@ export class ClipGizmo {
         Object.assign(this, { session, viewport, dragging: null });
         this.lines = makeSvg('svg', { class: 'cut-lines', 'aria-hidden': 'true' });
         this.label = make('output', { class: 'measured cut-label', 'aria-hidden': 'true', hidden: true });
-        this.buttons = new Map(); // id of the grip -> button
+        this.buttons = new Map(); // handle id -> button
         byId('overlay').after(this.lines);
         viewport.element.append(this.label);
     }
 
-    // Of the plant's bounds, and none while the view is another's. The whole of a box first: its place is the middle.
+    // Handles within the plant's bounds; none while following another session. A box's centre handle comes first and keeps its place.
     get grips() {
         const { model, params, following } = this.session;
         return model && !following ? [wholeOf(params.clip), ...gripsOf(params.clip, model.plant.bounds)].filter(Boolean) : [];
     }
 
-    // One, or those of a split view: their cameras are the same.
+    // One view, or the two of a split view, which share a camera.
     get views() {
         const { picture, shown } = this.session, { width, height } = this.viewport, scale = width / picture.shownWidth;
         return halves(shown, picture.shownWidth).map((half) => {
@@ -53,7 +52,7 @@ export class ClipGizmo {
         const grips = this.session.picture ? this.grips : [], views = grips.length > 0 ? this.views : [];
         for (const [key, button] of this.buttons)
             if (button.half >= views.length || !grips.some(({ id }) => id === button.dataset.id)) {
-                this.buttons.delete(key); // before it goes: it loses the focus, and this is called again
+                this.buttons.delete(key); // deleted from the map first, because removing a focused button calls show() again
                 button.remove();
             }
         this.lines.replaceChildren();
@@ -63,14 +62,14 @@ export class ClipGizmo {
 
     place(grips, view, half) {
         const taken = [], covers = this.covers(), path = outline(grips, view);
-        const { left: x, width } = view, { height } = this.viewport; // nothing of it in the other half
+        const { left: x, width } = view, { height } = this.viewport; // a handle must not reach into the other half
         this.lines.append(makeSvg('svg', { x, width, height, viewBox: `${x} 0 ${width} ${height}` },
             makeSvg('path', { class: 'under', d: path }), makeSvg('path', { d: path })));
         for (const grip of grips) {
             const button = this.buttons.get(`${grip.id}/${half}`) ?? this.make(grip.id, half);
             const held = this.dragging?.button === button ? this.dragging.spot : null;
             const stays = button.matches(':focus') ? { number: 0 } : null;
-            const spot = held ?? this.spotOf(grip, view, taken, covers) ?? stays; // what has the focus is not taken from under the keys
+            const spot = held ?? this.spotOf(grip, view, taken, covers) ?? stays; // the focused handle stays even if no free spot is found
             button.hidden = spot === null;
             if (!spot)
                 continue;
@@ -85,7 +84,7 @@ export class ClipGizmo {
         }
     }
 
-    // Of one side or plane: which way its arrow points, and what a screen reader is told.
+    // Points a handle's arrow along its direction, and sets its value for screen readers.
     aim(button, view, at) {
         const { grip, place: [x, y] } = button;
         const end = view.project(along(at, grip.direction, 1e-3 * Math.max(1, grip.high - grip.low))) ?? [x, y];
@@ -98,14 +97,14 @@ export class ClipGizmo {
                 button.setAttribute(`aria-${name}`, value);
     }
 
-    // What lies over the picture.
+    // Returns the boxes of elements that lie over the picture.
     covers() {
         const { left, top } = this.viewport.element.getBoundingClientRect();
         return [...document.querySelectorAll('.panel.open, .legend, .card, .assets, .engineer, .alarms')]
             .map((e) => e.getBoundingClientRect()).map((box) => [box.left - left, box.top - top, box.right - left, box.bottom - top]);
     }
 
-    // The first place that is well inside the picture, under nothing and not on another grip; null: there is none.
+    // Returns the first position well inside the picture, not covered and apart from other handles; null if there is none.
     spotOf(grip, { project, left, width, height }, taken, covers) {
         const inside = ([x, y]) => x > left + RIM_PX && y > RIM_PX && x < left + width - RIM_PX && y < height - RIM_PX;
         const free = ([x, y]) => taken.every((other) => Math.hypot(x - other[0], y - other[1]) >= APART_PX)
@@ -114,7 +113,7 @@ export class ClipGizmo {
         return number < 0 ? null : { number };
     }
 
-    // The right half's are for hands; by keys and to screen readers they would be the same once more.
+    // Handles in the right half are for pointers only; for keys and screen readers they would be duplicates.
     make(id, half) {
         const drop = (event) => this.drop(event), show = () => this.show(), icon = id === 'whole' ? CROSS : ARROW;
         const button = make('button', { type: 'button', class: 'grip', ...(id === 'whole' ? {} : { role: 'slider' }), 'data-id': id,
@@ -130,7 +129,7 @@ export class ClipGizmo {
         return button;
     }
 
-    // Of the grip that is held, pointed at or has the focus: where it is.
+    // Labels the handle that is dragged, hovered or focused with its position.
     tell(grips) {
         const one = [...this.buttons.values()].find((button) => !button.hidden && grips.includes(button.grip)
             && (this.dragging ? button === this.dragging.button : button.matches(':hover, :focus-visible')));
@@ -143,7 +142,7 @@ export class ClipGizmo {
         this.label.style.transform = `translate(${Math.round(left)}px, ${Math.round(Math.max(4, Math.min(height - 40, y - 16)))}px)`;
     }
 
-    // --- by hand
+    // --- dragging
 
     placeOf(event) {
         const box = this.viewport.element.getBoundingClientRect();
@@ -162,7 +161,7 @@ export class ClipGizmo {
         this.show();
     }
 
-    // Once per animation frame.
+    // At most one update per animation frame.
     drag(event) {
         const { dragging } = this;
         if (event.pointerId !== dragging?.pointer)
@@ -180,13 +179,13 @@ export class ClipGizmo {
         });
     }
 
-    // What of its way lies under the hand: metres along it, of a whole box a place; null: nothing says so.
+    // Returns the point of the handle's line under the pointer: metres along it, or for a whole box a position; null if undefined.
     under({ grip, point, button }, [x, y]) {
         const { camera, left, width, height } = this.views[button.half] ?? this.views[0], line = sight(camera, x - left, y, width, height);
         return grip.id === 'whole' ? facing(camera, point, line) : alongSight(point, grip.direction, line);
     }
 
-    // Metres; of a way that leads towards the eye the hand says as much by going up and down.
+    // Returns metres along the line. For a line that points at the camera, dragging up and down counts instead.
     taken(dragging) {
         const { at, from, grip, y: began } = dragging;
         if (from === null)
@@ -243,7 +242,7 @@ const middleText = ([middle]) => `${middle.map((m) => numberText(m, 2)).join(' �
 const textOf = ({ id, corners, axis, turned, at }) => (id === 'whole' ? middleText(corners) : say('views.stays', {
     axis: axis ? axis.toUpperCase() : say('cut.oblique'), sign: turned ? '≤' : '≥', at: numberText(at, 2) }));
 
-// Each edge once.
+// Draws each edge of the section or box once.
 function outline(grips, { camera, project }) {
     const faces = grips.map(({ corners }) => corners).filter((corners) => corners.length > 1);
     const edges = faces.flatMap((corners) => corners.map((p, i) => [p, corners[(i + 1) % corners.length]]));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Displays that were let in by their six digits, for engineers: one more is let in, or one is revoked.
+// Paired displays, for engineers: pairing a display by its code, and revoking one.
 import { zoneClock } from '../../core/format.js';
 import { ask } from '../../core/history.js';
 import { refusalText } from '../../core/refusals.js';
@@ -21,7 +21,7 @@ export class Devices {
         this.learn();
     }
 
-    // Nothing is said where displays need no token, or to whom it is not told.
+    // Shows nothing where displays need no token, or to users without the role.
     async learn() {
         const { session } = this, turn = this.turn = (this.turn ?? 0) + 1;
         const { list } = session.role === 'engineer' ? await ask('api/v1/devices', {}, session.token).then((answer) => answer.json(),
@@ -50,6 +50,6 @@ export class Devices {
     post(message) {
         const { session } = this;
         if (!session.welcomed || !session.connection.send({ seq: ++session.toldSeq, ...message }))
-            this.tell(say('reason.unreachable')); // nobody is to think that it was revoked
+            this.tell(say('reason.unreachable')); // tells the user that the display was not revoked
     }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The list of views with names: going to one, and, for who may, saving what is seen, putting one elsewhere, going back to what one was.
+// The list of saved views: opening one; with the right role also saving, reordering and restoring earlier versions.
 import { ask } from '../../core/history.js';
 import { idFor, pictureQuery, textOf, viewOf } from '../../core/named_views.js';
 import { zoneClock } from '../../core/format.js';
@@ -29,9 +29,9 @@ export class NamedViews {
         return MAY.includes(this.session.role);
     }
 
-    // --- going there
+    // --- opening
 
-    // fly: with a flight; else at once.
+    // fly: animate the camera; else jump.
     open(id, fly = true) {
         const view = this.session.views.find((one) => one.id === id);
         if (!view) {
@@ -52,7 +52,7 @@ export class NamedViews {
         if (fly)
             modules.use('cameraController', (cameraController) => cameraController.flyTo(camera));
         else {
-            modules.there('cameraController')?.land(); // a flight would go on to where it was bound
+            modules.there('cameraController')?.land(); // ends a running flight, which would go on to its old destination
             session.setCamera(camera);
         }
     }
@@ -159,7 +159,7 @@ export class NamedViews {
                 if (image)
                     image.src = url;
             } catch {
-                break; // its name is enough
+                break; // the title is enough
             }
         }
         this.drawing = false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A wall from a desk: what is seen is sent to one of its panes, what a pane shows is held, and a place is pointed at.
+// Controls a wall from a desk: sends the current view to a pane, holds a pane, and points at a place of the plant.
 import { quantityText, zoneClock } from '../../core/format.js';
 import { ask } from '../../core/history.js';
 import { textOf, viewOf } from '../../core/named_views.js';
@@ -40,7 +40,7 @@ export class Remote {
         this.learn();
     }
 
-    // Which walls there are: the plant file may be another.
+    // Loads the list of walls; a reload may have changed the plant file.
     async learn() {
         const { walls } = await ask('api/v1/walls', {}, this.session.token).then((answer) => answer.json(), () => ({ walls: [] }));
         this.panes = walls.flatMap(({ id: wall, displays }) => displays.flatMap(({ panes }, index) =>
@@ -65,7 +65,7 @@ export class Remote {
         return { view, title };
     }
 
-    // Of the view with a name that is open, else what is selected, or the quantity.
+    // The open saved view's title, else the selection, or the quantity.
     get title() {
         const { session } = this, { params, model, group } = session, opened = this.page.modules.there('namedViews')?.opened;
         const named = session.views.find(({ id, view }) => id === opened && isFrom(viewOf(session, view).camera, session.camera))?.title;
@@ -100,7 +100,7 @@ export class Remote {
         byId('remote-hold').disabled = Boolean(order?.held);
     }
 
-    // --- pointing: a place of the plant, wherever the wall sees it from
+    // --- pointing: at a position of the plant, whatever camera the wall has
 
     setPointing(on) {
         this.pointing = on;
@@ -118,7 +118,7 @@ export class Remote {
         askPick(this.session, this.viewport.pixelOf(pointed.x, pointed.y), 'point');
     }
 
-    // Of several questions the server answers the newest: somebody's click goes first.
+    // Waits before a pick request: the server only answers the latest, and a user's click takes precedence.
     waitsFor(now) {
         const { pickSeq } = this.session;
         if (pickSeq !== this.seenSeq)

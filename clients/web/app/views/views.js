@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The panel of views: from where to look, in which projection, what is cut away and which equipment is shown.
+// The panel of views: direction of view, projection, section, and visible equipment.
 import { isParallel } from '../../core/camera.js';
 import { numberText } from '../../core/format.js';
 import { toParallel, toPerspective } from '../../core/camera_moves.js';
@@ -42,12 +42,12 @@ export class Views {
         session.on('welcome', () => this.update());
     }
 
-    // Goes to a view with a name.
+    // Opens a saved view.
     openNamed(id, fly) {
         this.modules.use('namedViews', (named) => named.open(id, fly), 'open');
     }
 
-    // Likewise to one by its text.
+    // Opens a view given as text.
     lookAt(text) {
         this.modules.use('namedViews', (named) => named.look(text, false), 'open');
     }
@@ -83,7 +83,7 @@ export class Views {
         return [min[index], max[index]];
     }
 
-    // What a box is put around: the chosen equipment, else the plant.
+    // Bounds for a new box: the selected equipment, else the plant.
     get boxed() {
         const { model, params } = this.session;
         return (model.asset(params.selected) ?? model.plant).bounds;
@@ -95,7 +95,8 @@ export class Views {
             return;
         }
         const [min, max] = this.range(axis);
-        this.session.setParams({ clip: cut(axis, (min + max) / 2, axis === 'z') }); // from above one looks into it
+        // a horizontal section keeps the lower part, to look in from above
+        this.session.setParams({ clip: cut(axis, (min + max) / 2, axis === 'z') });
     }
 
     turn() {
@@ -104,7 +105,7 @@ export class Views {
             this.session.setParams({ clip: cut(now.axis, now.at, !now.turned) });
     }
 
-    // Once per animation frame: a slider speaks oftener.
+    // At most one update per animation frame: sliders fire more often.
     move() {
         if (this.moving)
             return;

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The page on a control room's wall: larger, with nothing to press, and the screen stays on.
+// The page on a control room's wall: enlarged, without controls, and the screen stays on.
 import { learnWords, say } from '../../core/words.js';
 import { numberText } from '../../core/format.js';
 import { legendsLie, readWall, SPREAD_MS, wallFit } from '../../core/wall.js';
 import { keepScreenOn } from '../common/clock.js';
 import { byId, make, setVariable, styled } from '../common/dom.js';
 
-const FAR_MS = 60000; // for who hangs it there
-const LEAST_PICTURE = 0.3; // of the window's height: rather than less, all is smaller
-const TIGHT = 620;    // units: narrower, there is no room for the day beside the hour
+const FAR_MS = 60000; // how long the notice on readable distance is shown, for whoever installs the wall
+const LEAST_PICTURE = 0.3; // minimum picture height, as a fraction of the window's; below this, the whole page shrinks
+const TIGHT = 620;    // width in units below which the date does not fit beside the time
 
-// page.unit from now on: how large a unit of the page is; page.onUnit() where that changes. page.lying: whether legends lie, as a media
-// query says it. Legends have a place of their own, and so has what says that values are simulated: neither lies over a reading.
+// Sets page.unit (size of a unit on the page) and calls page.onUnit() when it changes. page.lying: whether legends lie flat, with a media
+// query's interface. Legends and the note on simulated values get their own space, so that they cover no reading.
 export async function hangOnWall(search, page) {
     const pane = new URLSearchParams(search).get('pane'), wall = readWall(search);
     const hear = [], legends = make('div', { class: 'legends' }), { classList } = byId('viewport');
@@ -27,7 +27,7 @@ export async function hangOnWall(search, page) {
         if (turned)
             hear.forEach((f) => f());
     };
-    // Returns from how far it is read.
+    // Fits the page to the window. Returns the distance from which the text is readable.
     const fit = () => {
         const { innerWidth: width, innerHeight: height } = window, { scale, metres } = wallFit(wall, window.screen, { width, height });
         hang(scale);
@@ -48,7 +48,7 @@ export async function hangOnWall(search, page) {
         const [name, display] = page.hangs?.split('/') ?? [], { session } = page;
         if (name)
             session.connection.spreadMs = SPREAD_MS;
-        if (name) // the server is to know which display shows this
+        if (name) // tells the server which display shows this
             session.greeted(() => session.model.plant.only || session.post({ type: 'display', wall: name, display: Number(display) }));
         const metres = fit();
         if (metres < wall.metres && await learnWords().then(() => true, () => false))
