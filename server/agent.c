@@ -25,7 +25,7 @@ struct agent {
 };
 
 enum { PAUSE_MS = 100 };
-static const int64_t TOLD_NS = 5 * NS_PER_S;
+static const int64_t STATE_TIMEOUT_NS = 5 * NS_PER_S;
 
 /* Without readings the line says weight 1 of 100: other nodes are better, but if all have lost the core, users are still served and see
    that. */
@@ -47,7 +47,7 @@ static void answer(struct agent *agent)
     }
     pthread_mutex_lock(&agent->thread.lock);
     struct agent_state state = agent->state;
-    if (clock_mono_ns() - agent->told_ns > TOLD_NS) /* the event loop hangs */
+    if (clock_mono_ns() - agent->told_ns > STATE_TIMEOUT_NS) /* the event loop hangs */
         state.has_core = false;
     pthread_mutex_unlock(&agent->thread.lock);
     int count = print_line(&state, line, sizeof(line));

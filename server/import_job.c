@@ -16,7 +16,7 @@
 #include "plant/plant_folder.h"
 #include "sibling.h"
 
-enum { FILES = 3, MOST_ARGUMENTS = 300, OWN_MB = 512 /* memory in MB of plantcast-import itself, without its readers */ };
+enum { FILES = 3, MAX_ARGUMENTS = 300, OWN_MB = 512 /* memory in MB of plantcast-import itself, without its readers */ };
 static const size_t max_bytes = (size_t)256 << 20;
 
 struct texts {
@@ -33,8 +33,8 @@ struct import_job {
 };
 
 struct arguments {
-    const char *at[MOST_ARGUMENTS + 1]; /* ends with NULL */
-    char *own[MOST_ARGUMENTS];          /* texts to be freed */
+    const char *at[MAX_ARGUMENTS + 1]; /* ends with NULL */
+    char *own[MAX_ARGUMENTS];          /* texts to be freed */
     size_t count, owned;
 };
 
@@ -94,7 +94,7 @@ void import_job_end(struct import_job **pointer)
 
 static void add(struct arguments *list, const char *argument)
 {
-    if (list->count < MOST_ARGUMENTS)
+    if (list->count < MAX_ARGUMENTS)
         list->at[list->count++] = argument;
 }
 
@@ -102,7 +102,7 @@ static void add(struct arguments *list, const char *argument)
 static void add_export(struct arguments *list, const struct import_job *job, const char *name)
 {
     char real[PATH_MAX], *path = mem_printf("%s/%s", plant_import_exports(job->params.import), name);
-    if (list->owned < MOST_ARGUMENTS) {
+    if (list->owned < MAX_ARGUMENTS) {
         list->own[list->owned] = realpath(path, real) ? mem_strdup(real) : mem_strdup(path);
         add(list, list->own[list->owned++]);
     }

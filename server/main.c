@@ -20,7 +20,7 @@
 #endif
 
 enum { GOOD = 0, FAILED = 1, USAGE = 2 };
-enum { LEAST_MEMORY_MB = 128, MOST_MEMORY_MB = 1 << 20 };
+enum { MIN_MEMORY_MB = 128, MAX_MEMORY_MB = 1 << 20 };
 
 static void print_usage(FILE *out)
 {
@@ -392,7 +392,7 @@ static int take_option(int option, struct server_params *params, int (**task)(co
     case OPTION_LEVEL: return parse_level(optarg, &params->log_level) ? -1 : usage_error("--log-level: unknown", optarg);
     case OPTION_FORMAT: return parse_format(optarg, &params->log_format) ? -1 : usage_error("--log-format: unknown", optarg);
     case OPTION_MEMORY:
-        if (!parse_int(optarg, LEAST_MEMORY_MB, MOST_MEMORY_MB, &megabytes))
+        if (!parse_int(optarg, MIN_MEMORY_MB, MAX_MEMORY_MB, &megabytes))
             return usage_error("--memory: not a number of megabytes from 128 on:", optarg);
         params->memory_bytes = (size_t)megabytes << 20;
         return -1;

@@ -19,7 +19,7 @@
 #include "plant/plant_folder.h"
 #include "sibling.h"
 
-enum { FIRST = 16 }; /* maximum number of views that are drawn with the new plant before the switch */
+enum { MAX_FIRST_VIEWS = 16 }; /* maximum number of views that are drawn with the new plant before the switch */
 enum { WAIT_MS = 3000 }; /* maximum wait in milliseconds for another program that changes the plant's folder */
 
 struct reload {
@@ -146,7 +146,7 @@ static void refuse(struct reload *reload, const struct diag *diag, const char *w
 struct swap {
     struct net *net;
     struct plant_runtime *after;
-    struct view first[FIRST];
+    struct view first[MAX_FIRST_VIEWS];
     size_t first_count;
 };
 
@@ -155,7 +155,7 @@ static void look_at_views(void *arg)
 {
     struct swap *swap = arg;
     const struct net_plant plant = plant_runtime_net_plant(swap->after);
-    swap->first_count = net_views(swap->net, &plant, swap->first, FIRST);
+    swap->first_count = net_views(swap->net, &plant, swap->first, MAX_FIRST_VIEWS);
 }
 
 /* Starts the new plant's render service while the old one still draws, so that the new one is quick from its first frame. */

@@ -22,7 +22,7 @@
 #include "base/system/memory.h"
 #include "base/text/text.h"
 
-enum { STDOUT, STDERR, PIPES, LOOK_MS = 50, MAX_STDERR_BYTES = 64 * 1024, MAX_TASKS = 512 };
+enum { STDOUT, STDERR, PIPES, POLL_MS = 50, MAX_STDERR_BYTES = 64 * 1024, MAX_TASKS = 512 };
 static const int64_t KILL_AFTER_NS = 30 * NS_PER_S;
 
 struct sibling {
@@ -130,7 +130,7 @@ static int attend(struct sibling *sibling)
     for (bool ended = false; !ended;) {
         struct pollfd polled[PIPES] = { { sibling->ends[STDOUT][0], POLLIN, 0 }, { sibling->ends[STDERR][0], POLLIN, 0 } };
         ended = waitpid(sibling->child, &status, WNOHANG) != 0; /* output written before the end is still read below */
-        int ready = poll(polled, PIPES, ended ? 0 : LOOK_MS);
+        int ready = poll(polled, PIPES, ended ? 0 : POLL_MS);
         for (int i = 0; i < PIPES && ready > 0; i++)
             if (polled[i].revents)
                 read_end(sibling, i);

@@ -15,7 +15,7 @@
 #include "version.h"
 
 /* interval between checks of the render thread, and minimum time between two watchdog messages */
-static const int64_t LOOK_NS = 2 * NS_PER_S;
+static const int64_t CHECK_INTERVAL_NS = 2 * NS_PER_S;
 enum { START_LIMIT_S = 600 }; /* maximum duration of one step of the start */
 
 struct supervision {
@@ -108,10 +108,10 @@ static void look(struct supervision *supervision, struct render_service *render_
 
 void supervision_tick(struct supervision *supervision, const struct net_status *status)
 {
-    int64_t now_ns = clock_mono_ns(), every_ns = supervision->watchdog_ns ? supervision->watchdog_ns / 4 : LOOK_NS;
+    int64_t now_ns = clock_mono_ns(), every_ns = supervision->watchdog_ns ? supervision->watchdog_ns / 4 : CHECK_INTERVAL_NS;
     if (!supervision->ready && render_service_ready(status->render_service))
         say_ready(supervision);
-    if (!supervision->ready || now_ns - supervision->looked_ns < (every_ns < LOOK_NS ? every_ns : LOOK_NS))
+    if (!supervision->ready || now_ns - supervision->looked_ns < (every_ns < CHECK_INTERVAL_NS ? every_ns : CHECK_INTERVAL_NS))
         return;
     supervision->looked_ns = now_ns;
     say_status(supervision, status->sessions, status->lacks_standby);

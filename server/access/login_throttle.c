@@ -7,8 +7,8 @@
 #include "base/clock.h"
 #include "base/mem.h"
 
-static const int64_t WINDOW_NS = 60 * NS_PER_S, WAIT_NS = LOGIN_WAIT_S * NS_PER_S, NEWS_NS = 600 * NS_PER_S;
-enum { KNOWN = 8 };
+static const int64_t WINDOW_NS = 60 * NS_PER_S, WAIT_NS = LOGIN_WAIT_S * NS_PER_S, LOG_INTERVAL_NS = 600 * NS_PER_S;
+enum { MAX_KNOWN_TOKENS = 8 };
 
 struct known_token { /* a token accepted from that address before */
     uint8_t hash[TOKEN_HASH_BYTES];
@@ -21,7 +21,7 @@ struct throttle_entry {
     int64_t failed_ns[LOGIN_FAILURES]; /* ring buffer of the times of the last failures */
     int64_t failures;                  /* number of all failures; also the position in the ring */
     int64_t slowed_until_ns, next_try_ns;
-    struct known_token known[KNOWN]; /* ring buffer of the last accepted tokens */
+    struct known_token known[MAX_KNOWN_TOKENS]; /* ring buffer of the last accepted tokens */
     int known_count;
 };
 
@@ -74,7 +74,7 @@ static struct throttle_entry *find_or_make(struct login_throttle *throttle, cons
 
 static struct known_token *find_known(struct throttle_entry *entry, const uint8_t *hash)
 {
-    int count = entry->known_count < KNOWN ? entry->known_count : KNOWN;
+    int count = entry->known_count < MAX_KNOWN_TOKENS ? entry->known_count : MAX_KNOWN_TOKENS;
     for (int i = 0; i < count; i++)
         if (!memcmp(entry->known[i].hash, hash, TOKEN_HASH_BYTES))
             return &entry->known[i];
@@ -84,10 +84,10 @@ static struct known_token *find_known(struct throttle_entry *entry, const uint8_
 static enum login let_in(struct throttle_entry *entry, const uint8_t *hash, int64_t now_ns)
 {
     struct known_token *known = find_known(entry, hash);
-    if (known && now_ns - known->said_ns < NEWS_NS)
+    if (known && now_ns - known->said_ns < LOG_INTERVAL_NS)
         return LOGIN_GOOD;
     if (!known) {
-        known = &entry->known[entry->known_count++ % KNOWN];
+        known = &entry->known[entry->known_count++ % MAX_KNOWN_TOKENS];
         memcpy(known->hash, hash, TOKEN_HASH_BYTES);
     }
     known->said_ns = now_ns;

@@ -12,7 +12,7 @@
 #include "base/mem.h"
 #include "base/thread.h"
 
-enum { ROWS = 2048 /* journal rows remembered for a standby */ };
+enum { MAX_ROWS = 2048 /* journal rows remembered for a standby */ };
 enum { QUEUE_MAX = 1000000 /* maximum number of samples within a tenth of a second */, RATE_SLOTS = 60 };
 static const int64_t TICK_NS = NS_PER_S / 10, RATE_NS = 600 * NS_PER_S;
 
@@ -71,7 +71,7 @@ static void on_change(void *arg, const struct alarm_change *change)
     if (service->journal)
         journal_add(service->journal, change, change->alarm->name);
     if (service->rows)
-        service->rows[++service->row_count % ROWS] = journal_entry_of(change, change->alarm->name);
+        service->rows[++service->row_count % MAX_ROWS] = journal_entry_of(change, change->alarm->name);
 }
 
 static void on_tag(void *arg, int tag, enum alarm_kind kind, enum alarm_status status)
@@ -231,7 +231,7 @@ static bool start_journal(struct alarm_service *service)
     const struct instant now = { clock_mono_ns(), clock_utc_ns() };
     if (!params->folder)
         return true;
-    service->rows = mem_array(ROWS, sizeof(*service->rows));
+    service->rows = mem_array(MAX_ROWS, sizeof(*service->rows));
     return (service->journal = journal_start(&journal, service->alarms, now));
 }
 
@@ -396,10 +396,10 @@ uint64_t alarm_service_rows(struct alarm_service *service, uint64_t since, int64
                             void (*each)(void *arg, const struct journal_entry *row), void *arg)
 {
     pthread_mutex_lock(&service->thread.lock);
-    uint64_t last = service->row_count, first = last > ROWS && since < last - ROWS ? last - ROWS : since;
+    uint64_t last = service->row_count, first = last > MAX_ROWS && since < last - MAX_ROWS ? last - MAX_ROWS : since;
     for (uint64_t i = first + 1; i <= last; i++)
-        if (service->rows[i % ROWS].utc_ns / 1000 > after_utc_ns / 1000) /* the journal stores microseconds */
-            each(arg, &service->rows[i % ROWS]);
+        if (service->rows[i % MAX_ROWS].utc_ns / 1000 > after_utc_ns / 1000) /* the journal stores microseconds */
+            each(arg, &service->rows[i % MAX_ROWS]);
     pthread_mutex_unlock(&service->thread.lock);
     return last;
 }
@@ -410,7 +410,7 @@ void alarm_service_mirror_row(struct alarm_service *service, const struct journa
         return;
     journal_add_entry(service->journal, row);
     pthread_mutex_lock(&service->thread.lock);
-    service->rows[++service->row_count % ROWS] = *row; /* the previous leader may lack this row in its journal when it returns */
+    service->rows[++service->row_count % MAX_ROWS] = *row; /* the previous leader may lack this row in its journal when it returns */
     pthread_mutex_unlock(&service->thread.lock);
 }
 

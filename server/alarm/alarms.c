@@ -501,7 +501,8 @@ static void look_at_devices(struct alarms *alarms, struct instant now)
     }
 }
 
-/* Returns whether the tag's alarm is its own again: its device sends readings, but this tag has none for as long as would make it stale. */
+/* Returns whether the alarm is the tag's own again, not the device's: the device sends readings, but this tag has had none for as long
+   as would make it stale. */
 static bool calls_by_itself(const struct alarms *alarms, const struct alarm *alarm, int64_t mono_ns)
 {
     const struct alarm_device *device = &alarms->devices->list[alarms->devices->of_tag[alarm->tag]];

@@ -13,7 +13,7 @@
 #include "base/mem.h"
 #include "base/thread.h"
 
-enum { MOST_WAITING = 10000, FILE_BYTES = 64 << 20 };
+enum { MAX_QUEUED = 10000, FILE_BYTES = 64 << 20 };
 static const int64_t RETRY_NS = NS_PER_S;
 
 struct queued_entry {
@@ -66,7 +66,7 @@ void audit_say(struct audit *audit, const struct audit_entry *entry)
     if (!audit)
         return;
     pthread_mutex_lock(&audit->thread.lock);
-    if (audit->count >= MOST_WAITING) {
+    if (audit->count >= MAX_QUEUED) {
         counter_inc(audit->lost, 1);
         audit->lost_count++;
         settling_drop(&audit->settling);

@@ -107,8 +107,8 @@ void audit_file_close(struct audit_file *file)
     *file = (struct audit_file){ .fd = -1 };
 }
 
-/* Checks whether the file at the path is still ours. Another program may rename it, which is fine; if it changed the content, *finding
-   says so. */
+/* Checks whether PATH is still the file that this process has open. Another program may rename it, which is fine; if it changed the
+   content, *finding says so. */
 static int look_at_path(struct audit_file *file, char **finding)
 {
     struct stat ours, there;

@@ -19,7 +19,7 @@ struct audit_file {
 /* Opens the file, or creates it. *finding: NULL, or a description of what is wrong with the existing trail, which is continued anyway;
    the caller frees it with mem_free. */
 int audit_file_open(struct audit_file *file, const char *path, size_t most_bytes, char **finding);
-void audit_file_close(struct audit_file *file); /* also allowed for a zeroed struct that was never opened */
+void audit_file_close(struct audit_file *file); /* the struct may also be a zeroed one that was never opened */
 /* Appends an entry. Either all of it is on disk, or none and the chain is unchanged. line: receives the entry's text, appended.
    *finding: as in audit_file_open(), if another program changed the file meanwhile. */
 int audit_file_append(struct audit_file *file, const struct audit_entry *entry, int64_t utc_us, struct text *line, char **finding);

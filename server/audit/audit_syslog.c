@@ -12,7 +12,7 @@
 #include "base/mem.h"
 #include "base/text/timestamp.h"
 
-enum { MOST_WAITING = 10000, TIMEOUT_S = 10, AUDIT_FACILITY = 13, NOTICE = 5, WARNING = 4 };
+enum { MAX_QUEUED = 10000, TIMEOUT_S = 10, AUDIT_FACILITY = 13, NOTICE = 5, WARNING = 4 };
 static const int64_t RETRY_NS = 2 * NS_PER_S, LAST_NS = 3 * NS_PER_S;
 
 struct framed {
@@ -180,7 +180,7 @@ static void *run(void *arg)
 void audit_syslog_send(struct audit_syslog *syslog, const char *event, bool good, int64_t utc_us, const char *line, size_t count)
 {
     pthread_mutex_lock(&syslog->lock);
-    if (syslog->waiting >= MOST_WAITING) {
+    if (syslog->waiting >= MAX_QUEUED) {
         counter_inc(syslog->lost, 1);
     } else {
         struct framed *framed = mem_new(sizeof(*framed));

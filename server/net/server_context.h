@@ -43,7 +43,7 @@ struct tile_wall {
     char wall[NAMED_VIEW_ID_BYTES]; /* id of the wall; "": entry is free */
     uint64_t leader;                /* id of the leading session; 0: none */
     uint64_t asked, presented;      /* numbers of the wall's last requested and last presented picture */
-    struct quality_ladder made;     /* its picture size follows how long the server takes to make pictures */
+    struct quality_ladder made;     /* ladder of the wall; its picture size follows how long the server takes to make pictures */
 };
 
 enum { UPGRADE_REFUSALS = 16 };

@@ -16,7 +16,7 @@
 
 enum { STREAM_CLOSE_STALLED = 4000, LAST_WORDS_S = 2, BACK_MAX_S = 60, SILENT_S = 6 };
 static const int64_t SILENT_NS = SILENT_S * NS_PER_S;
-static const int64_t HEARD_OF_NS = 2 * NS_PER_S; /* time for load balancers to notice that sessions are sent to other daemons */
+static const int64_t DRAIN_DELAY_NS = 2 * NS_PER_S; /* time for load balancers to notice that sessions are sent to other daemons */
 static const int64_t DRAIN_NS = 10 * NS_PER_S;
 static const int64_t MOVING_NS = 200 * NS_PER_MS; /* a camera counts as moving for this long after an input */
 
@@ -248,7 +248,7 @@ void streams_on_readings(struct server_context *server, bool data_changed, bool 
 static bool is_drained(const struct server_context *server, const struct stream *stream, int64_t now_ns)
 {
     uint64_t spread = (stream->session->id + 1) * 0x9E3779B97F4A7C15u >> 32; /* multiplying by the golden ratio spreads consecutive ids */
-    return server->drain_ns && now_ns - server->drain_ns > HEARD_OF_NS + (int64_t)(spread % 1000) * (DRAIN_NS / 1000);
+    return server->drain_ns && now_ns - server->drain_ns > DRAIN_DELAY_NS + (int64_t)(spread % 1000) * (DRAIN_NS / 1000);
 }
 
 void streams_on_tick(struct server_context *server)

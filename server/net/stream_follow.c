@@ -4,7 +4,8 @@
 #include "base/mem.h"
 #include "net/stream.h"
 
-static const int64_t TELL_NS = 500 * NS_PER_MS; /* minimum time between two lists of followers, because hundreds may connect at once */
+static const int64_t MIN_LIST_INTERVAL_NS =
+    500 * NS_PER_MS; /* minimum time between two lists of followers, because hundreds may connect at once */
 
 /* Makes the followers of the resumed session follow the session that resumed it. */
 static void take_back(struct server_context *server, struct session *session)
@@ -94,7 +95,7 @@ void follow_tell(struct server_context *server, int64_t now_ns)
         struct session *session = stream->session;
         uint64_t *followers = NULL;
         size_t count = 0, capacity = 0;
-        if (!session->following.followers_changed || now_ns - session->following.followers_ns < TELL_NS)
+        if (!session->following.followers_changed || now_ns - session->following.followers_ns < MIN_LIST_INTERVAL_NS)
             continue;
         for (const struct stream *other = server->streams; other; other = other->next) {
             if (other->session->following.leader != session)

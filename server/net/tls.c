@@ -14,7 +14,7 @@
 #include "base/mem.h"
 #include "access/file_watch.h"
 
-enum { HOUR_S = 3600, DAY_S = 24 * HOUR_S, SOON_S = 14 * DAY_S };
+enum { HOUR_S = 3600, DAY_S = 24 * HOUR_S, WARN_BEFORE_S = 14 * DAY_S };
 
 struct tls {
     struct log *log;
@@ -66,7 +66,7 @@ static void warn_of_end(struct tls *tls, time_t now_s)
     tls->warned_s = now_s;
     if (left_s <= 0)
         log_event(tls->log, LOG_ERROR, EVENT_CERTIFICATE_EXPIRES, "%s: this certificate has expired", tls->cert_path);
-    else if (left_s < SOON_S)
+    else if (left_s < WARN_BEFORE_S)
         log_event(tls->log, LOG_WARN, EVENT_CERTIFICATE_EXPIRES, "%s: this certificate expires within 14 days, in %.1f %s",
                   tls->cert_path, (double)left_s / (left_s < DAY_S ? HOUR_S : DAY_S), left_s < DAY_S ? "hours" : "days");
 }

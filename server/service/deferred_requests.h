@@ -5,8 +5,9 @@
 #include "service/request_group.h"
 
 enum { DEFERRED_MOST = 16 };
-struct deferred_requests {                      /* zero-initialise; free with deferred_requests_finish() */
-    struct request_group groups[DEFERRED_MOST]; /* oldest first; entries from `count` on are empty and keep their memory for reuse */
+struct deferred_requests { /* zero-initialise; free with deferred_requests_finish() */
+    /* deferred groups, oldest first; entries from `count` on are empty and keep their memory for reuse */
+    struct request_group groups[DEFERRED_MOST];
     size_t count;
     bool due; /* the next turn belongs to a deferred group */
 };

@@ -45,8 +45,8 @@ static bool remember(const struct request_ticket *ticket, void *arg)
     return true;
 }
 
-/* Decides under the lock that render_service_forget() takes that clients who have gone get no packets. Clients that share a frame share
-   its cost. */
+/* Submits a frame for encoding. It runs under the lock that render_service_forget() takes, so clients that were forgotten get no
+   packets. Clients that share a frame share its cost. */
 void frame_sharing_submit(struct render_service *service, struct frame *frame, struct request_group *group, int64_t cost_ns)
 {
     struct content_of now = { .service = service, .content = frame->content, .cost_ns = cost_ns / (int64_t)group->count };

@@ -13,8 +13,9 @@
 #include "corelink/core_history.h"
 #include "history/history.h"
 
-static const int64_t SPAN_NS = 60 * NS_PER_S; /* the span of recorded history is read again this often: old files are removed rarely */
-static const int64_t LOOK_NS = 2 * NS_PER_S;  /* interval between checks while nothing is recorded */
+static const int64_t SPAN_INTERVAL_NS =
+    60 * NS_PER_S; /* the span of recorded history is read again this often: old files are removed rarely */
+static const int64_t RETRY_DELAY_NS = 2 * NS_PER_S; /* interval between checks while nothing is recorded */
 
 struct wanted_instant {
     uint64_t client;
@@ -125,7 +126,7 @@ static bool read_instant(struct history_loader *loader, int64_t at_us)
 static void look_at_span(struct history_loader *loader)
 {
     int64_t first_us = 0, last_us, now_ns = clock_mono_ns();
-    if (loader->spanned_ns && now_ns - loader->spanned_ns < SPAN_NS)
+    if (loader->spanned_ns && now_ns - loader->spanned_ns < SPAN_INTERVAL_NS)
         return;
     loader->spanned_ns = now_ns;
     bool any = loader->core ? core_history_instant(loader->core, 0, NULL, &first_us) && first_us > 0
@@ -142,7 +143,7 @@ static void look_at_span(struct history_loader *loader)
 /* Waits for a request. Returns false if there is none and it is time to look for the beginning of recorded history again, or to stop. */
 static bool next_wanted(struct history_loader *loader, struct wanted_instant *out, bool *stopping)
 {
-    int64_t until_ns = clock_mono_ns() + LOOK_NS;
+    int64_t until_ns = clock_mono_ns() + RETRY_DELAY_NS;
     pthread_mutex_lock(&loader->thread.lock);
     while (!loader->thread.stopping && loader->count == 0 &&
            clock_cond_wait(&loader->thread.wake, &loader->thread.lock, loader->first_us ? INT64_MAX : until_ns))

@@ -4,8 +4,9 @@
 #include "session/reply/reply.h"
 #include "session/session_impl.h"
 
-static const int64_t STILL_NS = 200 * NS_PER_MS;         /* a refined frame is due after this long without movement */
-static const int64_t LOADED_STILL_NS = 1000 * NS_PER_MS; /* the same while the render thread is overloaded */
+static const int64_t STILL_NS = 200 * NS_PER_MS; /* a refined frame is due after this long without movement */
+/* a refined frame is due after this long without movement while the render thread is overloaded */
+static const int64_t LOADED_STILL_NS = 1000 * NS_PER_MS;
 /* while overloaded: a refined frame is due after this long without one, even if readings keep changing */
 static const int64_t LOADED_SHARE_NS = 3 * NS_PER_S;
 static const int64_t MAX_POSTPONE_NS = 10 * NS_PER_S; /* a refined frame is postponed for at most this long while other cameras move */

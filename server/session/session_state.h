@@ -168,7 +168,7 @@ struct session_pick { /* a query for what is at a pixel */
 enum { TILE_HELD = 8 };
 struct session_tile {
     struct wall_place place;   /* display of the wall; display 0: the session is no tile */
-    struct tile_layout layout; /* computed from the size of this display; the leader's layout is used */
+    struct tile_layout layout; /* layout computed from the size of this display; the leader's layout is used */
     struct tile_held {
         uint64_t picture; /* number of the wall's picture */
         uint32_t seq;     /* sequence number of this session's frame that shows the picture */

@@ -58,7 +58,7 @@ struct openid_answer {
     enum openid_result result;
     char cookie[SIGN_IN_SECRET_CHARS + 1]; /* cookie of the new session */
     char path[SIGN_IN_PATH_BYTES];         /* path of the page to return to */
-    char *why;                             /* reason of the refusal; NULL: signed in */
+    char *why;                             /* reason of the refusal; NULL: the user is signed in */
     struct openid_answer *next;
 };
 /* Returns the list of all answers since the last call; the caller frees each with openid_answer_free(). */

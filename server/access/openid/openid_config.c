@@ -12,7 +12,7 @@
 #include "plant/parse/yaml_reader.h"
 
 static const double CHECK_S = 30, HOURS = 12;
-enum { MOST_GROUPS = 200 };
+enum { MAX_GROUPS = 200 };
 
 /* Returns whether the URL is unencrypted and not local, so that secrets sent there could be read on the way. */
 static bool is_unsafe(const char *url)
@@ -42,8 +42,8 @@ static void read_groups(struct yaml_reader *reader, yaml_node_t *node, void *rec
 {
     struct openid_config *config = record;
     int count = yaml_list_count(reader, node, "roles");
-    if (count < 1 || count > MOST_GROUPS) {
-        yaml_error(reader, yaml_place(node), "roles: expected 1 to %d groups", MOST_GROUPS);
+    if (count < 1 || count > MAX_GROUPS) {
+        yaml_error(reader, yaml_place(node), "roles: expected 1 to %d groups", MAX_GROUPS);
         return;
     }
     config->groups = mem_array((size_t)count, sizeof(*config->groups));

@@ -9,7 +9,7 @@
 #include "base/mem.h"
 #include "base/system/http_request.h"
 
-enum { MOST_BYTES = 512 * 1024, CONNECT_S = 4, TIMEOUT_S = 7 };
+enum { MAX_BYTES = 512 * 1024, CONNECT_S = 4, TIMEOUT_S = 7 };
 
 static void wipe(struct text *text)
 {
@@ -21,7 +21,7 @@ static void wipe(struct text *text)
 static bool begin(struct http_request *request, const struct openid_config *config, const char *url, const char *bearer,
                   const _Atomic bool *stop)
 {
-    *request = (struct http_request){ .most_bytes = MOST_BYTES, .stop = stop };
+    *request = (struct http_request){ .most_bytes = MAX_BYTES, .stop = stop };
     if (!http_request_make(request, "plantcastd", config->ca_file))
         return false;
     curl_easy_setopt(request->handle, CURLOPT_URL, url);

@@ -8,9 +8,9 @@
 #include "base/clock.h"
 #include "base/mem.h"
 
-static const int64_t OLD_NS = 3600 * NS_PER_S, RETRY_NS = 5 * NS_PER_S;
+static const int64_t MAX_AGE_NS = 3600 * NS_PER_S, RETRY_NS = 5 * NS_PER_S;
 /* minimum time between two requests for keys, whatever keys tokens name: outsiders can send any token */
-static const int64_t KEYS_NS = 10 * NS_PER_S;
+static const int64_t KEYS_INTERVAL_NS = 10 * NS_PER_S;
 
 void openid_say(struct openid *openid, const char *why)
 {
@@ -88,7 +88,7 @@ static bool ask_keys(struct openid *openid)
 
 static bool is_due(int64_t asked_ns, bool known)
 {
-    return asked_ns == 0 || clock_mono_ns() - asked_ns > (known ? OLD_NS : RETRY_NS);
+    return asked_ns == 0 || clock_mono_ns() - asked_ns > (known ? MAX_AGE_NS : RETRY_NS);
 }
 
 bool openid_knows(struct openid *openid)
@@ -124,7 +124,7 @@ static bool renew_keys(struct openid *openid, const json_t *keys)
 {
     pthread_mutex_lock(&openid->asking);
     bool renewed = openid->jwks != keys; /* another thread has fetched new keys already */
-    if (!renewed && clock_mono_ns() - openid->jwks_ns > KEYS_NS)
+    if (!renewed && clock_mono_ns() - openid->jwks_ns > KEYS_INTERVAL_NS)
         renewed = ask_keys(openid);
     pthread_mutex_unlock(&openid->asking);
     return renewed;

@@ -9,7 +9,7 @@
 #include "message/names.h"
 
 /* interval until an unknown provider, and a known one, is checked again */
-static const int64_t AGAIN_NS = 5 * NS_PER_S, LOOK_NS = 3600 * NS_PER_S;
+static const int64_t RETRY_DELAY_NS = 5 * NS_PER_S, CHECK_INTERVAL_NS = 3600 * NS_PER_S;
 static const int at_once[OPENID_TASKS] = {
     [OPENID_TASK_CODE] = 4, [OPENID_TASK_CHECK] = 16, [OPENID_TASK_REVOKE] = 1, [OPENID_TASK_DISCOVER] = 1
 };
@@ -263,7 +263,7 @@ static void do_discover(struct task *task)
 {
     bool known = openid_discover(task->openid);
     pthread_mutex_lock(&task->openid->lock);
-    task->openid->discover_ns = clock_mono_ns() + (known ? LOOK_NS : AGAIN_NS);
+    task->openid->discover_ns = clock_mono_ns() + (known ? CHECK_INTERVAL_NS : RETRY_DELAY_NS);
     pthread_mutex_unlock(&task->openid->lock);
 }
 

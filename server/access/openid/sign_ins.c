@@ -10,7 +10,7 @@
 #include "base/clock.h"
 #include "base/mem.h"
 
-static const int64_t PATIENCE_NS = 600 * NS_PER_S; /* maximum time for a user to log in at the provider */
+static const int64_t LOG_IN_TIMEOUT_NS = 600 * NS_PER_S; /* maximum time for a user to log in at the provider */
 
 struct sign_ins {
     struct sign_in *begun;
@@ -94,7 +94,7 @@ static struct sign_in *find_place(struct sign_ins *table, const uint8_t address[
     int of_address = 0;
     for (size_t i = 0; i < table->begun_count; i++) {
         struct sign_in *one = &table->begun[i];
-        if (one->began_ns == 0 || now_ns - one->began_ns > PATIENCE_NS) {
+        if (one->began_ns == 0 || now_ns - one->began_ns > LOG_IN_TIMEOUT_NS) {
             unused = one;
             continue;
         }
@@ -139,7 +139,7 @@ bool sign_ins_take(struct sign_ins *table, const char *state, const char *bindin
             continue;
         *out = *one;
         *one = (struct sign_in){ .began_ns = 0 };
-        return now_ns - out->began_ns <= PATIENCE_NS;
+        return now_ns - out->began_ns <= LOG_IN_TIMEOUT_NS;
     }
     return false;
 }

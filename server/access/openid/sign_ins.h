@@ -15,7 +15,7 @@ struct sign_in { /* a log-in that was redirected to the provider */
 };
 
 struct person {                 /* a signed-in person; the struct owns its texts */
-    struct token_holder holder; /* its hash is that of the session cookie */
+    struct token_holder holder; /* token holder as for other users; the hash is that of the session cookie */
     char *sub, *refresh_token, *access_token;
     char *id_token; /* the newest ID token */
     int64_t access_until_s; /* expiry of the access token, seconds of UTC; 0: not known */

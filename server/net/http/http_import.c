@@ -13,7 +13,7 @@
 #include "net/connection.h"
 
 static const int64_t most_bytes = (int64_t)2 << 30, most_in_all = (int64_t)8 << 30, most_decisions = 16 << 20;
-enum { MOST_FILES = 64, MATCHES_BYTES = 32 << 20, MOST_UPLOADS = 4, SLOW_S = 20, SLOWEST_BPS = 10000 };
+enum { MAX_FILES = 64, MATCHES_BYTES = 32 << 20, MAX_UPLOADS = 4, SLOW_S = 20, SLOWEST_BPS = 10000 };
 static const char BUSY[] = "another import is under way; wait for its end, or cancel it\n";
 
 struct upload_body {
@@ -187,8 +187,8 @@ static bool has_room(const struct server_context *server, const char *folder, co
             others++;
         }
     export_list_finish(&list);
-    *text = others >= MOST_FILES ? "there are 64 files already; remove some\n" : "all files together are larger than 8 GB\n";
-    return others < MOST_FILES && all <= most_in_all;
+    *text = others >= MAX_FILES ? "there are 64 files already; remove some\n" : "all files together are larger than 8 GB\n";
+    return others < MAX_FILES && all <= most_in_all;
 }
 
 static int begin_body(struct server_context *server, struct http_exchange *request, const char *name, bool decides)
@@ -201,7 +201,7 @@ static int begin_body(struct server_context *server, struct http_exchange *reque
     int64_t bytes = strtoll(length, NULL, 10);
     if (bytes <= 0 || bytes > (decides ? most_decisions : most_bytes))
         return refuse_with(request, 413, bytes <= 0 ? "the file is empty\n" : "the file is larger than 2 GB\n");
-    if (server->uploads >= MOST_UPLOADS)
+    if (server->uploads >= MAX_UPLOADS)
         return refuse_with(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "four files are on their way already; wait until one has come\n");
     if (!decides && !has_room(server, folder, name, bytes, &why))
         return refuse_with(request, 413, why);

@@ -13,7 +13,7 @@
 #include "net/connection.h"
 
 /* QUIET_MS: a lost packet is retransmitted within 1 s, unless the retransmission is lost as well */
-enum { LOOK_US = 500000, QUIET_MS = 2000 };
+enum { CHECK_INTERVAL_US = 500000, QUIET_MS = 2000 };
 static const uint64_t NOT_WATCHED = UINT64_MAX;
 
 static bool tcp_info_of(struct lws *wsi, struct tcp_info *info)
@@ -27,7 +27,7 @@ void stuck_head_await(struct lws *wsi, bool first)
 {
     struct tcp_info info;
     connection_of(wsi)->received_before_head = !tcp_info_of(wsi, &info) ? NOT_WATCHED : first ? 0 : info.tcpi_bytes_received;
-    lws_set_timer_usecs(wsi, LOOK_US);
+    lws_set_timer_usecs(wsi, CHECK_INTERVAL_US);
 }
 
 /* Stops the watch. The timer fires once more and is not set again: libwebsockets 4.1 cannot cancel it, and -1 makes it fire at once. */
@@ -78,7 +78,7 @@ int stuck_head_look(struct server_context *server, struct lws *wsi)
         return 0;
     bool begun = tcp_info_of(wsi, &info) && info.tcpi_bytes_received > connection_of(wsi)->received_before_head;
     if (!begun || info.tcpi_last_data_recv < QUIET_MS || (ssl && !has_request_line(wsi))) {
-        lws_set_timer_usecs(wsi, LOOK_US);
+        lws_set_timer_usecs(wsi, CHECK_INTERVAL_US);
         return 0;
     }
     note(server, wsi);

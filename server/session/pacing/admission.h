@@ -9,7 +9,7 @@
 
 enum { ADMISSION_WINDOWS = 3, ADMISSION_RETRY_S = 10 };
 
-struct admission_window { /* measurements of one second of drawing */
+struct admission_window { /* figures about one second of drawing */
     int64_t drawing_ns;   /* render time of frames that a client waits for; excludes refined frames, which yield to others */
     int64_t moving_ns;    /* the part of drawing_ns spent on frames of moving cameras */
     int64_t drawn;        /* number of frames in moving_ns; a frame shared by several sessions counts once */

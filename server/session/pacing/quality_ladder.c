@@ -160,7 +160,7 @@ void quality_ladder_on_made(struct quality_ladder *ladder, int64_t made_ns, int6
 void quality_ladder_on_ack(struct quality_ladder *ladder, const struct channel *channel, int step, size_t bytes, int64_t now_ns)
 {
     double unit = (double)bytes / steps[step].bytes;
-    /* the first measured size replaces the guess */
+    /* the first measured frame size replaces the guess from the number of pixels */
     ladder->unit_bytes = ladder->known ? ladder->unit_bytes + SAMPLE_WEIGHT * (unit - ladder->unit_bytes) : unit;
     if (channel->ns_per_byte > 0) {
         follow_network(ladder, channel, now_ns);

@@ -7,7 +7,7 @@
 #include "session/reply/reply.h"
 #include "session/session_impl.h"
 
-static const int64_t LATE_NS = 3 * NS_PER_S; /* the other tiles wait this long for a slow one before it is dropped */
+static const int64_t MAX_LATE_NS = 3 * NS_PER_S; /* the other tiles wait this long for a slow one before it is dropped */
 /* how long a slow tile is dropped; doubles each time, up to the maximum */
 static const int64_t OUT_NS = 10 * NS_PER_S, MAX_OUT_NS = 320 * NS_PER_S;
 static const int64_t KEPT_UP_NS = 60 * NS_PER_S; /* a tile that keeps up for this long is dropped for only OUT_NS the next time */
@@ -87,7 +87,7 @@ bool session_tile_judge(struct session *session, int64_t now_ns, int64_t now_utc
 {
     struct session_tile *tile = &session->tile;
     const struct pacer *pacer = &session->delivery.pacer;
-    bool waits = pacer->flight_count > 0 && now_ns - pacer->flight[0].sent_ns > LATE_NS;
+    bool waits = pacer->flight_count > 0 && now_ns - pacer->flight[0].sent_ns > MAX_LATE_NS;
     if (tile->late_us == 0) {
         if (tile->out_ns && now_ns - tile->in_ns > KEPT_UP_NS)
             tile->out_ns = 0;
