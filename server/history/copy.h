@@ -8,7 +8,7 @@
 
 #define HISTORY_BACKUP_STAMP "last-backup" /* file in the history folder; its modification time is the time of the last backup */
 
-enum { COPY_HASH_BYTES = 33 }; /* 32 hexadecimal digits and a 0 */
+enum { COPY_HASH_BYTES = 33 }; /* length of a hash as text: 32 hexadecimal digits and a 0 */
 
 /* Both functions follow no symbolic link and read no file whose owner is neither the owner of its folder nor the caller, so that root can
    safely copy from a folder of the daemon's user. `to` must not exist; if root creates it, it gets the owner of its folder, and only that

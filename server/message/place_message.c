@@ -141,7 +141,7 @@ static void add_far(json_t *list, const struct plant *plant, int tag, int asset,
         json_array_append_new(list, json_pack("[s,s,f,f]", plant->tags[tag].name, plant->assets[asset].id, distance_m, limit_m));
 }
 
-/* Lists surfaces far from any sensor of the group, from the prepared layout or the trial layout. */
+/* Lists the group's sensors that are too far from their asset's surface; sensors moved on trial count at their trial position. */
 static json_t *far_list(const struct scene *scene, const struct place_set *set, int group)
 {
     const struct placed *placed = NULL;

@@ -8,7 +8,7 @@
 
 #include "base/mem.h"
 
-enum { CAMERA_NUMBERS = 11 }; /* eye, target, up, angle, and the height of a parallel projection */
+enum { CAMERA_NUMBERS = 11 }; /* numbers of a camera: eye, target, up, angle, and the height of a parallel projection */
 
 static const struct {
     const char *name, *of_query; /* name in a query; NULL: the field is dropped */

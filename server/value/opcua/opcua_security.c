@@ -304,7 +304,7 @@ static UA_StatusCode verify_uri(const UA_CertificateVerification *verification, 
     return UA_STATUSCODE_GOOD;
 }
 
-/* Adds all security policies; None comes first where channels need it. */
+/* Adds all security policies to a client. with_none: adds the policy None first. */
 static bool add_policies(UA_SecurityPolicy **out, size_t *count, UA_ByteString certificate, UA_ByteString key, bool with_none,
                          const UA_Logger *logger)
 {
