@@ -48,17 +48,17 @@ install-demo: all
 	install -d $(root)/bin $(root)/share/plantcast/demo
 	install -m 755 $(bin)/plantcast-sim $(root)/bin
 	install -m 644 $(demo_files) $(root)/share/plantcast/demo
-# Debian packages, of what is committed.
+# Debian packages of the committed files.
 deb: clients/web/vendor/uPlot.js
 	@deploy/deb $(build)/deb "$(COMMIT)"
-# One archive that installs them without a network (SIGN=KEY.pem signs it), and a container image. Both need root and Debian's mirror.
+# An archive that installs the packages without a network (SIGN=KEY.pem signs it), and a container image. Both need root and Debian's mirror.
 suite := $(shell . /etc/os-release && echo $$VERSION_CODENAME)
 debs  := $(build)/deb
 bundle:
 	@deploy/bundle $(debs) $(build)/plantcast-bundle-$(suite).tar $(suite) $(SIGN)
 image:
 	@deploy/image $(debs) $(build)/plantcast-image-$(suite).tar $(suite)
-# Of what these made, in chroots without a network.
+# Tests of these packages, the archive and the image, in chroots without a network.
 test-deploy:
 	@deploy/test/run $(debs) $(build)/plantcast-bundle-$(suite).tar $(build)/plantcast-image-$(suite).tar $(suite)
 .PHONY: install-demo deb bundle image test-deploy
