@@ -27,8 +27,8 @@ struct agent {
 enum { PAUSE_MS = 100 };
 static const int64_t STATE_TIMEOUT_NS = 5 * NS_PER_S;
 
-/* Without readings the line says weight 1 of 100: other nodes are better, but if all have lost the core, users are still served and see
-   that. */
+/* Without readings the line gives weight 1 of 100: HAProxy then prefers other nodes, but if all nodes have lost the core, users still
+   reach one and see that. */
 static int print_line(const struct agent_state *state, char *line, size_t size)
 {
     int free_percent = state->busy_percent < 99 ? 100 - state->busy_percent : 1;

@@ -27,8 +27,8 @@ void login_throttle_destroy(struct login_throttle **throttle); /* &NULL is allow
 /* Returns the verdict on a token from that address (as in struct address_usage) and counts it. hash: of a valid token; NULL: the token
    is wrong. */
 enum login login_throttle_judge(struct login_throttle *throttle, const uint8_t address[16], const uint8_t *hash, int64_t now_ns);
-/* The same for log-ins that are verified elsewhere and later. login_throttle_begin() returns LOGIN_HELD if the attempt must be refused,
-   otherwise LOGIN_NONE; login_throttle_fail() counts a failure and returns LOGIN_WRONG or LOGIN_WRONG_SLOWS. */
+/* login_throttle_begin() returns LOGIN_HELD if an attempt that is verified elsewhere and later must be refused, otherwise LOGIN_NONE.
+   login_throttle_fail() counts the failure of such an attempt and returns LOGIN_WRONG or LOGIN_WRONG_SLOWS. */
 enum login login_throttle_begin(struct login_throttle *throttle, const uint8_t address[16], int64_t now_ns);
 enum login login_throttle_fail(struct login_throttle *throttle, const uint8_t address[16], int64_t now_ns);
 /* Returns the number of failures of the address within the last minute, 10 at most. */

@@ -96,7 +96,7 @@ static void record_held(struct server_context *server, int64_t now_ns)
     server->held_ns = now_ns;
 }
 
-/* Once a second: reads the processor load and updates which displays are connected. */
+/* Reads the processor load, and updates which displays are connected, once a second. */
 static void look_around(struct net *net, int64_t now_ns)
 {
     char stat[512] = "";

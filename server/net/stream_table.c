@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* All connections to /stream, searchable by session id. */
+/* Table of all connections to /stream, searchable by session id. */
 #include <string.h>
 
 #include "base/mem.h"

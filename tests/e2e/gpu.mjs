@@ -141,7 +141,7 @@ for (const hardware of [true, false]) {
     });
 }
 
-// Other fields, colours, isolines, lights and sizes: each needs GPU memory of its own.
+// Parameters with other fields, colours, isolines, lights and sizes: each set needs GPU memory of its own.
 const WISHES = [
     { isolines: 10 }, { light: [0.3, 0.5, 0.8] }, { ghost: ['P-101A'] }, { selected: 'E-101' }, { colormap: 'turbo' },
     { clip: { planes: [[1, 0, 0, 0.1]] } }, { split: { group: 'pressure' } }, { width: 300, height: 200 },

@@ -117,7 +117,7 @@ test('ten thousand messages a second are read at the pace allowed, and all of th
     await reaches(async () => await metric('plantcast_messages_total') > before[0] + PINGS);
     const read = await metric('plantcast_messages_total') - before[0], told = await metric('plantcast_message_errors_total') - before[1];
     assert.ok(read > PINGS, `${read} messages read`); // the count also includes hello, and an acknowledgement of each frame
-    // If the daemon is too slow to read that many messages within a second, no client is too fast.
+    // If the daemon is too slow to read that many messages within a second, it cannot find that the client sends too fast.
     const reads = took < 1000 * (PINGS / MESSAGES_PER_S + 1), said = `too fast: said ${told} times in ${took.toFixed(0)} ms`;
     assert.ok(told >= full || !reads, said);
     assert.equal(client.texts.some((m) => m.code === 'too_fast'), told > 0, said);
@@ -156,7 +156,7 @@ test('all at once: nobody else is slowed, and each has its answer', { skip }, as
                 guesses.push(guess);
         }
     }, 100);
-    // Both at the same time, because other load slows both.
+    // Measures both daemons at the same time, because other load slows both.
     const before = [plant, quiet].map(cpuSeconds);
     const [beside, alone] = await Promise.all([plant, quiet].map((one) => othersRate(one.port, 4)));
     const [took, tookAlone] = [plant, quiet].map((one, i) => cpuSeconds(one) - before[i]);

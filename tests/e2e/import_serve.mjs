@@ -586,7 +586,7 @@ test('a source: stated, values seen to arrive, corrected, kept when the plant is
         await desk.waitForFunction(() => document.querySelector('#import .measures select')?.value === 'ft', null, { timeout: 30000 });
         for (const query of ['host=a%20b', 'host=--x', 'port=1', 'host=a&port=70000', 'host=a&order=XYZ', 'host=a&unit=256'])
             assert.equal((await own.post(`/source?${query}`)).status, 400, query);
-        // Without a tag list the source would be lost.
+        // An import without a tag list is refused, because the plant's source would be lost.
         assert.equal((await own.post('/remove?name=tags.csv')).status, 200);
         const sources = /^sources:\n(  .*\n)+/m.exec(own.read('plant.yaml'))[0];
         await own.post('/run?what=anew');

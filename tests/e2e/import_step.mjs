@@ -111,7 +111,7 @@ test('IGES without groups, and as Open CASCADE writes an assembly', { skip }, ()
     assert.ok(near(skid[5].size, [0.2, 0.2, 0.3]) && near(skid[5].centre, [0.3, 0.7, 0.15]), JSON.stringify(skid[5]));
 }));
 
-// Each file ends within its time limit: it is refused with one line, or read. Nothing is left behind.
+// Reading each broken file ends within its time limit: the file is refused with one line, or read. Nothing is left behind.
 test('broken files are one line each, and leave nothing behind', { skip }, () => withSamples((folder) => {
     const step = readFileSync(join(folder, 'skid_214.stp')), iges = readFileSync(join(folder, 'skid.igs'));
     const text = step.toString('latin1');

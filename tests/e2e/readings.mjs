@@ -37,7 +37,7 @@ async function sleeps(seconds) {
 test('a loop with nothing to do sleeps', options, async () => {
     await sleep(2000);
     const rate = await sleeps(3);
-    assert.ok(rate < 5, `woken ${rate} times a second`); // it would be ten times if it polled every tenth of a second
+    assert.ok(rate < 5, `woken ${rate} times a second`); // the loop would sleep ten times a second if it polled every tenth of a second
 });
 
 // The device is read every 100 ms, so the oldest reading of a frame is as old as the change that caused the frame.
@@ -50,7 +50,7 @@ test('a changed reading does not wait for a tick', options, async (t) => {
         ages.push((await client.frameWhere(`change ${i}`, made)).oldest_age_ms);
         await sleep(350 + 37 * (i % 5));
     }
-    // It would be 50 ms if the loop polled every tenth of a second.
+    // The median would be 50 ms if the loop polled every tenth of a second.
     promise(t, `from a reading to its frame, median of ${ages.join(', ')} ms`, median(ages), 35);
 });
 

@@ -135,7 +135,7 @@ async function compare(wall, columns, rows, [across, down]) {
     return undefined;
 }
 
-// Once a preview differed while other programs ran: make test-long runs the case.
+// Once a preview differed while other programs ran, so only make test-long runs this case.
 test('six tiles are the large picture, pixel by pixel, preview and refined', { ...options, skip: options.skip || long },
     () => compare('seamless', 3, 2, [0, 0]));
 test('behind bezels the picture goes on', options, async () => {

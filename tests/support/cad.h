@@ -21,7 +21,7 @@ void cad_finish(struct cad *cad);
 
 /* Adds a plate of across x up cells with a random diagonal in each cell; inner vertices are moved by up to half of `jitter` cells. */
 void cad_plate(struct cad *cad, struct cad_random *random, int across, int up, double width, double height, double jitter);
-/* The same without jitter, and with cells left out: columns first..first + wide - 1, rows below `high`. */
+/* A plate like that of cad_plate(), without jitter and with cells left out: columns first..first + wide - 1, rows below `high`. */
 void cad_slotted_plate(struct cad *cad, struct cad_random *random, int across, int up, double width, double height, int first, int wide,
                        int high);
 void cad_sphere(struct cad *cad, struct cad_random *random, int cells); /* radius 1; 6 * cells^2 + 2 vertices */

@@ -54,7 +54,7 @@ test('none over another, none over a mark, all inside; important ones are not cr
     }
 });
 
-// From a phone's picture to a wall's, from a few rings to many, with a legend in the way.
+// Random pictures from a phone's size to a wall's, with few or many rings, and with a legend in the way.
 test('every ring is in a label or a call-out, within the picture and over no legend', () => {
     for (let round = 0; round < 300; round++) {
         const [right, bottom] = [random(170, 1300), random(110, 700)], legend = { left: right - 90, right, top: 0, bottom: bottom * 0.8 };

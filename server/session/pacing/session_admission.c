@@ -63,7 +63,7 @@ static bool take_again(struct session *session, const char **why)
     return !*why;
 }
 
-/* If a newly visible session is not admitted, it is told so, and gets pictures once there is capacity. */
+/* If a session that becomes visible is not admitted, the client is told so, and gets pictures once there is capacity. */
 void session_on_visible(struct session *session, bool visible, int64_t now_ns)
 {
     struct message_error error = { 0 };

@@ -161,7 +161,8 @@ static void on_failure(struct session *session)
     session->owed.time = true;
 }
 
-/* Also shows an instant that was requested earlier on the way to another one, so that dragging a slider shows pictures all the way. */
+/* Also shows an instant that was requested earlier on the way to a later request, so that dragging the time slider shows pictures all
+   the way. */
 void session_on_historical_snapshot(struct session *session, int64_t at_us, bool good, int64_t now_ns)
 {
     struct travel *travel = &session->travel;

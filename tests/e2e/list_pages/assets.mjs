@@ -166,7 +166,7 @@ test('20,000 tags scroll smoothly', options, async (t) => {
 
 // Garbage is collected before each measurement; one second of use by default, half an hour in `make test-long`.
 const USE_S = Number(process.env.USE_S ?? sweep(10, 0.8)), EACH = sweep(4, 1); // EACH: a panel is opened or closed at every EACH-th action
-// By default a panel is used ten times, so half the growth is allowed of what twenty uses may cause.
+// Permitted growth of memory and nodes. By default a panel is used ten times, so half of the growth is allowed that twenty uses may cause.
 const MOST = sweep({ share: 0.1, megabytes: 2, nodes: 500 }, { share: 0.05, megabytes: 1, nodes: 250 });
 const isSteady = (before, after) => after.megabytes < before.megabytes * (1 + MOST.share) + MOST.megabytes &&
     after.nodes < before.nodes * (1 + 2 * MOST.share) + MOST.nodes;

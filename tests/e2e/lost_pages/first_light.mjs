@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From a PLC's register to a browser's pixels, and recovery after the daemon died.
+// A value from a PLC's register appears in a browser's pixels; and recovery after the daemon died.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import {

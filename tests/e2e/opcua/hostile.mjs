@@ -136,7 +136,7 @@ for (const [off_s, word] of [[3600, 'ahead of'], [-3600, 'behind']])
         assert.equal(plant.daemon.said.match(/its times are/g).length, 1, 'it is said once');
     });
 
-// By such a clock, certificates that were just made are not valid yet: the server's and the client's.
+// With a server clock that is off, certificates that were just made are not valid yet: the server's and the client's.
 test('a server whose clock is before its certificate is read, and said; a certificate of tomorrow is refused by name', clocks, async () => {
     const day = (days) => `${new Date(Date.now() + days * 86400e3).toISOString().replace(/[-:T]/g, '').slice(0, 14)}Z`;
     for (const [name, from, to] of [['tomorrow', 1, 2], ['today', -1 / 48, 1], ['us', -1 / 48, 1]])

@@ -12,7 +12,7 @@ import { sweep } from './sweep.mjs';
 // processor time.
 const playwright = () => createRequire(import.meta.url)('playwright-core');
 const CHROMIUM = process.env.CHROMIUM ?? '/usr/bin/chromium';
-// The same engine without windows and menus, whose processes take four times as long as an empty page. `make test-long` uses the full
+// chromium without windows and menus, whose processes take four times as long to start as an empty page. `make test-long` uses the full
 // browser.
 const SHELL = '/usr/bin/chromium-headless-shell';
 const HEADLESS = sweep(CHROMIUM, existsSync(SHELL) && !process.env.CHROMIUM ? SHELL : CHROMIUM);

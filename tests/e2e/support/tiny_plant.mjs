@@ -231,8 +231,8 @@ export class TinyPlant {
         });
     }
 
-    // Without --port it uses a port that stays reserved while the daemon is away: a port chosen by the system could be another program's
-    // then.
+    // Starts the daemon. Without --port it uses a port that stays reserved while the daemon is away: a port chosen by the system could be
+    // another program's then.
     async startDaemon(...args) {
         const at = args.includes('--port') ? [] : ['--port', String(await freePort())];
         this.daemon = new Program('plantcastd', [this.file, ...at, ...args], this.as, this.before, this.bin);
