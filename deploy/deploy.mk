@@ -51,7 +51,7 @@ install-demo: all
 # Debian packages of the committed files.
 deb: clients/web/vendor/uPlot.js
 	@deploy/deb $(build)/deb "$(COMMIT)"
-# An archive that installs the packages without a network (SIGN=KEY.pem signs it), and a container image. Both need root and Debian's mirror.
+# An archive that installs the packages without a network (SIGN=KEY.pem signs it), and a container image. Both need root and a mirror.
 suite := $(shell . /etc/os-release && echo $$VERSION_CODENAME)
 debs  := $(build)/deb
 bundle:
