@@ -243,7 +243,7 @@ test('a leader that is ended in good order gives the lease back, and the other l
 test('two of one name, and a core without a database, are refused by name', options, async () => {
     const alone = runProgram('plantcastd', [two.plant.file, '--role', 'core', '--core', 'ws://127.0.0.1:1', '--port', '0']);
     assert.equal(alone.code, 1);
-    assert.match(alone.err, /two cores need `postgres`/);
+    assert.match(alone.err, /two cores require `postgres`/);
     const core = await two.leader(), other = two.other(core);
     await other.program.stop('SIGKILL');
     const started = await two.start(other.name, core.name);
