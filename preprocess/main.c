@@ -18,8 +18,8 @@
 #include "preprocess/report/report.h"
 
 enum {
-    GRACE_S = 5,          /* seconds; service managers and container runtimes kill after 10 s or more */
-    ASSET_LIMIT_S = 3600, /* seconds; an asset that takes longer, or reading the models, counts as hung */
+    GRACE_S = 5, /* seconds to finish the current asset after a signal; service managers and container runtimes kill after 10 s or more */
+    ASSET_LIMIT_S = 3600, /* seconds after which an asset, or reading the models, counts as hung */
 };
 
 static const char usage[] =
@@ -54,7 +54,7 @@ struct prep_options {
     bool distances, json, all, debug_view, diff, help;
     const char *plant, *output, *asset, *sensor, *views, *revision; /* revision: plant to compare with */
     double tolerance_m;
-    size_t memory_bytes; /* memory of the machine that will serve the plant; 0: of this machine */
+    size_t memory_bytes; /* memory in bytes of the machine that will serve the plant; 0: of this machine */
 };
 
 static atomic_bool interrupted;
@@ -247,7 +247,7 @@ static bool confine_self(const struct plant *plant, const char *folder, char **a
                                  ".tif .tiff .exr .hdr";
     struct child_paths paths = { 0 };
     bool notifies = getenv("NOTIFY_SOCKET") != NULL;
-    mkdir(folder, 0777); /* an error shows when the first file is written */
+    mkdir(folder, 0777); /* errors are ignored here: they show when the first file is written */
     child_paths_add(&paths, "/proc/self/exe", CONFINE_EXECUTE);
     child_paths_add_modules(&paths);
     child_paths_add(&paths, folder, CONFINE_WRITE);

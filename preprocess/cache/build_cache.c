@@ -9,7 +9,7 @@
 
 static const struct {
     const char *ending;
-    const char *magic; /* identifies format and version; NULL: the kind has a file format of its own */
+    const char *magic; /* 8 bytes at the start of the file: format and version; NULL: files of this kind have a format of their own */
     bool needs_sensors;
 } kinds[BUILD_CACHE_KINDS] = {
     [BUILD_CACHE_MODELS] = { NULL, "PLCCUTS1", false },

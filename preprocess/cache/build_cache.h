@@ -12,11 +12,11 @@
 
 /* Kinds of entries. The source file named at each kind packs and unpacks its contents. */
 enum build_cache_kind {
-    BUILD_CACHE_MODELS,      /* one entry for all models, with key 0: cache/model_cache.c */
+    BUILD_CACHE_MODELS,      /* the cache of model data, one file for all models with key 0: cache/model_cache.c */
     BUILD_CACHE_GEOMETRY,    /* by geometry key: pipeline/geometry_cache.c */
-    BUILD_CACHE_SURFACE,     /* by geometry key: surface/surface_store.c; the daemon reads it too */
+    BUILD_CACHE_SURFACE,     /* the surface, by geometry key: surface/surface_store.c; the daemon reads it too */
     BUILD_CACHE_SAMPLES,     /* by geometry key: subdivision/sample_cache.c */
-    BUILD_CACHE_DISTANCES,   /* by distances key: cache/distance_cache.c, which writes parts of it in place */
+    BUILD_CACHE_DISTANCES,   /* distances, by distances key: cache/distance_cache.c, which writes parts of the file in place */
     BUILD_CACHE_SUBDIVISION, /* by distances key: subdivision/subdiv_cache.c */
     BUILD_CACHE_KINDS
 };

@@ -70,7 +70,7 @@ void distance_cache_open(struct distance_cache *cache, const char *folder, uint6
     cache->slots = mem_array(count, sizeof(*cache->slots));
     for (size_t p = 0; p < count; p++)
         cache->slots[p] = SIZE_MAX;
-    deal_slots(cache); /* finds no slots if the file could not be opened */
+    deal_slots(cache); /* finds no slots if the cache file could not be opened */
     mem_free(path);
 }
 

@@ -22,7 +22,7 @@
 
 #define KEY_DIGITS 16
 #define MANIFEST "manifest.json"
-#define LOCK "lock" /* contains the id of the process that holds the lock, or held it last */
+#define LOCK "lock" /* name of the lock file; it contains the id of the process that holds the lock, or held it last */
 #define LOCK_RETRY_DELAY_US 50000
 #define ASSET ".asset"
 #define REPORT ".report.json"
@@ -140,7 +140,7 @@ int folder_draft(struct folder_draft *draft, const char *folder, uint64_t key, s
 
 void folder_draft_send(const struct folder_draft *draft)
 {
-    /* where this is not supported, folder_put() writes everything */
+    /* on file systems without sync_file_range(), folder_put() writes everything */
     sync_file_range(draft->file.fd, 0, (off_t)draft->size, SYNC_FILE_RANGE_WRITE);
 }
 

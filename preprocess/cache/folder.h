@@ -59,9 +59,9 @@ struct folder_entry {
     const char *id;
     uint64_t key, recipe; /* recipe: plant/recipe.h */
     uint64_t geometry_key, distances_key;
-    const char *missing;     /* reason why there is no asset file; NULL: there is one */
+    const char *missing;     /* reason why the asset has no file; NULL: it has one */
     const double *placement; /* 16 numbers: transform from the asset frame to the plant frame */
-    const char *const *tags; /* tags of its sensors, in the order of the asset file */
+    const char *const *tags; /* tags of the asset's sensors, in the order of the asset file */
     size_t tag_count;
 };
 /* Writes manifest.json for these entries, unless it is unchanged. Then deletes files whose key no entry has, and counts them in *removed

@@ -61,7 +61,7 @@ static void limit_all(const struct child_params *params)
     limit(RLIMIT_CORE, 0);
     limit(RLIMIT_NOFILE, MAX_FILES);
     limit(RLIMIT_FSIZE, (rlim_t)8 << 30);
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) /* sanitizers' shadow memory would count as data */
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) /* with a sanitizer, its shadow memory would count as data */
     /* limits data instead of address space, because WebAssembly reserves far more address space than it uses */
     limit(RLIMIT_DATA, params->memory_bytes);
 #else
@@ -247,9 +247,9 @@ bool child_run(const struct child_params *params, struct text *out, char why[CHI
         snprintf(why, CHILD_WHY_BYTES, "%s", strerror(errno));
     if (child.pid > 0) {
         kill(-child.pid, SIGKILL);
-        kill(child.pid, SIGKILL); /* the process group may not exist yet */
+        kill(child.pid, SIGKILL); /* kill the child alone first, because its process group may not exist yet */
         wait4(child.pid, &status, 0, &usage);
-        kill(-child.pid, SIGKILL); /* kills processes that the child started */
+        kill(-child.pid, SIGKILL); /* then kill the processes that the child started */
     }
     if (child.fds[OUTPUT] >= 0)
         drain(child.fds[OUTPUT], out);

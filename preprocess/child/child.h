@@ -21,7 +21,7 @@ struct child_params {
     size_t memory_bytes;                        /* limit of data memory, for the child and for each process it starts */
     const char *timeout_option, *memory_option; /* settings named in messages about exceeded limits; memory_option may be NULL */
     enum confine_role role;
-    const struct confine_path *paths; /* files and folders that the child may use; its working directory is accessible only if listed */
+    const struct confine_path *paths; /* files and folders that the child may use; the working directory only if it is listed */
     size_t path_count;
     int result; /* a descriptor that stays open besides stdin (/dev/null), stdout and stderr; 0: none */
     /* receives everything the child wrote to stderr, at most 8 MB; then `why` stays empty if the child exited by itself */

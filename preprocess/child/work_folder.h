@@ -7,8 +7,8 @@
 
 struct work_folder {
     char *path;      /* absolute */
-    char *target;    /* folder that receives the files; NULL: none */
-    bool created;    /* the target did not exist before */
+    char *target;    /* folder that will receive the finished files; NULL: none */
+    bool created;    /* work_folder_begin() created the target */
     sigset_t before; /* signal mask before work_folder_begin() */
 };
 

@@ -120,7 +120,7 @@ bool convert_run(const struct plant *plant, const char *folder, FILE *progress, 
     char *path = mem_printf("%s/conversions.json", folder);
     json_t *made = json_load_file(path, 0, NULL);
     bool good = true;
-    if (!json_is_object(made)) { /* no record yet, or a damaged one: generate all models */
+    if (!json_is_object(made)) { /* there is no record of conversions, or it is damaged: generate all models */
         json_decref(made);
         made = json_object();
     }

@@ -14,8 +14,8 @@
 #include "surface/mesh/trimesh.h"
 
 #define ISOLINES 20  /* maximum number of isolines */
-#define LIFT 3e-4    /* relative to the size; offset of isolines and open edges from the surface, on both sides */
-#define MARK 0.3     /* length of the mark at a bridge, in spacings of the surface points */
+#define LIFT 3e-4    /* offset of isolines and open edges from the surface, on both sides, relative to the asset's size */
+#define MARK 0.3     /* length of the cross that marks a bridge, in spacings of the surface points */
 #define SENSOR 0.012 /* relative to the size */
 #define DARKEST 0.75 /* brightness of faces seen edge-on */
 static const double light[3] = { 0.36, -0.48, 0.8 };
@@ -35,7 +35,7 @@ struct debug_drawing {
 struct soup { /* a shape being built */
     float (*positions)[3];
     uint16_t (*colors)[4];
-    uint32_t *indices, *vertex_of; /* vertex_of: by surface point: its vertex + 1; 0: none yet */
+    uint32_t *indices, *vertex_of; /* vertex_of[surface point]: its vertex in this shape + 1; 0: none yet */
     size_t vertices, indices_used, position_room, color_room, index_room;
 };
 
@@ -248,7 +248,7 @@ static void draw_points(struct debug_drawing *drawing)
 {
     const struct surface_debug_mesh *look = &drawing->look;
     struct soup model = { 0 }, samples = { 0 };
-    char *kind = mem_array(look->point_count, 1); /* 1: used by some triangle; 2: also a vertex of the model */
+    char *kind = mem_array(look->point_count, 1); /* by surface point, 1: a triangle uses the point; 2: it is also a vertex of the model */
     for (size_t t = 0; t < look->tri_count; t++)
         for (int i = 0; i < 3; i++)
             kind[look->tris[t][i]] = 1;

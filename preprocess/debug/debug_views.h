@@ -11,9 +11,9 @@
 
 struct debug_views_params {
     const char *folder;
-    const char *asset;  /* id of an asset; NULL: all */
-    const char *sensor; /* name of a sensor: shows only its asset, with distances from it; NULL: each asset's first sensor */
-    FILE *say;          /* stream for the names of written files; NULL: silent */
+    const char *asset;  /* id of the only asset to show; NULL: all assets */
+    const char *sensor; /* name of a sensor: shows only its asset, with distances from this sensor; NULL: each asset's first sensor */
+    FILE *say;          /* receives the names of the written files; NULL: prints nothing */
 };
 
 /* Reads the plant's models, computes distances and writes a GLB for each asset that params select. Errors go to diag. Returns false if any

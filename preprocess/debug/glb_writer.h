@@ -11,8 +11,8 @@ enum glb_mode { GLB_POINTS = 0, GLB_LINES = 1, GLB_TRIANGLES = 4 };
 struct glb_shape { /* shape of one node; Y is up */
     enum glb_mode mode;
     const float (*positions)[3];
-    const uint16_t (*colors)[4]; /* linear colours, 65535 is 1; NULL: `color` applies to all vertices */
-    const uint32_t *indices;     /* NULL: the positions are used in order */
+    const uint16_t (*colors)[4]; /* linear vertex colours, where 65535 is 1; NULL: `color` applies to all vertices */
+    const uint32_t *indices;     /* vertex indices; NULL: the vertices are used in order */
     size_t vertex_count, index_count;
     uint8_t color[3]; /* sRGB */
 };

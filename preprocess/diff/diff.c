@@ -117,7 +117,8 @@ static void compare_shapes(struct asset_pair *pair)
     double in_place[16], plant_to_old[16], turned[16], middle_old[3], middle_new[3];
     bool equal = equal_shapes(&old_half->shape, &new_half->shape);
     transform_invert(old_half->to_plant, plant_to_old);
-    transform_multiply(plant_to_old, new_half->to_plant, in_place); /* compare both at their positions in the plant */
+    /* transform from the new to the old shape, with both at their positions in the plant */
+    transform_multiply(plant_to_old, new_half->to_plant, in_place);
     transform_point(old_half->to_plant, (const double[3]){ 0, 0, 0 }, middle_old);
     transform_point(new_half->to_plant, (const double[3]){ 0, 0, 0 }, middle_new);
     vec_sub(middle_new, middle_old, pair->found.move_m);

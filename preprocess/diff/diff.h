@@ -14,8 +14,8 @@ struct diff_asset {
     const char *id;
     enum diff_change change;
     char *why;        /* reason why a removed asset is missing although its id still exists; else NULL */
-    double move_m[3]; /* movement of the centre of its box, plant frame */
-    double moved_m;   /* largest movement of a corner of its box */
+    double move_m[3]; /* movement of the centre of the asset's box, metres, plant frame */
+    double moved_m;   /* largest movement of a corner of the asset's box, metres */
     double turned_deg;
     double apart_m;      /* changed assets: largest distance between the two surfaces after aligning them */
     double tolerance_m;  /* smaller changes count as none */
@@ -27,9 +27,9 @@ struct diff_sensor {         /* a tag that is a sensor in both revisions */
     double moved_m;          /* distance between the nearest surface points in the two revisions */
     double place_moved_m;    /* movement of the position stated by the tag list or the node */
     double distance_m[2];    /* distance from the sensor's position to the surface: old, new */
-    double limit_m;          /* distance_m above this limit is worth a warning */
+    double limit_m;          /* distance from the surface above which the report warns, metres */
     double tolerance_m;
-    bool far_moved; /* moved by more than the tolerance */
+    bool far_moved; /* the surface under the sensor moved by more than the tolerance */
 };
 
 struct diff_orphan {

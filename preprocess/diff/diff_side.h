@@ -9,15 +9,15 @@
 
 struct diff_side_tag {
     const char *name;
-    const char *asset; /* asset id in the tag's row, even if there is no such asset; "": none */
-    size_t column;     /* index among the sensors of its asset */
+    const char *asset; /* asset id in the tag's row of the tag list, even if there is no such asset; "": none */
+    size_t column;     /* index of the tag's sensor among the sensors of its asset */
     bool is_sensor;
 };
 
 struct diff_side_asset {
     const char *id;
     double placement[16]; /* transform from the asset frame to the plant frame */
-    uint64_t work;        /* assets with equal numbers use the same model */
+    uint64_t work;        /* id of the asset's model; assets with equal numbers use the same model */
     /* Set only for a plant file: */
     const struct plant_asset *plant;
     size_t model;
@@ -30,10 +30,10 @@ struct diff_side {
     struct diff_side_asset *assets;
     struct diff_side_tag *tags; /* sorted by name */
     size_t asset_count, tag_count;
-    struct plant *plant; /* NULL: the side is a folder */
+    struct plant *plant; /* the plant that was read; NULL: the side is a folder of prepared files */
     struct model_files models;
     struct model_file *parsed; /* the model currently in memory */
-    char *manifest;            /* text of the manifest; strings of the side point into root */
+    char *manifest;            /* text of the manifest; the strings of this struct point into `root` */
     void *root;
 };
 
@@ -45,15 +45,15 @@ void diff_side_finish(struct diff_side *side);
 /* Returns the tag with this name, or NULL. The tag belongs to the side. */
 const struct diff_side_tag *diff_side_find_tag(const struct diff_side *side, const char *name);
 
-struct diff_side_shape { /* triangles and sensor positions of an asset; relative to origin_m, asset frame */
+struct diff_side_shape { /* triangles and sensor positions of an asset, relative to origin_m in the asset frame */
     double origin_m[3];
     const float (*positions_m)[3];
     const uint32_t *indices;
     size_t vertex_count, index_count;
-    double (*places_m)[3]; /* sensor positions; NaN if the sensor's node does not exist */
-    char **whys;           /* by sensor: why its node is missing or ambiguous; else NULL */
+    double (*places_m)[3]; /* positions of the asset's sensors; NaN if a sensor's node does not exist */
+    char **whys;           /* by sensor: reason why its node is missing or ambiguous; NULL: its position is known */
     size_t sensor_count;
-    bool own; /* the arrays are allocated; false: they point into the mapped file */
+    bool own; /* the shape owns the arrays; false: they point into the mapped file */
     struct folder_file file;
 };
 /* Reads an asset's triangles and sensor positions into *shape. Returns false with the reason in why if the plant does not have them;

@@ -6,7 +6,7 @@
 #include "base/mem.h"
 #include "surface/repair/repair.h"
 
-#define SAME_M 1e-9 /* metres; vertices this close are at the same position */
+#define SAME_M 1e-9 /* metres; vertices at most this far apart count as one position */
 
 /* Each round closes one gap at a corner where several meet. */
 enum { MAX_ROUNDS = 4 };

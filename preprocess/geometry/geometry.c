@@ -14,10 +14,10 @@
 
 #define MAX_TRIANGLES 50000000ull /* per asset */
 #define MAX_SIZE_M 1e7
-#define COARSE_SIZE_M 1e4 /* metres; in larger models single-precision positions have steps of half a millimetre at the ends */
-#define SAME_PLACE_M 1e-3 /* metres; nodes of the same name this close count as one position */
+#define COARSE_SIZE_M 1e4 /* metres; single-precision positions of a larger model are only accurate to half a millimetre at its ends */
+#define SAME_PLACE_M 1e-3 /* metres; nodes of the same name at most this far apart count as one position */
 #define SHOWN_NODES 6
-#define MIN_SIZE_M 1e-6 /* metres; a smaller size means a wrong unit, and fourth powers of lengths would underflow */
+#define MIN_SIZE_M 1e-6 /* metres; a smaller model has a wrong unit, and fourth powers of its lengths would underflow */
 
 /* --- which nodes --------------------------------------------------------------------------------------------------------- */
 
@@ -134,7 +134,7 @@ static const struct node_box empty_box = { { INFINITY, INFINITY, INFINITY }, { -
 
 static void box_add_primitive(struct node_box *box, const struct gltf_primitive *primitive, const double world[16])
 {
-    for (uint32_t i = 0; i < primitive->vertex_count; i++) { /* every vertex is used by some triangle */
+    for (uint32_t i = 0; i < primitive->vertex_count; i++) { /* unused vertices do not matter: the reader has removed them */
         const float *p = primitive->positions[i];
         double q[3];
         transform_point(world, (const double[3]){ (double)p[0], (double)p[1], (double)p[2] }, q);
@@ -300,7 +300,7 @@ bool geometry_node_place(const struct gltf_model *model, const struct geometry_p
 
 /* --- putting parts together ------------------------------------------------------------------------------------------------ */
 
-struct geometry_room { /* capacities and flags while a geometry's arrays are filled */
+struct geometry_room { /* capacities of a geometry's arrays, and flags, while the arrays are filled */
     size_t positions, normals, texcoords, second_texcoords, colors, indices, primitives;
     float (*all_texcoords)[2], (*all_second_texcoords)[2];
     uint8_t (*all_colors)[4];

@@ -8,12 +8,12 @@
 #include "preprocess/model/gltf_shim.h"
 
 struct geometry {
-    double origin_m[3]; /* centre of its bounding box; positions are relative to it */
+    double origin_m[3]; /* centre of the mesh's bounding box; vertex positions are relative to it */
     float (*positions_m)[3];
     float (*normals)[3];
-    float (*texcoords)[2];        /* NULL: no primitive has texture coordinates */
-    float (*second_texcoords)[2]; /* NULL: no primitive has a second set */
-    uint8_t (*colors)[4];         /* NULL: no primitive has vertex colours */
+    float (*texcoords)[2];        /* texture coordinates; NULL: no primitive has any */
+    float (*second_texcoords)[2]; /* second set of texture coordinates; NULL: no primitive has one */
+    uint8_t (*colors)[4];         /* vertex colours; NULL: no primitive has any */
     uint32_t *indices;
     struct asset_primitive *primitives;
     struct asset_material *materials;
@@ -28,10 +28,11 @@ struct geometry {
 };
 
 struct geometry_params {
-    const char *nodes; /* node patterns (plant/models/nodes.h); NULL: all nodes */
+    const char *nodes; /* patterns of the nodes to cut out (plant/models/nodes.h); NULL: all nodes */
     double unit_m;
     enum axis up;
-    double tolerance_m; /* widest gap that is closed, in the drawn mesh and in distance computations; 0: chosen from the model */
+    /* width in metres of the widest gap that is closed, in the drawn mesh and in distance computations; 0: chosen from the model */
+    double tolerance_m;
 };
 
 /* Builds the asset's mesh from the model. Returns false with the reason in why; then geometry_finish() need not be called. */

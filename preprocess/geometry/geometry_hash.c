@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Hashes the part of a model that an asset uses, so that the hash is unchanged by a revision that affects other assets only. */
 #include <string.h>
-#define XXH_STATIC_LINKING_ONLY /* allows a hash state on the stack */
+#define XXH_STATIC_LINKING_ONLY /* makes xxhash declare the type of its hash state, for a state on the stack */
 #include <xxhash.h>
 
 #include "base/mem.h"

@@ -12,7 +12,7 @@ struct node_primitive { /* one primitive of one node */
 };
 
 struct node_primitives {
-    struct node_primitive *at; /* sorted by material, blended materials last */
+    struct node_primitive *at; /* primitives sorted by material, blended materials last */
     size_t count, capacity;
 };
 /* Lists the glTF primitives of the nodes that params select. Adds the numbers of nodes and of skipped lines and points to geometry. Returns

@@ -10,7 +10,7 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-#define MANY 256 /* faces at one position up to which all pairs are compared */
+#define MANY 256 /* number of faces at one position up to which all pairs are compared */
 #define LEAF 16
 #define CREASE_COSINE 0.766 /* cosine of 40 degrees: a cylinder with ten sides is shaded round, one with eight has edges */
 
@@ -31,7 +31,7 @@ static double corner_angle(const float at[3], const float b[3], const float c[3]
     return acos(fmin(fmax(vec_dot(ab, ac), -1), 1));
 }
 
-struct around {      /* the corners that meet at each position */
+struct around {      /* by position: the triangle corners that meet there */
     unsigned *place; /* by vertex: the first vertex at the same position */
     uint32_t *first, *corners;
     double (*faces)[3];
@@ -96,7 +96,7 @@ static void take_direction(double sum[3], const double own[3], float out[3])
 /* Accelerates positions where very many faces meet: recursively halves the set of normals; a half that is wholly inside or wholly outside
  * the crease angle is added or skipped as a whole. The binary tree is stored implicitly. */
 struct normals_half {
-    double low[3], high[3], sum[3]; /* bounds of the normals, and their sum weighted by angles */
+    double low[3], high[3], sum[3]; /* bounding box of the normals, and their sum weighted by angles */
 };
 
 struct halves {

@@ -71,7 +71,8 @@ void stray_text(const struct geometry *geometry, const struct gltf_model *model,
         for (size_t i = 0; i < parts.count; i++)
             look_at(&farthest, &parts.at[i], params);
     mem_free(parts.at);
-    if (stray == 0 && !(farthest.away_m > main_m)) /* ignore rounding errors, and vertices of triangles without area near the rest */
+    /* ignore distances due to rounding, and vertices of triangles without area close to the main part */
+    if (stray == 0 && !(farthest.away_m > main_m))
         return;
     if (stray > 0)
         snprintf(text, STRAY_TEXT_BYTES, "%zu of its triangles lie up to", stray);

@@ -7,13 +7,13 @@
 #include "preprocess/geometry/welded_positions.h"
 #include "surface/mesh/tri_edges.h"
 
-#define MAX_TURNED 0.25 /* largest share of a connected group's area that is turned */
+#define MAX_TURNED 0.25 /* share of a connected group's area; a larger group of flipped triangles is not turned */
 
 struct winding {
     const float (*positions)[3];
     size_t tri_count;
     uint32_t (*places)[3]; /* by triangle: the position index of each corner */
-    signed char *facing;   /* by triangle: 1 or -1; 0: not known yet */
+    signed char *facing;   /* orientation of each triangle: 1 or -1; 0: not known yet */
     uint32_t *joined;
 };
 

@@ -17,7 +17,7 @@ struct cad_writer {
     const struct cad_model *model;
     json_t *materials, *meshes, *nodes;
     struct glb_file file;
-    double (*origins)[3]; /* origin of each node in the plant's frame */
+    double (*origins)[3]; /* origin of each node, in the plant's frame */
     int *material_of;     /* index of the glTF material of each model colour */
     int plain, line;      /* indices of the default materials for faces and lines; -1: not created yet */
 };

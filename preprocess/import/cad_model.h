@@ -17,7 +17,7 @@ struct cad_attribute {
 };
 
 struct cad_node {
-    char *name; /* UTF-8; "": the file has no name */
+    char *name; /* name of the node, UTF-8; "": the file gives none */
     int parent; /* index of the parent, lower than the node's own; -1: a root */
     uint32_t material;
     struct cad_vertex *vertices;
@@ -33,7 +33,7 @@ struct cad_color {
 };
 
 struct cad_model {
-    struct cad_node *nodes; /* parents before children, siblings in the order of the file */
+    struct cad_node *nodes; /* nodes: parents before children, siblings in the order of the file */
     struct cad_color *colors;
     size_t node_count, node_room, color_count, color_room;
 };

@@ -132,7 +132,7 @@ struct model_reading {
     const char *output;            /* path of the GLB file that the reader writes */
     const char *folder;
     const struct conversion_params *params;
-    char *encoding; /* output buffer of find_encoding() in memory shared with the child; "" after it: no conversion is needed */
+    char *encoding; /* name of the encoding found by find_encoding(), in memory shared with the child; "": names need no conversion */
 };
 
 /* Runs a built-in reader, in the child process. Returns the child's exit status. */
@@ -310,7 +310,7 @@ static bool build_curved_solids(const struct model_reading *reading, const char 
 
 /* An external reader program, from the table of formats. */
 struct reader_program {
-    char *program, *runtime;           /* paths; runtime is NULL if the program is an executable */
+    char *program, *runtime;           /* paths of the reader and of its interpreter; runtime NULL: the reader is an executable */
     char encoding[CHARSET_NAME_BYTES]; /* name of the encoding passed to the reader; "-": none */
 };
 

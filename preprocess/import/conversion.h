@@ -11,9 +11,9 @@ enum { CONVERSION_WHY_BYTES = 512 };
 
 struct conversion_params {
     double chord_m;
-    const char *units, *up; /* for formats that state no units or up axis; NULL: guess, and print the guess */
-    const char *mesh_units; /* for OBJ, STL, PLY and 3DS where `units` is NULL; NULL: guess, and print the guess */
-    const char *encoding;   /* encoding of names; NULL: as stated by the file, else detected and printed */
+    const char *units, *up; /* units and up axis for formats that do not state them; NULL: guess them, and print the guess */
+    const char *mesh_units; /* units for OBJ, STL, PLY and 3DS where `units` is NULL; NULL: guess them, and print the guess */
+    const char *encoding;   /* encoding of names in the model; NULL: as stated by the file, else detected and printed */
     bool keep_covered;      /* RVM: keep faces that are covered by a neighbour's face */
     int timeout_s;          /* seconds that an external reader program may run */
     size_t memory_bytes;    /* bytes of memory that an external reader program may use */

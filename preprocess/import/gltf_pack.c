@@ -119,7 +119,7 @@ static bool take_images(struct pack *pack)
         if (!uri)
             continue;
         unsigned char *bytes = model_uri_read(pack->source->folder, uri, &size, uri_why);
-        if (!bytes) /* the reader of the packed model reports the missing texture */
+        if (!bytes) /* skip the image: the reader of the packed model reports the missing texture */
             continue;
         json_array_append_new(views, json_pack("{s:i,s:I,s:I}", "buffer", 0, "byteOffset", append(pack, bytes, size), "byteLength",
                                                (json_int_t)size));

@@ -9,7 +9,7 @@
 
 struct node_list_params {
     const regex_t *grep; /* prints only nodes whose path or a property matches; NULL: all */
-    int levels;          /* 0: print a table of paths; else print a tree of this many levels */
+    int levels;          /* 0: print a table of paths; N: print a tree of N levels */
     bool json;
 };
 

@@ -65,7 +65,7 @@ static int by_name(const void *a, const void *b)
 static void find_unique(const struct model_outline *outline, bool *unique)
 {
     size_t count = outline->header.count;
-    const struct outline_node **sorted = mem_array(count + 1, sizeof(*sorted)); /* sorted by name, terminated by NULL */
+    const struct outline_node **sorted = mem_array(count + 1, sizeof(*sorted)); /* nodes sorted by name, terminated by NULL */
     for (size_t i = 0; i < count; i++)
         sorted[i] = &outline->nodes[i];
     qsort(sorted, count, sizeof(*sorted), by_name);
@@ -159,7 +159,7 @@ static void add_asset(struct text *out, const struct plant_draft_model *from, si
     int parent = outline->header.nodes[i].parent;
     unsigned number = outline->header.nodes[i].number;
     char *id = unique ? mem_strdup(without_slash(name)) : mem_printf("%s #%u", *name ? name : "unnamed", number);
-    if (json_object_get(ids, id)) { /* the id is taken by an asset of another model */
+    if (json_object_get(ids, id)) { /* an asset of another model already has this id */
         char *other = mem_printf("%s (%s #%u)", id, from->file, number);
         mem_free(id);
         id = other;

@@ -6,7 +6,7 @@
 
 struct plant_draft_model {
     char *file;             /* file name of the model in the plant folder */
-    const char *units, *up; /* values for the assets' keys of these names in plant.yaml; NULL: the key is omitted */
+    const char *units, *up; /* values of `units` and `up` for the model's assets in plant.yaml; NULL: the key is omitted */
     int item_level; /* level of the equipment in the tree if properties do not tell; 0: the first level with two nodes that have geometry */
     struct model_outline outline;
 };
@@ -15,7 +15,7 @@ struct plant_draft {
     const char *name, *folder;
     const struct plant_draft_model *models;
     size_t count;
-    bool anew; /* ignore an existing plant file and tag list */
+    bool anew; /* replace an existing plant file and tag list */
 };
 
 /* Appends a plant-file line for each asset of the model, restricted to the nodes marked in `wanted` (NULL: all nodes). The keys of the JSON

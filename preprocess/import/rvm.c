@@ -20,7 +20,7 @@ struct primitive {
     struct rvm_shape shape;
     int node;
     size_t byte;                       /* byte offset of the primitive's chunk */
-    size_t first_contour, first_point; /* indices, not pointers, because the arrays still grow */
+    size_t first_contour, first_point; /* first contour and point of the primitive, as indices because the arrays still grow */
 };
 
 struct facet_face {
@@ -120,7 +120,7 @@ static bool read_head(struct rvm_reader *r)
     uint32_t version;
     if (!read_word(r, &version))
         return false;
-    for (int i = 0; i < 4; i++) { /* skip the texts info, note, date and user */
+    for (int i = 0; i < 4; i++) { /* skip four header texts: info, note, date and user */
         char *ignored = read_text(r);
         if (!ignored)
             return false;
@@ -233,7 +233,7 @@ static bool read_chunk(struct rvm_reader *r, const char *id, bool *ended)
         return read_color(r);
     if (!strcmp(id, "CNTB"))
         return begin_group(r);
-    if (!strcmp(id, "CNTE")) { /* files of AVEVA Marine may end with one CNTE too many */
+    if (!strcmp(id, "CNTE")) { /* a CNTE too many is ignored: files of AVEVA Marine may end with one */
         r->depth -= r->depth > 0;
         return true;
     }
@@ -275,7 +275,7 @@ static bool read_chunks(struct rvm_reader *r)
         size_t from = r->at;
         if (r->count - from < 16 || !chunk_id(r->bytes + from, id))
             return fail(r, "no chunk begins here");
-        if (!strcmp(id, "END:")) /* some files omit the rest of this chunk's header */
+        if (!strcmp(id, "END:")) /* stop here: some files omit the rest of this last chunk */
             return true;
         if (r->count - from < HEADER)
             return fail(r, "the file ends within chunk %s", id);
@@ -428,7 +428,7 @@ bool rvm_read(struct cad_model *model, const void *bytes, size_t count, const st
     for (size_t i = 0; i < r->primitive_count; i++)
         if (r->primitives[i].shape.contour_count > 0) {
             r->primitives[i].shape.contours = r->contours + r->primitives[i].first_contour;
-            if (r->points) /* without points all contours are empty */
+            if (r->points) /* without any points, all contours are empty */
                 r->primitives[i].shape.points = (const double(*)[3])(r->points + r->primitives[i].first_point);
         }
     if (!params->keep_covered)

@@ -20,8 +20,8 @@ struct rvm_counts {
 struct rvm_params {
     double chord_m;    /* chord error: largest distance in metres between a chord and the true surface */
     bool keep_covered; /* keep faces that lie on a neighbour's face */
-    const char *encoding; /* the user's choice for the names; NULL: as stated by the file, else detected */
-    struct text *findings; /* receives the lost primitives as lines of findings.h; NULL: not wanted */
+    const char *encoding;  /* the user's choice of encoding for the names; NULL: as stated by the file, else detected */
+    struct text *findings; /* receives the lost primitives as lines in the format of findings.h; NULL: not wanted */
 };
 
 /* Appends the groups of an RVM file, wholly in memory at `bytes`, and their triangles to the model. Returns false if the file is broken:

@@ -12,7 +12,7 @@ struct rvm_loss {
     int node; /* index of the group's node; -1: outside every group */
     int kind;
     size_t byte; /* byte offset in the file where the primitive's chunk begins */
-    const char *why; /* reason, a string literal; NULL for obstruction and insulation volumes */
+    const char *why; /* reason for the loss, a string literal; NULL for obstruction and insulation volumes */
 };
 
 struct rvm_losses { /* zero-initialise */

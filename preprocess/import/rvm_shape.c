@@ -16,7 +16,7 @@ const int rvm_numbers[RVM_FACETS + 1] = {
     [RVM_SPHERICAL_DISH] = 2, [RVM_SNOUT] = 9, [RVM_CYLINDER] = 2,          [RVM_SPHERE] = 1,         [RVM_LINE] = 2
 };
 
-struct primitive_frame { /* transform from the primitive's frame to the plant's */
+struct primitive_frame { /* transform from the primitive's frame to the plant's frame */
     const double *m;
     double normal_of[9]; /* inverse transpose of the linear part, for normals; up to a factor, by columns */
     double scale;        /* largest scale factor of lengths over the three axes */
@@ -160,7 +160,7 @@ static void add_prism(struct cad_node *node, const struct primitive_frame *frame
         double u[3], v[3], n[3];
         for (int i = 0; i < 4; i++)
             p[i] = corners[faces[f][i]];
-        vec_sub(p[2], p[0], u); /* diagonals, so that the normal is also right if a side has zero length */
+        vec_sub(p[2], p[0], u); /* use the diagonals, so that the normal is also right if a side has zero length */
         vec_sub(p[3], p[1], v);
         vec_cross(u, v, n);
         if (vec_dot(n, n) == 0 || (open_faces >> f & 1))
@@ -201,7 +201,7 @@ static void add_rectangular_torus(struct cad_node *node, const struct primitive_
     double inner = n[0], outer = n[1], half = n[2] / 2, angle = n[3];
     int steps = steps_of(angle, outer * frame->scale, chord_m);
     const double section[4][2] = { { inner, -half }, { outer, -half }, { outer, half }, { inner, half } };
-    for (int side = 0; side < 4; side++) { /* the four sides: below, outside, above, inside */
+    for (int side = 0; side < 4; side++) { /* the four sides of the section: below, outside, above, inside */
         const double *from = section[side], *to = section[(side + 1) % 4];
         double radial = to[1] - from[1], vertical = from[0] - to[0];
         if (radial == 0 && vertical == 0)
@@ -590,7 +590,7 @@ static int prism_faces(const struct primitive_frame *frame, const struct rvm_sha
     double h = (box ? n[2] : n[6]) / 2;
     rectangle_of(frame, (double[3]){ -ox, -oy, -h }, (double[3]){ 0, 0, -1 }, (double[3]){ bx, 0, 0 }, (double[3]){ 0, by, 0 }, &faces[0]);
     rectangle_of(frame, (double[3]){ ox, oy, h }, (double[3]){ 0, 0, 1 }, (double[3]){ tx, 0, 0 }, (double[3]){ 0, ty, 0 }, &faces[1]);
-    for (int i = 2; box && i < RVM_MAX_FACES; i++) { /* side faces in the order of add_prism(): -y, +x, +y, -x */
+    for (int i = 2; box && i < RVM_MAX_FACES; i++) { /* the side faces, in the order of add_prism(): -y, +x, +y, -x */
         double x = i == 3 ? 1 : i == 5 ? -1 : 0, y = i == 4 ? 1 : i == 2 ? -1 : 0;
         rectangle_of(frame, (double[3]){ x * bx, y * by, 0 }, (double[3]){ x, y, 0 }, (double[3]){ y * bx, x * by, 0 },
                      (double[3]){ 0, 0, h }, &faces[i]);

@@ -34,15 +34,15 @@ struct rvm_shape {
     const struct rvm_contour *contours; /* contours of RVM_FACETS; NULL for other kinds */
     const double (*points)[3];          /* points of RVM_FACETS, in the primitive's own frame */
     size_t contour_count;
-    uint32_t open_faces; /* bit i: face i of rvm_shape_faces() is covered by a neighbour and left out */
+    uint32_t open_faces; /* bit i set: face i of rvm_shape_faces() is covered by a neighbour and left out */
 };
 
-extern const int rvm_numbers[RVM_FACETS + 1]; /* count of numbers that follow the header of each kind */
+extern const int rvm_numbers[RVM_FACETS + 1]; /* number of dimensions that follow the header of each kind of primitive */
 
 /* A flat face of a primitive in the plant's frame: a circle or a rectangle. */
 struct rvm_face {
     double centre_m[3], outward[3];
-    double radius_m;                    /* radius of a circle; 0: the face is a rectangle */
+    double radius_m;                    /* radius of a circular face; 0: the face is a rectangle */
     double half_m[2], directions[2][3]; /* a rectangle's half side lengths, and the directions of its sides */
 };
 enum { RVM_MAX_FACES = 6 };

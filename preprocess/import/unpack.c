@@ -12,9 +12,10 @@
 
 enum {
     BLOCK_BYTES = 1 << 16,
-    MAX_RATIO = 200 /* unpacked to packed size; texts compress to about a tenth, more expansion means a decompression bomb */
+    /* largest ratio of unpacked to packed size; texts shrink to about a tenth, so a larger ratio means a decompression bomb */
+    MAX_RATIO = 200
 };
-static const size_t free_bytes = (size_t)64 << 20; /* unpacked bytes that are allowed whatever the ratio */
+static const size_t free_bytes = (size_t)64 << 20; /* number of unpacked bytes that are allowed whatever the ratio */
 
 static const struct {
     const char *packed, *ending;
@@ -35,7 +36,7 @@ const char *unpack_ending(const char *path)
 }
 
 struct archive_reading {
-    unzFile zip; /* exactly one of zip and gzip is set */
+    unzFile zip; /* archive in ZIP format; NULL: `gzip` is set instead */
     gzFile gzip;
 };
 

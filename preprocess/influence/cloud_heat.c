@@ -12,10 +12,10 @@
 #include "surface/mesh/point_cloud.h"
 #include "surface/mesh/trimesh.h"
 
-#define PACKING 0.7    /* Poisson-disc points per square of the spacing */
+#define PACKING 0.7    /* number of Poisson-disc points per square of the spacing */
 #define HEAT_TIME 2.25 /* diffusion time t, in squares of the spacing */
 #define LONGEST 400.0 /* largest extent of the part in units of sqrt(t): heat decays by e per unit, and underflows (DBL_MIN) at 708 units */
-#define REGULARISATION 1e-9       /* relative to the matrix's diagonal entry */
+#define REGULARISATION 1e-9       /* added to the matrix's diagonal, relative to the diagonal entry */
 enum { PITCHES = 3, PLACES = 4 }; /* PITCHES: candidates along a spacing; PLACES: points that a position is interpolated from */
 
 struct heat_link {
@@ -473,7 +473,7 @@ bool cloud_heat_distances(const struct cloud_heat *cloud, const double source_m[
         double start = values[near.at[0]];
         for (size_t i = 0; i < cloud->count; i++)
             slope_at(cloud, i, values, slopes[i]);
-        double zero = near.away_m[0]; /* distance between the source and the cloud point nearest to it */
+        double zero = near.away_m[0]; /* distance between the source and the nearest point of the cloud */
         for (size_t v = 0; v < count; v++) {
             const double p[3] = { (double)positions_m[v][0], (double)positions_m[v][1], (double)positions_m[v][2] };
             find_nearby(cloud, p, &near);

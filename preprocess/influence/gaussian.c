@@ -15,9 +15,9 @@
 #include "surface/geodesic/laplacian.h"
 #include "surface/geodesic/solver.h"
 
-#define BLOCK 32  /* right-hand sides per solve; fixed, so that random samples do not depend on the thread count */
-#define TILE 256  /* mesh points per unit of a thread's work */
-#define STRIP 64  /* vertices per unit of a thread's work */
+#define BLOCK 32 /* number of right-hand sides per solve; fixed, so that random samples do not depend on the thread count */
+#define TILE 256 /* number of mesh points that one thread processes at a time */
+#define STRIP 64 /* number of vertices that one thread processes at a time */
 #define FIXED 1e9 /* fixed-point scale of squares, relative to the squared deviation: integer sums do not depend on their order */
 #define FIXED_MAX 1e7
 
@@ -35,7 +35,7 @@ struct solving {
     double *root_scale;        /* by component: square root of `scale` */
     double *scale;             /* by component: factor from the system's variance to the stated one; 0: no sensor */
     double *means;             /* by sensor: its weight in the estimated mean of its body */
-    double *levels;            /* by sensor: S m of the sensor's body, see mean_variance() */
+    double *levels;            /* by sensor: the smallest variance of a weighted mean of its body's readings (mean_variance()) */
     float *at_points;          /* [mesh point][sensor]: kernels, later H */
     float *taken;              /* by vertex: variance that the sensors remove */
     _Atomic uint64_t *squares; /* by vertex: sum of squared sample errors, fixed point */
@@ -273,7 +273,7 @@ static void weigh_strips(void *arg, size_t begin, size_t end)
         double taken[STRIP] = { 0 };
         for (size_t v = 0; v < width; v++)
             at_vertex(solving, first + v, strip_h + v * n);
-        for (size_t i = 0; i < n; i++) /* H is 0 for sensors of other bodies */
+        for (size_t i = 0; i < n; i++) /* the influence H is 0 for sensors of other bodies */
             for (size_t v = 0; v < width; v++)
                 if (body_of_vertex(solving, first + v) == solving->bodies.of_sensor[i])
                     taken[v] += variance_of(solving, i) * (double)solving->influence->shares[i * vertices + first + v] *

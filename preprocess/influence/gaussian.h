@@ -12,9 +12,9 @@
 #define PREPROCESS_INFLUENCE_GAUSSIAN_H
 #include "preprocess/influence/influence.h"
 
-/* minimum noise as a share of the deviation; with less, two sensors at one position make the system singular */
+/* minimum sensor noise as a share of the deviation; with less, two sensors at one position make the system singular */
 #define GAUSSIAN_LEAST_NOISE 0.005
-#define GAUSSIAN_SAMPLES 256 /* random samples that estimate the deviation, with a relative error up to 1 / sqrt(2 * 256) = 4.4 % */
+#define GAUSSIAN_SAMPLES 256 /* number of random samples for the deviation, whose relative error is at most 1 / sqrt(2 * 256) = 4.4 % */
 
 struct gaussian_params {
     double range_m, noise, deviation; /* range in metres; noise and deviation (standard deviations) in the unit of the readings */

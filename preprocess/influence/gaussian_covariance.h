@@ -17,7 +17,7 @@ struct gaussian_covariance {
     struct gaussian_bodies bodies;
     double *values; /* covariance [sensor][sensor] for deviation 1 and no noise */
     size_t row_count;
-    double *mass_m2, *scale; /* mass_m2: by row; scale: scratch array, by component */
+    double *mass_m2, *scale; /* mass_m2: area of each row; scale: scratch array, by component */
     double bound;            /* upper bound of k^2 D' A^-1 D; the border's diagonal must exceed it for the matrix to be positive definite */
     cholmod_common common;
     cholmod_sparse *bordered; /* lower triangle of G, the rows D' below it, and the border's diagonal, filled per range */

@@ -14,13 +14,13 @@
 #include "preprocess/influence/gaussian_contrast.h"
 #include "preprocess/influence/gaussian_covariance.h"
 
-#define RANGES 9  /* ranges of the grid, evenly spaced in logarithms */
+#define RANGES 9 /* number of ranges in the search grid, evenly spaced in logarithms */
 #define FEW 96    /* maximum number of sensors in the grid search */
 #define CLOSER 3  /* number of parabola steps */
-#define SHARES 13 /* noise shares of the grid, from GAUSSIAN_LEAST_NOISE to MAX_SHARE of the deviation */
+#define SHARES 13 /* number of noise shares in the search grid, from GAUSSIAN_LEAST_NOISE to MAX_SHARE of the deviation */
 #define MAX_SHARE 3.0
 #define SAME 0.02      /* ranges whose logarithms differ by less are equal: readings cannot distinguish them */
-#define MIN_INSTANTS 8 /* minimum; fewer instants cannot determine three parameters */
+#define MIN_INSTANTS 8 /* minimum number of instants; fewer cannot determine three parameters */
 #define MIN_SENSORS 3
 
 /* --- the table --------------------------------------------------------------------------------------------------------------- */
@@ -101,7 +101,7 @@ struct gaussian_fit {
     struct log *log;
     struct workers *workers;
     struct gaussian_covariance covariance;
-    double *scatter; /* [sensor][sensor]: sum over instants of the product of two readings, each minus the overall mean */
+    double *scatter; /* [sensor][sensor]: sum over instants of the product of two sensors' readings, each minus the overall mean */
     double *room[2], *means;
     struct gaussian_params best;
     double best_likelihood;
@@ -177,7 +177,7 @@ static void try_range(struct gaussian_fit *fit, double range_m)
     }
 }
 
-static double logarithm(double x) /* needed where a parameter named `log` hides the function */
+static double logarithm(double x) /* log(), callable where a parameter named `log` hides it */
 {
     return log(x);
 }

@@ -11,9 +11,10 @@
 #include "surface/geodesic/laplacian.h"
 #include "surface/geodesic/solver.h"
 
-#define CONTACT 1e5 /* conductance relative to the surface; readings are met within about 1e-5 of the difference between neighbours */
+/* contact conductance of a disc relative to the surface; readings are met within about 1e-5 of the difference between neighbours */
+#define CONTACT 1e5
 #define REGULARISATION 1e-9 /* share of a body's area added to the diagonal, so that rounding does not make it singular */
-#define MIN_BLOCK 8         /* minimum right-hand sides per solve; with more, the factor is read less often */
+#define MIN_BLOCK 8         /* minimum number of right-hand sides per solve; with more, the sparse factor is read less often */
 #define MAX_BLOCK BEND_WIDTH
 #define BLOCK_BYTES (64 << 20) /* memory limit of a block above the minimum size; each thread has three such blocks */
 

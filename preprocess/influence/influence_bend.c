@@ -12,8 +12,9 @@
 #include "preprocess/influence/polygons.h"
 #include "surface/mesh/bvh.h"
 
-#define OFF_PLANE 1e-5 /* distance from the plane, relative to the surface's size: drawn corners are single precision */
-#define LEAST 1e-7     /* overlaps up to this share of the triangle's squared size are ignored */
+/* tolerance of the distance from a drawn triangle's plane, relative to the surface's size: drawn corners are single precision */
+#define OFF_PLANE 1e-5
+#define LEAST 1e-7     /* overlaps of at most this share of the drawn triangle's squared size are ignored */
 #define COVERED 1e-3   /* share of a triangle's area that may stay uncovered, because small overlaps are ignored */
 #define SAME 1e-7      /* places closer than this share of a triangle's size are equal */
 #define LEAST_FACING 0.5
@@ -27,7 +28,7 @@ struct finding {
     struct bvh *visible_bvh, *hidden_bvh;
     /* State of the current drawn triangle: */
     uint32_t tri;
-    double origin[3], axes[3][3]; /* two axes in its plane, and its normal */
+    double origin[3], axes[3][3]; /* origin; axes: two in the drawn triangle's plane, and its normal */
     double corners[3][2], size_m;
     struct extent extent;
     size_t first;              /* index of its first place */

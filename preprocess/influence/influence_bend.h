@@ -24,7 +24,7 @@ struct bend_level { /* one level of detail */
 
 struct bend_drawn { /* the drawn triangles */
     const float (*positions_m)[3];
-    const uint32_t *triangles; /* 3 indices per triangle, level by level, finest first */
+    const uint32_t *triangles; /* indices of the drawn triangles, 3 each, level by level, finest first */
     size_t vertex_count, triangle_count;
     const struct influence_anchor *anchors; /* position on the mesh of each vertex */
     /* All overlap corners are found for the finest level. Triangles of coarser levels do not lie on the surface: a few samples of each are
@@ -40,7 +40,7 @@ struct influence_bend {
     /* by drawn triangle: its area; its area hidden inside other parts; its area without a bound. Coarse levels count samples instead of
      * areas */
     double *area_m2, *hidden_m2, *unknown_m2;
-    _Atomic int64_t *plus, *minus; /* by place: sum over sensors of positive and of negative share errors, in fixed point */
+    _Atomic int64_t *plus, *minus; /* by place: sum over sensors of the positive and of the negative errors of the shares, in fixed point */
     struct mesh_error *mesh_error; /* sums for the discretisation error of the solution */
     size_t point_count;            /* number of points of the mesh */
 };
@@ -56,9 +56,10 @@ void influence_bend_finish(struct influence_bend *bend);
 void influence_bend_add(struct influence_bend *bend, const float *at_points, size_t stride, size_t width);
 
 struct bend_report {             /* all zero: no bend was measured */
-    size_t measured, unmeasured; /* pairs of group and interpolation: with a bounded bend; without, because of too many places */
+    /* number of (group, interpolation) pairs whose bend is bounded, and of pairs with too many places to measure */
+    size_t measured, unmeasured;
     double steps;                /* bound of the bend anywhere, in steps of (MAX - MIN) / 255, for any good readings between MIN and MAX */
-    double over_share;           /* share of the area: triangles in which the bend may exceed one step */
+    double over_share;           /* share of the area covered by triangles in which the bend may exceed one step */
     double hidden_share;         /* share of the area inside or against another part, where nothing is solved */
     double unknown_share; /* share of the area that is not on the solved surface; like hidden_share, not part of `steps` and `over_share` */
 };

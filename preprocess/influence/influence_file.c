@@ -18,19 +18,19 @@
 #include "preprocess/influence/transport.h"
 #include "protocol/influence_format.h"
 
-#define EDGES 5.0     /* mesh edges per range, at least; more make no visible difference */
+#define EDGES 5.0     /* requested number of mesh edges per range; more make no visible difference */
 #define MIN_EDGES 2.0 /* minimum mesh edges per range; fewer would make the field seem more certain than it is */
 #define LONGEST 10.0  /* limit of the range, in sizes of the surface; longer ranges look the same */
-#define FIT_MIN 0.05  /* bounds of fitted ranges, in sizes of the surface */
+#define FIT_MIN 0.05  /* smallest fitted range, in sizes of the surface */
 #define FIT_MAX 3.0
-enum { BEND_PLACES = 8000000 }; /* limit of places for measuring the bend; more would take too long */
+enum { BEND_PLACES = 8000000 }; /* maximum number of places at which the bend is measured; more would take too long */
 
 struct influence_making {
     struct log *log;
     struct workers *workers;
     const struct influence_input *input;
     struct vertex_embedding *embedding;
-    struct cloud_heat *cloud; /* NULL until a group asks for it */
+    struct cloud_heat *cloud; /* created when the first group asks for it; NULL: not yet */
     struct influence_header header;
     struct influence_entry *entries;
     struct influence *found; /* result of each entry */
@@ -145,7 +145,8 @@ static bool bound_errors(const struct influence_making *making, const struct pla
                          struct influence_bend *bend, struct influence *found)
 {
     double around = interpolation == INTERPOLATION_FIN ? (group->ambient - group->min) / (group->max - group->min) : 0;
-    found->errors = mem_try_array(making->input->vertex_count + 1, sizeof(*found->errors)); /* padded to 8 bytes in the file */
+    /* one element more, because the array is padded to 8 bytes in the file */
+    found->errors = mem_try_array(making->input->vertex_count + 1, sizeof(*found->errors));
     if (!found->errors)
         return false;
     if (bend)

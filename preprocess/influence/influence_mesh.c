@@ -10,8 +10,8 @@
 
 /* an edge at distance D from the nearest sensor is at most this times D long, or half the disc's radius if that is more */
 #define GRADING 0.7
-#define MAX_ADDED 1000          /* points added per sensor; a radius far smaller than the triangles is not resolved */
-#define MAX_ADDED_EVENLY 400000 /* points added where edges must be short everywhere */
+#define MAX_ADDED 1000          /* maximum number of points added per sensor; a radius far smaller than the triangles is not resolved */
+#define MAX_ADDED_EVENLY 400000 /* maximum number of points added where edges must be short everywhere */
 
 /* --- refinement near sensors ------------------------------------------------------------------------------------------------- */
 
@@ -78,7 +78,7 @@ static void cut_triangle(struct halving *halving, size_t t)
     }
     if (cut == 0)
         return;
-    for (int i = 0; i < 3; i++) /* rotate so that the edge that differs from the other two comes first */
+    for (int i = 0; i < 3; i++) /* rotate the corners so that the edge that differs from the other two comes first */
         if ((m[i] != TRIMESH_NONE) == (cut == 1))
             at = i;
     const uint32_t a = p[at], b = p[(at + 1) % 3], c = p[(at + 2) % 3];

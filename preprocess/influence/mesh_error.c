@@ -9,7 +9,7 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-#define SAFETY 2.0   /* factor: values at mesh points have an error too, about as large as between them */
+#define SAFETY 2.0   /* safety factor: values at mesh points have an error too, about as large as the error between them */
 #define FIXED 0x1p40 /* fixed-point scale of a share: integer sums do not depend on their order */
 
 /* Flux imbalance of an edge times the height of its lowest triangle: the distance of that triangle's tip from the plane of the others. */

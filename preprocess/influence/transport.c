@@ -10,8 +10,8 @@
 #include "surface/geodesic/laplacian.h"
 #include "surface/geodesic/solver.h"
 
-#define LENGTHS 150.0 /* sqrt(t) is at least the surface's size divided by this, because heat underflows at e^-709 */
-/* sqrt(t) is also at least the longest path along the surface divided by this; on folded parts paths are many times the size */
+#define LENGTHS 150.0 /* the diffusion length sqrt(t) is at least the surface's size divided by this, because heat underflows at e^-709 */
+/* the diffusion length sqrt(t) is at least the longest path along the surface divided by this; folded parts have long paths */
 #define LONGEST 400.0
 #define LEAST 1e-280 /* vectors shorter than this have lost their direction to rounding */
 
@@ -59,7 +59,7 @@ static void find_normals(struct vector_heat *transport)
 
 /* Adjacency lists: the edges of triangles around each point. */
 struct ways {
-    size_t *first; /* by point, with one extra element at the end */
+    size_t *first; /* by point: start of its edges in `at`; one extra element at the end */
     struct transport_edge {
         uint32_t to;
         double length_m;

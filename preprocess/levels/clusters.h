@@ -8,7 +8,7 @@
 #define CLUSTERS_MAX_TRIANGLES 256 /* triangles per cluster */
 
 struct clusters {
-    struct asset_cluster *at; /* in the order of the primitives */
+    struct asset_cluster *at; /* clusters, in the order of the primitives */
     uint32_t count;
     size_t capacity;
 };

@@ -10,8 +10,8 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-#define SMALL 4.0  /* times the expected distance; triangles smaller than this are probed at their centre */
-#define LARGE 16.0 /* times the expected distance; triangles larger than this are probed at twelve inner points, others at edge midpoints */
+#define SMALL 4.0  /* in expected distances; triangles shorter than this are probed at their centre */
+#define LARGE 16.0 /* in expected distances; triangles longer than this are probed at twelve inner points, others at edge midpoints */
 
 /* Returns a hash that does not depend on the order of the corners and is never 0. */
 static uint64_t triangle_hash(const uint32_t v[3])
@@ -53,8 +53,8 @@ static bool know_triangle(struct deviation *surface, const uint32_t v[3])
 }
 
 struct deviation_part {
-    struct trimesh mesh; /* shares the arrays of the whole surface; tri_count 0: the part has no triangle here */
-    struct bvh *bvh;     /* NULL: the part is not measured */
+    struct trimesh mesh; /* the part's triangles, sharing the arrays of the whole surface; tri_count 0: the part has no triangle here */
+    struct bvh *bvh;     /* hierarchy of the part's triangles; NULL: the part is not measured */
 };
 
 /* Returns the triangle indices grouped by part. The caller frees them with mem_free. */
@@ -165,8 +165,8 @@ struct probing {
     const char *only; /* by part: whether it is probed; NULL: all */
     bool anywhere;    /* measure against all of `to`, instead of each part against itself */
     double expected_m;
-    const float *known_m; /* by part: known distance, which only larger ones can change */
-    float *found_m;       /* result of each point or triangle */
+    const float *known_m; /* by part: distance known so far; only larger distances matter */
+    float *found_m;       /* measured distance of each point or triangle */
 };
 
 #define RECENT 4
@@ -176,7 +176,7 @@ struct near {                    /* cache of one thread */
 };
 
 struct deviation_probe {   /* a probed point and the surface it is measured against */
-    const struct bvh *bvh; /* NULL: `to` has no triangle of the part */
+    const struct bvh *bvh; /* hierarchy to measure against; NULL: `to` has no triangle of the part */
     const struct trimesh *mesh;
     double point[3];
     struct near *near;

@@ -11,15 +11,16 @@
 #include "preprocess/levels/levels_impl.h"
 
 #define NEAR_WORTH 0.5     /* largest share of the previous level's triangles for a near level */
-#define FAR LEVELS_FILLING /* error relative to the size; a level with a larger error, */
-/* and at most this many triangles, is a far level: many are drawn in one picture, so far levels are closer together */
+#define FAR LEVELS_FILLING /* error relative to the asset's size from which on levels may count as far */
+/* number of triangles up to which a level with such an error is a far level; many far levels are drawn in one picture */
 #define FAR_TRIANGLES 16000
 #define FAR_WORTH 0.9  /* largest share of the previous level's triangles for a far level */
-#define STEP 1.4       /* growth of the error from level to level, at least */
-#define STEP_SMALL 1.7 /* growth of the error after levels with errors above LEVELS_SMALL, at least */
-#define WAIT 1.1     /* factor on the error: a near level waits for changes up to this much later; also the delay after a rejected level */
-#define MISSED 1.05f /* factor on the level's error: limit of the error caused by omitted parts */
-#define MAX_TRIES 2  /* attempts to move faces: all parts, then only those whose error this does not increase */
+#define STEP 1.4       /* minimum factor by which the error grows from level to level */
+#define STEP_SMALL 1.7 /* minimum factor by which the error grows after levels with errors above LEVELS_SMALL */
+/* factor on the error: a near level also includes changes up to this much later, and the next try after a rejected level waits as long */
+#define WAIT 1.1
+#define MISSED 1.05f /* factor on the level's error that limits the error caused by omitted parts */
+#define MAX_TRIES 2  /* attempts to move faces: in all parts, then only in parts whose error this does not increase */
 
 struct levels_making {
     struct workers *workers;
@@ -39,7 +40,7 @@ struct levels_making {
 /* --- events with growing error -------------------------------------------------------------------------------------------- */
 
 struct event {
-    float error_m; /* the error from which on this event is allowed */
+    float error_m; /* level error from which on this event is allowed, metres */
     uint32_t part, version;
 };
 

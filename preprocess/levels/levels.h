@@ -31,7 +31,7 @@ struct levels {
     struct level at[LEVELS_MAX]; /* finest first */
     size_t count;
     size_t given_up; /* levels dropped during subdivision, because they would need as many triangles as the next finer one */
-    size_t repeated; /* duplicate triangles of the finest level; 0 for levels from the build cache */
+    size_t repeated; /* number of duplicate triangles in the finest level; 0 for levels from the build cache */
 };
 
 /* Simplifies the geometry into levels, finest first. Each level has at most half the triangles of the one before. Far levels, used to draw

@@ -17,10 +17,10 @@
 #define NONE UINT32_MAX
 
 struct bounded_face {
-    uint32_t point[3], weld[3]; /* all NONE: the face was removed */
-    uint32_t first;             /* first place in the face's list */
+    uint32_t point[3], weld[3]; /* points and welds of the corners; all NONE: the face was removed */
+    uint32_t first;             /* first original vertex ("place") in the face's list */
     uint32_t near;              /* triangle of the original surface to test first */
-    double normal[3], length;   /* length of `normal` is twice the area */
+    double normal[3], length;   /* normal with a length of twice the area; `length` is that length */
     double longest_m;           /* longest edge */
 };
 
@@ -37,7 +37,7 @@ struct bounded {
     float *moved_m;   /* by point: how far the borders and seams at it have moved */
     uint32_t *corner; /* by point: one of its face corners (3 per face); next: by corner, the next corner of the same point */
     uint32_t *next;
-    uint32_t *stamp; /* by point: changes whenever the triangles around it change */
+    uint32_t *stamp; /* by point: a counter that changes whenever the triangles around the point change */
     struct bounded_face *faces;
     size_t point_count, face_count, left;
     double (*places)[3];
@@ -81,13 +81,13 @@ static struct removal_candidate pop(struct bounded *b)
 struct ring_wedge {               /* one triangle around a point */
     uint32_t face, at;            /* at: index of the corner (0 to 2) that is at the point */
     uint32_t weld;                /* weld of the corner at the point */
-    uint32_t points[2], welds[2]; /* the other two corners, in winding order */
+    uint32_t points[2], welds[2]; /* points and welds of the other two corners, in winding order */
 };
 
 struct point_ring {
     uint32_t point;
     struct ring_wedge wedges[RING];
-    int count; /* number of wedges; RING + 1: too many */
+    int count; /* number of wedges; RING + 1: too many triangles */
     /* end points of the ring's edges; welds of both edge ends in one of the edge's triangles */
     uint32_t ends[2 * RING], weld_here[2 * RING], weld_there[2 * RING];
     bool is_feature[2 * RING]; /* the edge to this end is a border or a seam */
@@ -113,7 +113,7 @@ static void list_ring(struct bounded *b, uint32_t point, struct point_ring *ring
     while (*link != NONE && ring->count <= RING) {
         uint32_t corner = *link;
         const struct bounded_face *face = &b->faces[corner / 3];
-        if (face->point[corner % 3] != point) { /* the corner was moved or removed */
+        if (face->point[corner % 3] != point) { /* skip a corner that was moved or removed */
             *link = b->next[corner];
             continue;
         }
@@ -468,7 +468,7 @@ static void place_of(const struct welds *welds, uint32_t weld, double place[3])
 
 /* By weld: the number of its point + 1, or 0. */
 struct point_numbers {
-    uint32_t *of, low, high; /* `of` covers the welds from low to high */
+    uint32_t *of, low, high; /* of[weld - low]: number of the weld's point + 1, or 0; covers the welds from low to high */
 };
 
 static struct point_numbers number_points(struct bounded *b, const uint32_t *corners, size_t count)

@@ -8,9 +8,9 @@
 #include "base/mem.h"
 #include "preprocess/levels/levels_impl.h"
 
-#define AWAY (-0.5f) /* cosine; the best vertex of a weld points away from the face if below this */
-#define ALONG 0.7f   /* cosine; a neighbouring vertex faces the same way if above this */
-#define BESIDE 1.25f /* factor on the error: a slanted sheet has an error smaller than its thickness */
+#define AWAY (-0.5f) /* cosine with the face normal below which a weld's best vertex points away from the face */
+#define ALONG 0.7f   /* cosine with the face normal above which a neighbouring vertex counts as facing the same way */
+#define BESIDE 1.25f /* factor on the allowed error: a slanted sheet has an error smaller than its thickness */
 #define NONE UINT32_MAX
 
 struct corner_need { /* a corner that needs a vertex facing its side */

@@ -7,7 +7,8 @@
 
 #define LEVELS_FILLING 0.001 /* error relative to the asset's size that is one pixel when the asset fills the picture */
 #define LEVELS_SMALL 0.012   /* error relative to the asset's size that is one pixel when the asset spans a twelfth of the picture */
-#define LEVELS_FARTHEST 0.08 /* relative to the asset's size; a level with a larger error would never be drawn larger than a dozen pixels */
+/* relative to the asset's size; a level with a larger error would never be drawn larger than a dozen pixels across */
+#define LEVELS_FARTHEST 0.08
 
 /* --- welds and parts (levels_welds.c) --- */
 
@@ -23,7 +24,7 @@ struct welds {
     uint32_t *part;                           /* part of each weld */
     uint32_t *first_there;                    /* by weld: the first weld at the same position */
     float (*low_m)[3], (*high_m)[3], *size_m; /* bounding box of each part, and the diagonal of that box */
-    double whole_m;                           /* size of the main part (gap_split.h) */
+    double whole_m;                           /* size of the asset's main part (gap_split.h), metres */
 };
 
 /* Groups the geometry's vertices into welds and parts. Returns false if out of memory; call welds_finish() in both cases. */
@@ -59,7 +60,7 @@ void versions_finish(struct versions *versions);
 
 struct omission {
     float from_m; /* the part is omitted from levels with at least this error, metres; INFINITY: from none */
-    bool alone;   /* no other part is near; the group it belongs to is no larger than from_m */
+    bool alone;   /* no other part is near; its group of small parts is no larger than from_m */
 };
 
 /* Decides for each part from which level error on it may be omitted: because it lies on much larger parts, or because it and the small

@@ -9,12 +9,11 @@
 #include "preprocess/levels/levels_impl.h"
 #include "surface/mesh/bvh.h"
 
-#define MUCH_LARGER 4.0f /* size ratio from which on a part may lie on another one */
+#define MUCH_LARGER 4.0f /* size ratio to a part from which on another part may carry it */
 #define MAX_PX 8.0f      /* pixels; a part lying on another one is omitted when it is no larger than this */
-/* factor on the distance between the parts: the expected error of the omission, because the other parts are inexact too; the result is
- * measured later */
+/* factor from the distance between the parts to the expected error of the omission, since the other parts are inexact too */
 #define OVER 1.1f
-#define SMALL 0.1   /* relative to the whole; larger parts are never omitted */
+#define SMALL 0.1   /* size relative to the whole asset; larger parts are never omitted */
 #define AROUND 4.0f /* parts nearer to each other than this many times their size are considered together */
 #define PROBES 4    /* probes on each edge of a part's triangles */
 
@@ -25,7 +24,7 @@
  * first meet the small part itself and its neighbours at every probe. */
 struct size_class {
     float than_m;
-    struct trimesh mesh; /* shares the points of the whole mesh */
+    struct trimesh mesh; /* triangles of the class; shares the points of the whole mesh */
     struct bvh *bvh;
 };
 

@@ -10,14 +10,16 @@
 
 #define SHRINK 0.55       /* requested share of the previous version's triangles */
 #define STUCK 0.9         /* halving stops at a version with more than this share of the previous version's triangles */
-#define HALVE_ABOVE 40000 /* versions with more triangles are halved as a whole, which is fast; smaller ones are simplified edge by edge */
-#define MAX_COLLAPSED 100000 /* limit for edge-by-edge simplification, also where halving got stuck */
-#define LEAST 0.00025        /* relative to the size; allowed error of the first edge-by-edge version */
-#define STEP 1.3             /* growth of the error per version where many instances are drawn in one picture */
-#define STEP_ELSE 1.7        /* growth of the error per version elsewhere, larger because measuring each version is equally expensive */
+/* triangle count above which versions are halved as a whole, which is fast; below it they are simplified edge by edge */
+#define HALVE_ABOVE 40000
+#define MAX_COLLAPSED 100000 /* maximum triangle count for edge-by-edge simplification, also where halving got stuck */
+#define LEAST 0.00025        /* error allowed for the first edge-by-edge version, relative to the asset's size */
+#define STEP 1.3             /* factor between the errors of successive versions where many instances are drawn in one picture */
+/* factor between the errors of successive versions elsewhere; larger, because measuring every version costs the same */
+#define STEP_ELSE 1.7
 #define ALIKE 0.85           /* a version with more than this share of the previous version's triangles is dropped */
 #define MIN_TRIANGLES 60     /* smaller assets are not simplified */
-#define NEAR 0.01  /* relative to the size; versions with a smaller error keep open borders, else hair gaps between patches would open */
+#define NEAR 0.01 /* error relative to the asset's size below which versions keep open borders, else hair gaps between patches would open */
 #define BEYOND 3.0 /* factor from the simplifier's own error, a mean over planes, to the expected real error */
 
 static size_t triangles_of(const struct versions *versions)
@@ -99,7 +101,7 @@ struct collapsing {
     const struct welds *welds;
     const struct deviation *first;
     const struct version *from;
-    struct bounded **parts; /* NULL: the part has no triangle left */
+    struct bounded **parts; /* by part: its simplifier; NULL: the part has no triangle left */
     size_t *first_corner;   /* triangles of `from` in `corners`, grouped by part */
     uint32_t *corners;
     size_t *first_place; /* vertices of the model in `places`, grouped by part */

@@ -60,7 +60,7 @@ char *fold_text(const char *text)
         return mem_strdup(text);
     for (utf8proc_ssize_t i = 0; i < count; i++) {
         if (utf8proc_category(at[i]) == UTF8PROC_CATEGORY_CF && at[i] != 0x00ad)
-            continue; /* skip zero-width blanks and direction marks */
+            continue; /* skip a zero-width blank or direction mark */
         utf8proc_int32_t c = is_dash(at[i]) ? '-' : is_blank(at[i]) ? ' ' : at[i];
         if (c != ' ' || (kept > 0 && at[kept - 1] != ' '))
             at[kept++] = c;

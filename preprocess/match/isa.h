@@ -7,17 +7,17 @@
 
 enum isa_role { /* role of the tag's value */
                 ISA_MEASURED,
-                ISA_STATE,   /* state of a switch, alarm, valve end position or command */
-                ISA_SETTING, /* set point, output, limit or tuning parameter */
+                ISA_STATE,   /* the tag is a state of a switch, alarm, valve end position or command */
+                ISA_SETTING, /* the tag is a set point, output, limit or tuning parameter */
 };
 
 struct isa_name {
     struct name_tokens tokens; /* tokens of the name without a trailing attribute such as PV */
     int letters, number;       /* indices of the tokens with the letters and the loop number; -1: none */
-    const char *suffix;        /* a single letter after the number, or "" */
-    char variable;             /* first letter, or 'd' for differential pressure; 0: none */
+    const char *suffix;        /* suffix: a single letter after the number, or "" */
+    char variable;             /* letter of the measured variable, or 'd' for differential pressure; 0: none */
     enum isa_role role;
-    const char *attribute; /* trailing word that states the role, such as SP; "": none */
+    const char *attribute; /* trailing attribute word that states the role, such as SP; "": none */
 };
 
 /* Parses a tag's name. name->suffix points into name->tokens. */

@@ -133,7 +133,7 @@ bool method_number(const struct matcher *matcher, const struct match_subject *su
     if (name->letters < 0)
         return false;
     const struct name_token *number = &name->tokens.at[name->number];
-    /* seen in the prefix; if both are, the prefix names equipment, and the equipment's number is used */
+    /* runs of digits and of letters seen in the prefix; with both, the prefix names equipment whose number is used */
     bool digits = false, letters = false;
     for (int i = 0; i < name->letters; i++) {
         digits |= name->tokens.at[i].digits && name->tokens.at[i].raw_length >= 3;
@@ -176,7 +176,7 @@ bool method_number(const struct matcher *matcher, const struct match_subject *su
 static bool is_part(const struct isa_name *name, const struct name_tokens *of)
 {
     int at = 0;
-    bool letters = false; /* letters of the asset's name were found */
+    bool letters = false; /* some matching token of the asset's name has letters */
     for (int i = 0; i < name->tokens.count; i++) {
         const struct name_token *token = &name->tokens.at[i];
         int next = at;

@@ -15,9 +15,9 @@ enum { MATCH_CANDIDATES = 8 };
 
 struct match {
     enum match_status status;
-    int asset, node;                                   /* -1: none. node: a node below the asset's root that the tag's name refers to */
+    int asset, node; /* the matched asset, and the node below its root that the tag's name refers to; -1: none */
     double confidence;                                 /* 0 to 1 */
-    char *reason;                                      /* one line of English; the caller frees it */
+    char *reason;                                      /* reason for the match, one line of English; the caller frees it */
     int candidates[MATCH_CANDIDATES], candidate_count; /* assets that the tag may belong to if the match is not sure, likeliest first */
 };
 

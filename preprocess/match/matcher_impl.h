@@ -10,13 +10,13 @@ enum { CANDIDATES = 8, METHOD_REASON_BYTES = 240 };
 
 struct match_candidates { /* distinct assets */
     int assets[CANDIDATES];
-    int nodes[CANDIDATES]; /* node of each asset that was found first; -1: the asset itself, or several nodes */
+    int nodes[CANDIDATES]; /* by asset: its node that was found first; -1: the asset itself, or several nodes */
     int count;
     bool more; /* there are more candidates than listed */
 };
 
 struct proposal {
-    struct match_candidates candidates; /* one candidate: the proposal; several: one of these */
+    struct match_candidates candidates; /* a single candidate is the proposal; of several, one must be chosen */
     double confidence;
     char reason[METHOD_REASON_BYTES];
 };

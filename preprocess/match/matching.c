@@ -197,7 +197,7 @@ static bool obey(struct matching_run *run)
                                  .confidence = match->asset == asset ? match->confidence : 1,
                                  .reason = mem_strdup("by hand") };
         if (match->node < 0 && match->confidence > 0.98)
-            match->confidence = 0.95; /* the place is still an assumption */
+            match->confidence = 0.95; /* not 1, because the place is still an assumption */
         run->by_hand++;
     }
     mem_free(path);
@@ -631,7 +631,8 @@ static bool match(struct matching_run *run)
     bool good = child_run(&(struct child_params){ .call = match_in_child,
                                                   .arg = &answer,
                                                   .name = "the tag list reader",
-                                                  .folder = folder, /* so that relative paths still work */
+                                                  /* the child starts in the current folder, so that relative paths still work */
+                                                  .folder = folder,
                                                   .timeout_s = run->params->timeout_s,
                                                   .memory_bytes = run->params->memory_bytes,
                                                   .timeout_option = "--timeout; plantcastd: --limit import-seconds",

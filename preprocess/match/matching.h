@@ -14,7 +14,8 @@ struct matching_params {
     const char *const *equipment; /* selections of the nodes that become assets (equipment.h); none: keep the plant file's assets */
     int equipment_count;
     const char *source;     /* id of the source; NULL: the plant's only source, or `plc` with --modbus */
-    const char *modbus;     /* HOST or HOST:PORT of a Modbus source to add, or new address of one that a former run added; NULL: none */
+    /* HOST or HOST:PORT of a Modbus source to add, or the new address of a source that an earlier run added; NULL: none */
+    const char *modbus;
     int unit;               /* Modbus unit identifier of that source; -1: not stated */
     const char *byte_order; /* byte order of that source; NULL: not stated */
     int address_base;       /* address base of that source */

@@ -140,7 +140,7 @@ static bool take_nodes(struct model_index *site, int asset, char why[MODEL_INDEX
             from = i;
             to = tree->nodes[i].end;
         }
-    if (of->nodes && named != 1) { /* the patterns are not a single plain name */
+    if (of->nodes && named != 1) { /* the asset's node pattern is not a single plain name */
         bool *taken = mem_array(tree->count, sizeof(*taken));
         bool good = nodes_take(of->nodes, tree->nodes, tree->count, taken, reason, sizeof(reason));
         for (size_t i = 0; i < tree->count && good; i++)

@@ -11,7 +11,7 @@
 struct indexed_asset {
     struct name_tokens tokens; /* tokens of the asset's id */
     int number;                /* index of the token with the equipment's number; -1: none */
-    int model;                 /* index in models of the model_index */
+    int model;                 /* index of the asset's model in model_index.models */
     int root;                  /* common ancestor of all the asset's nodes, or their first node; -1: the whole model */
 };
 
@@ -19,7 +19,7 @@ struct model_index { /* zero-initialise */
     const struct plant *plant;
     struct model_tree *models;
     size_t model_count;
-    struct indexed_asset *assets; /* by index of the plant's assets */
+    struct indexed_asset *assets; /* data of each asset, in the order of the plant's assets */
     int **asset_of;               /* asset by model and node; -1: none. A node of several assets belongs to the first */
     struct key_map names;         /* assets by id, tag and the names of their nodes; nodes by name */
     struct key_map folded;        /* assets by name_tokens_folded() */

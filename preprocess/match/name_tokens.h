@@ -8,7 +8,7 @@
 enum { NAME_MAX_TOKENS = 48, NAME_KEY_BYTES = 256 };
 
 struct name_token {
-    char text[32];  /* upper case; digits without leading zeros; truncated if longer */
+    char text[32];  /* text of the token in upper case; digits without leading zeros; truncated if longer */
     int raw_length; /* length before removing leading zeros */
     bool digits;
     bool apart; /* a separator or blank precedes the token, or it is the first */
@@ -30,7 +30,7 @@ void name_tokens_split(const struct name_tokens *tokens, int from, int to, char 
 /* Returns whether the tokens [from, to) include a run of digits (digits true), or of letters. */
 bool name_tokens_have(const struct name_tokens *tokens, int from, int to, bool digits);
 
-enum name_slip { NAME_SAME, NAME_SLIP /* one letter doubled, left out or swapped with the next */, NAME_OTHER_LETTER, NAME_DIFFERENT };
+enum name_slip { NAME_SAME, NAME_SLIP /* one letter doubled, left out or swapped */, NAME_OTHER_LETTER, NAME_DIFFERENT };
 /* Classifies the difference between two runs of letters. */
 enum name_slip name_slip(const char *a, const char *b);
 

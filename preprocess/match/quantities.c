@@ -35,11 +35,11 @@ static bool is_number(const char *type)
 /* For each kind of unit, the quantities that use such units; the first is the default. None: the unit does not identify a quantity. */
 static const struct {
     const char *kind;
-    bool alone; /* the unit alone decides the quantity */
+    bool alone; /* the kind of unit alone decides the quantity */
     const char *quantities;
 } kinds[] = {
     { "temperature", true, "|Temperature|" },
-    { "pressure", true, "|Pressure|Differential pressure|" }, /* gauge, absolute or any other reference */
+    { "pressure", true, "|Pressure|Differential pressure|" }, /* pressure: gauge, absolute or any other reference */
     { "flow", true, "|Flow|" },
     { "density", true, "|Density|" },
     { "conductivity", true, "|Conductivity|" },

@@ -8,9 +8,9 @@
 
 struct quantity { /* an existing group or one to be added */
     char *id, *name, *unit;
-    bool is_new;        /* false: the plant file already has the group */
+    bool is_new;        /* the group is to be added; false: the plant file already has it */
     double low, high;   /* range of the scaled limits of its tags, in the group's unit; low > high: no tag has limits */
-    size_t tags, blank; /* tags: number of tags in the group; blank: those without a unit */
+    size_t tags, blank; /* number of tags in the group, and of those without a unit */
 };
 
 struct quantities { /* zero-initialise */

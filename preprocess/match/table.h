@@ -7,7 +7,7 @@
 #include <stddef.h>
 
 struct table_row {
-    char **cells; /* UTF-8, trimmed; control characters replaced by blanks */
+    char **cells; /* cell texts: UTF-8, trimmed; control characters replaced by blanks */
     size_t count, capacity;
     int line; /* line number in the file, from 1; in a spreadsheet the row number */
 };
@@ -15,7 +15,7 @@ struct table_row {
 struct cell_table {         /* zero-initialise */
     struct table_row *rows; /* rows that are not blank */
     size_t count, capacity;
-    size_t control; /* control characters that were replaced by blanks */
+    size_t control; /* number of control characters that were replaced by blanks */
 };
 
 enum { TABLE_MAX_CELLS = 1000 };

@@ -12,7 +12,7 @@
 #include "base/mem.h"
 #include "base/text/text.h"
 
-enum { MAX_SHEETS = 1024, MAX_BYTES = 1 << 28 /* size of all cells; shared strings count for each use */ };
+enum { MAX_SHEETS = 1024, MAX_BYTES = 1 << 28 /* maximum size of all cells in bytes; a shared string counts for each cell that uses it */ };
 static const size_t max_part_bytes = (size_t)512 << 20;
 
 struct xlsx_sheet {

@@ -278,7 +278,7 @@ static bool begin_section(struct tag_export *list, const struct table_row *row, 
     for (size_t i = 0; i < sizeof(kinds) / sizeof(*kinds); i++)
         if (!strcasecmp(cell, kinds[i].section)) {
             header->data_type = kinds[i].type;
-            header->columns[EXPORT_NAME] = 0; /* in these sections ItemName is the address */
+            header->columns[EXPORT_NAME] = 0; /* in these sections the column ItemName is the tag's address */
             for (size_t c = 0; c < row->count; c++)
                 if (!strcasecmp(row->cells[c], "ItemName"))
                     header->columns[EXPORT_ADDRESS] = (int)c;

@@ -11,8 +11,8 @@
 #include "preprocess/match/export_field.h"
 
 struct export_tag {
-    char *fields[EXPORT_FIELDS]; /* UTF-8; "": the field is empty; NULL only while a reader fills the tag */
-    int line;                    /* line number in the file; 0 for JSON */
+    char *fields[EXPORT_FIELDS]; /* field texts: UTF-8; "": the field is empty; NULL only while a reader fills the tag */
+    int line;                    /* line number of the tag in the file; 0 for JSON */
 };
 
 struct tag_export {                /* zero-initialise */
@@ -22,9 +22,9 @@ struct tag_export {                /* zero-initialise */
     struct export_tag *tags;        /* in file order; names are unique, case-insensitive */
     size_t count, capacity;
     size_t rows;                       /* number of tags before duplicates were merged */
-    size_t same, differing;            /* duplicate rows left out: equal to the first row of the name, and different from it */
+    size_t same, differing;            /* duplicate rows left out: rows equal to the first one of their name, and rows different from it */
     char *differing_lines;             /* the first different duplicates, "TT-101 (lines 5 and 80), ..."; NULL: none */
-    size_t nameless, control, damaged; /* rows without a name (left out); control characters; undecodable characters */
+    size_t nameless, control, damaged; /* numbers of rows without a name (left out), of control characters and of undecodable characters */
     struct text remarks;               /* further remarks for people, one a line */
     size_t renamed;                    /* tags that share their name with tags of other folders and got their path as a prefix */
 };

@@ -171,7 +171,8 @@ int tag_header_read(const struct table_row *row, struct tag_header *header)
         reading.column = (int)c;
         each_key(row->cells[c], take_key, &reading);
     }
-    if (header->columns[EXPORT_ADDRESS] == header->columns[EXPORT_NAME]) /* "Instrument Tag" may be either, so use it once */
+    /* a column "Instrument Tag" fits both name and address, so it is used only as the name */
+    if (header->columns[EXPORT_ADDRESS] == header->columns[EXPORT_NAME])
         header->columns[EXPORT_ADDRESS] = -1;
     for (int f = 0; f < EXPORT_FIELDS; f++)
         known += header->columns[f] >= 0;

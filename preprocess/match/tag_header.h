@@ -10,7 +10,7 @@ struct tag_header {
     int tag_type;               /* column of Ignition's tag type, which marks folders; -1: none */
     int span;                   /* column with the length of a range that begins at the scaled low limit; -1: none */
     int kind, specifier;        /* columns of Studio 5000: kind of the row, and element that a comment describes; -1: none */
-    const char *data_type;      /* data type of all following rows; NULL: unknown */
+    const char *data_type;      /* data type of the tags in all following rows; NULL: unknown */
 };
 
 /* Reads a row as a header. Returns the number of recognised columns. */

@@ -94,7 +94,7 @@ static bool read_file(struct tag_rows *rows, const char *path, char why[MATCH_WH
     charset_decode(bytes, count, NULL, &text);
     rows->separator = table_separator(text.utf8);
     bool good = table_read_csv(&table, text.utf8, rows->separator, why, MATCH_WHY_BYTES);
-    if (good && table.count > 1) { /* the list has rows besides the header */
+    if (good && table.count > 1) { /* keep the rows only if there are any besides the header */
         rows->at = table.rows;
         rows->count = table.count;
         rows->capacity = table.capacity;
@@ -324,7 +324,7 @@ void tag_rows_write(const struct tag_rows *rows, struct text *out)
     size_t width = rows->at[0].count;
     bool *used = mem_array(width + 1, sizeof(*used));
     for (size_t c = 0; c < width; c++) {
-        used[c] = rows->known > 1; /* keep columns that the file already had */
+        used[c] = rows->known > 1; /* a column that the file already had is kept even if it is blank */
         for (size_t i = 1; i < rows->count && !used[c]; i++)
             used[c] = *table_cell(&rows->at[i], (int)c);
     }

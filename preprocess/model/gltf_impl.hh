@@ -86,7 +86,7 @@ struct uv_transform {
     int set = 0;          /* n of TEXCOORD_n */
     bool bounded = false; /* the mapping is valid only inside 0..1, because the continuation cannot be drawn */
 };
-enum { BASE_COLOR, METALLIC_ROUGHNESS, NORMAL, OCCLUSION, EMISSIVE, USE_COUNT }; /* the uses of textures by a material */
+enum { BASE_COLOR, METALLIC_ROUGHNESS, NORMAL, OCCLUSION, EMISSIVE, USE_COUNT }; /* the ways in which a material uses textures */
 
 /* The distinct mappings of a material's textures, at most two, because a vertex stores two texture coordinates. */
 struct uv_lays {

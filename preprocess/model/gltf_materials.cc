@@ -11,7 +11,7 @@ namespace gltf
 namespace
 {
 
-struct use { /* the use of a texture by a material */
+struct use { /* a material's use of a texture */
     int texture, set;
     const tinygltf::ExtensionMap *extensions;
 };
@@ -219,7 +219,7 @@ void read_materials(gltf_work *w)
     model->materials = new_array<asset_material>(w->parsed.materials.size() + 1);
     model->material_names = new_array<char *>(w->parsed.materials.size() + 1);
     model->textures = new_array<gltf_texture>(USE_COUNT * w->parsed.materials.size() + 1);
-    /* the additional one: nodes outside the scene */
+    /* room for one more text, about nodes outside the scene */
     model->left_out = new_array<char *>(USE_COUNT * w->parsed.materials.size() + d->look_count + 2);
     for (size_t i = 0; i < d->look_count; i++)
         leave_out(w, d->looks[i]);

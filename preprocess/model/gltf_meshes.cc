@@ -239,7 +239,7 @@ void read_meshes(gltf_work *w)
         check_morphing(mesh.weights, name);
         for (size_t i = 0; i < mesh.primitives.size(); i++) {
             gltf_primitive *primitive = &model->primitives[model->primitive_count];
-            model->primitive_count++; /* incremented first, so that a partially read primitive is freed on errors */
+            model->primitive_count++; /* count the primitive before it is read, so that a partially read one is freed on errors */
             if (!read_primitive(w, mesh.primitives[i], primitive, out, name + ", primitive " + std::to_string(i)))
                 model->primitive_count--;
         }

@@ -56,7 +56,7 @@ void local_of(gltf_work *w, const tinygltf::Node &node, double out[16], const st
     check_affine(out, what);
 }
 
-struct node_order { /* nodes while they are put in order */
+struct node_order { /* the scene's nodes while they are put in depth-first order */
     gltf_work *w;
     std::vector<gltf_node> out;
     std::vector<char> seen;

@@ -28,7 +28,7 @@ struct gltf_mesh {
 };
 
 struct gltf_node {    /* depth first: the subtree of node i is the range [i, end) */
-    char *name;       /* "": the node has no name */
+    char *name;       /* name of the node; "": it has none */
     int parent, mesh; /* indices; -1: none */
     uint32_t end;
     uint32_t number;  /* index in the file's list of nodes; instances below a node have that node's index */
@@ -42,7 +42,7 @@ struct gltf_texture {
 
 struct gltf_image {
     char *name;
-    unsigned char *bytes; /* encoded as in the file: PNG or JPEG */
+    unsigned char *bytes; /* bytes of the image as stored in the file: PNG or JPEG */
     size_t size;
 };
 
@@ -52,11 +52,11 @@ struct gltf_model {
     struct gltf_node *nodes; /* nodes of the default scene */
     struct asset_material *materials;
     char **material_names;
-    struct gltf_texture *textures; /* one for each use of an image by a material; materials refer to these */
+    struct gltf_texture *textures; /* textures that materials refer to, one for each use of an image by a material */
     struct gltf_image *images;
     uint32_t primitive_count, mesh_count, node_count, material_count, texture_count, image_count;
     uint32_t skipped_lines, skipped_points; /* sums over all meshes */
-    uint32_t scaled_rotations;              /* nodes and instances whose rotation quaternion is not of unit length */
+    uint32_t scaled_rotations;              /* number of nodes and instances whose rotation quaternion is not of unit length */
     char **left_out;                        /* a text for each texture use and each extension that is ignored */
     uint32_t left_out_textures;
 };

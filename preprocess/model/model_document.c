@@ -12,7 +12,7 @@
 #include "preprocess/model/model_rules.h"
 #include "preprocess/model/model_uri.h"
 
-#define MAX_ZERO_BYTES ((uint64_t)64 << 20) /* limit for accessors without a buffer view, which take no bytes in the file */
+#define MAX_ZERO_BYTES ((uint64_t)64 << 20) /* maximum bytes of accessors without a buffer view, which take no space in the file */
 
 /* --- buffers ------------------------------------------------------------------------------------------------------------- */
 

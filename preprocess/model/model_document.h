@@ -12,12 +12,12 @@ extern "C" {
 struct document_bytes {
     const unsigned char *at; /* points into `own`, into the source's bytes, or into another buffer */
     size_t size;
-    unsigned char *own; /* allocation to free; NULL: the bytes belong to something else */
+    unsigned char *own; /* allocation to free; NULL: the bytes belong to another object */
 };
 
 struct document_image {
     char *name, *missing;        /* missing: reason why the image could not be read; NULL: it was read */
-    struct document_bytes bytes; /* encoded as in the file: PNG, JPEG or WebP */
+    struct document_bytes bytes; /* bytes of the image as stored in the file: PNG, JPEG or WebP */
 };
 
 struct model_document {

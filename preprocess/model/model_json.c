@@ -6,7 +6,7 @@
 
 #include "base/mem.h"
 
-#define MAX_LEVELS 64 /* nesting of arrays and objects; glTF needs about ten, extras a few more */
+#define MAX_LEVELS 64 /* maximum nesting of arrays and objects; glTF needs about ten levels, extras a few more */
 
 static uint32_t read_u32(const unsigned char *at)
 {

@@ -7,7 +7,7 @@
 
 #include "preprocess/model/refusal.h"
 
-struct model_bytes { /* bytes that belong to something else */
+struct model_bytes { /* a range of bytes owned by another object */
     const unsigned char *at;
     size_t size;
 };

@@ -9,7 +9,7 @@
 #include <string.h>
 
 enum rule_kind { OBJECT, LIST, TEXT, FLAG, NUMBER, NUMBERS, SIZE, COUNT, INDEX, INDICES, ATTRIBUTES };
-enum rule_need { MAY, MUST }; /* MUST: the property must exist if its parent object does */
+enum rule_need { MAY, MUST }; /* MUST: the property is required if its parent object exists */
 
 struct model_rule {
     const char *list, *path; /* path: dots separate nested objects, which earlier rules check */
@@ -104,7 +104,7 @@ struct rule_check { /* the object being checked */
     json_t *root;
     const char *list; /* name of the object's list; NULL: the document itself */
     size_t number;
-    int primitive; /* primitive of mesh `number`; -1: not a primitive */
+    int primitive; /* primitive being checked, of mesh `number`; -1: the object is no primitive */
     char *why;
 };
 

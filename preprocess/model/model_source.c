@@ -17,7 +17,7 @@ static bool hash_uri(const struct model_source *source, const char *what, size_t
 {
     size_t size;
     char uri_why[MODEL_WHY_BYTES];
-    if (!uri || model_uri_is_data(uri)) /* data in the file itself, which is hashed already */
+    if (!uri || model_uri_is_data(uri)) /* embedded data is part of the file, which is hashed already */
         return true;
     unsigned char *bytes = model_uri_read(source->folder, uri, &size, uri_why);
     if (!bytes && strcmp(what, "image") == 0) /* the model can be drawn without the image; adding the image later changes the hash */

@@ -6,7 +6,7 @@
 
 #include "preprocess/model/refusal.h"
 
-#define MODEL_MAX_BYTES ((size_t)4 << 30) /* limit for a model file and for each file that it names */
+#define MODEL_MAX_BYTES ((size_t)4 << 30) /* maximum size of a model file, and of each file that it names */
 
 /* Returns whether a URI contains its data ("data:"). */
 bool model_uri_is_data(const char *uri);

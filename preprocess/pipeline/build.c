@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#define XXH_STATIC_LINKING_ONLY /* allows a hash state on the stack */
+#define XXH_STATIC_LINKING_ONLY /* makes xxhash declare the type of its hash state, for a state on the stack */
 #include <xxhash.h>
 
 #include "base/clock.h"
@@ -62,7 +62,7 @@ static void hash_gp(XXH3_state_t *state, const struct plant *plant, const struct
         if (!has_sensor || !plant_prepares(&plant->groups[g], INTERPOLATION_GP))
             continue;
         if (gp->fit)
-            plant_model_hash(gp->fit, &readings); /* an unreadable file is reported where it is used */
+            plant_model_hash(gp->fit, &readings); /* ignore errors: an unreadable readings file is reported where it is used */
         XXH3_64bits_update(state, numbers, sizeof(numbers));
         XXH3_64bits_update(state, &readings, sizeof(readings));
     }
@@ -164,7 +164,7 @@ struct build {
     struct workers_task *sending;          /* task that writes the asset's file to disk */
     void (*tasks[2])(struct build *build); /* two tasks that run concurrently */
     bool failed[2];
-    int write_error; /* errno of the last write; 0: none */
+    int write_error; /* errno of a failed write; 0: no error */
     char *why;
 };
 
@@ -462,14 +462,14 @@ static bool lay_out(struct build *build, const struct clusters *clusters)
     char view_why[200];
     memcpy(parts.origin_m, g->origin_m, sizeof(parts.origin_m));
     size_t size;
-    wrong(build->why, "out of memory for its file"); /* default error, unless a later step gives another one */
+    wrong(build->why, "out of memory for its file"); /* the default error text, unless a later step gives another one */
     void *bytes = asset_build(&parts, &size);
     if (bytes && build->write_error)
         return wrong(build->why, "its distances cannot be written into %s: %s", input->folder, strerror(build->write_error));
     if (!bytes)
         return false;
-    return asset_view_fresh(&output->view, bytes, size, view_why) || /* never write a file that a reader would reject */
-           wrong(build->why, "its file would be wrong: %s", view_why);
+    /* check the file first: one that a reader would reject must not be written */
+    return asset_view_fresh(&output->view, bytes, size, view_why) || wrong(build->why, "its file would be wrong: %s", view_why);
 }
 
 static bool build_file(struct build *build)
@@ -486,7 +486,7 @@ static bool build_file(struct build *build)
             return false;
         build->geometry_report = build->output->report;
         build->keeping = workers_begin(build->workers, write_caches, build);
-        surface_field_finish(&build->measured.field); /* free it early, because it is large */
+        surface_field_finish(&build->measured.field); /* free the field early, because it is large */
     }
     if (!any && input->sensor_count > 0)
         sensor_distances_even(&build->distances, input->sensor_count, own);

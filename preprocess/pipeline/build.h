@@ -6,7 +6,7 @@
 #include "base/workers.h"
 #include "preprocess/pipeline/build_io.h"
 
-#define BUILD_REVISION 54u /* must be incremented whenever the same input would give a different file */
+#define BUILD_REVISION 54u /* revision of the file contents; must be incremented whenever the same input would give a different file */
 
 /* Builds the asset into output->file, a draft that the caller names (folder_put()) and closes. Uses all workers. Returns false with the
  * reason in why; then there is no file. Thread: any. */

@@ -11,13 +11,13 @@
 
 struct geometry_cache;
 struct build_input {
-    const struct gltf_model *model; /* parsed model; unused if `cache` is set */
+    const struct gltf_model *model; /* parsed model to cut the asset from; unused if `cache` is set */
     struct geometry_params geometry;
-    const struct plant *plant;          /* its groups and tags determine where the field needs subdivision */
-    const struct plant_sensor *sensors; /* position_m is set for all sensors, including those given by a node */
+    const struct plant *plant;          /* the plant; its groups and tags determine where the field needs subdivision */
+    const struct plant_sensor *sensors; /* the asset's sensors; position_m is set for all of them, including those given by a node */
     size_t sensor_count;
     uint64_t key;
-    const struct geometry_cache *cache; /* cached geometry for geometry_key; NULL: none */
+    const struct geometry_cache *cache; /* cached geometry for geometry_key; NULL: there is none */
     const char *folder;                 /* folder of prepared files and the build cache; NULL: none */
     uint64_t geometry_key, distances_key;
 };
@@ -25,31 +25,31 @@ struct build_input {
 struct build_level {
     uint32_t triangles;       /* triangles after simplification */
     uint32_t split_triangles; /* triangles after subdivision */
-    uint32_t vertices;        /* vertices of the prefix that the level uses */
+    uint32_t vertices;        /* number of vertices that the level uses, a prefix of all vertices */
     float error_m;
-    struct level_left left[LEVEL_LIMITS]; /* edges that subdivision left with an error */
+    struct level_left left[LEVEL_LIMITS]; /* edges that still have a field error after subdivision */
 };
 
 struct build_report {
     uint32_t nodes, triangles, vertices, primitives, materials, textures, degenerate_triangles, repeated_triangles, computed_normals;
     uint32_t turned_triangles, closed_gaps;
     uint32_t skipped_lines, skipped_points; /* primitives skipped because they are not triangles */
-    struct surface_report surface;          /* zero if the asset has no sensor */
-    size_t unreachable_vertices;            /* vertices without a finite distance to any sensor */
+    struct surface_report surface;          /* report of the surface; zero if the asset has no sensor */
+    size_t unreachable_vertices;            /* number of vertices without a finite distance to any sensor */
     /* stocked: 1 if the geometry came from the cache; kept_sensors: sensors whose distances came from the cache */
     uint32_t stocked, kept_sensors;
     struct build_level levels[LEVELS_MAX];
     size_t level_count, levels_given_up;
     size_t split_measured, split_kept; /* samples of the field during subdivision: computed in this run, and reused from the last run */
-    struct bend_report bend;           /* bend of harmonic, fin and gp between corners; zero: no group requests them */
-    struct cloud_report cloud;         /* distances by heat on a point cloud; zero: no group requests them */
-    char stray[STRAY_TEXT_BYTES];      /* pieces far from the main part (geometry/stray.h); "": none */
+    struct bend_report bend;           /* measured bend of harmonic, fin and gp between corners; zero: no group requests them */
+    struct cloud_report cloud;         /* report of distances by heat on a point cloud; zero: no group requests them */
+    char stray[STRAY_TEXT_BYTES];      /* text about pieces far from the main part (geometry/stray.h); "": there are none */
     double read_s, surface_s, solve_s, levels_s, split_s;
 };
 
 struct build_output {
     struct folder_draft file;
-    struct asset_view view; /* view into the bytes of `file` */
+    struct asset_view view; /* view into the contents of `file` */
     struct build_report report;
 };
 

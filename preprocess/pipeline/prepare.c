@@ -22,11 +22,12 @@
 #include "preprocess/pipeline/sensor_distances.h"
 #include "preprocess/pipeline/build_report_json.h"
 
-#define FAR_M 0.25       /* metres; a sensor farther from its surface than this, */
-#define FAR_OF_SIZE 0.05 /* or than this share of the asset's size, causes a warning */
+#define FAR_M 0.25       /* distance in metres of a sensor from its surface above which a warning is due */
+#define FAR_OF_SIZE 0.05 /* the same distance as a share of the asset's size; the smaller one applies */
 
-#define BATCH_TRIANGLES 4e6 /* models are parsed until their assets have this many triangles; then the assets are built */
-#define ALONE_TRIANGLES 1e6 /* larger assets are built one at a time with all cores, because two at once would need twice the memory */
+#define BATCH_TRIANGLES 4e6 /* triangle count of a batch: models are parsed until their assets have this many, then the assets are built */
+/* triangle count above which assets are built one at a time with all cores, because two at once would need twice the memory */
+#define ALONE_TRIANGLES 1e6
 #define SENSORS_WORK 6e4    /* progress estimate: measured cost of an asset's first sensor, in triangles */
 
 struct prepare_run {

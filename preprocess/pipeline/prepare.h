@@ -20,14 +20,14 @@ struct prepare_asset {
     struct plant_sensor *sensors;
     size_t sensor_count;
     float *surface_distances_m;                        /* distance of each sensor from the surface; NULL: preparing failed */
-    double size_m[3];                                  /* in the asset frame, the last is the height; 0: unknown */
+    double size_m[3];                                  /* size of the asset in its own frame, the last is the height; 0: unknown */
     double far_m;                                      /* distance of a sensor from its surface above which a warning is due */
     uint64_t recipe, key, geometry_key, distances_key; /* recipe: result of build_recipe() */
     char *missing;               /* reason why the model, or the node of a sensor, cannot be used; NULL: no such failure */
-    struct geometry_cache cache; /* open while the asset is built; parts.bytes NULL: not open */
+    struct geometry_cache cache; /* geometry cache, open while the asset is built; parts.bytes NULL: not open */
     size_t same_as;              /* index of the first asset with the same key, which owns the file */
     enum prepare_state state;
-    char *rebuilt_because; /* defect of the existing file; NULL: none */
+    char *rebuilt_because; /* defect of the existing file, which caused a rebuild; NULL: none */
     uint32_t triangles, vertices;
     bool reported; /* `report` is set: always after a build, otherwise if the file's report was kept */
     struct build_report report;
@@ -47,9 +47,9 @@ struct prepare {
 struct prepare_params {
     const char *folder;
     const char *only;                  /* id of the only asset to prepare, with the manifest unchanged; NULL: all assets */
-    FILE *progress;                    /* stream for progress lines; NULL: silent */
+    FILE *progress;                    /* receives progress lines; NULL: prints nothing */
     struct service_patience *patience; /* receives the status after each asset; NULL: not reported */
-    const atomic_bool *stop;           /* no further asset is started once true; NULL: never stops */
+    const atomic_bool *stop;           /* stop request: once true, no further asset is started; NULL: never stops */
 };
 
 /* Prepares the plant's assets into params->folder, one process at a time per folder. Errors go to diag, by line of the plant file or tag

@@ -14,7 +14,7 @@ struct progress { /* zero-initialise; out NULL: prints nothing */
     FILE *out;
     bool terminal;
     int64_t began_ns, said_ns;
-    size_t total, there, done; /* numbers of assets: all; those that need no work; finished ones of the rest */
+    size_t total, there, done; /* numbers of assets: all; those that need no work; those of the rest that are finished */
     size_t known;              /* assets of the rest whose amount of work is known */
     double work_known, work_done;
 };

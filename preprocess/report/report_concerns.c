@@ -8,10 +8,11 @@
 #include "preprocess/subdivision/subdivide.h"
 #include "preprocess/report/text_table.h"
 
-#define METHODS_DIFFER 0.05   /* root mean square relative to the largest distance; more than the heat method's own smoothing */
-#define FIELD_SLACK 1.05      /* tolerance for single-precision rounding in the target error of subdivision */
-#define BENT_SHARE 1e-3       /* share of an asset's surface; a smaller affected area is not reported */
-#define HIGH_POWER 5          /* from this power on, the error of a distance alone can exceed two colour steps */
+/* root mean square difference relative to the largest distance; smaller ones are due to the heat method's own smoothing */
+#define METHODS_DIFFER 0.05
+#define FIELD_SLACK 1.05      /* factor on the target error of subdivision, for single-precision rounding */
+#define BENT_SHARE 1e-3       /* share of an asset's surface; if less of it is affected, nothing is reported */
+#define HIGH_POWER 5          /* power from which on the error of a distance alone can exceed two colour steps */
 #define DISTANCE_ERROR 0.0031 /* relative error of a distance along the surface: the worst of accuracy_test's whole shapes */
 
 const char *const report_states[] = { "left", "failed", "unchanged", "shared", "built" };
@@ -113,7 +114,7 @@ static void add_sizes(struct concerns *concerns, const struct prepare *prepare)
     for (size_t i = 0; i < prepare->asset_count; i++) {
         const struct prepare_asset *asset = &prepare->assets[i];
         char why[SIZE_WHY_BYTES];
-        bool stray = asset->reported && asset->report.stray[0]; /* that problem already explains the size */
+        bool stray = asset->reported && asset->report.stray[0]; /* the stray pieces are reported already, and explain the size */
         if (!stray && asset_longest_m(asset->size_m) > 0 && asset_size_doubtful(asset->plant, asset->size_m, median_m, why))
             add(concerns, asset, 1e6, mem_strdup(why));
     }

@@ -10,11 +10,11 @@
 
 #define L INTERP_LANES
 #define MIN_M 1e-5f        /* metres; a sensor nearer than this has all the weight */
-#define MIN_EXP -87.0f     /* exp of a smaller argument is denormal */
+#define MIN_EXP -87.0f     /* argument below which exp() is denormal */
 #define MIN_NEARNESS 1e-3f /* lower limit of nearness for slopes: a decay below 1 has an infinite slope at the end of the radius */
 
 typedef float lanes __attribute__((vector_size(4 * L)));
-typedef int32_t mask __attribute__((vector_size(4 * L))); /* per lane all bits set or none */
+typedef int32_t mask __attribute__((vector_size(4 * L))); /* mask: per lane all bits set or none */
 
 SIMD_BODY void load(const float *from, lanes *to)
 {
@@ -26,7 +26,7 @@ SIMD_BODY void store(const lanes *from, float *to)
     memcpy(to, from, sizeof(*from));
 }
 
-SIMD_BODY void keep(const mask *which, lanes *x) /* sets the other lanes to 0 */
+SIMD_BODY void keep(const mask *which, lanes *x) /* keeps the lanes in the mask and sets the others to 0 */
 {
     *x = (lanes)(*which & (mask)*x);
 }
@@ -206,7 +206,7 @@ SIMD_BODY void exponential(lanes *x)
     const lanes lowest = (lanes){ 0 } + MIN_EXP;
     take_more(&lowest, x);
     lanes halves = *x * 1.44269504f - 0.5f;
-    mask n = __builtin_convertvector(halves, mask); /* truncation towards 0, which rounds to the nearest integer here */
+    mask n = __builtin_convertvector(halves, mask); /* conversion truncates towards 0, which rounds to the nearest integer here */
     lanes whole = __builtin_convertvector(n, lanes), r = *x - whole * 0.693359375f + whole * 2.12194440e-4f, p;
     p = 1.3888889e-3f * r + 8.3333333e-3f;
     p = p * r + 4.1666667e-2f;
@@ -219,7 +219,7 @@ SIMD_BODY void exponential(lanes *x)
 
 struct softmax {
     float per_m, largest; /* largest: exponent of the largest contributing sensor */
-    float near_m;         /* used if there is a reach */
+    float near_m;         /* distance to the nearest sensor, metres; used only with a reach */
 };
 
 /* Computes the nearness of sensors: 1 at the sensor, 0 at the radius and beyond. */

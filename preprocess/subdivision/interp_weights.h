@@ -21,7 +21,7 @@ float interp_least(const float *values, size_t count);
 
 struct interp_group {
     const float *strength, *decay;
-    bool decays;          /* true if any decay differs from 1 */
+    bool decays;          /* some sensor's decay differs from 1 */
     float power, reach_m; /* reach_m: INFINITY for no limit; out of reach of all sensors, the nearest one has all the weight */
     size_t count;
 };

@@ -235,11 +235,12 @@ static double worst_of(const struct linear_error *linear, const struct error_que
             at[c] = question->corners[c] + first;
             reached = reached && (g % 2 != INTERPOLATION_SHEPARD || has_value(at[c], count));
         }
-        double slope = (double)sample[linear->share_count + g]; /* below 0: minus the distance in metres from the end of the data */
+        /* if below 0: minus the distance in metres from the end of the group's data */
+        double slope = (double)sample[linear->share_count + g];
         if (reached && slope >= -question->wide_m && question->modes & 1 << g / 2 / linear->group_count)
             most = max_of((double)interp_error(at, question->weights, question->corner_count, sample + first, count) -
                               min_of(question->slack_m * max_of(slope, 0), MAX_SLACK),
-                          most); /* this order of arguments ignores NaN */
+                          most); /* the order of the arguments of max_of() matters: it ignores NaN */
         first += count;
     }
     return most;

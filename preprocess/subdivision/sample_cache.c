@@ -8,7 +8,8 @@
 #include "preprocess/cache/build_cache.h"
 #include "surface/mesh/trimesh.h"
 
-#define TRI_BITS 24 /* low bits of an entry: triangle index + 1; above them the key's low bits. The key's high bits select the slot. */
+/* low bits of an entry, which hold the triangle index + 1; the key's low bits are above them, its high bits select the slot */
+#define TRI_BITS 24
 #define NOWHERE ((1u << TRI_BITS) - 1)
 #define FULL 0.85
 #define WORTH 0.5 /* share of a run's lookups that the file must answer, or it is rewritten */

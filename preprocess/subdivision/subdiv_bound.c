@@ -7,7 +7,7 @@
 #include "base/mem.h"
 #include "preprocess/subdivision/subdivide_impl.h"
 
-#define SAMPLE_OF 8 /* one in so many blocks of triangles is sampled; a power of 2 */
+#define SAMPLE_OF 8 /* one block of triangles in this many is sampled; a power of 2 */
 #define BLOCK 8     /* triangles per block */
 #define GRAIN 4096  /* triangles per unit of work: a few tenths of a millisecond */
 #define SURE 1.5    /* standard deviations by which the sample must exceed the limit */
@@ -76,7 +76,8 @@ size_t subdiv_take_sample(struct level *sample, const struct level *level)
         to->first_index = sample->index_count;
         for (uint32_t i = 0; i + 3 * BLOCK <= level->primitives[p].index_count; i += 3 * BLOCK) {
             uint32_t at = level->primitives[p].first_index + i;
-            if (at / (3 * BLOCK) * 0x9e3779b9u >> 16 & (SAMPLE_OF - 1)) /* the hash avoids resonance with repetition in the model */
+            /* choosing blocks by a hash avoids resonance with repetition in the model */
+            if (at / (3 * BLOCK) * 0x9e3779b9u >> 16 & (SAMPLE_OF - 1))
                 continue;
             memcpy(sample->indices + sample->index_count, level->indices + at, 3 * BLOCK * sizeof(*sample->indices));
             sample->index_count += 3 * BLOCK;

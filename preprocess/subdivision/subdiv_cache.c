@@ -13,10 +13,10 @@
 #include "preprocess/subdivision/subdivide_impl.h"
 
 #define MAX_CHANGES 16 /* limit of sensor changes */
-#define FEW 16         /* changes must be fewer than one in this many sensors */
+#define FEW 16         /* cached findings are used only if fewer than one sensor in this many changed */
 /* measured: at this doubt, one in a thousand edges with an error of about a step is off by a tenth of a step or more */
 #define MAX_DOUBT 0.05f
-#define MAX_SETTLED 0.5f /* limit of doubt for findings whose error is too far from any limit to cross it */
+#define MAX_SETTLED 0.5f /* maximum doubt for findings whose error is too far from any limit to cross it */
 #define LITTLE 0.4f      /* share of the relevant error; an edge with a smaller error at its midpoint was not measured elsewhere */
 
 struct subdiv_cache_entry {
@@ -38,8 +38,8 @@ struct subdiv_head {
 /* Flags for the optional numbers of a finding; most findings have only a key and an error. The numbers follow in this order. */
 #define SHARE_FOLLOWS 1
 #define BARRED_FOLLOWS 2
-#define DOUBT_FOLLOWS 4 /* doubt, and how far the error may be off */
-#define SHARE_IS_HALF 8 /* the share is 0.5; without this flag and SHARE_FOLLOWS it is 0 */
+#define DOUBT_FOLLOWS 4 /* the finding's doubt follows, and how far its error may be off */
+#define SHARE_IS_HALF 8 /* the split fraction is 0.5; without this flag and SHARE_FOLLOWS it is 0 */
 #define JUMPS 16
 
 /* --- sensors ---------------------------------------------------------------------------------------------------------------------- */

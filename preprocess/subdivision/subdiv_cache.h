@@ -31,7 +31,7 @@ struct subdiv_cache {
     size_t change_count;
     uint64_t hopeless, given_up; /* bit masks of levels: those not to try in this run; those dropped in this run */
     uint64_t changes_since;      /* sensor changes since the dropped levels were last tried */
-    struct text sensors, found;  /* data of this run, to be written */
+    struct text sensors, found;  /* sensors and findings of this run, to be written to the file */
     size_t measured_count, kept_count;
 };
 

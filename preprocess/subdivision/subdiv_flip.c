@@ -10,13 +10,13 @@
 #define MAX_FLIP_ROUNDS 4  /* maximum consecutive rounds of flips */
 #define FLAT_OF_ERROR 0.02 /* share of the level's error by which the surface may move */
 #define GAIN 0.7           /* a flip must reduce the error to at most this share */
-#define CROSSING 0.02      /* share of either edge; the crossing must be at least this far from its ends */
+#define CROSSING 0.02      /* share of either edge's length; the crossing must be at least this far from its ends */
 
 #define GRAIN 1024 /* flips per unit of work: a few tenths of a millisecond */
 
 struct edge_flip {
     uint32_t edge, tris[2], across;
-    bool may; /* allowed: the edges cross, and the surface stays about in place */
+    bool may; /* the flip is allowed: the edges cross, and the surface stays about in place */
 };
 
 /* Lists edges with an error above the limit, among the triangles from index `first` of mesh->made on. */

@@ -11,16 +11,16 @@
 #include "surface/mesh/bvh.h"
 
 #define PROBABLE 0.4 /* share of the relevant error: if the error at an edge's midpoint is smaller, it is small along the whole edge */
-#define CLOSE 0.5    /* share of the distance to the nearest sensor: that rule holds only for shorter edges */
-/* share of the distance to the nearest sensor: longer edges are split in the middle, so that splits of neighbours line up */
+#define CLOSE 0.5    /* share of the distance to the nearest sensor; PROBABLE applies only to edges shorter than that */
+/* share of the distance to the nearest sensor; longer edges are split in the middle, so that splits of neighbours line up */
 #define WIDE 0.3
 #define GRAIN 256     /* minimum edges, triangles or positions per unit of work: half a millisecond */
 #define POINTS 16     /* maximum number of points sampled on an edge */
 #define CORNERS 61    /* number of cached corner samples */
 #define STEPS 2       /* refinement steps for the best split point */
 #define NO_GAIN 0.5   /* share of the error left by the best split: a smooth bend leaves a quarter, a kink nothing */
-#define ROUNDING 1e-9 /* relative; larger than the rounding error of a distance */
-#define JUMP 1.5      /* a distance cannot grow by more than this times the path, unless the surface is not connected there */
+#define ROUNDING 1e-9 /* relative margin, larger than the rounding error of a distance */
+#define JUMP 1.5 /* factor on the length of a path; a distance that grows by more has a jump, because the surface is not connected there */
 
 static uint32_t place_of(const struct subdiv *subdiv, uint32_t vertex)
 {
@@ -60,10 +60,10 @@ bool subdiv_find_parts(struct subdiv *subdiv)
     return list_faces(subdiv);
 }
 
-struct origin_sight { /* which triangles of the original model a point may lie on */
+struct origin_sight { /* the triangles of the original model that a point may lie on */
     const struct subdiv *subdiv;
-    uint32_t origin[2]; /* finest level: one of these two triangles */
-    uint32_t part;      /* coarser levels: triangles of this connected component that face the same way */
+    uint32_t origin[2]; /* in the finest level: the point lies on one of these two triangles */
+    uint32_t part;      /* in coarser levels: the point lies on triangles of this connected component that face the same way */
     double normal[3];
     struct sample_cache_notes *notes; /* notes of the calling thread */
 };
@@ -317,8 +317,8 @@ struct measure_job {
 struct measure_room {
     float *points, *corners;
     struct interp_norm *norms; /* of the last sample point */
-    uint32_t of[CORNERS + 3];  /* by slot: the position whose sample it holds; the last three slots are used when slots collide */
-    uint32_t taken[3];         /* slot of each corner of the current edge or triangle */
+    uint32_t of[CORNERS + 3];  /* by slot: the position whose sample is stored; the last three slots are used when slots collide */
+    uint32_t taken[3];         /* by corner of the current edge or triangle: its slot */
     struct sample_cache_notes notes;
 };
 

@@ -182,7 +182,8 @@ void subdiv_mesh_load(struct subdiv_mesh *mesh, const struct level *level)
     mesh->tri_count = 0;
     mesh->loads++;
     mesh->made.count = mesh->open.count = 0;
-    for (size_t e = 0; e < mesh->edges.count; e++) { /* errors depend on the level, unless an edge is proven */
+    /* forget the errors of edges that are not proven, because limits depend on the level */
+    for (size_t e = 0; e < mesh->edges.count; e++) {
         mesh->cuts[e].error = mesh->cuts[e].proven ? mesh->cuts[e].error : -1;
         mesh->cuts[e].corner = TRIMESH_NONE;
     }

@@ -17,18 +17,19 @@ struct subdiv_tri {
 };
 
 struct subdiv_edge {    /* an edge between two positions, shared by all levels */
-    uint32_t a, b;      /* vertices at its ends; where normals or texture coordinates split, one of several pairs */
+    /* vertices at the edge's ends; where several vertices share a position (split normals or texture coordinates), one of them */
+    uint32_t a, b;
     uint32_t origin[2]; /* two original triangles that contain the edge, of the first level that had it; TRIMESH_NONE: none */
     uint32_t middle;    /* position index of the split point; TRIMESH_NONE: not split */
     uint32_t load;      /* number of the last level (mesh.loads) that splits the edge */
     /* first corner of the current level's triangles at which the edge begins, 3 * triangle + i; TRIMESH_NONE: no triangle has the edge */
     uint32_t corner;
-    float share;  /* fraction of the way from a to b at which the edge is, or should be, split */
+    float share;  /* fraction of the way from a to b at which the edge is split, or should be */
     float error;  /* field error along the edge that a split may fix; below 0: not measured yet */
     float barred; /* field error along the edge that no split may fix */
     bool jumps;   /* reason for `barred`: the distance jumps; false: the edge is too short */
-    bool unasked; /* too short to split in the current level, so not measured */
-    bool proven;  /* measured and needs no split; coarser levels have looser limits */
+    bool unasked; /* the edge is too short to split in the current level, so it is not measured */
+    bool proven;  /* the edge was measured and needs no split; coarser levels have looser limits */
 };
 
 struct subdiv_list { /* a list of triangle or corner indices */
@@ -41,9 +42,9 @@ struct subdiv_mesh {
     struct geometry *geometry;
     struct welded_positions welded;
     size_t place_capacity, of_vertex_capacity, position_capacity, normal_capacity, texcoord_capacity, second_capacity, color_capacity;
-    struct edge_table edges, vertex_edges; /* `edges` by positions, `vertex_edges` by vertices */
+    struct edge_table edges, vertex_edges; /* edge tables: `edges` by positions, `vertex_edges` by vertices */
     struct subdiv_edge *cuts;
-    uint32_t *vertex_middles; /* by vertex edge: the vertex at its split point */
+    uint32_t *vertex_middles; /* by vertex edge: the vertex at the edge's split point */
     size_t cut_capacity, middle_capacity;
     uint32_t loads;          /* number of levels loaded so far */
     struct subdiv_tri *tris; /* triangles of the current level */

@@ -8,8 +8,8 @@
 #include "preprocess/subdivision/subdivide_impl.h"
 #include "surface/mesh/bvh.h"
 
-#define ON_OF_SIZE 1e-5 /* relative to the size; a sensor this near to a vertex or an edge is placed on it */
-#define MAX_CUTS 30     /* limit of splits of edges that other levels split elsewhere */
+#define ON_OF_SIZE 1e-5 /* relative to the asset's size; a sensor at most this far from a vertex or an edge is placed on it */
+#define MAX_CUTS 30     /* maximum number of splits, at a sensor, of edges that other levels split elsewhere */
 #define FEW 32          /* number of sensors up to which no search tree of the level is built */
 
 struct sensor_hit { /* where a sensor meets a level */

@@ -12,36 +12,36 @@
 
 #define MAX_ROUNDS 16
 #define GRAIN 2048              /* triangles per unit of work: a few tenths of a millisecond */
-#define MAX_STORED 512          /* limit of numbers per sample, up to which samples are stored */
-#define LARGE 0.25              /* share of the distance to the nearest sensor */
-#define LIKELY 1.0              /* sum of the edges' errors, in limits; below this, one of 500 large triangles has a larger error inside */
-#define MIN_INSIDE 2.0          /* in shortest pieces; smaller triangles are not measured inside */
+#define MAX_STORED 512          /* samples are stored if they have at most this many numbers */
+#define LARGE 0.25              /* share of the distance to the nearest sensor; a triangle with a longer edge is large */
+#define LIKELY 1.0     /* sum of a triangle's edge errors, in limits, below which one of 500 large triangles has a larger error inside */
+#define MIN_INSIDE 2.0 /* length in shortest pieces; smaller triangles are not measured inside */
 #define FLAT 1e-3               /* a triangle is flat if its longest edge is shorter than the sum of the other two by at most this share */
 #define ASIDE 0.1               /* share of the longest edge; a flat triangle's opposite corner must be this far from its ends */
-#define LINE_OF_SIZE 2.5e-7     /* relative to the size; a triangle no higher than this, a few units of the last place, is degenerate */
-#define MORE_PLACES 12.0        /* capacity for positions, in multiples of the model's */
-#define MAX_REPORTED_EDGES 2000 /* limit of the short edges of a coarser level that are measured for the report */
+#define LINE_OF_SIZE 2.5e-7 /* height relative to the asset's size; a lower triangle, a few units in the last place high, is degenerate */
+#define MORE_PLACES 12.0    /* capacity for positions, in multiples of the model's number of positions */
+#define MAX_REPORTED_EDGES 2000 /* maximum number of short edges of a coarser level that are measured for the report */
 #define FULL 2e-4               /* a level that can grow by less than this share is done, because each round uses half of the rest */
 
 /* Growth limits of the finest level: share of its triangles, and number of triangles; the larger one counts. */
 #define FINEST_GROWTH 2.0
 #define FINEST_GROWTH_TRIS 100000.0
 #define WORTH 0.95 /* a coarser level is dropped if it would need more than this share of the next finer one's triangles */
-/* the same with MANY_SENSORS or more, whose distances take most of a file, and if the finest level reached its limit */
+/* WORTH for plants with MANY_SENSORS or more, whose distances take most of a file, and if the finest level reached its limit */
 #define WORTH_MANY 0.5
 #define MANY_SENSORS 128
-#define SAMPLE_WORTH 9000 /* levels with at least this many triangles are first tried on a sample; samples of smaller ones are unreliable */
+#define SAMPLE_WORTH 9000 /* triangle count from which on a level is first tried on a sample; samples of smaller levels are unreliable */
 #define SAMPLE_ROUNDS 4   /* rounds of splits on a sample; if a level is not hopeless after them, it never will be */
 #define SHORTEST_NEAR 0.125 /* shortest pieces of the finest level, in tolerances: sensors may be close together */
 #define SHORTEST 1.0        /* shortest pieces of coarser levels, in their errors: two pixels */
 #define JUMP_WIDTH 8        /* in tolerances or errors */
-#define ON_SURFACE 0.25     /* in tolerances: positions this close may count as equal */
-#define SLACK 0.7           /* in errors: how far away the field shown by a coarser level may be */
+#define ON_SURFACE 0.25     /* in tolerances; positions at most this far apart may count as equal */
+#define SLACK 0.7           /* in errors of the level; how far from a point the field that a coarser level shows there may be */
 
 /* --- cutting -------------------------------------------------------------------------------------------------------------- */
 
 #define BINS (1u << 16)
-static uint32_t bin_of(float error) /* positive floats sort like their bit patterns */
+static uint32_t bin_of(float error) /* positive floats sort like their bit patterns, so the upper 16 bits select the bin */
 {
     uint32_t bits;
     memcpy(&bits, &error, sizeof(bits));
@@ -91,7 +91,7 @@ static bool is_too_short(const struct subdiv *subdiv, const struct subdiv_edge *
 /* Flags of a new triangle; those of an edge are shifted by its index. */
 #define SIDE_IS_NEW 1u
 #define SIDE_IS_TOO_SHORT 8u
-#define ASKS 64u /* it has new edges and is not degenerate */
+#define ASKS 64u /* the triangle has new edges and is not degenerate */
 
 struct sides {
     const struct subdiv *subdiv;

@@ -22,7 +22,7 @@
 #define SUBDIV_ERROR (1 / 255.0) /* share of the range: one colour step */
 
 struct subdiv_input {
-    struct linear_error *linear; /* its radii are set by subdivide_levels() */
+    struct linear_error *linear; /* error measure; subdivide_levels() sets its radii */
     const struct surface *surface;
     const struct surface_field *field; /* distances from the sensors */
     struct asset_sensor *sensors;      /* nearest_vertex is set to the sensor's own vertex of the finest level */

@@ -7,21 +7,21 @@
 #include "preprocess/subdivision/subdiv_mesh.h"
 #include "preprocess/subdivision/subdivide.h"
 
-#define SUBDIV_AIM (0.9 * SUBDIV_ERROR) /* limit at the sampled points; the reserve covers larger errors between them */
+#define SUBDIV_AIM (0.9 * SUBDIV_ERROR) /* error limit at the sampled points; the reserve covers larger errors between them */
 
 struct subdiv {
     const struct subdiv_input *in;
     struct subdiv_mesh mesh;
     const uint32_t *model;      /* vertex indices of the finest level's triangles before subdivision */
-    size_t sensors, samples;    /* samples: numbers in a position's sample */
-    float *geodesic_m, *interp; /* [position][sensor]; [position][sample], or NULL if too large */
+    size_t sensors, samples;    /* numbers per position: sensors, and numbers of a sample */
+    float *geodesic_m, *interp; /* [position][sensor] distances in metres; [position][sample] weights, or NULL if too large */
     struct interp_norm *norms;  /* [position][norm] */
     size_t geodesic_capacity, share_capacity, norm_capacity, norm_count; /* norm_count: normalisations per position */
     uint32_t *part;                                                      /* by position: its connected component */
     struct subdiv_face {
         double normal[3]; /* not normalised */
         uint32_t part;
-    } * faces; /* by triangle of the original model */
+    } * faces; /* normals and components, by triangle of the original model */
     size_t part_capacity;
     double size_m;
     /* State of the current level: */
@@ -29,11 +29,11 @@ struct subdiv {
     bool finest;
     double on_surface_m; /* a point farther than this from the surface is hidden inside another part */
     double error_m, shortest_m, slack_m;
-    double jump_m;                 /* where a distance jumps, shorter edges are not split */
+    double jump_m;                 /* length in metres; where a distance jumps, shorter edges are not split */
     bool finest_full;              /* the finest level reached its triangle limit */
     bool full;                     /* the level has almost reached its triangle limit */
     size_t sample_blocks;          /* number of blocks while a sample of the level is processed; else 0 */
-    double sample_of;              /* triangles of the level per triangle of the sample */
+    double sample_of;              /* number of the level's triangles per triangle of the sample */
     size_t most_tris, first_count; /* first_count: triangles before sensors were inserted */
 };
 
@@ -69,7 +69,7 @@ void subdiv_parallel(const struct subdiv *subdiv, size_t count, size_t grain, vo
 struct subdiv_finding {
     uint32_t number;
     float error, share; /* share: the best fraction at which to split the edge */
-    float barred;       /* error that no split may fix */
+    float barred;       /* error of the edge or triangle that no split may fix */
     bool jumps;
     bool is_cached;   /* the finding is from the last run */
     float doubt, off; /* see subdiv_cache.h */

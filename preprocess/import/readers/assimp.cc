@@ -30,7 +30,7 @@ extern "C" {
 namespace
 {
 
-constexpr double LONGEST_IN_METRES = 300; /* metres; a longer model is assumed to be in millimetres */
+constexpr double LONGEST_IN_METRES = 300; /* metres; a model that would be longer is assumed to be in millimetres */
 
 struct format {
     const char *ending;
@@ -45,7 +45,7 @@ const format formats[] = { { ".obj", nullptr, nullptr, true }, { ".stl", nullptr
 struct assimp_reader {
     const aiScene *scene;
     struct glb_scene *out;
-    text_encoding encoding;                      /* for names that Assimp returns as raw bytes of the file */
+    text_encoding encoding;                      /* encoding of names that Assimp returns as raw bytes of the file */
     std::vector<int> materials;                  /* index of the output material for each Assimp material; -2: not created yet */
     std::map<std::vector<unsigned>, int> meshes; /* output mesh for each list of Assimp meshes, so that nodes share meshes */
     size_t triangles = 0, lost = 0;              /* lost: triangles left out because a corner is not finite */
@@ -424,7 +424,7 @@ bool is_step(const aiNode *node)
 void add(assimp_reader *r, const aiNode *node, const transform &steps, int parent, int depth)
 {
     double matrix[16];
-    bool made_up = depth == 0 && node->mNumMeshes == 0 && node->mTransformation.IsIdentity(); /* the root node that Assimp adds */
+    bool made_up = depth == 0 && node->mNumMeshes == 0 && node->mTransformation.IsIdentity(); /* this is the root node that Assimp adds */
     bool step = is_step(node) && node->mNumMeshes == 0;
     transform place = steps * transform_of(node);
     if (depth > MAX_DEPTH)

@@ -12,7 +12,7 @@ import { readSolids, takeSolids } from './ifc_solids.mjs';
 
 const CORNERS = 24; // corners of a full circle
 const MAX_NAMED = 20;
-const MAX_DEPTH = 400; // levels of the tree; plantcast-prep reads at most 512
+const MAX_DEPTH = 400; // maximum levels of the tree; plantcast-prep reads at most 512
 const NOT_SHOWN = new Set(['IfcOpeningElement', 'IfcOpeningStandardCase', 'IfcSpace', 'IfcDistributionPort', 'IfcVirtualElement']);
 
 const webIfc = createRequire(import.meta.url)('./web-ifc-api-node.js');
@@ -37,7 +37,7 @@ class Model {
             try {
                 line = this.api.GetLine(this.id, id);
             } catch {
-                line = null; // a reference to a missing statement
+                line = null; // the id refers to a statement that the file does not have
             }
             this.lines.set(id, line);
         }
@@ -211,7 +211,7 @@ async function main([input, output, , , , encoding]) {
         throw new Error('it is no IFC file: it does not begin with ISO-10303-21');
     if (!bytes.subarray(-4096).toString('latin1').includes('END-ISO-10303-21'))
         throw new Error('it is cut off: it does not end with END-ISO-10303-21');
-    const errors = collectErrors(); // must precede web-ifc, which captures the console
+    const errors = collectErrors(); // must run before web-ifc, which captures the console
     const api = new webIfc.IfcAPI();
     api.SetWasmPath(`${folder}/`, true);
     await api.Init();

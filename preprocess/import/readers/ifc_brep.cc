@@ -187,7 +187,7 @@ class step_writer
             std::string swept = swept_curve(from);
             return "SURFACE_OF_REVOLUTION(''," + swept + ',' + text_of(from[2]) + ')';
         }
-        if (type == "IFCCARTESIANPOINT" || type == "IFCDIRECTION") { /* always three coordinates: IFC may omit the third */
+        if (type == "IFCCARTESIANPOINT" || type == "IFCDIRECTION") { /* always write three coordinates: IFC may omit the third */
             for (size_t i = 0; i < 3; i++) {
                 to << (i > 0 ? "," : "");
                 write_number(to, i < from[0].list.size() ? file::number(from[0].list[i]) : 0);
@@ -200,7 +200,7 @@ class step_writer
         }
         if (type == "IFCORIENTEDEDGE")
             return "ORIENTED_EDGE('',*,*," + text_of(from[2]) + (from[3].is(".F.") ? ",.F.)" : ",.T.)");
-        if (type == "IFCSURFACECURVE" || type == "IFCSEAMCURVE") /* the 3D curve alone defines the edge */
+        if (type == "IFCSURFACECURVE" || type == "IFCSEAMCURVE") /* an edge is fully defined by its 3D curve */
             throw unsupported(type);
         for (const auto &known : names)
             if (type == known[0]) {

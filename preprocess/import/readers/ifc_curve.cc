@@ -31,7 +31,7 @@ namespace ifc
 namespace
 {
 
-constexpr double SHORTEST_MM = 1e-4; /* millimetres; shorter pieces are dropped, since sweeps along them fail */
+constexpr double SHORTEST_MM = 1e-4; /* millimetres; shorter pieces of a curve are dropped, since sweeps along them fail */
 constexpr double JOINT_MM = 1;       /* millimetres; ends of neighbouring pieces that are closer are joined */
 
 std::vector<curve_piece> pieces_within(const ifc_model &in, const entity &curve, int depth);
@@ -364,7 +364,7 @@ std::vector<curve_piece> rounded(const std::vector<gp_Pnt> &points, const std::v
 {
     std::vector<curve_piece> out;
     size_t count = points.size();
-    std::vector<gp_Pnt> before = points, after = points; /* start and end of the arc at each corner */
+    std::vector<gp_Pnt> before = points, after = points; /* where the arc at each corner begins and ends */
     for (size_t i = closed ? 0 : 1; i + (closed ? 0 : 1) < count; i++) {
         gp_Vec in(points[i], points[(i + count - 1) % count]), on(points[i], points[(i + 1) % count]);
         double radius = radii.empty() ? 0 : radii[i % radii.size()], angle = in.Angle(on);

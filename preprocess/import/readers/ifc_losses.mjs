@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Reports losses of an IFC file: elements that have a shape but no triangles, and errors that web-ifc logs.
 const LINES = /Curve|Polyline|IfcLine|Circle|Ellipse|Point|Text|Annotation|GeometricSet|BoundingBox|Vertex|Edge|Alignment/;
-const REFERENCE = 5; // web-ifc's number for this kind of value
+const REFERENCE = 5; // web-ifc's type number of values that refer to a statement
 // Formats a record of findings.h.
 const fields = (...values) => values.map((value) => String(value).replace(/\s+/g, ' ').trim()).join('\t');
-const MAX_IDS = 20; // statement ids listed per kind of error
+const MAX_IDS = 20; // maximum number of statement ids listed per kind of error
 
 // Returns the ids of the given statements and of all statements that they refer to, directly or indirectly.
 function reached(model, ids) {

@@ -68,7 +68,7 @@ std::vector<TopoDS_Face> faces_of(const TopoDS_Wire &outer, const std::vector<To
     return { fix.Face() };
 }
 
-using lengths = std::vector<double>; /* lengths of a profile from its third value on; 0: absent */
+using lengths = std::vector<double>; /* the lengths among a profile's values, from the third on; 0: absent */
 
 /* Builds an I profile whose flanges may differ in width. The fillet radii are those between the web and each flange. */
 TopoDS_Wire i_shape(double depth, double web, double bottom, double bottom_thick, double bottom_fillet, double top, double top_thick,
@@ -171,7 +171,7 @@ TopoDS_Wire thickened(const std::vector<curve_piece> &pieces, double thickness, 
         size_t before = i > 0 ? i - 1 : 0, after = i + 1 < line.size() ? i : i - 1;
         gp_Vec in(line[before], line[before + 1]), on(line[after], line[after + 1]);
         gp_Vec left = gp_Vec(gp::DZ()).Crossed(in.Normalized()) + gp_Vec(gp::DZ()).Crossed(on.Normalized());
-        if (left.Magnitude() < 0.2) /* the mitre would be longer than ten thicknesses */
+        if (left.Magnitude() < 0.2) /* reject a mitre that would be longer than ten thicknesses */
             throw unsupported("a centre line that turns back");
         gp_Vec side = left.Normalized() * (thickness / 2 / (left.Magnitude() / 2));
         out.push_back({ line[i].X() + side.X(), line[i].Y() + side.Y(), 0 });

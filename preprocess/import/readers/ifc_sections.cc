@@ -58,8 +58,8 @@ TopoDS_Shape spine_of(const ifc_model &in, const entity &item)
 /* --- sections placed upright along a curve */
 
 struct station {
-    double along_mm; /* millimetres along the curve from its start */
-    gp_Vec offset;   /* millimetres: to the left, up, ahead */
+    double along_mm; /* position of the section along the curve from its start, millimetres */
+    gp_Vec offset;   /* offset of the section from the curve to the left, up and ahead, millimetres */
     int profile;
 };
 
@@ -117,7 +117,8 @@ void add_between(const ifc_model &in, const std::vector<curve_piece> &pieces, st
         if (high - low < 1e-6)
             continue;
         double turn = straight ? 0 : std::acos(std::fmax(-1, std::fmin(1, part.tangent(false).Dot(part.tangent(true)))));
-        double chord = std::acos(1 - std::fmin(0.5, in.chord_mm * turn / length)); /* half the turn, in radians, that one chord may take */
+        /* half the angle in radians that one chord of the curve may turn */
+        double chord = std::acos(1 - std::fmin(0.5, in.chord_mm * turn / length));
         int steps = straight ? 1 : std::max(8, static_cast<int>(std::ceil(turn / chord)));
         for (int i = 1; i <= steps; i++) {
             double share = (low + (high - low) * i / steps - from.along_mm) / (to.along_mm - from.along_mm);

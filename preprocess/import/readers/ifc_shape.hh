@@ -20,8 +20,8 @@ constexpr int MAX_CHAIN = 200;
 
 struct ifc_model {
     const file &statements;
-    double length; /* mm per unit of the file */
-    double angle;  /* radians per unit of the file */
+    double length; /* millimetres per length unit of the file */
+    double angle;  /* radians per angle unit of the file */
     double chord_mm;
 };
 
@@ -39,7 +39,7 @@ struct curve_piece {
 
     gp_Pnt start() const;
     gp_Pnt end() const;
-    gp_Vec tangent(bool at_end) const; /* unit vector in the direction of travel */
+    gp_Vec tangent(bool at_end) const; /* unit tangent vector in the direction of travel */
 };
 
 /* --- ifc_triangles.cc */

@@ -16,7 +16,7 @@ namespace ifc
 namespace
 {
 
-constexpr size_t REPRESENTATION = 6, PLACEMENT = 5; /* indices among the values of a product */
+constexpr size_t REPRESENTATION = 6, PLACEMENT = 5; /* indices of a product's representation and placement among its values */
 
 /* --- units */
 
@@ -74,7 +74,7 @@ struct ifc_writer {
     const ifc_model &in;
     struct glb_scene *scene;
     std::map<int, ifc_part> parts;     /* built items, by statement id */
-    std::map<int, std::string> failed; /* items and elements left to web-ifc, with the reason */
+    std::map<int, std::string> failed; /* items and elements left to web-ifc, with the reason for each */
     std::set<int> asked;               /* elements of which web-ifc builds nothing or only a part */
     size_t elements = 0;
 };

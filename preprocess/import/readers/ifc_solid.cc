@@ -32,7 +32,7 @@ namespace ifc
 namespace
 {
 
-constexpr double FAR_MM = 1e6; /* millimetres that a bounded half space extends from its plane */
+constexpr double FAR_MM = 1e6; /* millimetres; a half space with a boundary extends this far from its plane */
 
 /* Calls build(face) for each face and returns a compound of the results. */
 template <typename builder> TopoDS_Shape each(const std::vector<TopoDS_Shape> &faces, const builder &build)

@@ -29,7 +29,7 @@ namespace ifc
 namespace
 {
 
-constexpr double VOLUME_SLACK = 0.04; /* relative; a polygon of 24 corners has 1.1 % less area than its circle */
+constexpr double VOLUME_SLACK = 0.04; /* relative tolerance of a sweep's volume; a circle with 24 corners loses 1.1 % of its area */
 
 TopoDS_Shape wire_swept(const TopoDS_Wire &outline, const TopoDS_Wire &spine, const gp_Dir *up)
 {
@@ -43,7 +43,7 @@ TopoDS_Shape wire_swept(const TopoDS_Wire &outline, const TopoDS_Wire &spine, co
     pipe.Build();
     if (!pipe.IsDone())
         throw unsupported("a profile that cannot be swept along its curve");
-    pipe.MakeSolid(); /* fails for a closed curve, whose tube has no ends */
+    pipe.MakeSolid(); /* closing the ends fails for a closed curve, whose tube has none */
     return pipe.Shape();
 }
 

@@ -49,7 +49,7 @@ struct iges_tree {
     Handle(XCAFDoc_ColorTool) colors;
     Handle(XCAFDoc_LayerTool) layers;
     const struct text_encoding *encoding;
-    Handle(Transfer_TransientProcess) process; /* maps each entity to its shape */
+    Handle(Transfer_TransientProcess) process; /* Open CASCADE's map from each entity to its shape */
     double unit_mm;
     std::map<const Standard_Transient *, TDF_Label> made;
 };

@@ -125,7 +125,7 @@ struct occt_reader {
     Handle(XCAFDoc_LayerTool) layers;
     struct glb_scene *scene;
     double chord_mm;
-    std::map<std::string, occt_part> parts; /* by label entry and inherited colour */
+    std::map<std::string, occt_part> parts; /* tessellated parts, by label entry and inherited colour */
     size_t nodes = 0, places = 0, skipped_faces = 0, empty_parts = 0;
 };
 

@@ -17,7 +17,7 @@ extern "C" {
 }
 #include "preprocess/glb/glb_scene.h"
 
-constexpr int MAX_DEPTH = 400; /* levels of a model's tree; plantcast-prep reads at most 512 */
+constexpr int MAX_DEPTH = 400; /* maximum levels of a model's tree; plantcast-prep reads at most 512 */
 
 /* Stops the reader with an error message; reader_main() prints it. */
 [[noreturn]] inline void refuse(const char *fmt, ...) __attribute__((format(printf, 1, 2)));

@@ -18,7 +18,7 @@ enum { TEXTS = 3 };
 struct one_text {
     const char *name;
     char *before, *after; /* before: current text, NULL if there is no file; after: new text, NULL if the file stays unchanged */
-    char *kept;           /* path of the kept previous version; NULL: none is kept */
+    char *kept;           /* path of the kept previous version of the file; NULL: none is kept */
 };
 
 struct revision_making {

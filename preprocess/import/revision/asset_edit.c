@@ -186,7 +186,7 @@ static char *spliced(struct editor *editor)
     if (editor->splice_count > 0)
         qsort(editor->splices, editor->splice_count, sizeof(*editor->splices), by_begin);
     for (size_t i = 0; i < editor->splice_count; i++) {
-        if (editor->splices[i].begin < at) /* an alias: its anchor has been edited already */
+        if (editor->splices[i].begin < at) /* skip the value of a YAML alias: its anchor has been edited already */
             continue;
         text_add_bytes(&out, editor->text + at, editor->splices[i].begin - at);
         text_add(&out, "%s", editor->splices[i].with);

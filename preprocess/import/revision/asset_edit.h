@@ -9,7 +9,7 @@
 struct asset_edit { /* one asset's edit; all zero: the asset stays unchanged */
     bool removed;
     char *tag;    /* new tag of the asset; NULL: unchanged */
-    char **nodes; /* new text for each of the asset's node patterns, an element NULL where the pattern is deleted; NULL: all stay */
+    char **nodes; /* new text of each of the asset's node patterns, NULL for a deleted pattern; NULL: no pattern changes */
     size_t node_count;
 };
 

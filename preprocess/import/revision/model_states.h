@@ -9,7 +9,7 @@
 struct model_state { /* the old or the new model, loaded */
     struct model_outline outline;
     struct gltf_model model;
-    uint32_t *first; /* for each outline node its first node in `model`; further instances of that node follow it with the same number */
+    uint32_t *first; /* by outline node: its first node in `model`; further instances of the node follow with the same number */
     bool read;
 };
 
@@ -25,7 +25,7 @@ void model_states_finish(struct model_states *states);
 enum states_change {
     STATES_SAME,
     STATES_MOVED,
-    STATES_CHANGED /* the shape differs; the motion is that of its box, provided the box kept its size */
+    STATES_CHANGED /* the part's shape differs; the motion is that of its box, provided the box kept its size */
 };
 struct states_motion {
     enum states_change change;

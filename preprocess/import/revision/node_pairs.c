@@ -96,9 +96,9 @@ static void take_unpaired(struct node_pairing *p)
 /* --- runs of equal candidates --------------------------------------------------------------------------------------------------- */
 
 enum run_rule {
-    RUN_SINGLE, /* pair a run only if it has one node on each side */
+    RUN_SINGLE, /* pair nodes only where exactly one old and one new candidate are equal */
     RUN_PLACED, /* pair nodes whose boxes are in the same place */
-    RUN_ORDERED /* single nodes; then nodes in the same place; then the rest in order if their numbers are equal */
+    RUN_ORDERED /* pair single candidates; then nodes in the same place; then the rest in order if both sides have equally many */
 };
 
 static void pair_placed(struct node_pairing *p, const int *olds, size_t old_count, const int *news, size_t new_count)
@@ -204,7 +204,7 @@ static json_t *guids_of(const struct model_outline *outline)
     json_t *found = json_object();
     for (size_t i = 0; i < outline->header.count; i++) {
         const char *guid = model_outline_property(&outline->nodes[i], "GlobalId");
-        if (guid) /* -1: several nodes share this GUID */
+        if (guid) /* -1 marks a GUID that several nodes share */
             json_object_set_new_nocheck(found, guid, json_integer(json_object_get(found, guid) ? -1 : (json_int_t)i));
     }
     return found;

@@ -30,7 +30,7 @@ struct revising {
     const struct revise_params *params;
     struct plant *plant;
     char *plant_path, *plant_text, *tags_text, *matches_text;
-    char *tags_name; /* name in the plant's folder, or a path if the list lies elsewhere */
+    char *tags_name; /* name of the tag list in the plant's folder, or its path if it lies elsewhere */
     struct revision_model *models;
     size_t model_count;
     struct revision revision;

@@ -20,7 +20,7 @@ static const double tolerance_m = 0.002; /* tolerance of positions in metres: ex
 struct planning {
     struct revision *revision;
     const struct revision_input *input;
-    struct asset_edit *assets; /* edits, by index of the plant's assets */
+    struct asset_edit *assets; /* planned edits, by index of the plant's assets */
     struct tag_edit *tags;
     size_t tag_count, tag_room;
     struct text added;
@@ -162,7 +162,7 @@ static void follow_node(struct planning *p, const struct plant_tag *tag)
         if (tag->place_assumed)
             edit->place = "equipment";
         say(p, REVISION_TAG, "renamed", tag->name, "its node %s is now %s", tag->node, pattern);
-        return; /* the edit owns the pattern until the end */
+        return; /* the edit owns `pattern` and frees it later */
     }
     case ASSET_PATTERN_GONE: {
         char *detail = mem_printf("its node %s is no longer in the model", tag->node);
@@ -243,7 +243,8 @@ static void review_asset(struct planning *p, const struct plant_asset *asset, st
     if (other >= 0 && strcmp(old->nodes[root].name, new->nodes[other].name) != 0) {
         const char *name = new->nodes[other].name;
         p->roots[root] = true;
-        if (!strcmp(asset->tag, without_slash(old->nodes[root].name)) && *name) /* people have not renamed the asset */
+        /* rename the asset's tag only if people have not changed it */
+        if (!strcmp(asset->tag, without_slash(old->nodes[root].name)) && *name)
             edit->tag = mem_strdup(without_slash(name));
         say(p, REVISION_ASSET, "renamed", asset->id, "now %s; its id stays", name);
     }
@@ -341,7 +342,7 @@ static void add_new(struct planning *p, const struct revision_model *model, cons
     bool *wanted = mem_array(new->header.count + 1, sizeof(*wanted)), placed = false;
     for (int i = 0; i < 16; i++)
         placed |= fabs(like->placement[i] - transform_identity[i]) > 0;
-    if (!placed) /* if the model's assets are moved by a placement, the right place of a new asset is unknown */
+    if (!placed) /* if the model's existing assets have a placement, the placement of a new asset is unknown: add none */
         for (size_t i = 0; i < new->header.count; i++) {
             wanted[i] = p->states.pairs.to_old[i] < 0;
             for (size_t k = i; k < new->header.nodes[i].end && wanted[i]; k++)

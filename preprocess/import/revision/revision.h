@@ -16,7 +16,8 @@ struct revision_model {
 enum revision_kind { REVISION_ASSET, REVISION_NODE, REVISION_TAG };
 struct revision_row {
     enum revision_kind kind;
-    const char *change; /* static: "added", "removed", "renamed", "moved", "changed", "place lost", "equipment lost" */
+    /* kind of change (static string): "added", "removed", "renamed", "moved", "changed", "place lost", "equipment lost" */
+    const char *change;
     char *name, *detail;
 };
 
@@ -29,7 +30,7 @@ struct revision {                  /* zero-initialise */
 
 struct revision_input {
     const struct plant *plant;
-    const char *plant_text, *tags_text; /* current texts; tags_text NULL: the plant has no tag list */
+    const char *plant_text, *tags_text; /* current texts of plant.yaml and the tag list; tags_text NULL: the plant has no tag list */
     const struct revision_model *models;
     size_t model_count;
 };

@@ -10,7 +10,7 @@
 #include "base/text/text.h"
 
 struct revision_file {
-    const char *name;   /* name in the folder, or an absolute path if the file lies elsewhere */
+    const char *name; /* name of the file in the folder, or its absolute path if it lies elsewhere */
     /* path of the new file, inside the folder; NULL: the file does not change, but is saved for undo since others may change it */
     char *made;
     const char *before; /* text that the file had when it was read; NULL: not checked */
