@@ -21,7 +21,7 @@
 
 static const size_t max_bytes = (size_t)16 << 30, memory_bytes = (size_t)12 << 30;
 
-/* Appends the hash of a file as text. Returns false with errno set if the file cannot be read. */
+/* Appends the hash of a file, combined with that of the text `also`. Returns false with errno set if the file cannot be read. */
 static bool add_hash(const char *path, const char *also, struct text *out)
 {
     size_t size;

@@ -248,7 +248,8 @@ static void draw_points(struct debug_drawing *drawing)
 {
     const struct surface_debug_mesh *look = &drawing->look;
     struct soup model = { 0 }, samples = { 0 };
-    char *kind = mem_array(look->point_count, 1); /* by surface point, 1: a triangle uses the point; 2: it is also a vertex of the model */
+    /* kind of each surface point, 1: a triangle uses it; 2: it is also a vertex of the model */
+    char *kind = mem_array(look->point_count, 1);
     for (size_t t = 0; t < look->tri_count; t++)
         for (int i = 0; i < 3; i++)
             kind[look->tris[t][i]] = 1;

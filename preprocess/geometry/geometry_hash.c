@@ -79,7 +79,8 @@ bool geometry_hash(uint64_t *out, const struct gltf_model *model, const struct g
     XXH3_INITSTATE(&h.state);
     XXH3_64bits_reset(&h.state);
     h.texture = mem_array(model->texture_count + 1u, sizeof(*h.texture));
-    const uint32_t numbers[3] = { counts.node_count, counts.skipped_lines, counts.skipped_points }; /* these appear in the report */
+    /* include these counts, because the report shows them */
+    const uint32_t numbers[3] = { counts.node_count, counts.skipped_lines, counts.skipped_points };
     add(&h, numbers, sizeof(numbers));
     for (size_t i = 0; good && i < parts.count; i++) {
         const struct node_primitive *part = &parts.at[i], *before = i ? part - 1 : NULL;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Splits paths at slashes and dots. */
+/* Splits file names at their last slash and dot. */
 #include "preprocess/import/file_name.h"
 
 #include <string.h>

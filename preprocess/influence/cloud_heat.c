@@ -80,7 +80,7 @@ static double area_of(const struct surface_debug_mesh *mesh, size_t t)
     return vec_length(n) / 2;
 }
 
-/* Generates candidates on a lattice in each triangle, corners first so that narrow parts keep their ends. */
+/* Generates candidate points on a lattice in each triangle, triangle corners first so that narrow parts keep their ends. */
 static void sample(struct cloud_heat *cloud, const struct surface_debug_mesh *mesh)
 {
     for (size_t t = 0; t < mesh->visible_count; t++)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sums the share errors of all sensors at each place, for the worst readings there. */
+/* Sums the errors of all sensors' shares at each measured position, for the worst readings there. */
 #include <math.h>
 #include <string.h>
 

@@ -21,13 +21,13 @@ struct model_index { /* zero-initialise */
     size_t model_count;
     struct indexed_asset *assets; /* data of each asset, in the order of the plant's assets */
     int **asset_of;               /* asset by model and node; -1: none. A node of several assets belongs to the first */
-    struct key_map names;         /* assets by id, tag and the names of their nodes; nodes by name */
-    struct key_map folded;        /* assets by name_tokens_folded() */
-    struct key_map digits;        /* assets by their digits */
-    struct key_map endings;       /* assets by the end of their name after a separator, if that end has letters and digits */
-    struct key_map numbers;       /* assets by the equipment's number */
-    struct key_map attributes;    /* nodes by attribute values that have letters and digits */
-    struct key_map words;         /* assets by each word of their description, and of names without digits */
+    struct key_map names;         /* index of names: assets by id, tag and the names of their nodes; nodes by name */
+    struct key_map folded;        /* index of assets by name_tokens_folded() */
+    struct key_map digits;        /* index of assets by the digits of their names */
+    struct key_map endings;       /* index of assets by the end of their name after a separator, if that end has letters and digits */
+    struct key_map numbers;       /* index of assets by the equipment's number */
+    struct key_map attributes;    /* index of nodes by attribute values that have letters and digits */
+    struct key_map words;         /* index of assets by each word of their description, and of names without digits */
 };
 
 enum { MODEL_INDEX_WHY_BYTES = 300 };

@@ -58,7 +58,7 @@ struct instance_frame { /* a UDT instance that encloses a tag */
     const char *name;
 };
 
-struct scope { /* where a parameter reference occurs */
+struct scope { /* the context of a parameter reference: its tag, folder and instances */
     struct tag_json_reader *reader;
     const struct instance_frame *frame;
     const char *folder, *name; /* path of the tag's folder; name of the tag */

@@ -40,7 +40,8 @@ struct build_report {
     uint32_t stocked, kept_sensors;
     struct build_level levels[LEVELS_MAX];
     size_t level_count, levels_given_up;
-    size_t split_measured, split_kept; /* samples of the field during subdivision: computed in this run, and reused from the last run */
+    /* edges and triangles whose field error subdivision measured in this run, and those whose error it took from the last run */
+    size_t split_measured, split_kept;
     struct bend_report bend;           /* measured bend of harmonic, fin and gp between corners; zero: no group requests them */
     struct cloud_report cloud;         /* report of distances by heat on a point cloud; zero: no group requests them */
     char stray[STRAY_TEXT_BYTES];      /* text about pieces far from the main part (geometry/stray.h); "": there are none */

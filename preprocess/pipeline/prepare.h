@@ -19,7 +19,7 @@ struct prepare_asset {
     size_t model; /* index in prepare.models */
     struct plant_sensor *sensors;
     size_t sensor_count;
-    float *surface_distances_m;                        /* distance of each sensor from the surface; NULL: preparing failed */
+    float *surface_distances_m; /* distance of each sensor from the surface, metres; NULL: preparing the asset failed */
     double size_m[3];                                  /* size of the asset in its own frame, the last is the height; 0: unknown */
     double far_m;                                      /* distance of a sensor from its surface above which a warning is due */
     uint64_t recipe, key, geometry_key, distances_key; /* recipe: result of build_recipe() */

@@ -12,7 +12,7 @@
 #define MAX_CUTS 30     /* maximum number of splits, at a sensor, of edges that other levels split elsewhere */
 #define FEW 32          /* number of sensors up to which no search tree of the level is built */
 
-struct sensor_hit { /* where a sensor meets a level */
+struct sensor_hit { /* the point of a level nearest to a sensor */
     size_t tri;
     double weights[3], point[3];
 };

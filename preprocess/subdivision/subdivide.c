@@ -256,8 +256,8 @@ static void cut_edges(struct subdiv *subdiv, const struct subdiv_finding *findin
     mem_free(edges);
 }
 
-/* In a flat triangle, the longest edge passes close to the opposite corner and should be split next to it. Returns false if the triangle is
- * not that flat. */
+/* Finds the longest edge of a flat triangle and the fraction at which to split it: next to the opposite corner, which is close to that
+ * edge. Returns false if the triangle is not flat. */
 static bool find_aim(const struct subdiv *subdiv, const struct subdiv_tri *tri, uint32_t *edge, float *share)
 {
     const struct subdiv_mesh *mesh = &subdiv->mesh;
