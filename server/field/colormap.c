@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Colour maps out of the embedded tables, and those of a plant. */
+/* Reads the built-in colour maps from the embedded tables, and adds those of a plant. */
 #include "field/colormap.h"
 
 #include <math.h>
@@ -12,11 +12,11 @@
 #include "base/text/embedded.h"
 #include "field/lab.h"
 
-enum { BUILT_IN = 6, MOST = BUILT_IN + PLANT_COLORMAPS + 8 };
-static struct colormap maps[MOST] = { { .name = "relief" },  { .name = "calm" },      { .name = "viridis" },
-                                      { .name = "cividis" }, { .name = "diverging" }, { .name = "turbo" } };
+enum { BUILT_IN = 6, MAX_MAPS = BUILT_IN + PLANT_COLORMAPS + 8 };
+static struct colormap maps[MAX_MAPS] = { { .name = "relief" },  { .name = "calm" },      { .name = "viridis" },
+                                          { .name = "cividis" }, { .name = "diverging" }, { .name = "turbo" } };
 static size_t map_count = BUILT_IN;
-static char names[MOST - BUILT_IN][128]; /* of those that were added */
+static char names[MAX_MAPS - BUILT_IN][128]; /* storage for the names of added maps */
 static struct colormap operator_map = { .name = "operator" };
 
 static pthread_once_t once = PTHREAD_ONCE_INIT;
@@ -72,7 +72,7 @@ const struct colormap *colormap_at(size_t index)
     return &maps[index];
 }
 
-/* Dark or light: what is farthest from all colours of the map. */
+/* Chooses the out-of-range colour among the candidates: the one farthest from all colours of the map. */
 static void choose_outside(const struct colormap *map, const uint8_t candidates[][3], int count, uint8_t out[3])
 {
     double farthest = -1;
@@ -98,7 +98,7 @@ int colormap_add(const char *name, const uint8_t rgb[256][3])
     pthread_once(&once, read_maps);
     if (found >= 0 && found < BUILT_IN)
         return -1;
-    if (found < 0 && map_count == MOST)
+    if (found < 0 && map_count == MAX_MAPS)
         return -1;
     struct colormap *map = &maps[found < 0 ? map_count : (size_t)found];
     if (found < 0)

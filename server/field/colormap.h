@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Colour maps: 256 sRGB colours each. Built-in maps come from shaders/maps/NAME.csv (r,g,b per line, 0..255), embedded at build; a plant's
-   own are added before other threads begin. Immutable from then on. Thread: any. */
+   own maps are added before other threads start. Immutable afterwards. Thread: any. */
 #ifndef FIELD_COLORMAP_H
 #define FIELD_COLORMAP_H
 #include <stdbool.h>
@@ -11,26 +11,28 @@
 
 #define COLORMAP_SHADING 7.0
 struct colormap {
-    const char *name; /* "relief" (the default) and "calm": low contrast, for shaded 3D; "viridis", "cividis", "diverging", "turbo" */
+    /* name of the map: "relief" (the default) and "calm": low contrast, for shaded 3D; "viridis", "cividis", "diverging", "turbo" */
+    const char *name;
     uint8_t rgb[256][3];
-    double shading; /* how far light may move L*, up and down: COLORMAP_SHADING at most, less where lightness tells much of the value */
-    bool safe;      /* read right within 3 % of the range in 95 of 100 shaded pixels, also after JPEG and by deuteranopes */
+    /* largest change of L* by light in either direction: at most COLORMAP_SHADING, less where lightness carries much of the value */
+    double shading;
+    bool safe; /* true if 95 of 100 shaded pixels are read correctly within 3 % of the range, also after JPEG and by deuteranopes */
     uint8_t below[3], above[3]; /* colours for < MIN and > MAX; not on the map */
 };
 
-/* Adds a map, or replaces one that was added before: rates its shading and chooses its out-of-range colours. Returns its index, or -1 if
-   the name belongs to a built-in map or there is no room. Thread: before others begin. */
+/* Adds a map, or replaces one added before: rates its shading and chooses its out-of-range colours. Returns its index; -1 if the name
+   belongs to a built-in map or there is no room. Thread: before others start. */
 int colormap_add(const char *name, const uint8_t rgb[256][3]);
-/* Adds the colour maps that the plant file defines. Thread: before others begin. */
+/* Adds the colour maps that the plant file defines. Thread: before others start. */
 void colormaps_of_plant(const struct plant *plant);
-/* Computes `shading` and `safe` from the map's colours; takes some milliseconds. Built-in maps have them in their files. */
+/* Computes `shading` and `safe` from the map's colours; takes a few milliseconds. Built-in maps have both in their files. */
 void colormap_rate_shading(struct colormap *map);
 
 /* Returns the number of maps. */
 size_t colormap_count(void);
 /* Returns the map with this index; 0 is the default. */
 const struct colormap *colormap_at(size_t index);
-/* Returns the map for positions between alarm limits, -3 to 3 (field/limits.h). It is not listed among the others, as it does not show
+/* Returns the map for positions between alarm limits, -3 to 3 (field/limits.h). It is not in the list of maps, because it does not show
    values. */
 const struct colormap *colormap_operator(void);
 /* Returns the index of the map with this name, or -1. */

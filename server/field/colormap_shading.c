@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* How much a map can be shaded before its shading is read as value. */
+/* Computes how much a map can be shaded before shading is read as value. */
 #include <math.h>
 #include <stdlib.h>
 
 #include "field/colormap.h"
 #include "field/lab.h"
 
-static const double MISREAD = 0.03 * 256; /* colours */
-static const double RIGHT = 0.974;        /* of the samples, so that it is 0.95 in pictures, where extremes of light are more common */
-static const double LEAST_SHADING = 2, UNSAFE_SHADING = 4, STEP = 0.5;
-static const double NOISE = 2.0; /* steps of 255, along each of luma and chroma in turn: about what JPEG does at quality 80 */
+static const double MAX_MISREAD = 0.03 * 256; /* tolerance in colours */
+/* required fraction of correctly read samples; corresponds to 0.95 in frames, where extreme light is more frequent */
+static const double MIN_RIGHT_PART = 0.974;
+static const double MIN_SHADING = 2, UNSAFE_SHADING = 4, STEP = 0.5;
+static const double NOISE_AMPLITUDE = 2.0; /* amplitude of 255, along each of luma and chroma in turn: about that of JPEG at quality 80 */
 enum { SAMPLED = 5, STEPS = 4, NOISES = 6 };
 
 static int nearest(const double labs[256][3], const double lab[3])
@@ -30,12 +31,12 @@ static int nearest(const double labs[256][3], const double lab[3])
 
 static void add_noise(const uint8_t rgb[3], int noise, double out[3])
 {
-    static const double axes[3][3] = { { 1, 1, 1 }, { 0, -0.344136, 1.772 }, { 1.402, -0.714136, 0 } }; /* Y, Cb, Cr */
+    static const double axes[3][3] = { { 1, 1, 1 }, { 0, -0.344136, 1.772 }, { 1.402, -0.714136, 0 } }; /* axes of Y, Cb, Cr */
     for (int c = 0; c < 3; c++)
-        out[c] = fmin(fmax(rgb[c] + (noise % 2 ? -NOISE : NOISE) * axes[noise / 2][c], 0), 255);
+        out[c] = fmin(fmax(rgb[c] + (noise % 2 ? -NOISE_AMPLITUDE : NOISE_AMPLITUDE) * axes[noise / 2][c], 0), 255);
 }
 
-/* Whether the nearest colour of the legend is within MISREAD for nearly all shaded colours. */
+/* Returns whether for nearly all shaded colours the nearest colour of the legend is within MISREAD. */
 static bool is_read_right(const struct colormap *map, enum color_vision vision, double shading)
 {
     double labs[256][3];
@@ -50,16 +51,16 @@ static bool is_read_right(const struct colormap *map, enum color_vision vision, 
                 double seen[3], lab[3];
                 add_noise(rgb, noise, seen);
                 lab_from_srgb(seen, vision, lab);
-                right += abs(nearest(labs, lab) - i) <= MISREAD;
+                right += abs(nearest(labs, lab) - i) <= MAX_MISREAD;
             }
         }
-    return right >= RIGHT * all;
+    return right >= MIN_RIGHT_PART * all;
 }
 
 void colormap_rate_shading(struct colormap *map)
 {
     double shading = COLORMAP_SHADING, normal = 0;
-    for (map->safe = false; shading >= LEAST_SHADING && !map->safe; shading -= STEP) {
+    for (map->safe = false; shading >= MIN_SHADING && !map->safe; shading -= STEP) {
         bool good = is_read_right(map, VISION_NORMAL, shading);
         normal = good && normal == 0 ? shading : normal;
         map->safe = good && is_read_right(map, VISION_DEUTERANOPE, shading);

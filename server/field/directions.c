@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Readings to vectors, and their sums at places. */
+/* Turns readings into vectors, and sums the vectors at points of the surface. */
 #include "field/directions.h"
 
 #include <math.h>
@@ -9,8 +9,8 @@
 #include "field/layout.h"
 #include "value/quality.h"
 
-#define AT_ONE_PLACE 1e-6 /* metres */
-#define UPRIGHT 0.1       /* of a vector's length: less than this along the surface is no direction */
+#define AT_ONE_PLACE 1e-6    /* metres; a point nearer than this to a sensor is at the sensor */
+#define MIN_TANGENT_PART 0.1 /* smallest part of a vector's length along the surface at which it has a direction there */
 
 static const float *angles_of(const struct field_layout *layout)
 {
@@ -21,7 +21,7 @@ static const float *angles_of(const struct field_layout *layout)
 
 /* --- readings --------------------------------------------------------------------------------------------------------------- */
 
-/* A bearing: clockwise from +Y (in a plant that is Y up, from -Z), seen from above. */
+/* Converts a bearing: degrees clockwise from +Y (in a Y-up plant from -Z), seen from above. */
 static void from_bearing(const struct plant *plant, double degrees, double out[3])
 {
     double east = sin(degrees * M_PI / 180), north = cos(degrees * M_PI / 180);
@@ -75,7 +75,7 @@ size_t directions_read(const struct scene *scene, int asset, int group, const st
 
 /* --- places ----------------------------------------------------------------------------------------------------------------- */
 
-/* One sensor's vector against the vector that is carried along: turned by so much, and so long along the surface. */
+/* A sensor's vector relative to a transported reference vector: angle, and length along the surface. */
 struct spread {
     double turn, length;
     bool configured, known, uncertain;
@@ -96,7 +96,7 @@ static struct spread spread_of(const struct field_layout *layout, const float *a
     return (struct spread){ .turn = atan2(vec_dot(vector, y), vec_dot(vector, x)) - (double)start,
                             .length = whole,
                             .configured = said->configured,
-                            .known = said->known && isfinite(start) && along >= UPRIGHT * whole,
+                            .known = said->known && isfinite(start) && along >= MIN_TANGENT_PART * whole,
                             .uncertain = said->uncertain };
 }
 
@@ -111,7 +111,7 @@ static double mean_m(const struct field_layout *layout, enum distance_mode mode,
     return max_of(sum_m, AT_ONE_PLACE);
 }
 
-/* The unit vector that arrives at the place. False: no way leads there. */
+/* Computes the unit vector that is transported to the point. Returns false if no path leads there. */
 static bool carry(const struct field_layout *layout, const float *angles, double turn, const struct direction_place *place, double out[3])
 {
     double normal[3];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Samples triangles where the weights may bend, the closer the nearer a sensor is. */
+/* Measures interpolation errors by sampling triangles where weights may be curved, more densely near sensors. */
 #include "field/drawn_error.h"
 
 #include <math.h>
@@ -9,32 +9,32 @@
 #include "base/mem.h"
 #include "plant/singles.h"
 
-/* Triangles at a time; triangles of a job; pieces of one triangle. */
-enum { GROUP = 64, GRAIN = 1024, PIECES_MOST = 96 };
-#define STEP 0.3f             /* of the distance to the nearest sensor: longer pieces are halved */
-#define SHARPNESS 2.0f        /* power of shepard up to which STEP is fine enough */
-#define ACCEPTED 6.0f         /* L^2 K / (6 d^2) bounds the error of a triangle of side L whose weights bend by K / d^2 */
-#define PAPER_ACCEPTED 0.015f /* of the nearest distance and of R */
+/* GROUP: triangles processed together; GRAIN: triangles per job; PIECES_MOST: pieces per triangle. */
+enum { GROUP = 64, GRAIN = 1024, MAX_PIECES = 96 };
+#define STEP 0.3f             /* longest piece relative to the distance to the nearest sensor; longer pieces are halved */
+#define MAX_POWER 2.0f        /* largest power of shepard for which STEP is fine enough */
+#define SHEPARD_ACCEPTED 6.0f /* L^2 K / (6 d^2) bounds the error of a triangle of side L where the weights bend by K / d^2 */
+#define PAPER_ACCEPTED 0.015f /* relative to the nearest distance, and to R */
 #define STEP_OF_COLOR (1 / 255.0f)
-#define RIM 4       /* steps of `lacking`: so far the rim of the data may be drawn elsewhere */
-#define LEAST 1e-4f /* smaller errors are 0 */
+#define BORDER_SLACK 4       /* in units of `lacking`: tolerated displacement of the border of the data */
+#define MIN_ERROR 1e-4f /* smaller errors are stored as 0 */
 
-struct triangle_piece {  /* part of a triangle; its sample is the middle of its longest side */
-    uint32_t tri;        /* in the group */
-    float corners[3][3]; /* barycentric */
+struct triangle_piece {  /* part of a triangle; its sample point is the middle of its longest side */
+    uint32_t tri;        /* index of the triangle in the group */
+    float corners[3][3]; /* barycentric coordinates of its corners */
 };
 
-struct sampler { /* of one thread */
+struct sampler { /* state of the sampling in one thread */
     const struct weights *of;
     const struct asset_view *file;
     struct field_layout layout;
     struct layout_points points;
-    struct weights *weights; /* of the points */
+    struct weights *weights; /* weights at the sample points */
     struct weights_terms terms;
     double values[KERNEL_BLOCK], total[KERNEL_BLOCK];
     float *corners;        /* [member][3 GROUP]: weights at the corners of the group's triangles */
-    uint32_t *tris[GROUP]; /* their vertices */
-    float *errors[GROUP];  /* where to */
+    uint32_t *tris[GROUP]; /* vertex numbers of each triangle */
+    float *errors[GROUP];  /* where to store each triangle's error */
     int pieces[GROUP];
     size_t tri_count;
     struct triangle_piece *queue;
@@ -48,8 +48,8 @@ struct drawn_error_job {
     float radius_m, accepted, error_m;
     const uint32_t *members;
     const double *ones;
-    uint32_t first; /* triangle */
-    float *errors;  /* by triangle */
+    uint32_t first; /* number of the first triangle */
+    float *errors;  /* error of each triangle */
 };
 
 /* --- weights at points ------------------------------------------------------------------------------------------------------ */
@@ -81,7 +81,7 @@ static void sampler_finish(struct sampler *sampler)
     mem_free(sampler->queue);
 }
 
-/* Afterwards each member's column divided by the total is its weight. */
+/* Evaluates the weights at points: afterwards each member's column divided by the total is its weight. */
 static void evaluate(struct sampler *sampler, size_t count)
 {
     struct weights *weights = sampler->weights;
@@ -113,7 +113,7 @@ static void evaluate_corners(struct sampler *sampler)
 
 static void enqueue(struct sampler *sampler, const struct triangle_piece *piece)
 {
-    if (sampler->pieces[piece->tri]++ >= PIECES_MOST)
+    if (sampler->pieces[piece->tri]++ >= MAX_PIECES)
         return;
     mem_grow(&sampler->queue, &sampler->capacity, sampler->queued + 1, sizeof(*sampler->queue));
     sampler->queue[sampler->queued++] = *piece;
@@ -150,7 +150,7 @@ static void split(struct sampler *sampler, const struct triangle_piece *piece, i
     enqueue(sampler, &half);
 }
 
-/* Returns whether the data end at this point although the corners draw data there. */
+/* Returns whether there is no data at this point although interpolation from the corners draws data there. */
 static bool hides_rim(const struct sampler *sampler, size_t point, const struct triangle_piece *piece, const float parts[3], bool *shown)
 {
     const uint32_t *corners = sampler->tris[piece->tri];
@@ -158,7 +158,7 @@ static bool hides_rim(const struct sampler *sampler, size_t point, const struct 
     for (int k = 0; k < 3; k++)
         drawn += parts[k] * (float)weights_lacking_at(sampler->of, corners[k], false);
     *shown = here <= 127;
-    return here > 127 + RIM && drawn <= 127;
+    return here > 127 + BORDER_SLACK && drawn <= 127;
 }
 
 static void add_errors(struct sampler *sampler, const struct triangle_piece *pieces, size_t count)
@@ -178,7 +178,7 @@ static void add_errors(struct sampler *sampler, const struct triangle_piece *pie
         float *error = sampler->errors[pieces[j].tri], worst = fmaxf(more[j], less[j]);
         if (hides_rim(sampler, j, &pieces[j], sampler->points.parts[j], &shown))
             *error = 1;
-        else if (shown && worst > LEAST)
+        else if (shown && worst > MIN_ERROR)
             *error = fmaxf(*error, worst);
     }
 }
@@ -215,8 +215,8 @@ static void sample_group(struct sampler *sampler, float step)
 
 /* --- all of them ------------------------------------------------------------------------------------------------------------ */
 
-/* Returns whether a triangle needs no samples: it is small compared with the distance to the nearest sensor, or, in a coarse level,
-   smaller than the pixels of that level. */
+/* Returns whether a triangle needs no samples: it is small compared with the distance to the nearest sensor, or, in a coarse level, smaller
+   than the pixels that the level is drawn with. */
 static bool is_straight(const struct drawn_error_job *job, const uint32_t corners[3])
 {
     const struct weights *weights = job->weights;
@@ -239,8 +239,9 @@ static void measure_some(void *arg, size_t begin, size_t end)
     struct sampler *sampler = mem_new(sizeof(*sampler));
     uint32_t *indices = (uint32_t *)job->weights->layout->file->view.indices;
     bool good = sampler_init(sampler, job);
-    float step = STEP * fminf(1, SHARPNESS / job->weights->power);
-    for (size_t t = job->first + begin; t < job->first + end && !good; t++) /* out of memory: nothing is known of them */
+    float step = STEP * fminf(1, MAX_POWER / job->weights->power);
+    /* out of memory: all errors are unknown and set to the maximum */
+    for (size_t t = job->first + begin; t < job->first + end && !good; t++)
         job->errors[t] = 1;
     for (size_t t = job->first + begin; t < job->first + end && good; t++) {
         if (!is_straight(job, indices + 3 * t)) {
@@ -263,12 +264,13 @@ static void prepare_some(void *arg, size_t begin, size_t end)
     }
 }
 
-/* Weights bend by K / d^2 at most, d metres from the nearest sensor: by the second derivatives of D^-p, with |grad D| = 1. */
+/* Returns the size of triangles that need no samples, relative to the distance d of the nearest sensor. The weights' second derivative is
+   at most K / d^2, from the derivatives of D^-p with |grad D| = 1. */
 static float accepted_of(const struct weights *weights)
 {
     float p = weights->power;
     if (weights->interpolation == INTERPOLATION_SHEPARD)
-        return sqrtf(ACCEPTED * STEP_OF_COLOR / (1.5f * p * p + 0.5f * p));
+        return sqrtf(SHEPARD_ACCEPTED * STEP_OF_COLOR / (1.5f * p * p + 0.5f * p));
     for (size_t m = 0; m < weights->member_count; m++)
         if (weights->decay[weights->members[m]] != 1 || weights->strength[weights->members[m]] > 1)
             return 0;
@@ -330,8 +332,9 @@ static void measure_level(struct drawn_error_job *job, struct weights *weights, 
     mem_free(ones);
 }
 
-/* The weights bend no more than those that preparing cut the triangles for (preprocess/subdivision/linear_error.h). Of fewer sensors they
-   may: where the field turns from one sensor to the next is then elsewhere, maybe in larger triangles. */
+/* Returns whether the weights are no more curved than those for which preparation subdivided the triangles
+   (preprocess/subdivision/linear_error.h). With fewer sensors they may be: the field then bends at other places, perhaps in larger
+   triangles. */
 static bool is_as_prepared(const struct weights *weights, const struct field_params *params)
 {
     const struct field_layout *layout = weights->layout;

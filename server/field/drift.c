@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Weighted least squares by orthogonal columns; a column that says nothing new is left out. Jumps are looked for in what is left of values
-   without a line in time: a drift changes little within hours. */
+/* Finds drift by weighted least squares with orthogonalised columns; a column that is a combination of others is dropped. Jumps are
+   searched for in the residuals without the line in time, since a drift changes little within hours. */
 #include "field/drift.h"
 
 #include <math.h>
@@ -9,26 +9,26 @@
 
 #include "base/mem.h"
 
-enum { JUMPS = 2, COLUMNS = 3 + DRIFT_NEAREST + JUMPS, SENSORS_LEAST = 3, ROUNDS = 20 };
-enum { CHANGE_BEFORE = 3, CHANGE_AFTER = 1 }; /* hours that count for how fast the plant changes at one */
-static const double FAST = 2;              /* times the usual change: such an hour counts half */
-static const double STILL = 0.1;           /* part of the noise: a change by less an hour is none */
-static const double MEAN_PART = 0.25;      /* of the noise is left in an hourly mean: it is of 16 readings or more that err by themselves */
-enum { BESIDE = 3, WITHIN = 2 };           /* hours: of the means before and after a jump, and between the two */
-static const double JUMP = 6;              /* as many times what residuals usually change by in as many hours */
-static const double LAG_HOURS = 12;        /* heat takes its time from the others' places to this one */
-static const double DEPENDENT_PART = 1. / 6; /* of the time: residuals farther apart count as independent */
-static const double NEW_PART = 1e-3;       /* of a column's length that has to be left beside the other columns */
+enum { JUMPS = 2, COLUMNS = 3 + DRIFT_NEAREST + JUMPS, MIN_SENSORS = 3, ROUNDS = 20 };
+enum { CHANGE_BEFORE = 3, CHANGE_AFTER = 1 }; /* hours before and after an hour that determine how fast the plant changes then */
+static const double FAST_FACTOR = 2;              /* times the usual change: such an hour has half the weight */
+static const double STILL_PART = 0.1;           /* relative to the noise: a smaller change per hour counts as none */
+static const double MEAN_PART = 0.25;      /* part of the noise left in an hourly mean of at least 16 independent readings */
+enum { BESIDE = 3, WITHIN = 2 };           /* BESIDE: hours averaged before and after a jump; WITHIN: hours between the two means */
+static const double MIN_JUMP_FACTOR = 6;              /* smallest jump, relative to the usual change of residuals over as many hours */
+static const double LAG_HOURS = 12;        /* time that heat takes from the other sensors to this one */
+static const double DEPENDENT_PART = 1. / 6; /* fraction of the recorded time beyond which residuals count as independent */
+static const double MIN_NEW_PART = 1e-3;       /* smallest part of a column's length that must be independent of the other columns */
 
-struct week { /* of one sensor, by hour */
-    const double *values, *predicted, *nearest; /* nearest: [nearest_count][hours] */
+struct week { /* hourly data of one sensor */
+    const double *values, *predicted, *nearest; /* nearest: [nearest_count][hours], readings of the nearest sensors */
     int nearest_count, hours;
-    double noise, root[DRIFT_HOURS]; /* root: of what an hour counts */
+    double noise, root[DRIFT_HOURS]; /* root: square root of each hour's weight */
 };
 
-struct drift_rows { /* where there are values of all; hour by hour, each times its root */
+struct drift_rows { /* equations of the hours with values of all sensors, each multiplied by the root of its weight */
     double at[COLUMNS][DRIFT_HOURS], time[DRIFT_HOURS], value[DRIFT_HOURS];
-    double counted; /* the sum of what hours count */
+    double counted; /* sum of the hours' weights */
     int hour[DRIFT_HOURS], count, columns;
 };
 
@@ -40,7 +40,7 @@ static double dot(const double *a, const double *b, int count)
     return sum;
 }
 
-/* Takes out of `of` what `unit` explains. */
+/* Subtracts the component along `unit`. */
 static void take_out(double *of, const double *unit, int count)
 {
     double part = dot(of, unit, count);
@@ -81,7 +81,8 @@ static void collect(const struct week *week, struct drift_rows *rows)
     rows->columns = 3 + week->nearest_count;
 }
 
-/* The columns become orthonormal; what they explain goes out of time and value. largest: of the values. Returns how many are left. */
+/* Makes the columns orthonormal and removes their components from time and value. largest: of the values' magnitudes. Returns the number of
+   columns kept. */
 static int reduce(struct drift_rows *rows, double largest)
 {
     int kept = 0, n = rows->count;
@@ -90,12 +91,12 @@ static int reduce(struct drift_rows *rows, double largest)
         for (int k = 0; k < kept; k++)
             take_out(column, rows->at[k], n);
         double length = sqrt(dot(column, column, n));
-        /* of readings that hardly differ only rounding is left; the first column is 1 */
+        /* for nearly constant readings only rounding is left; the first column is all 1 */
         if (c > 0 && !(length > 1e-9 * sqrt(n) * (1 + largest)))
             continue;
         for (int i = 0; i < n; i++)
             rows->at[kept][i] = column[i] / length;
-        for (int k = 0; k < kept; k++) /* once more: exact to rounding */
+        for (int k = 0; k < kept; k++) /* twice, so that orthogonality is exact to rounding */
             take_out(rows->at[kept], rows->at[k], n);
         kept++;
     }
@@ -113,7 +114,7 @@ static int by_size(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Of n numbers, none negative. */
+/* Returns the median of n non-negative numbers. */
 static double median(const double *of, int n)
 {
     double sorted[DRIFT_HOURS];
@@ -122,7 +123,7 @@ static double median(const double *of, int n)
     return (sorted[(n - 1) / 2] + sorted[n / 2]) / 2;
 }
 
-/* Finds the row before which reduced values jump most. Returns 0 if they do not. */
+/* Finds the row before which the residuals jump most. Returns 0 if they do not jump. */
 static int find_jump(const struct drift_rows *rows, double noise)
 {
     double change[DRIFT_HOURS];
@@ -135,7 +136,8 @@ static int find_jump(const struct drift_rows *rows, double noise)
         change[k] = fabs(sum) / BESIDE;
         largest = change[k] > change[largest] ? k : largest;
     }
-    if (change[largest] < JUMP * fmax(median(change, count) / 0.6745, noise * sqrt(2. / BESIDE))) /* as of a normal distribution */
+    /* 0.6745: the median deviation of a normal distribution */
+    if (change[largest] < MIN_JUMP_FACTOR * fmax(median(change, count) / 0.6745, noise * sqrt(2. / BESIDE)))
         return 0;
     int at = largest + BESIDE;
     for (int i = at; i <= largest + first; i++)
@@ -143,7 +145,7 @@ static int find_jump(const struct drift_rows *rows, double noise)
     return at;
 }
 
-/* What each hour counts: half where what the others say changes FAST times as much as it usually does, and all where it is still. */
+/* Computes each hour's weight: 1/2 where the prediction changes FAST times as much as usual, 1 where it is constant. */
 static void weigh(struct week *week)
 {
     double change[DRIFT_HOURS], sorted[DRIFT_HOURS];
@@ -161,12 +163,12 @@ static void weigh(struct week *week)
         if (is_whole(week, h))
             sorted[known++] = change[h];
     }
-    double usual = fmax(known ? median(sorted, known) : 0, STILL * week->noise);
+    double usual = fmax(known ? median(sorted, known) : 0, STILL_PART * week->noise);
     for (int h = 0; h < week->hours; h++)
-        week->root[h] = 1 / hypot(1, change[h] / (FAST * usual));
+        week->root[h] = 1 / hypot(1, change[h] / (FAST_FACTOR * usual));
 }
 
-/* Collects and reduces, with a column for each jump: from there on the level is another one. Returns how many columns are left. */
+/* Collects and reduces the rows, adding a column for each jump: the level differs from there on. Returns the number of columns kept. */
 static int reduce_with_jumps(const struct week *week, struct drift_rows *rows)
 {
     double largest = 0;
@@ -184,7 +186,8 @@ static int reduce_with_jumps(const struct week *week, struct drift_rows *rows)
     return columns;
 }
 
-/* Of the slope, by Newey & West's estimate: pulls of the residuals on it, and how they hang together over `reach` hours. */
+/* Returns the variance of the slope by Newey & West's estimate: from the residuals' contributions to the slope, and their correlation over
+   `reach` hours. */
 static double slope_variance(const struct drift_rows *rows, double time_square, int hours)
 {
     double pull[DRIFT_HOURS] = { 0 };
@@ -211,7 +214,7 @@ void drift_fit(const double *values, const double *predicted, const double *near
     double span = dot(rows.time, rows.time, rows.count);
     int columns = reduce_with_jumps(&week, &rows);
     double left = dot(rows.time, rows.time, rows.count);
-    if (!(left > NEW_PART * NEW_PART * span))
+    if (!(left > MIN_NEW_PART * MIN_NEW_PART * span))
         return;
     double slope = dot(rows.time, rows.value, rows.count) / left;
     for (int i = 0; i < rows.count; i++)
@@ -226,7 +229,7 @@ void drift_fit(const double *values, const double *predicted, const double *near
         out->verdict = DRIFT_NONE;
 }
 
-/* What is a sensor's own, by least squares of value = own[sensor] + common[hour], where there are values. */
+/* Computes each sensor's own offset, by least squares of value = own[sensor] + common[hour], over the existing values. */
 static void find_own(const double *values, int hours, size_t count, double *own)
 {
     double *sum = mem_array(count, sizeof(*sum));
@@ -258,14 +261,14 @@ static void find_own(const double *values, int hours, size_t count, double *own)
 
 struct drift_search {
     const struct neighbours *neighbours;
-    const double *values; /* [hour][sensor] */
+    const double *values; /* values by [hour][sensor] */
     int hours;
     size_t count;
-    double *own;  /* by sensor */
-    double *said; /* [sensor][hour] */
+    double *own;  /* own offset of each sensor */
+    double *said; /* predictions by [sensor][hour] */
 };
 
-/* Without those that were found, but of these too. */
+/* Predicts every sensor, also drifting ones, from those not found to drift. */
 static void predict(const struct drift_search *search, const struct drift *drifts)
 {
     const double level = neighbours_level(search->neighbours);
@@ -283,7 +286,7 @@ static void predict(const struct drift_search *search, const struct drift *drift
     mem_free(said);
 }
 
-/* What a sensor read; where it read nothing what the others say, by as much higher or lower as they are otherwise. */
+/* Copies a sensor's readings; fills gaps with predictions, shifted by the sensor's mean difference from its predictions. */
 static void read_filled(const struct drift_search *search, size_t sensor, double *out)
 {
     const double *said = search->said + sensor * (size_t)search->hours;
@@ -300,7 +303,7 @@ static void read_filled(const struct drift_search *search, size_t sensor, double
         out[h] = isfinite(out[h]) ? out[h] : said[h] + off / known;
 }
 
-/* Neither found nor silent for half of the time: it can be held against others. */
+/* Returns whether a sensor can be compared with others: it is not found to drift, and has values for at least half of the time. */
 static bool is_of_use(const struct drift_search *search, size_t sensor, const struct drift *drift)
 {
     int known = 0;
@@ -309,7 +312,7 @@ static bool is_of_use(const struct drift_search *search, size_t sensor, const st
     return drift->verdict != DRIFT_FOUND && 2 * known >= search->hours;
 }
 
-/* Judges all that were not found yet. Returns the one that drifts most clearly; count: none. */
+/* Judges all sensors not found yet. Returns the one that drifts most clearly; count: none does. */
 static size_t judge(const struct drift_search *search, const double *noise, struct drift *out)
 {
     double own[DRIFT_HOURS], nearest[DRIFT_NEAREST * DRIFT_HOURS];
@@ -329,7 +332,7 @@ static size_t judge(const struct drift_search *search, const double *noise, stru
         drift_fit(own, search->said + i * (size_t)search->hours, nearest, (int)count, search->hours, noise[i], &out[i]);
         if (out[i].verdict != DRIFT_FOUND)
             continue;
-        out[i].verdict = DRIFT_NONE; /* not yet */
+        out[i].verdict = DRIFT_NONE; /* changed to DRIFT_FOUND later for the clearest one only */
         if (clearest == search->count || fabs(out[i].change) / out[i].error > fabs(out[clearest].change) / out[clearest].error)
             clearest = i;
     }
@@ -348,14 +351,15 @@ void drift_find(const struct neighbours *neighbours, const double *values, int h
     find_own(values, hours, count, search.own);
     for (size_t i = 0; i < count; i++)
         out[i] = (struct drift){ DRIFT_UNKNOWN, NAN, NAN, NAN, 0 };
-    for (size_t found = 0; found + SENSORS_LEAST <= count; found++) {
+    for (size_t found = 0; found + MIN_SENSORS <= count; found++) {
         predict(&search, out);
         clearest = judge(&search, noise, out);
         if (clearest == count)
             break;
         out[clearest].verdict = DRIFT_FOUND;
     }
-    for (size_t i = 0; i < count && clearest < count; i++) /* too few are left to tell which, and what is said of them is by the found */
+    /* too few sensors remain to decide, and their predictions depend on drifting ones */
+    for (size_t i = 0; i < count && clearest < count; i++)
         if (out[i].verdict == DRIFT_NONE)
             out[i].verdict = DRIFT_UNKNOWN;
     if (predicted) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The fields that someone looks at, each kept once, and the bound on what they take. */
+/* Caches the fields in use, each once, within a memory bound. */
 #include "field/field.h"
 
 #include <math.h>
@@ -72,7 +72,7 @@ struct field_layout *field_layout(struct field *field, int asset, const struct f
 {
     struct field_layout **at = &field->layouts[(size_t)asset * field->scene->plant->group_count + (size_t)params->group];
     if (params->trial && interpolation_is_prepared(params->interpolation) && params->show != SHOW_DISTANCE)
-        return NULL; /* nothing is prepared for places that are tried out: nothing is shown, rather than what was */
+        return NULL; /* nothing is prepared for trial positions: better to show nothing than the previous field */
     if (params->trial)
         return field_trial_layout(field, asset, params);
     if (!*at)
@@ -141,7 +141,7 @@ static void forget_state(struct field *field, struct field_state *state)
     field_cache_remove_state(field, link);
 }
 
-/* False: out of memory, the state is gone. */
+/* Grows the state to `count` vertices. Returns false when out of memory; the state is then freed. */
 static bool grow_state(struct field *field, struct field_state *state, size_t count)
 {
     size_t more = state_more_bytes(state, count);
@@ -156,7 +156,7 @@ static bool grow_state(struct field *field, struct field_state *state, size_t co
     return true;
 }
 
-/* -1: it does not stand on the asset, or nobody knows where. */
+/* Returns the index of a tag's sensor. -1: it is not on the asset, or its position is unknown. */
 static int find_sensor(const struct field_layout *layout, int tag)
 {
     for (size_t i = 0; layout && !layout->assumed && i < layout->sensor_count; i++)
@@ -185,7 +185,7 @@ static const struct scalars *distance_scalars(struct field *field, int asset, co
 bool field_covers(struct field *field, int asset, const struct field_params *params)
 {
     const struct field_layout *layout = field_layout(field, asset, params);
-    if (field_params_cover(params) && layout && layout->assumed) /* nobody knows where its sensors are */
+    if (field_params_cover(params) && layout && layout->assumed) /* the positions of its sensors are unknown */
         return false;
     return params->show == SHOW_DISTANCE ? find_sensor(layout, params->sensor) >= 0 : layout != NULL;
 }
@@ -228,7 +228,8 @@ bool field_begin_update(struct field *field, struct field_state *state, const st
     return true;
 }
 
-/* NULL: nothing to show, or out of memory. *done: up to date; else some of the work was done. */
+/* Updates the field of one asset. NULL: nothing to show, or out of memory. *done: true if up to date, false if only a part of the work was
+   done. */
 static const struct scalars *advance(struct field *field, int asset, const struct field_params *params, const struct snapshot *snapshot,
                                      size_t count, double work, bool *done)
 {

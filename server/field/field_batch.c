@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Fields of many assets, brought up to date side by side. */
+/* Updates the fields of many assets in parallel. */
 #include "base/mem.h"
 #include "field/field_impl.h"
 #include "field/update.h"
@@ -16,7 +16,7 @@ static void update_some(void *arg, size_t begin, size_t end)
         update_run(together->states[i]);
 }
 
-/* Instances share weights: at once only where nothing of these is left to be filled in. */
+/* Updates in parallel only those assets whose weights are complete, because instances share weights. */
 void field_update_all(struct field *field, const int *assets, const size_t *counts, size_t asset_count, const struct field_params *params,
                       const struct snapshot *snapshot)
 {
@@ -34,7 +34,7 @@ void field_update_all(struct field *field, const int *assets, const size_t *coun
         if (field_begin_update(field, state, snapshot, counts[i]) && state->update)
             together.states[begun++] = state;
     }
-    for (size_t i = 0; i < begun; i++) /* only now: to begin one may take others' columns away */
+    for (size_t i = 0; i < begun; i++) /* checked after all updates have begun, because beginning one may evict the columns of others */
         if (update_is_light(together.states[i]))
             together.states[together.count++] = together.states[i];
     workers_for(field->workers, together.count, 1, update_some, &together);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The states and weights that are cached, and which go first when they take more than the limit. */
+/* The cache of states and weights, and its eviction. */
 #include "base/mem.h"
 #include "field/field_impl.h"
 #include "field/update.h"
@@ -15,7 +15,7 @@ struct weights **field_cache_bucket(struct field *field, uint64_t hash)
     return &field->weights[hash % FIELD_BUCKETS];
 }
 
-/* *link is taken out of its list. */
+/* Unlinks *link from its list and destroys it. */
 static void weights_remove(struct field *field, struct weights **link)
 {
     struct weights *weights = *link;
@@ -58,7 +58,7 @@ static bool weights_may_go(const struct weights *weights)
     return weights->users == 0 || weights->columns;
 }
 
-/* The least tick of use of all that may go; UINT64_MAX: nothing may. */
+/* Returns the smallest tick of last use among everything evictable; UINT64_MAX: nothing is. */
 static uint64_t oldest_use(const struct field *field, const struct field_params *keep)
 {
     uint64_t oldest = UINT64_MAX;
@@ -95,8 +95,8 @@ static void drop_used_before(struct field *field, const struct field_params *kee
         }
 }
 
-/* Drops what was last used before tick `before`, but no state of the parameters `keep`, until `need` more bytes fit under the
-   bound. The oldest go first, an eighth of the time at once, so that looking for them is seldom. False: they do not fit. */
+/* Evicts entries last used before tick `before`, except states of the parameters `keep`, until `need` more bytes fit the bound. Evicts the
+   oldest eighth of the time span at once, so that searches are rare. Returns false if the bytes do not fit. */
 bool field_cache_make_room(struct field *field, size_t need, const struct field_params *keep, uint64_t before)
 {
     while (field->bytes + need > field->bound) {
@@ -109,9 +109,9 @@ bool field_cache_make_room(struct field *field, size_t need, const struct field_
     return true;
 }
 
-/* Columns are worth their memory from the second sum on: while somebody drags a parameter there is none. They only push out what was
-   used longer ago than these weights before, or two busy fields would push each other out for ever. Where not all fit, as many as do:
-   of the first vertices, which all levels of detail have. */
+/* Columns are cached from the second sum on; while a user drags a parameter there is no second one. They evict only entries last used
+   before the previous use of these weights, or two busy fields would evict each other forever. If not all fit, as many as possible are
+   cached, from the first vertices on, which all levels of detail use. */
 void field_cache_keep_columns(struct field *field, struct weights *weights, const struct field_params *params, uint64_t previous)
 {
     size_t bytes = weights_column_bytes(weights), had = weights_kept_bytes(weights);
@@ -119,7 +119,7 @@ void field_cache_keep_columns(struct field *field, struct weights *weights, cons
         return;
     if (had == 0)
         field_cache_make_room(field, bytes < field->bound ? bytes : field->bound, params, previous);
-    else if (field->bytes - had + bytes > field->bound) /* there is no more room than there was */
+    else if (field->bytes - had + bytes > field->bound) /* there is no more room than before */
         return;
     else
         columns_drop(field, weights);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The field at one point, computed from the sensors. */
+/* Computes the field at one point from the sensors. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -9,7 +9,7 @@
 #include "field/update.h"
 #include "plant/influence.h"
 
-/* Interpolates the vertices, as the picture does. */
+/* Interpolates the scalars of the triangle's corners, as frames do. */
 static void point_drawn(const struct scalars *scalars, const struct field_place *place, struct field_point *out)
 {
     double value = 0, no_data = 0, uncertain = 0;
@@ -23,7 +23,7 @@ static void point_drawn(const struct scalars *scalars, const struct field_place 
     *out = (struct field_point){ .value = value, .no_data = no_data > 0.5, .uncertain = uncertain > 0.5 };
 }
 
-/* Returns the largest error of the triangles around the corners: any level of detail may be drawn there. */
+/* Returns the largest error of the triangles around the corners, since any level of detail may be drawn there. */
 static double error_near(const struct field_state *state, const struct field_place *place)
 {
     double most = 0;
@@ -32,45 +32,45 @@ static double error_near(const struct field_state *state, const struct field_pla
     return most > state->error_limit ? most * state->error_scale : 0;
 }
 
-struct one { /* a layout of one point */
+struct single_point { /* a layout with a single point */
     float position_m[1][3], parts[1][3], away_m[1][3];
     uint32_t corners[1][3];
     struct layout_points points;
     struct field_layout layout;
 };
 
-static void one_init(struct one *one, const struct field_layout *layout, const struct field_place *place)
+static void single_point_init(struct single_point *point, const struct field_layout *layout, const struct field_place *place)
 {
-    *one = (struct one){ .points = { one->position_m, one->corners, one->parts, one->away_m }, .layout = *layout };
-    one->layout.points = &one->points;
-    one->layout.vertex_count = 1;
+    *point = (struct single_point){ .points = { point->position_m, point->corners, point->parts, point->away_m }, .layout = *layout };
+    point->layout.points = &point->points;
+    point->layout.vertex_count = 1;
     const float parts[3] = { (float)place->parts[0], (float)place->parts[1], (float)place->parts[2] };
-    layout_set_point(&layout->file->view, &one->points, 0, place->corners, parts);
+    layout_set_point(&layout->file->view, &point->points, 0, place->corners, parts);
 }
 
-static void point_distance(const struct field_state *state, const struct one *one, struct field_point *out)
+static void point_distance(const struct field_state *state, const struct single_point *point, struct field_point *out)
 {
     float room;
     size_t i = 0;
-    while (i < one->layout.sensor_count && one->layout.sensors[i].tag != state->params.sensor)
+    while (i < point->layout.sensor_count && point->layout.sensors[i].tag != state->params.sensor)
         i++;
-    if (i == one->layout.sensor_count)
+    if (i == point->layout.sensor_count)
         return;
-    double far_m = (double)*layout_distances(&one->layout, state->params.distance, i, 0, 1, &room);
+    double far_m = (double)*layout_distances(&point->layout, state->params.distance, i, 0, 1, &room);
     out->no_data = !isfinite(far_m);
     out->value = out->no_data ? out->value : far_m;
 }
 
-/* Sums the sensors' weights at the point, with the arithmetic of the vertices and the readings that are shown. */
-static void point_sum(const struct field_state *state, const struct one *one, struct field_point *out)
+/* Sums the sensors' weights at the point, with the same arithmetic as at vertices, and the readings that the scalars show. */
+static void point_sum(const struct field_state *state, const struct single_point *point, struct field_point *out)
 {
-    const size_t sensors = one->layout.sensor_count;
+    const size_t sensors = point->layout.sensor_count;
     uint8_t *usable = mem_array(sensors, 1), *marked = mem_array(sensors, 1);
     double *values = mem_array(sensors, sizeof(*values)), value = 0, total = 0, uncertain = 0;
     uint32_t *members = mem_array(sensors, sizeof(*members));
     for (size_t i = 0; i < sensors; i++)
         usable[i] = state->shown[i].usable;
-    struct weights *weights = weights_create(&one->layout, &state->params, state->weights->radius_m, usable, &(struct weights_key){ 0 });
+    struct weights *weights = weights_create(&point->layout, &state->params, state->weights->radius_m, usable, &(struct weights_key){ 0 });
     if (weights) {
         for (uint32_t m = 0; m < weights->member_count; m++) {
             members[m] = m;
@@ -86,7 +86,7 @@ static void point_sum(const struct field_state *state, const struct one *one, st
         float weight = (float)total, shown;
         kernel_value(&rule, &value, &weight, 1, &shown);
         update_flags(state, weights, 0, total, uncertain, &at);
-        out->value = state->params.show == SHOW_BLIND ? (double)update_blind(one->layout.group, weights->near_m[0]) : (double)shown;
+        out->value = state->params.show == SHOW_BLIND ? (double)update_blind(point->layout.group, weights->near_m[0]) : (double)shown;
         out->no_data = at.no_data;
         out->uncertain = at.uncertain > 127;
     }
@@ -107,14 +107,14 @@ bool field_at(struct field *field, int asset, const struct field_params *params,
     params = field_params_of(field, asset, params, &room);
     const struct field_state *state = field_state(field, asset, params);
     point_drawn(scalars, place, out);
-    struct one one;
-    one_init(&one, state->layout, place);
+    struct single_point point;
+    single_point_init(&point, state->layout, place);
     if (params->show == SHOW_DISTANCE) {
-        point_distance(state, &one, out);
+        point_distance(state, &point, out);
         return true;
     }
     if (!state->weights->prepared)
-        point_sum(state, &one, out);
+        point_sum(state, &point, out);
     out->drawn_error = field_params_cover(params) ? 0 : error_near(state, place);
     out->uncertain |= out->drawn_error > 0;
     return true;

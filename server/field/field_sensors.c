@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What goes into the sums of the field at a point. */
+/* Lists the sensors and values that enter the sums of the field. */
 #include <string.h>
 
 #include "base/mem.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Fields of sensors whose places are tried out: their layouts, kept as long as somebody may ask for them. */
+/* Fields with trial sensor positions: their layouts, kept as long as they may be requested. */
 #include <math.h>
 
 #include "base/mem.h"
@@ -39,7 +39,7 @@ void field_trials_finish(struct field *field)
         tried_remove(field, &field->tried);
 }
 
-/* A sensor that is dragged leaves a layout behind at every step. */
+/* Frees layouts of dropped trials: dragging a sensor leaves one behind at every step. */
 static void forget_dropped(struct field *field, uint32_t keep)
 {
     for (struct trial_layout **link = &field->tried; *link;)
@@ -57,7 +57,7 @@ static struct trial_layout *find(const struct field *field, int asset, const str
     return tried;
 }
 
-/* One value for all of the asset, whatever the group says: no place is known that it could depend on. */
+/* Returns parameters for one value on the whole asset, if no sensor position is known on which the group's parameters could depend. */
 static const struct field_params *even_params(struct field *field, int asset, const struct field_params *params, struct field_params *room)
 {
     const struct field_layout *layout = field_layout(field, asset, params);
@@ -95,7 +95,7 @@ static const struct field_params *trial_params(struct field *field, int asset, c
     return room;
 }
 
-/* What nobody would see follows from distances alone, also where what is shown otherwise is prepared and knows less. */
+/* Returns parameters for SHOW_BLIND: it depends on distances alone, also where the group's interpolation is a prepared one. */
 static const struct field_params *blind_params(const struct field_params *params, struct field_params *room)
 {
     if (params->show != SHOW_BLIND)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A dense Cholesky factor of as many rows as sensors are lost. */
+/* Computes the values of lost sensors with a dense Cholesky factor of their block. */
 #include "field/influence_fill.h"
 
 #include <math.h>
@@ -7,14 +7,14 @@
 
 #include "base/mem.h"
 
-#define LEAST 1e-9 /* of a sensor's own precision: where all sensors of a body are lost, nothing follows, and 0 is taken */
+#define MIN_PIVOT_PART 1e-9 /* relative to a sensor's precision; below it nothing determines a lost sensor, and 0 is used */
 
 struct influence_fill {
     const double *precision;
     size_t count, lost_count;
     uint32_t *lost;
     uint8_t *used;
-    double *factor; /* [row][column], lower */
+    double *factor; /* lower triangle, [row][column] */
 };
 
 static void factor(struct influence_fill *fill)
@@ -26,7 +26,7 @@ static void factor(struct influence_fill *fill)
             for (size_t k = 0; k < j; k++)
                 sum -= fill->factor[i * n + k] * fill->factor[j * n + k];
             if (i == j)
-                fill->factor[i * n + i] = sqrt(sum > LEAST * fabs(own) ? sum : fabs(own) + 1e-30);
+                fill->factor[i * n + i] = sqrt(sum > MIN_PIVOT_PART * fabs(own) ? sum : fabs(own) + 1e-30);
             else
                 fill->factor[i * n + j] = sum / fill->factor[j * n + j];
         }
@@ -59,7 +59,7 @@ void influence_fill_destroy(struct influence_fill **fill_ptr)
     *fill_ptr = NULL;
 }
 
-/* x = L^-1 x, where x is 0 before `first`. */
+/* Solves x = L^-1 x, where x is 0 before index `first`. */
 static void solve_lower(const struct influence_fill *fill, size_t first, double *x)
 {
     const size_t n = fill->lost_count;
@@ -101,7 +101,7 @@ static double own_of_used(const struct influence_fill *fill, size_t sensor, doub
     return own;
 }
 
-/* 1 / ((P_LL)^-1)_ll: by a column of the factor's inverse. */
+/* Returns 1 / ((P_LL)^-1)_ll, from a column of the factor's inverse. */
 static double own_of_lost(const struct influence_fill *fill, size_t lost, double *x)
 {
     const size_t n = fill->lost_count;

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What lost sensors would say by a prepared interpolation: with precision P over all sensors, the lost ones L and the used ones U,
-   P_LL v_L = -P_LU v_U. With these values in place of theirs, the weights prepared for all sensors give the field of the used ones alone.
-   Thread: any; immutable once made. */
+/* Values of lost sensors under a prepared interpolation: with precision P over all sensors, lost ones L and used ones U, P_LL v_L = -P_LU
+   v_U. With these values, the weights prepared for all sensors give the field of the used ones alone. Thread: any; immutable once made. */
 #ifndef FIELD_INFLUENCE_FILL_H
 #define FIELD_INFLUENCE_FILL_H
 #include <stddef.h>
@@ -9,19 +8,19 @@
 
 struct influence_fill;
 
-/* Factors P_LL. precision: [sensor][sensor], must outlive it; used: by sensor, 1 where it takes part. The caller destroys it. */
+/* Factors P_LL. precision: [sensor][sensor], must outlive the result; used: by sensor, 1 if used. The caller destroys the result. */
 struct influence_fill *influence_fill_create(const double *precision, size_t count, const uint8_t *used);
-/* Frees it. &NULL is fine; leaves NULL. */
+/* Frees the factor. &NULL is fine; sets it to NULL. */
 void influence_fill_destroy(struct influence_fill **fill);
 /* Replaces the values of lost sensors. Takes (lost * sensors) steps. */
 void influence_fill_values(const struct influence_fill *fill, double *values);
 
-/* Writes each sensor's own precision among those that are used: P_ii - P_iL (P_LL)^-1 P_Li; of a lost one, as if it alone were used again.
-   Takes (lost * lost * sensors) steps. */
+/* Writes each sensor's own precision among the used ones: P_ii - P_iL (P_LL)^-1 P_Li; for a lost one, as if it alone were used again. Takes
+   (lost * lost * sensors) steps. */
 void influence_fill_own(const struct influence_fill *fill, double *own);
 
-/* Adds to out[v], for `count` vertices, by how much lost sensors let the variance grow: H_L (P_LL)^-1 H_L'. shares: H from the first of
-   these vertices on, of a sensor each `stride`. For interpolations whose precision is in 1/unit^2. */
+/* Adds to out[v], for `count` vertices, the variance that lost sensors add: H_L (P_LL)^-1 H_L'. shares: H from the first of these vertices
+   on, `stride` elements per sensor. For interpolations whose precision is in 1/unit^2. */
 void influence_fill_variances(const struct influence_fill *fill, const float *shares, size_t stride, size_t count, double *out);
 
 #endif

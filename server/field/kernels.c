@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The field's inner loops: branch-free, elementwise, in order of the sensors, so that every machine and every cut gives equal bits. */
+/* The field's inner loops: branch-free, elementwise, in the order of sensors, so that every machine and every division into blocks gives
+   identical bits. */
 #include "field/kernels.h"
 
 #include <assert.h>
@@ -14,16 +15,16 @@
 #define KERNEL SIMD_CLONES("avx512f", "avx2")
 
 #if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC optimize("no-trapping-math") /* both sides of a choice may be computed, which SIMD needs */
+#pragma GCC optimize("no-trapping-math") /* both sides of a choice may be evaluated, which SIMD needs */
 #endif
 
 #define TINY 1e-37f
 
-/* log2 of x, or of TINY where x is less; to 1e-7, exactly 0 at 1. Minimax polynomial of log2(1 + x)/x over
-   [sqrt(1/2) - 1, sqrt(2) - 1]. Limits are put on integers: a limit on floats splits the loop into paths, which ends SIMD. */
+/* log2 of x, or of TINY if x is less; to 1e-7, exactly 0 at 1. Minimax polynomial of log2(1 + x)/x over [sqrt(1/2) - 1, sqrt(2) - 1].
+   Limits are applied to integers: a limit on floats would split the loop into paths, which prevents SIMD. */
 static inline float log2_from_tiny(float x)
 {
-    int32_t bits, tiny = 0x02081cea; /* of TINY */
+    int32_t bits, tiny = 0x02081cea; /* bits of TINY */
     memcpy(&bits, &x, sizeof(bits));
     bits = bits > tiny ? bits : tiny;
     int32_t exponent = (bits - 0x3f3504f3) >> 23;
@@ -41,8 +42,8 @@ static inline float log2_from_tiny(float x)
     return (float)exponent + x * p;
 }
 
-/* 2^x, to 2e-7 of itself, for -2e6 <= x <= 0; exactly 1 at 0, exactly 0 below -126.5. Above 0, to 2e6: some finite number.
-   Minimax polynomial of (2^f - 1)/f over [-1/2, 1/2]. */
+/* 2^x, with relative error 2e-7, for -2e6 <= x <= 0; exactly 1 at 0, exactly 0 below -126.5. From 0 to 2e6: some finite number. Minimax
+   polynomial of (2^f - 1)/f over [-1/2, 1/2]. */
 static inline float exp2_down(float x)
 {
     int32_t whole = (int32_t)(x - 0.5f);
@@ -67,7 +68,7 @@ static inline bool takes_part(float distance_m, float near_m, float reach_m)
     return (within | nearest) & finite;
 }
 
-/* Weights fade towards the reach: by what is left of it, squared, in parts of what the nearest has left. */
+/* Fades weights towards the reach: by the squared remaining distance, relative to that of the nearest sensor. */
 static inline void fade(const struct kernel_column *column, float *restrict weight)
 {
     const float *distance_m = column->distance_m, *near_m = column->near_m;
@@ -100,7 +101,7 @@ KERNEL void kernel_nearest(const float *restrict distance_m, size_t count, float
         near_m[j] = distance_m[j] < near_m[j] ? distance_m[j] : near_m[j];
 }
 
-/* Floats >= 0 are in the order of their bits, and integers may be compared in any order. */
+/* Non-negative floats sort like their bits, and integers may be compared in any order. */
 KERNEL float kernel_largest(const float *distance_m, size_t count, float most_m)
 {
     int32_t most, infinity = 0x7f800000;
@@ -124,7 +125,7 @@ KERNEL void kernel_top_shepard(const float *restrict distance_m, const float *re
     }
 }
 
-/* log2(e) d strength; d = max(0, (R - D)/R), exactly 0 at R: a small decay makes much of little. */
+/* Returns log2(e) d strength, with d = max(0, (R - D)/R), exactly 0 at R: a small decay amplifies small values. */
 static inline float exponent_of(float distance_m, float radius_m, float per_radius, float strength, float *d)
 {
     float near_one = (radius_m - distance_m) * per_radius;
@@ -149,7 +150,7 @@ KERNEL void kernel_log2(const float *restrict x, size_t count, float *restrict o
         out[j] = log2_from_tiny(x[j]);
 }
 
-/* (near / distance)^power; divisions cost more than all else here, so it is 2^(power (log2 near - log2 distance)). */
+/* (near / distance)^power; divisions dominate the cost, so it is computed as 2^(power (log2 near - log2 distance)). */
 static inline void part_of_nearest(const struct kernel_column *column, float *restrict weight)
 {
     const float *distance_m = column->distance_m, *near_m = column->near_m, *near_log2 = column->near_log2;
@@ -225,7 +226,7 @@ KERNEL static void add_one(double *restrict sum, const float *restrict a, double
         sum[j] += (double)a[j] * factor;
 }
 
-/* Of KERNEL_COLUMNS columns. */
+/* Adds KERNEL_COLUMNS columns. */
 SIMD_BODY void add_eight(double *restrict sum, const float *const *columns, const double *factors, size_t begin, size_t end)
 {
     const float *restrict a = columns[0], *restrict b = columns[1], *restrict c = columns[2], *restrict d = columns[3];
@@ -287,8 +288,8 @@ KERNEL void kernel_value(const struct kernel_value *rule, const double *restrict
         value[j] = value_of(&own, sum[j], weight[j]);
 }
 
-/* A scalar is read and written as one number: its value is in the lower half, which flags are not. Returns the bits of the change, whose
-   order is that of what they mean: see kernel_largest. */
+/* Reads and writes a scalar as one number: the value is in the lower half and leaves the flags unchanged. Returns the bits of the change,
+   which sort like the changes themselves (kernel_largest). */
 static inline int32_t put(struct scalar *restrict at, float value)
 {
     _Static_assert(sizeof(*at) == 8 && offsetof(struct scalar, value) == 0 && __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "value first");
@@ -331,7 +332,7 @@ struct few {
     double factor[KERNEL_COLUMNS - 1];
 };
 
-/* column_count: known where this is put in. */
+/* column_count: a constant after inlining. */
 SIMD_BODY int32_t put_few(const struct few *few, size_t column_count, const float *restrict weight, size_t count,
                           struct scalar *restrict at)
 {

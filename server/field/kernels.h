@@ -7,32 +7,32 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define KERNEL_BLOCK 256         /* vertices done at a time: what a block needs stays in the nearest cache */
+#define KERNEL_BLOCK 256         /* vertices processed at a time, so that their data stays in the L1 cache */
 #define KERNEL_COLUMNS 8         /* columns added at a time */
-#define KERNEL_LINE 16           /* floats that come from memory at a time */
-#define KERNEL_FACTOR_LIMIT 1e4f /* of strength and decay: exponents stay within what the loops can turn into integers */
+#define KERNEL_LINE 16           /* floats per cache line */
+#define KERNEL_FACTOR_LIMIT 1e4f /* largest strength and decay: exponents stay within the range of the loops' integer conversions */
 
 struct scalar;
 
-/* Writes the distances that codes of an asset file stand for (protocol/asset_distance.h). */
+/* Decodes distances of an asset file (protocol/asset_distance.h). */
 void kernel_distances(const uint16_t *restrict codes, size_t count, float *restrict out_m);
 /* Writes the straight-line distance of each position from the point. */
 void kernel_euclidean(const float (*positions_m)[3], size_t count, const float point_m[3], float *restrict out_m);
-/* Lowers near_m[i] to distance_m[i] where that is smaller. */
+/* Lowers near_m[i] to distance_m[i] if that is smaller. */
 void kernel_nearest(const float *restrict distance_m, size_t count, float *restrict near_m);
 /* Returns the largest finite distance, or most_m if that is larger. */
 float kernel_largest(const float *distance_m, size_t count, float most_m);
 
 /* Raises top[i], the scale that keeps a vertex's weights from overflowing, for one sensor: the largest strength among the nearest sensors.
-   A sensor takes part where it is within reach or the nearest: where none is within reach, the nearest alone carries its value on, so that
-   a triangle with one reached corner can be interpolated. */
+   A sensor contributes if it is within reach or the nearest: if none is within reach, the nearest alone continues its value, so that a
+   triangle with one reached corner can be interpolated. */
 void kernel_top_shepard(const float *restrict distance_m, const float *restrict near_m, size_t count, float strength, float *restrict top);
-/* Raises top[i] to one sensor's exponent of Algorithm 1, max(0, 1 - distance / radius) strength / ln 2 (a power of 2), where that is larger
-   and the sensor takes part, as in kernel_top_shepard(). Begin with top of zeros and call it for each sensor. */
+/* Raises top[i] to one sensor's exponent of Algorithm 1, max(0, 1 - distance / radius) strength / ln 2 (a power of 2), if that is larger
+   and the sensor contributes as in kernel_top_shepard(). Start with zeros and call it for each sensor. */
 void kernel_top_paper(const float *restrict distance_m, const float *restrict near_m, size_t count, float reach_m, float radius_m,
                       float strength, float *restrict top);
 
-/* Writes log2 of x, or of 1e-37 where x is less. */
+/* Writes log2 of x, or of 1e-37 if x is less. */
 void kernel_log2(const float *restrict x, size_t count, float *restrict out);
 
 /* One sensor's inputs for a block of vertices. */
@@ -40,29 +40,29 @@ struct kernel_column {
     const float *distance_m, *near_m, *top;
     size_t count;
     float reach_m, strength, decay;
-    float power;            /* shepard */
-    const float *near_log2; /* shepard with a power other than 2: of near_m */
+    float power;            /* exponent of shepard */
+    const float *near_log2; /* log2 of near_m, for shepard with a power other than 2 */
     bool alike;             /* shepard: all strengths are equal */
-    float radius_m;         /* paper */
+    float radius_m;         /* R of paper */
 };
 /* Writes the sensor's Shepard weight at each vertex: (strength / top) (near / distance)^power; exactly 1 for the strongest of the nearest,
    exactly 0 for all others where near is 0. With a reach, times ((reach - distance) / (reach - near))^2: 1 for the nearest, 0 for others
    from the reach on. */
 void kernel_shepard(const struct kernel_column *column, float *restrict weight);
-/* Writes the sensor's weight of Algorithm 1, exp(d strength - top), unless NULL, and its term, weight times d^decay, with d = max(0, 1 -
-   distance / radius). Reach: as kernel_shepard(). */
+/* Writes the sensor's weight of Algorithm 1, exp(d strength - top), unless `weight` is NULL, and its term, weight times d^decay, with d =
+   max(0, 1 - distance / radius). Reach: as in kernel_shepard(). */
 void kernel_paper(const struct kernel_column *column, float *restrict weight, float *restrict term);
 
-/* Adds columns[c] * factors[c] to sum, for column_count <= KERNEL_COLUMNS. next: as many columns that will be read after these, which are
-   prefetched; NULL: not known. */
+/* Adds columns[c] * factors[c] to sum, for column_count <= KERNEL_COLUMNS. next: the same number of columns to be read afterwards, which
+   are prefetched; NULL: unknown. */
 void kernel_add(double *restrict sum, const float *const *columns, const double *factors, size_t column_count, size_t count,
                 const float *const *next);
 
-/* As kernel_add() for all KERNEL_COLUMNS columns, and adds the plain columns to total. */
+/* Does the same for KERNEL_COLUMNS columns, and also adds the plain columns to total. */
 void kernel_add_both(double *restrict sum, double *restrict total, const float *const columns[KERNEL_COLUMNS],
                      const double factors[KERNEL_COLUMNS], size_t count);
 
-/* The rule value = clamp(sum / weight * scale + offset, low, high), `empty` where weight is 0. */
+/* The rule value = clamp(sum / weight * scale + offset, low, high); `empty` where weight is 0. */
 struct kernel_value {
     float scale, offset, low, high, empty;
 };
@@ -71,8 +71,8 @@ void kernel_value(const struct kernel_value *rule, const double *restrict sum, c
                   float *restrict value);
 /* Stores values into scalars. Returns the largest change, and sets *changed if any differs. */
 float kernel_store(const float *restrict value, size_t count, struct scalar *restrict at, bool *changed);
-/* Does kernel_add() to zeros, kernel_value() and kernel_store() in one pass, with the same bits, for fewer than KERNEL_COLUMNS columns.
-   Returns and sets as kernel_store(). */
+/* Does kernel_add() to zeros, kernel_value() and kernel_store() in one pass, with identical bits, for fewer than KERNEL_COLUMNS columns.
+   Returns the largest change, and sets *changed if any value differs. */
 float kernel_few(const struct kernel_value *rule, const float *const *columns, const double *factors, size_t column_count,
                  const float *restrict weight, size_t count, struct scalar *restrict at, bool *changed);
 

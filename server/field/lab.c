@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Colour spaces (CIE 15:2004, IEC 61966-2-1). */
+/* Conversions of colour spaces (CIE 15:2004, IEC 61966-2-1). */
 #include "field/lab.h"
 
 #include <math.h>
@@ -46,7 +46,7 @@ void lab_from_rgb(const uint8_t rgb[3], double lab[3])
     lab_from_srgb((double[3]){ rgb[0], rgb[1], rgb[2] }, VISION_NORMAL, lab);
 }
 
-/* False: sRGB has no such colour; rgb is cut. */
+/* Returns false if sRGB has no such colour; rgb is then clamped. */
 static bool rgb_from_lab(const double lab[3], uint8_t rgb[3])
 {
     static const double to_rgb[3][3] = { { 3.2404542, -1.5371385, -0.4985314 },
@@ -73,7 +73,7 @@ void lab_shade(const uint8_t rgb[3], double offset, uint8_t out[3])
     memcpy(out, rgb, 3);
     if (offset == 0)
         return;
-    for (int step = 0; step < 24; step++, reach -= 1.0 / 24) { /* near the rim of sRGB the offset shrinks; hue and chroma stay */
+    for (int step = 0; step < 24; step++, reach -= 1.0 / 24) { /* near the border of sRGB the offset shrinks; hue and chroma stay */
         lab[0] = lightness + reach * offset;
         if (rgb_from_lab(lab, out))
             return;

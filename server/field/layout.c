@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sensors of one group on one asset, and their distances from the asset file. */
+/* Sensors of one group on one asset, and their distances. */
 #include "field/layout.h"
 
 #include <float.h>
@@ -19,7 +19,8 @@ static bool of_group(const struct scene *scene, const struct scene_sensor *senso
     return scene->plant->tags[sensor->tag].group == group;
 }
 
-/* Those whose place is known; where there are none, those whose place is assumed. A place that is tried out is known. */
+/* Returns whether the group has a sensor with a known position, in which case those with an assumed one are ignored. Trial positions are
+   known. */
 static bool has_known(const struct scene *scene, int asset, int group, const struct trial *trial)
 {
     const struct scene_asset *from = &scene->assets[asset];
@@ -48,7 +49,7 @@ bool layout_is_touched(const struct scene *scene, int asset, int group, const st
     return false;
 }
 
-static void add(struct field_layout *layout, struct layout_sensor sensor)
+static void add_sensor(struct field_layout *layout, struct layout_sensor sensor)
 {
     const struct plant_tag *tag = &layout->tags[sensor.tag];
     sensor.strength = layout->assumed ? 1 : not_negative(tag->strength);
@@ -56,7 +57,7 @@ static void add(struct field_layout *layout, struct layout_sensor sensor)
     layout->sensors[layout->sensor_count++] = sensor;
 }
 
-/* number: among those of the group whose place is known. */
+/* number: index among the group's sensors with a known position. */
 static void add_prepared(struct field_layout *layout, const struct scene_sensor *sensor, size_t number)
 {
     const struct asset_view *view = &layout->file->view;
@@ -66,7 +67,7 @@ static void add_prepared(struct field_layout *layout, const struct scene_sensor 
     if (heat && !layout->assumed && number < heat->sensor_count)
         made.heat_m = (const float *)influence_array(&layout->file->influence, heat->shares) + number * layout->vertex_count;
     memcpy(made.surface_m, in_file->surface_m, sizeof(made.surface_m));
-    add(layout, made);
+    add_sensor(layout, made);
 }
 
 static void add_trial(struct field_layout *layout, const struct trial_sensor *sensor)
@@ -77,7 +78,7 @@ static void add_trial(struct field_layout *layout, const struct trial_sensor *se
                                   .tried = true,
                                   .tried_m = trial_distances(sensor) };
     memcpy(made.surface_m, sensor->surface_m, sizeof(made.surface_m));
-    add(layout, made);
+    add_sensor(layout, made);
 }
 
 struct field_layout *layout_create(const struct scene *scene, int asset, int group, const struct trial *trial)
@@ -148,8 +149,8 @@ void layout_set_point(const struct asset_view *file, const struct layout_points 
         points->away_m[point][k] = parts[k] == 1 ? 0 : vecf_distance(points->positions_m[point], file->positions_m[corners[k]]);
 }
 
-/* The distance from a source in the triangle's plane, unfolded: |p - s|^2 = sum_k part_k (|corner_k - s|^2 - |corner_k - p|^2). Where two
-   ways round meet in the triangle no such source exists: then the triangle inequality bounds the distance. */
+/* Returns the distance of a point from a source laid out in the triangle's plane: |p - s|^2 = sum_k part_k (|corner_k - s|^2 - |corner_k -
+   p|^2). Where paths from two sides meet within the triangle, no such source exists; the triangle inequality then bounds the distance. */
 static float along_at(const struct field_layout *layout, const struct layout_sensor *sensor, const float *along_m, size_t point)
 {
     const float *part = layout->points->parts[point], *away_m = layout->points->away_m[point];

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Readings to places between limits. */
+/* Converts readings to positions between alarm limits. */
 #include "field/limits.h"
 
 #include <math.h>
 
-#define ALONE_MOST 1.999 /* H without HH: beyond H, but no further limit is passed */
+#define MAX_ALONE 1.999 /* H without HH: beyond H, but below the position of HH */
 
-/* One side, turned so that values rise towards trouble. */
+/* One side's limits, mirrored so that values rise towards trouble. */
 struct limit_side {
     double inner, outer; /* NaN: none */
 };
@@ -22,7 +22,7 @@ static double middle_of(const struct plant_group *group, const struct limit_side
     return group->max > l ? group->max : l + range / 2;
 }
 
-/* 0 at the middle; all lengths are measured from there. */
+/* 0 is the middle, from which all values are measured. */
 static double side_place(double value, double inner, double outer)
 {
     if (!isfinite(inner) && !isfinite(outer))
@@ -32,7 +32,7 @@ static double side_place(double value, double inner, double outer)
     if (value < inner)
         return value / inner;
     if (!isfinite(outer))
-        return fmin(value / inner, ALONE_MOST);
+        return fmin(value / inner, MAX_ALONE);
     return 1 + (value - inner) / (outer - inner);
 }
 

@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The place of a reading between the limits of its own tag, for the operator's view: LL -2, L -1, H +1, HH +2, 0 in the middle, linear
-   in between, cut at -3 and +3. Readings of different tags become comparable: each says how far it is from its own trouble.
-   The rule, for the high side (the low side is its mirror image); "inner" is H, or HH where there is no H:
-     middle: half-way between the inner limits; with limits on one side only, the other end of the group's range (or, if that lies
-       beyond the limit, half the range away from it);
-     from the middle (0) to the inner limit (+1), on with the same slope to below +2 where H stands alone;
-     from H (+1) to HH (+2), on with the same slope beyond it;
-     HH without H: no reading below HH is beyond a limit, so the place stays below +1 there, and is +2 at HH, from where it goes on with
-       half the slope of below.
-   Pure. Thread: any. */
+/* The position of a reading between the limits of its own tag, for the operator's view: LL -2, L -1, H +1, HH +2, 0 in the middle, linear
+   in between, clamped to -3 and +3. Readings of different tags become comparable: each shows how far it is from its own trouble.
+   The rule for the high side (the low side is its mirror image); "inner" is H, or HH if there is no H:
+   Middle: half-way between the inner limits; with limits on one side only, the other end of the group's range (or, if that is beyond the
+   limit, half the range away from it).
+   From the middle (0) to the inner limit (+1); without HH the slope continues to just below +2.
+   From H (+1) to HH (+2); the slope continues beyond HH.
+   HH without H: no reading below HH is beyond a limit, so the position stays below +1 there, is +2 at HH, and continues with half the slope
+   below HH. Pure. Thread: any. */
 #ifndef FIELD_LIMITS_H
 #define FIELD_LIMITS_H
 #include "plant/plant.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* From the stored precision, or from distances. */
+/* Predicts sensors from each other, by a prepared precision matrix or by distances. */
 #include "field/neighbours.h"
 
 #include <math.h>
@@ -11,12 +11,12 @@
 #include "plant/influence.h"
 #include "value/quality.h"
 
-#define AT_ONE_PLACE 1e-6 /* metres */
+#define AT_ONE_PLACE 1e-6 /* metres; nearer sensors are at the same point */
 
 struct neighbours {
     struct field_layout *layout;
-    const struct influence_entry *entry; /* NULL: from distances */
-    float *along_m;                      /* [to][from]; INFINITY: no way leads, or it is not known. NULL: too many sensors */
+    const struct influence_entry *entry; /* NULL: predictions come from distances */
+    float *along_m;                      /* [to][from]; INFINITY: no path, or unknown. NULL: too many sensors */
 };
 
 static const struct influence_entry *entry_of(const struct field_layout *layout)
@@ -31,7 +31,7 @@ static const struct influence_entry *entry_of(const struct field_layout *layout)
     return NULL;
 }
 
-/* Looked up once: each is in a column of all vertices. The caller frees it (mem_free). */
+/* Looks up the distances between all sensors once. The caller frees the array (mem_free). */
 static float *distances_between(const struct field_layout *layout)
 {
     const size_t n = layout->sensor_count;
@@ -48,8 +48,8 @@ static float *distances_between(const struct field_layout *layout)
     return along_m;
 }
 
-/* Some other good one is on its body; else nothing follows but rounding. */
-static bool is_told(const struct neighbours *neighbours, const uint8_t *used, size_t sensor)
+/* Returns whether another good sensor is on the same body; otherwise the prediction would be mere rounding. */
+static bool is_predictable(const struct neighbours *neighbours, const uint8_t *used, size_t sensor)
 {
     const size_t n = neighbours->layout->sensor_count;
     for (size_t j = 0; j < n; j++)
@@ -81,7 +81,7 @@ static void predict_prepared(const struct neighbours *neighbours, const uint8_t 
         for (size_t j = 0; j < n; j++)
             pull += precision[i * n + j] * values[j];
         out[i].by = (enum interpolation)entry->interpolation;
-        if (!(own[i] > 0) || !is_told(neighbours, used, i))
+        if (!(own[i] > 0) || !is_predictable(neighbours, used, i))
             continue;
         out[i].predicted = around + (used[i] ? values[i] - pull / own[i] : values[i]);
         if (entry->interpolation == INTERPOLATION_GP)
@@ -104,7 +104,7 @@ static void predict_by_distance(const struct neighbours *neighbours, const uint8
             if (j == i || !used[j] || !(away_m <= layout->group->reach_m) || !isfinite(away_m) || other->strength <= 0)
                 continue;
             away_m = fmax(away_m, AT_ONE_PLACE);
-            double near = least_m / away_m; /* relative to the nearest so far: no power overflows */
+            double near = least_m / away_m; /* relative to the nearest sensor so far, so that no power overflows */
             if (away_m < least_m) {
                 double scale = isfinite(least_m) ? pow(away_m / least_m, layout->group->power) : 0;
                 sum *= scale;
@@ -201,7 +201,7 @@ size_t neighbours_nearest(const struct neighbours *neighbours, size_t sensor, co
     return count;
 }
 
-/* Of all its sensors; the caller frees what it returns (mem_free). */
+/* Predicts all sensors of a snapshot. The caller frees the result (mem_free). */
 static struct neighbour *predict_from(const struct neighbours *neighbours, const struct snapshot *snapshot)
 {
     const size_t count = neighbours_count(neighbours);

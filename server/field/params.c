@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a session may choose: defaults from the group, overrides of single sensors, and the ranges. */
+/* Parameters of a field: defaults from the group, overrides of single sensors, checks, and default ranges. */
 #include "field/params.h"
 
 #include <math.h>
@@ -12,7 +12,7 @@
 #include "field/limits.h"
 #include "plant/influence.h"
 
-static const double DIFFERENCE_PART = 0.25; /* of the group's range, to either side of 0 */
+static const double DIFFERENCE_PART = 0.25; /* of the group's range, on either side of 0 */
 
 void field_params_default(const struct plant *plant, int group, struct field_params *params)
 {
@@ -96,7 +96,7 @@ static float largest_distance(const struct asset_view *view, size_t column, enum
     float most_m = 0, scratch[KERNEL_BLOCK];
     for (size_t at = 0; at < count; at += KERNEL_BLOCK) {
         size_t number = count - at < KERNEL_BLOCK ? count - at : KERNEL_BLOCK;
-        if (mode != DISTANCE_EUCLIDEAN) /* the range of both ways along the surface is one, so that colours can be compared */
+        if (mode != DISTANCE_EUCLIDEAN) /* both geodesic modes share one range, so that colours can be compared */
             kernel_distances(asset_distance_codes(view, column, at), number, scratch);
         else
             kernel_euclidean(view->positions_m + at, number, view->sensors[column].surface_m, scratch);
@@ -105,7 +105,7 @@ static float largest_distance(const struct asset_view *view, size_t column, enum
     return most_m;
 }
 
-/* Up to two digits and a half: 16.375 becomes 16.5. */
+/* Rounds up to two and a half digits: 16.375 becomes 16.5. */
 static double rounded_up(double most_m)
 {
     double step = 0.5 * pow(10, floor(log10(most_m)) - 1);
@@ -125,7 +125,7 @@ static double distance_range(const struct scene *scene, const struct field_param
     return 1;
 }
 
-/* The largest of all assets: where it was fitted, each has its own. */
+/* Returns the largest deviation of all assets: if it was fitted, each asset has its own. */
 static double deviation_range(const struct scene *scene, int group)
 {
     const double stated = scene->plant->groups[group].gp.deviation;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* From values to places to colours. */
+/* Maps values to positions on the scale, and positions to colours. */
 #include "field/scale.h"
 
 #include <math.h>
@@ -29,7 +29,7 @@ static double band_count(const struct scale *scale)
     return fmax(ceil((scale->max - scale->min) / scale->interval - 0.001), 1);
 }
 
-/* The place whose colour the band of this value has. Values are floats: one at the end of a band may be a little below it. */
+/* Returns the position whose colour the value's band has. Values are floats: one at the end of a band may be slightly below it. */
 static double band_place(const struct scale *scale, double value)
 {
     if (scale->break_count > 0) {

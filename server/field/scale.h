@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A scale: which colour of a map a value has. The legend's rule, which pictures and clients follow too:
-     place = (value - MIN)/(MAX - MIN), or log(value/MIN)/log(MAX/MIN) on a logarithmic scale.
-     value < MIN: below;  value > MAX: above;  else the colour number min(255, floor(256 place)), never a mixture of two.
-     Bands of an interval begin at MIN + k interval, k < max(1, ceil((MAX - MIN)/interval - 0.001)); MAX may cut the last one short.
-     A whole band has the colour in the middle of its places.
-     n breaks inside (MIN, MAX) make n + 1 bands, each from its break on; band i has the colour at the place (i + 0.5)/(n + 1).
+/* A scale: which colour of a map a value gets. This is the legend's rule, which frames and clients follow, too:
+   place = (value - MIN)/(MAX - MIN), or log(value/MIN)/log(MAX/MIN) on a logarithmic scale.
+   value < MIN: below; value > MAX: above; else colour number min(255, floor(256 place)), never a mixture of two.
+   Bands of an interval begin at MIN + k interval, k < max(1, ceil((MAX - MIN)/interval - 0.001)); MAX may cut the last one short. A whole
+   band has the colour at its middle.
+   n breaks inside (MIN, MAX) make n + 1 bands, each starting at its break; band i has the colour at the place (i + 0.5)/(n + 1).
    MIN, MAX and value are compared as 32-bit floats, as they are stored. Pure. Thread: any. */
 #ifndef FIELD_SCALE_H
 #define FIELD_SCALE_H
@@ -16,10 +16,10 @@
 enum { SCALE_BREAKS = PLANT_BREAKS, SCALE_EDGES = 64 };
 struct scale {
     const struct colormap *map;
-    double min, max;             /* min < max; above 0 where log */
+    double min, max;             /* min < max; both above 0 if log */
     bool log;
-    double interval;             /* of bands; 0: none */
-    double breaks[SCALE_BREAKS]; /* ascending; bands of their own, in place of the interval */
+    double interval;             /* width of bands; 0: none */
+    double breaks[SCALE_BREAKS]; /* ascending; separate bands instead of the interval */
     int break_count;
 };
 enum { SCALE_BELOW = -1, SCALE_ABOVE = 256 };
@@ -32,9 +32,9 @@ double scale_value(const struct scale *scale, double place);
 int scale_index(const struct scale *scale, double value);
 /* Writes the colour of a value. */
 void scale_look_up(const struct scale *scale, double value, uint8_t rgb[3]);
-/* Writes the values where bands meet, ascending. Returns how many; 0 if there are none or more than SCALE_EDGES. */
+/* Writes the values where bands meet, ascending. Returns their number; 0 if there are none or more than SCALE_EDGES. */
 int scale_edges(const struct scale *scale, double edges[SCALE_EDGES]);
-/* Returns the smallest change of a value that can show another colour. */
+/* Returns the smallest change of a value that can change its colour. */
 double scale_step(const struct scale *scale);
 
 #endif

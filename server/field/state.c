@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What sensors say, as the sums take it, and whether that is what is shown. */
+/* Inputs from sensors for the sums, and whether they differ from the shown ones. */
 #include "field/state.h"
 
 #include <float.h>
@@ -11,8 +11,8 @@
 #include "value/quality.h"
 
 #define FLAG 255
-#define FILLED_DOUBT 0.1   /* such a share of a lost sensor's value may rest on uncertain ones */
-#define READING_LIMIT 1e30 /* beyond it sums of floats would overflow */
+#define FILLED_DOUBT 0.1   /* largest share of a lost sensor's value that may rest on uncertain sensors without being flagged */
+#define READING_LIMIT 1e30 /* larger values would overflow sums of floats */
 
 struct field_state *state_create(int asset, struct field_layout *layout, const struct field_params *params)
 {
@@ -50,7 +50,7 @@ void state_destroy(struct field_state **state_ptr)
     *state_ptr = NULL;
 }
 
-/* To add up few columns anew takes no longer than to read and write sums. */
+/* Returns whether sums are stored: recomputing few columns takes no longer than reading and writing sums. */
 static bool keeps_sums(const struct field_state *state)
 {
     return state->layout->sensor_count > KERNEL_COLUMNS;
@@ -67,7 +67,7 @@ size_t state_bytes(const struct field_state *state)
     return sizeof(struct field_state) + state->room * each_vertex(state) + state->layout->sensor_count * each_sensor;
 }
 
-/* Whole blocks. */
+/* Returns the vertices to allocate, in whole blocks. */
 static size_t room_for(const struct field_state *state, size_t count)
 {
     size_t whole = (count + KERNEL_BLOCK - 1) / KERNEL_BLOCK * KERNEL_BLOCK;
@@ -125,7 +125,7 @@ static double value_of(const struct field_state *state, const struct plant_tag *
 static struct state_input input_of(const struct field_state *state, const struct plant_tag *tag, const struct reading *reading)
 {
     bool good = !quality_is_bad(reading->quality) && isfinite(reading->value);
-    if (field_params_cover(&state->params)) /* nothing depends on what it says */
+    if (field_params_cover(&state->params)) /* the result does not depend on readings */
         return (struct state_input){ .usable = good ? SENSOR_USED : SENSOR_LOST };
     double value = good ? value_of(state, tag, reading->value) : 0;
     return (struct state_input){
@@ -137,7 +137,8 @@ static struct state_input input_of(const struct field_state *state, const struct
     };
 }
 
-/* Only sensors that may be used in both take part: else a sensor that came or went would show as a change of the plant. */
+/* Subtracts the baseline's input. Only sensors usable in both contribute: otherwise a sensor that appeared or failed would look like a
+   change of the plant. */
 static struct state_input less(struct state_input now, struct state_input then)
 {
     bool usable = now.usable && then.usable;
@@ -148,14 +149,15 @@ static struct state_input less(struct state_input now, struct state_input then)
     };
 }
 
-/* How near a reading is to trouble: by its tag's limits, where it has any, else by how far it is from the middle of the group's range. */
+/* Returns how near a reading is to trouble: by its tag's limits if it has any, else by its distance from the middle of the group's
+   range. */
 static double severity_of(const struct plant_group *group, const struct plant_tag *tag, double reading)
 {
     double place = limit_place(group, tag, reading), middle = (group->min + group->max) / 2;
     return isfinite(place) ? fabs(place) : fmin(fabs(reading - middle) / (group->max - middle), 0.999);
 }
 
-/* Of several sensors whose place is assumed the one that is nearest to trouble stands for the asset; of equal ones the first. */
+/* Among sensors with an assumed position, selects the one nearest to trouble to give the asset's value; the first of equal ones. */
 static void choose_one(struct field_state *state, const struct snapshot *snapshot)
 {
     const struct field_layout *layout = state->layout;
@@ -210,7 +212,7 @@ void state_fill(struct field_state *state)
         doubts[i] = state->now[i].uncertain;
     }
     influence_fill_values(weights->fill, values);
-    influence_fill_values(weights->fill, doubts); /* what a lost sensor's value rests on may be uncertain */
+    influence_fill_values(weights->fill, doubts); /* a lost sensor's value may rest on uncertain readings */
     for (size_t i = 0; i < state->layout->sensor_count; i++)
         if (!weights->takes_part[i]) {
             state->now[i].value = limited(values[i], -READING_LIMIT, READING_LIMIT);

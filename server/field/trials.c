@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sets of places that are tried out. */
+/* Registry of sets of trial sensor positions. */
 #include "field/trials.h"
 
 #include <pthread.h>
@@ -14,7 +14,7 @@ struct trial_reach {
 };
 
 struct kept_trial {
-    struct trial trial; /* first: who has it has this */
+    struct trial trial; /* first member, so that pointers to both are interchangeable */
     int users;
     bool dropped;
     struct kept_trial *next;
@@ -93,7 +93,7 @@ void trials_destroy(struct trials **pointer)
     *pointer = NULL;
 }
 
-/* Under lock. Of those that were dropped the oldest go, unless somebody holds them. */
+/* Frees dropped trials beyond the newest TRIALS_KEPT, unless they are held. Call under the lock. */
 static void sweep(struct trials *trials)
 {
     int dropped = 0;
@@ -127,7 +127,7 @@ uint32_t trials_put(struct trials *trials, const struct trial_sensor *sensors, s
     return id;
 }
 
-/* Under lock. */
+/* Finds a trial. Call under the lock. */
 static struct kept_trial *find(const struct trials *trials, uint32_t id)
 {
     struct kept_trial *kept = trials->kept;

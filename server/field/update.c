@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* From changed readings to changed scalars, block by block: all columns anew, or only the columns of what changed. */
+/* Updates scalars block by block: from all columns, or only from the columns of changed readings. */
 #include "field/update.h"
 
 #include <float.h>
@@ -13,25 +13,25 @@
 #include "plant/influence.h"
 
 #define FLAG 255
-#define DRAWN_ERROR (1 / 255.0) /* of the range: what may be drawn with a larger error is marked uncertain */
-#define ERROR_MARGIN 1.1        /* the limit is chosen so much too strict, */
-#define ERROR_SLACK 1.5         /* and again when it is more too strict than that */
-#define BLIND_MOST 1000.0 /* times the group's range: a hot spot that nobody would see */
-#define STEP_LIMIT 1e6    /* times the range: a larger step would leave its rounding in the sum for good */
-#define ADDED_MOST 4096   /* updates before all is summed anew: what rounding leaves behind stays below 1e-9 of the range */
-#define JOB_WORK 30000.0  /* worth waking another thread for */
-#define SMALL_WORK 1e6    /* less is not cut in two where there are many */
-#define MAKE_WORK 1.0     /* of one column at one vertex: made and added */
-#define ADD_WORK 0.15     /* only added */
+#define DRAWN_ERROR (1 / 255.0) /* of the range: vertices that may be drawn with a larger error are marked uncertain */
+#define ERROR_MARGIN 1.1        /* factor by which a newly chosen limit is too strict */
+#define ERROR_SLACK 1.5         /* a limit that is too strict by more than this factor is chosen again */
+#define MAX_BLIND 1000.0 /* largest hot spot shown, in multiples of the group's range: an undetectable one */
+#define STEP_LIMIT 1e6    /* in multiples of the range: a larger step would leave its rounding in the sums permanently */
+#define MAX_ADDED 4096   /* updates before all is summed again: the accumulated rounding stays below 1e-9 of the range */
+#define JOB_WORK 30000.0  /* nanoseconds of work that justify waking another thread */
+#define SMALL_WORK 1e6    /* updates with less work are not split if there are many */
+#define MAKE_WORK 1.0     /* nanoseconds to compute and add one column at one vertex */
+#define ADD_WORK 0.15     /* nanoseconds to add it only */
 
 struct update {
     struct field_state *state;
     struct weights_terms all, changed;
     struct kernel_value rule;
-    size_t next, old, end; /* blocks: to do next, shown before, to be shown */
-    bool anew;             /* sum all columns; else below `old` only those that changed */
-    bool flags;            /* qualities changed, and with them what flags say; values alone leave those below `old` as they are */
-    bool marks;            /* some sensor is Uncertain */
+    size_t next, old, end; /* block numbers: next to do, end of those shown before, end of those to be shown */
+    bool anew;             /* sums all columns; else, below `old`, only changed ones */
+    bool flags;            /* qualities changed, and so may flags; otherwise flags below `old` stay */
+    bool marks;            /* at least one sensor is Uncertain */
     pthread_mutex_t lock;
     /* --- below: under lock */
     bool value_changed, flag_changed;
@@ -45,7 +45,7 @@ static size_t blocks_of(size_t vertex_count)
 
 /* --- what there is to do ---------------------------------------------------------------------------------------------------- */
 
-/* Members to add: all, or those that changed. */
+/* Lists the members to add: all, or those that changed. */
 static struct weights_terms choose_terms(struct field_state *state, bool all)
 {
     const struct weights *weights = state->weights;
@@ -63,7 +63,8 @@ static struct weights_terms choose_terms(struct field_state *state, bool all)
     return (struct weights_terms){ .members = list->members, .factors = list->factors, .marked = list->marked, .count = count };
 }
 
-/* Adding is cheaper for few changes; a step far beyond the range would leave its rounding behind. */
+/* Returns whether changes may be added to the sums: they must be few, which is cheaper, and small, so that their rounding does not
+   matter. */
 static bool steps_are_small(const struct update *update)
 {
     const struct field_state *state = update->state;
@@ -87,10 +88,10 @@ void update_rule(const struct field_state *state, const struct state_input *inpu
             .scale = scale, .offset = offset, .low = difference ? -scale : offset, .high = difference ? scale : (float)group->max
         };
     } else {
-        bool around = state->params.interpolation == INTERPOLATION_FIN; /* values are above what is around; 0 is one of them */
+        bool around = state->params.interpolation == INTERPOLATION_FIN; /* values are relative to ambient, so 0 is one of them */
         float offset = around && !difference && !places ? (float)group->ambient : 0;
         *rule = (struct kernel_value){ .scale = 1, .offset = offset, .low = around ? offset : FLT_MAX, .high = around ? offset : -FLT_MAX };
-        if (state->params.interpolation == INTERPOLATION_GP) /* may pass the readings between them */
+        if (state->params.interpolation == INTERPOLATION_GP) /* values may exceed the readings */
             rule->low = -FLT_MAX, rule->high = FLT_MAX;
         for (size_t m = 0; m < state->weights->member_count; m++) {
             float value = (float)inputs[state->weights->members[m]].value;
@@ -101,8 +102,8 @@ void update_rule(const struct field_state *state, const struct state_input *inpu
     rule->empty = difference || places ? 0 : (float)group->min;
 }
 
-/* The largest value that a sum of error weights can be multiplied by. Most add up to 0, so only the spread of the readings counts; for fin,
-   what is around counts as one of them. */
+/* Returns the largest value that a sum of error weights may be multiplied by. For most interpolations they add up to 0, so only the spread
+   of the readings matters; for fin, ambient counts as a reading. */
 static double error_scale(const struct field_state *state)
 {
     double low = INFINITY, high = -INFINITY;
@@ -122,7 +123,7 @@ static double error_scale(const struct field_state *state)
     return unit * fmax(fabs(low), fabs(high));
 }
 
-/* The range of which a step of colour is a part. */
+/* Returns the range whose 255th is a step of colour. */
 static double error_range(const struct field_state *state)
 {
     const struct plant_group *group = state->layout->group;
@@ -136,8 +137,8 @@ bool update_is_in_range(const struct field_state *state)
     return error_scale(state) <= error_range(state);
 }
 
-/* Chooses the weights error above which vertices are marked. It stays as it is while that is safe and not much too strict, so that readings
-   which hardly change do not rebuild all flags. Returns whether it changed in a way that can be seen. */
+/* Chooses the error of weights above which vertices are marked. The limit stays while it is safe and not much too strict, so that slightly
+   changed readings do not rebuild all flags. Returns whether it changed visibly. */
 static bool choose_error_limit(struct field_state *state)
 {
     const struct weights *weights = state->weights;
@@ -172,7 +173,7 @@ void update_begin(struct field_state *state, size_t count)
     update->changed = choose_terms(state, false);
     update->flags = qualities_changed(state);
     update->flags |= choose_error_limit(state);
-    update->anew = !state->sums || update->flags || state->added >= ADDED_MOST || !steps_are_small(update);
+    update->anew = !state->sums || update->flags || state->added >= MAX_ADDED || !steps_are_small(update);
     for (size_t i = 0; i < update->all.count; i++)
         update->marks |= update->all.marked[i];
     if (!update->anew && update->changed.count == 0) /* only more vertices than before */
@@ -186,10 +187,10 @@ void update_begin(struct field_state *state, size_t count)
 
 /* --- block by block --------------------------------------------------------------------------------------------------------- */
 
-/* By how much of the weight is on Uncertain sensors; filled: by how far a lost sensor is the nearest. */
+/* Returns the flag for the part of the weight on Uncertain sensors. filled: flag for how far a lost sensor is the nearest. */
 static uint8_t uncertain_of(double marked, double total, uint8_t filled)
 {
-    double part = total > 0 && marked > 0 ? 2 * marked / total : 0; /* some of gp's weights are below 0 */
+    double part = total > 0 && marked > 0 ? 2 * marked / total : 0; /* some of gp's weights are negative */
     uint8_t leans = (uint8_t)(part >= 1 ? 128 + (int)(127 * (fmin(part, 2) - 1)) : (int)(127 * part));
     return leans > filled ? leans : filled;
 }
@@ -197,7 +198,7 @@ static uint8_t uncertain_of(double marked, double total, uint8_t filled)
 void update_flags(const struct field_state *state, const struct weights *weights, size_t vertex, double total, double marked,
                   struct scalar *at)
 {
-    bool blind = state->params.show == SHOW_BLIND; /* around a lost sensor it is told, too */
+    bool blind = state->params.show == SHOW_BLIND; /* areas around lost sensors are covered, too */
     bool fill = blind || state->params.fill == FILL_NEIGHBOURS, filled = fill && weights->place[vertex] == PLACE_LOST;
     at->no_limits = weights->place[vertex] == PLACE_NO_LIMITS ? FLAG : 0;
     at->no_data = weights->place[vertex] == PLACE_GOOD || filled || at->no_limits ? 0 : FLAG;
@@ -222,7 +223,7 @@ static bool set_flags(const struct update *update, size_t begin, size_t count, c
     return changed;
 }
 
-/* Into `values`. Returns whether a flag changed. */
+/* Sums a block into `values`. Returns whether a flag changed. */
 static bool sum_block(const struct update *update, size_t block, size_t begin, size_t count, double *values)
 {
     struct weights *weights = update->state->weights;
@@ -242,18 +243,18 @@ static bool sum_block(const struct update *update, size_t block, size_t begin, s
     weights_add(weights, begin, count, &update->all, &sums);
     for (size_t j = 0; total_wanted && j < count; j++)
         weights->total[begin + j] = (float)total[j];
-    if (total_wanted) /* what is complete is not written to: others may read it */
+    if (total_wanted) /* complete arrays are not written again, since other threads may read them */
         weights->known[block] |= KNOWN_TOTAL;
     return flags && set_flags(update, begin, count, total, marked);
 }
 
 float update_blind(const struct plant_group *group, float near_m)
 {
-    double far = (double)near_m / group->hot_spot_m, most = BLIND_MOST * (group->max - group->min);
+    double far = (double)near_m / group->hot_spot_m, most = MAX_BLIND * (group->max - group->min);
     return (float)fmin(PLANT_SEEN_PART * (group->max - group->min) * exp(far * far / 2), most);
 }
 
-/* Fills the map of coverage, which depends on which sensors are good, and not on their readings. */
+/* Fills a block of a coverage quantity, which depends on which sensors are good and not on their readings. */
 static bool map_block(const struct update *update, size_t begin, size_t count, float *values)
 {
     const struct field_state *state = update->state;
@@ -267,7 +268,7 @@ static bool map_block(const struct update *update, size_t begin, size_t count, f
     return set_flags(update, begin, count, nothing, nothing);
 }
 
-/* Few columns, all kept, and no flag to set: all in one go. */
+/* Returns whether the fast path applies: few columns, all cached, no flags to set. */
 static bool is_simple(const struct update *update, size_t block, size_t begin)
 {
     return !field_params_cover(&update->state->params) && !update->state->sums && !update->flags && block < update->old &&
@@ -345,10 +346,10 @@ void update_run(struct field_state *state)
     update->next = update->end;
 }
 
-/* Share of an asset's surface that has to err before legends give a number. Preparing does not cut triangles for the field where nobody
-   sees them: inside bodies, and at jumps of distance. On the demo's machines these are up to a quarter of the surface. They are marked and
-   picks tell of them, but a number in the legend would warn of errors that no picture shows. */
-static const float LEGEND_SHARE = 0.3f;
+/* Part of an asset's surface that must err before legends give a number. Preparation does not subdivide triangles that nobody sees: inside
+   bodies, and at jumps of distance; on the demo's machines up to a quarter of the surface. They are marked and picks report them, but a
+   number in the legend would warn of errors that no frame shows. */
+static const float MIN_LEGEND_SHARE = 0.3f;
 
 static double drawn_error(const struct field_state *state)
 {
@@ -358,7 +359,7 @@ static double drawn_error(const struct field_state *state)
         return 0;
     int b = (int)ceil(-log2(state->error_limit));
     b = b < 0 ? 0 : b < WEIGHTS_ERRING ? b : WEIGHTS_ERRING - 1;
-    return weights->erring[b] >= LEGEND_SHARE ? error * state->error_scale : 0;
+    return weights->erring[b] >= MIN_LEGEND_SHARE ? error * state->error_scale : 0;
 }
 
 void update_end(struct field_state *state, uint64_t *versions)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* G of the linear form, block by block: from distances to columns to sums. */
+/* Computes G of the linear form, block by block: from distances to columns to sums. */
 #include "field/weights.h"
 
 #include <math.h>
@@ -11,23 +11,24 @@
 #include "base/system/huge_pages.h"
 #include "plant/influence.h"
 
-#define LEAST_KNOWN 0.1 /* gp: so much less than in the prior must the variance be, else nothing is known there */
-#define LEAST_SHARE 0.1 /* fin: of a value, so much comes from sensors; else nothing is known there but what is around */
+#define MIN_KNOWN_PART 0.1   /* gp: smallest part of the prior's variance that sensors must remove; else there is no data */
+#define MIN_SENSOR_SHARE 0.1 /* fin: smallest part of a value that must come from sensors rather than ambient; else there is no data */
 
-#define DEVIATIONS_MOST 4.0 /* of the stated one: where all sensors of a body are lost, there is no bound */
+/* largest standard deviation, in multiples of the stated one: if all sensors of a body are lost, it has no bound */
+#define MAX_DEVIATIONS 4.0
 
-struct key_head { /* without holes: compared as bytes */
+struct key_head { /* without padding, since it is compared as bytes */
     const struct asset *file;
     uint32_t interpolation, distance;
     float power, reach_m, radius_m;
-    uint32_t trial; /* of which the layout is; how many sensors there are, the length says */
+    uint32_t trial; /* trial of the layout; the key's length gives the number of sensors */
 };
 struct key_sensor {
     uint32_t column, usable;
     float strength, decay;
 };
 
-/* Shepard's sum does not change when all strengths do, and has no decay. */
+/* Returns a sensor's strength. A common factor cancels in shepard's sum, which has no decay either. */
 static float strength_of(const struct layout_sensor *sensor, const struct field_params *params)
 {
     const struct field_override *override = field_params_override_of(params, sensor->tag);
@@ -80,7 +81,7 @@ bool weights_key_equal(const struct weights_key *a, const struct weights_key *b)
     return a->hash == b->hash && a->count == b->count && memcmp(a->bytes, b->bytes, a->count) == 0;
 }
 
-/* NULL: the interpolation is made from distances, or not prepared. Only sensors that stand where they were prepared for. */
+/* Returns the prepared entry. NULL: the interpolation is computed from distances, or not prepared for these sensor positions. */
 static const struct influence_entry *influence_of(const struct field_layout *layout, enum interpolation interpolation)
 {
     const struct influence_entry *entry = interpolation_is_prepared(interpolation) && !layout->trial && !layout->assumed
@@ -112,7 +113,8 @@ static void choose_members(struct weights *weights, const struct field_params *p
         weights->alike &= weights->strength[weights->members[m]] == weights->strength[weights->members[0]];
 }
 
-/* A byte holds a fifth of the asset's size to either side of the rim: more than triangles span there, in steps of centimetres at most. */
+/* Returns the steps of `lacking` per metre: a byte spans a fifth of the asset's size on either side of the border, more than any triangle
+   there, in steps of centimetres at most. */
 static float steps_per_m(const struct field_layout *layout)
 {
     const struct asset_header *header = layout->file->view.header;
@@ -135,7 +137,7 @@ static bool take_errors(struct weights *weights, const float *errors)
     return weights->errors;
 }
 
-/* Columns come from the file, and what they are divided by is 1: where they add up to less, the rest is what is around. */
+/* Uses columns from the file, whose divisor is 1: where they add up to less, the rest is ambient. */
 static bool take_prepared(struct weights *weights, const struct influence_entry *entry)
 {
     const struct field_layout *layout = weights->layout;
@@ -170,7 +172,8 @@ struct weights *weights_create(const struct field_layout *layout, const struct f
     struct weights *weights = mem_new(sizeof(*weights));
     weights->layout = layout;
     weights->interpolation = params->interpolation;
-    weights->distance = interpolation_is_prepared(params->interpolation) ? DISTANCE_GEODESIC : params->distance; /* of its own surface */
+    /* prepared interpolations use distances along their own surface */
+    weights->distance = interpolation_is_prepared(params->interpolation) ? DISTANCE_GEODESIC : params->distance;
     weights->power = (float)params->power;
     weights->reach_m = (float)params->reach_m;
     weights->radius_m = radius_m;
@@ -223,7 +226,7 @@ void weights_copy_known(struct weights *weights, const struct weights *from)
     if (!same_sensors(weights, from))
         return;
     unsigned shared = KNOWN_NEAR;
-    if (same_strengths(weights, from)) /* decay is not in the weights of `paper`, and all that is left to differ */
+    if (same_strengths(weights, from)) /* decay is not in the weights of `paper`, and nothing else can differ */
         shared |= KNOWN_TOP | (weights->interpolation == INTERPOLATION_PAPER ? KNOWN_TOTAL : 0);
     for (size_t block = 0, at = 0; at < weights->layout->vertex_count; block++, at += KERNEL_BLOCK) {
         size_t left = weights->layout->vertex_count - at, count = left < KERNEL_BLOCK ? left : KERNEL_BLOCK;
@@ -276,7 +279,7 @@ size_t weights_bytes(const struct field_layout *layout)
            layout->sensor_count * each_sensor;
 }
 
-/* Of one block. */
+/* Returns the bytes of one block's columns. */
 static size_t block_bytes(const struct weights *weights)
 {
     return weights->member_count * (KERNEL_BLOCK * sizeof(float) + 1);
@@ -364,7 +367,7 @@ uint8_t weights_lacking_at(const struct weights *weights, size_t vertex, bool fi
     return filled || weights->lost[vertex] < reach ? reach : weights->lost[vertex];
 }
 
-/* Distances to the nearest sensor that is used, lost and without limits. */
+/* Classifies a vertex by its distances to the nearest used sensor, lost sensor and sensor without limits. */
 static enum place place_of(float near_m, float lost_m, float no_limits_m, float reach_m)
 {
     if (no_limits_m < near_m && no_limits_m <= lost_m && no_limits_m <= reach_m)
@@ -374,7 +377,7 @@ static enum place place_of(float near_m, float lost_m, float no_limits_m, float 
     return lost_m < near_m ? PLACE_LOST : PLACE_GOOD;
 }
 
-/* By how many metres the wall would have to be shorter for sensors to say a tenth of what is there: their share falls by e in each decay
+/* fin: computes how many metres nearer the sensors would have to be to determine a tenth of the value: their share falls by e per decay
    length. */
 static void find_beyond(struct weights *weights, size_t begin, size_t count)
 {
@@ -384,7 +387,7 @@ static void find_beyond(struct weights *weights, size_t begin, size_t count)
         kernel_add(share, &column, &weights->ones[m], 1, count, NULL);
     }
     for (size_t j = 0; j < count; j++)
-        weights->beyond_m[begin + j] = share[j] > 1e-30 ? weights->decay_m * (float)log(LEAST_SHARE / share[j]) : INFINITY;
+        weights->beyond_m[begin + j] = share[j] > 1e-30 ? weights->decay_m * (float)log(MIN_SENSOR_SHARE / share[j]) : INFINITY;
 }
 
 void weights_deviations(const struct weights *weights, size_t begin, size_t count, float *out)
@@ -393,19 +396,19 @@ void weights_deviations(const struct weights *weights, size_t begin, size_t coun
     if (weights->fill)
         influence_fill_variances(weights->fill, weights->prepared + begin, weights->layout->vertex_count, count, more);
     for (size_t j = 0; j < count; j++) {
-        double own = (double)weights->deviations[begin + j], most = DEVIATIONS_MOST * (double)weights->deviation;
+        double own = (double)weights->deviations[begin + j], most = MAX_DEVIATIONS * (double)weights->deviation;
         out[j] = (float)fmin(sqrt(own * own + more[j]), most);
     }
 }
 
-/* The same for a process: the variance that sensors take away falls by e^2 in each decay length. */
+/* gp: does the same for the variance that sensors remove, which falls by e^2 per decay length. */
 static void find_unknown(struct weights *weights, size_t begin, size_t count)
 {
     float deviations[KERNEL_BLOCK];
     weights_deviations(weights, begin, count, deviations);
     for (size_t j = 0; j < count; j++) {
         double part = (double)deviations[j] / fmax((double)weights->priors[begin + j], 1e-30), known = 1 - part * part;
-        weights->beyond_m[begin + j] = known > 1e-30 ? weights->decay_m / 2 * (float)log(LEAST_KNOWN / known) : INFINITY;
+        weights->beyond_m[begin + j] = known > 1e-30 ? weights->decay_m / 2 * (float)log(MIN_KNOWN_PART / known) : INFINITY;
     }
 }
 
@@ -457,12 +460,12 @@ void weights_prepare(struct weights *weights, size_t begin, size_t count)
     }
 }
 
-/* Room for the columns that are made for one step of a sum. */
+/* Memory for the columns computed in one step of a sum. */
 struct workroom {
     float near_log2[KERNEL_BLOCK], distance_m[KERNEL_BLOCK], weights[KERNEL_COLUMNS][KERNEL_BLOCK], terms[KERNEL_COLUMNS][KERNEL_BLOCK];
 };
 
-/* weight: NULL where only the term is wanted. */
+/* weight: NULL if only the term is wanted. */
 static void make_column(const struct weights *weights, uint32_t member, size_t begin, size_t count, struct workroom *room, float *weight,
                         float *term)
 {
@@ -486,8 +489,8 @@ static void make_column(const struct weights *weights, uint32_t member, size_t b
         kernel_shepard(&column, term);
 }
 
-/* Kept columns of the terms that are added after the first so many: of this block, or else the first ones of the next. They need not be
-   filled yet. NULL: there are not KERNEL_COLUMNS of them. */
+/* Returns the cached columns of the terms after the first `done`: of this block, else the first ones of the next block. They need not be
+   filled yet. NULL: there are fewer than KERNEL_COLUMNS. */
 static const float *const *columns_after(const struct weights *weights, size_t begin, const struct weights_terms *terms, size_t done,
                                          const float **room)
 {
@@ -506,7 +509,7 @@ void weights_add(struct weights *weights, size_t begin, size_t count, const stru
 {
     static const double ones[KERNEL_COLUMNS] = { 1, 1, 1, 1, 1, 1, 1, 1 };
     bool paper = weights->interpolation == INTERPOLATION_PAPER, keeps = begin / KERNEL_BLOCK < weights->kept_blocks;
-    size_t before = begin / KERNEL_BLOCK * weights->member_count; /* columns of the blocks before */
+    size_t before = begin / KERNEL_BLOCK * weights->member_count; /* number of columns of the previous blocks */
     struct workroom room;
     if (!paper && !weights->prepared && weights->power != 2.0f)
         kernel_log2(weights->near_m + begin, count, room.near_log2);
@@ -538,7 +541,8 @@ void weights_add(struct weights *weights, size_t begin, size_t count, const stru
         for (size_t k = 0; sums->marked && k < number; k++) {
             if (terms->marked[first + k] && !weights->deviations)
                 kernel_add(sums->marked, &heavy[k], ones, 1, count, NULL);
-            for (size_t j = 0; terms->marked[first + k] && weights->deviations && j < count; j++) /* two may not cancel each other out */
+            /* absolute values, so that two weights do not cancel */
+            for (size_t j = 0; terms->marked[first + k] && weights->deviations && j < count; j++)
                 sums->marked[j] += fabs((double)heavy[k][j]);
         }
     }

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* G of the linear form: what each usable sensor weighs at each vertex, for one set of parameters and one set of usable sensors.
-   Nothing in it depends on readings, so instances of one asset and sessions with equal parameters share it. The columns of G may be kept
-   or made anew for each sum; the sums are bit for bit the same. Thread: one, but weights_prepare and weights_add may run on
-   different vertices at once. */
+/* G of the linear form: the weight of each usable sensor at each vertex, for one set of parameters and one set of usable sensors. Nothing
+   in it depends on readings, so instances of one asset and sessions with equal parameters share it. Columns of G may be cached or
+   recomputed for each sum, with bit-identical results. Thread: one, but weights_prepare() and weights_add() may run on different blocks in
+   parallel. */
 #ifndef FIELD_WEIGHTS_H
 #define FIELD_WEIGHTS_H
 #include "field/params.h"
@@ -11,66 +11,66 @@
 #include "field/layout.h"
 
 enum sensor_use {
-    SENSOR_LOST, /* takes no part; its place has no data */
+    SENSOR_LOST, /* does not contribute; there is no data around it */
     SENSOR_USED,
-    SENSOR_NO_LIMITS, /* takes no part, but its place is known to be well measured */
-    SENSOR_ASIDE      /* takes no part, as if it were not there: another stands for the asset */
+    SENSOR_NO_LIMITS, /* does not contribute, but the area around it is known to be well measured */
+    SENSOR_ASIDE      /* ignored: another sensor gives the asset's value */
 };
 
-/* How the nearest sensors stand to a vertex. */
+/* Relation of a vertex to its nearest sensors. */
 enum place {
     PLACE_GOOD,     /* the nearest configured sensor is usable and within reach */
-    PLACE_LOST,     /* it is not usable; another one is within reach */
+    PLACE_LOST,     /* the nearest sensor is not usable; another one is within reach */
     PLACE_NOBODY,   /* no usable sensor within reach */
-    PLACE_NO_LIMITS /* the nearest one within reach is SENSOR_NO_LIMITS */
+    PLACE_NO_LIMITS /* the nearest sensor within reach is SENSOR_NO_LIMITS */
 };
 
-enum weights_known { KNOWN_NEAR = 1, KNOWN_TOP = 2, KNOWN_TOTAL = 4 }; /* near_m and place; top; total */
+enum weights_known { KNOWN_NEAR = 1, KNOWN_TOP = 2, KNOWN_TOTAL = 4 }; /* which arrays are filled: near_m and place; top; total */
 
-struct weights_key { /* what G depends on, as bytes */
+struct weights_key { /* everything that G depends on, as bytes */
     void *bytes;
     size_t count;
     uint64_t hash;
 };
 
-enum { WEIGHTS_ERRING = 9 }; /* 2^-8 is a step of colour */
+enum { WEIGHTS_ERRING = 9 }; /* number of error classes, down to 2^-8, a step of colour */
 
 struct weights {
     struct weights_key key;
     const struct field_layout *layout;
     enum interpolation interpolation;
     enum distance_mode distance;
-    float power, reach_m, radius_m, steps_per_m; /* steps: of `lacking` */
-    bool alike;                                  /* all members have one strength */
+    float power, reach_m, radius_m, steps_per_m; /* steps_per_m: units of `lacking` per metre */
+    bool alike;                                  /* all members have the same strength */
     float *strength, *decay;                     /* by sensor of the layout */
-    uint8_t *configured;                         /* by sensor of the layout: may take part, were it good; more than 1: SENSOR_NO_LIMITS */
-    uint8_t *takes_part;                         /* by sensor of the layout: it is used */
-    uint32_t *members;                           /* used sensors of the layout; a column's number is its place here. Prepared: all */
+    uint8_t *configured; /* by sensor of the layout: would contribute if its quality were good; more than 1: SENSOR_NO_LIMITS */
+    uint8_t *takes_part;                         /* by sensor of the layout: 1 if used */
+    uint32_t *members;                           /* used sensors of the layout, in the order of the columns. Prepared: all sensors */
     size_t member_count;
     float *near_m, *top;         /* by vertex: distance of the nearest usable sensor; scale (kernels.h) */
-    float *total;                /* by vertex: the weights' sum */
+    float *total;                /* sum of the weights of each vertex */
     uint8_t *place;              /* by vertex: enum place */
-    uint8_t *lost;               /* by vertex: how far nearer the nearest lost sensor is than near_m, as weights_lacking */
-    uint8_t *known;              /* by block: bits of enum weights_known, what is filled of the four above */
-    const float *prepared;       /* [member][vertex]: columns from the asset's influence file; NULL: made from distances */
-    struct influence_fill *fill; /* prepared, and some sensor is lost; else NULL */
-    double *ones;                /* prepared, by sensor: what 1 of all used ones makes of each; else NULL */
-    float decay_m;               /* fin; gp: 1/k of its kernel */
-    const float *deviations;     /* gp, by vertex: how far the field may err while all sensors are used; else NULL */
-    const float *priors;         /* gp, by vertex: how far it would without any */
-    float deviation;             /* gp: that of the prior */
-    float *errors;               /* by vertex: linear interpolation error of the triangles around it (drawn_error.h); NULL: not measured */
-    float largest_error;         /* the largest of them */
-    float erring[WEIGHTS_ERRING]; /* [b]: share of a level's surface whose error is at least 2^-b; of the level that has most.
-                                     Prepared: share of the vertices */
-    uint64_t measured_levels;    /* levels of detail that are in them, by bits */
-    unsigned errors_version;     /* counts their changes */
-    float *beyond_m;             /* fin, gp, by vertex: how far beyond the rim of what sensors know; else NULL */
-    float *columns; /* [block][member][KERNEL_BLOCK] of the first kept_blocks, or NULL; of others they are made anew each time */
-    uint8_t *kept;  /* [block][member]: its column is filled; beside columns */
+    uint8_t *lost;               /* by vertex: how much nearer the nearest lost sensor is than near_m, encoded by weights_lacking() */
+    uint8_t *known;              /* by block: bits of enum weights_known for the arrays above */
+    const float *prepared;       /* [member][vertex]: columns from the asset's influence file; NULL: columns are computed from distances */
+    struct influence_fill *fill; /* prepared with some sensor lost; else NULL */
+    double *ones;                /* prepared: by sensor, its value if all used sensors read 1; else NULL */
+    float decay_m;               /* fin: decay length; gp: 1/k of its kernel */
+    const float *deviations;     /* gp: standard deviation of the field at each vertex while all sensors are used; else NULL */
+    const float *priors;         /* gp: the same without any sensor */
+    float deviation;             /* gp: standard deviation of the prior */
+    float *errors;               /* by vertex: linear interpolation error of the adjacent triangles (drawn_error.h); NULL: not measured */
+    float largest_error;         /* largest element of `errors` */
+    /* [b]: largest part of any level's surface with an error of at least 2^-b. Prepared: part of the vertices */
+    float erring[WEIGHTS_ERRING];
+    uint64_t measured_levels;    /* bit per level of detail that `errors` covers */
+    unsigned errors_version;     /* counts changes of `errors` */
+    float *beyond_m;             /* fin, gp: by vertex, distance beyond the border of the known area; else NULL */
+    float *columns; /* [block][member][KERNEL_BLOCK] of the first kept_blocks, or NULL; columns of other blocks are recomputed each time */
+    uint8_t *kept;  /* [block][member]: 1 if its column is filled */
     size_t kept_blocks;
-    int users;           /* states that hold it */
-    uint64_t used, sums; /* tick of the last use; how often it was summed */
+    int users;           /* number of states that use these weights */
+    uint64_t used, sums; /* used: tick of the last use; sums: number of times summed */
     struct weights *next;
 };
 
@@ -83,12 +83,13 @@ void weights_key_finish(struct weights_key *key);
 /* Returns whether two keys are equal. */
 bool weights_key_equal(const struct weights_key *a, const struct weights_key *b);
 
-/* Creates the weights of this key, which it takes over. Nothing is computed yet. Returns NULL if out of memory. The caller destroys it. */
+/* Creates the weights of this key and takes ownership of the key. Nothing is computed yet. Returns NULL when out of memory. The caller
+   destroys them. */
 struct weights *weights_create(const struct field_layout *layout, const struct field_params *params, float radius_m, const uint8_t *usable,
                                struct weights_key *key);
-/* Copies the arrays that are the same in `from`, which has been summed: most are while a parameter is dragged. */
+/* Copies the arrays that are equal in `from`, which has been summed; while a parameter is dragged, most are. */
 void weights_copy_known(struct weights *weights, const struct weights *from);
-/* Frees the weights. &NULL is fine; leaves NULL. */
+/* Frees the weights. &NULL is fine; sets it to NULL. */
 void weights_destroy(struct weights **weights);
 /* Returns the bytes that weights for this layout take, without columns. */
 size_t weights_bytes(const struct field_layout *layout);
@@ -96,44 +97,44 @@ size_t weights_bytes(const struct field_layout *layout);
 size_t weights_column_bytes(const struct weights *weights);
 /* Returns the bytes of the columns that are cached. */
 size_t weights_kept_bytes(const struct weights *weights);
-/* Starts caching columns as they are computed: of the first vertices, as many as fit into `bytes`. Only where none are cached yet. Returns
-   weights_kept_bytes(); 0 if none fit or memory runs out. */
+/* Starts caching columns as they are computed: as many as fit into `bytes`, from the first vertices on. Call only while none are cached.
+   Returns weights_kept_bytes(); 0 if none fit or memory runs out. */
 size_t weights_keep(struct weights *weights, size_t bytes);
 /* Frees the cached columns. */
 void weights_drop_columns(struct weights *weights);
 
-/* Encodes a distance beyond the rim of the data (negative: within it), in metres, as struct scalar's `lacking`. */
+/* Encodes a distance in metres beyond the border of the data (negative: inside) as struct scalar's `lacking`. */
 uint8_t weights_lacking(const struct weights *weights, float beyond_m);
-/* Returns a vertex's byte for struct scalar's `lacking`; filled: a lost sensor leaves no hole. The vertex must be prepared. */
+/* Returns a vertex's byte for struct scalar's `lacking`. filled: lost sensors leave no hole. The vertex must be prepared. */
 uint8_t weights_lacking_at(const struct weights *weights, size_t vertex, bool filled);
-/* Computes what is still missing of near_m, top and place for a block of vertices (begin: a multiple of KERNEL_BLOCK; count <=
-   KERNEL_BLOCK). Thread: any, on different blocks. */
+/* Computes what is missing of near_m, top and place for a block of vertices (begin: a multiple of KERNEL_BLOCK; count <= KERNEL_BLOCK).
+   Thread: any, on different blocks. */
 void weights_prepare(struct weights *weights, size_t begin, size_t count);
 
-/* gp: writes the standard deviation at vertices of one block, exact for the sensors that are used but for the samples that it was measured
-   by while preparing. Takes (lost * lost) steps for each vertex. Thread: any. */
+/* gp: writes the standard deviation at vertices of one block, exact for the used sensors apart from the sampling done by preparation. Takes
+   (lost * lost) steps per vertex. Thread: any. */
 void weights_deviations(const struct weights *weights, size_t begin, size_t count, float *out);
 
-/* Which columns to add, by what factors. */
+/* Columns to add, and their factors. */
 struct weights_terms {
     const uint32_t *members;
     const double *factors;
-    const uint8_t *marked; /* by place in this list: counts in sums->marked too */
+    const uint8_t *marked; /* by index in this list: the column is added to sums->marked, too */
     size_t count;
 };
-/* Sums of one block, which are added to. */
+/* Sums of one block, which weights_add() adds to. */
 struct weights_sums {
     double *values;         /* sum of factor times column */
-    double *total, *marked; /* sum of weights: all of the list, those marked; NULL: not asked for (marked only beside total) */
+    double *total, *marked; /* sum of weights: of all in the list; of the marked ones; NULL: not needed (marked requires total) */
 };
-/* Adds the terms' columns to the sums of a prepared block, computing those that are not cached, and caching them where columns are cached.
-   Thread: any, on different blocks. */
+/* Adds the terms' columns to the sums of a prepared block; computes columns that are not cached, and caches them if caching is on. Thread:
+   any, on different blocks. */
 void weights_add(struct weights *weights, size_t begin, size_t count, const struct weights_terms *terms, const struct weights_sums *sums);
 /* Returns a cached column of a block. */
 const float *weights_column(const struct weights *weights, size_t begin, uint32_t member);
 /* Returns whether all columns of a block are cached. */
 bool weights_has_columns(const struct weights *weights, size_t begin);
-/* Returns whether everything of a block is known, so that summing only reads it (except for Algorithm 1 with Uncertain sensors). */
+/* Returns whether a block is complete, so that summing only reads it (except for Algorithm 1 with Uncertain sensors). */
 bool weights_is_complete(const struct weights *weights, size_t begin);
 
 #endif
