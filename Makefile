@@ -96,7 +96,7 @@ modules  := $(bin)/plantcast-images.so $(if $(filter h264,$(CODECS)),$(bin)/plan
 # Readers of other formats, each where its library is (plantcast import --formats).
 occt     := $(dir $(wildcard /usr/include/opencascade/STEPCAFControl_Reader.hxx))
 # From 7.8 on (Debian 13) its readers have libraries of other names.
-occt_libs := $(if $(wildcard /usr/lib/*/libTKDESTEP.so),DESTEP DEIGES,XDESTEP XDEIGES STEP IGES)
+occt_libs := $(if $(wildcard /usr/lib/*/libTKDESTEP.so),DESTEP DEIGES,XDESTEP XDEIGES STEP STEPBase IGES)
 occt_libs := $(patsubst %,-lTK%,$(occt_libs) XSBase RWMesh XCAF LCAF CAF CDF Mesh Offset Fillet Bool BO ShHealing Prim TopAlgo GeomAlgo \
     GeomBase BRep G3d G2d Math ernel)
 assimp   := $(wildcard /usr/include/assimp/Importer.hpp)
@@ -138,7 +138,7 @@ $(bin)/plantcast-prep: $(call objects,preprocess/main.c) $(out)/lib/prep.a $(arc
 # Reads what strangers' programs wrote: neither the daemon nor plantcast-prep links it.
 $(bin)/plantcast-import: $(call objects,preprocess/import/main.c) $(out)/lib/import.a $(out)/lib/match.a $(out)/lib/prep.a $(archives)
 	$(link) -lGLU -lminizip -lz
-by_occt := $(call objects,preprocess/import/readers/occt $(basename $(wildcard preprocess/import/readers/i*.cc)))
+by_occt := $(call objects,$(basename $(filter-out %/assimp.cc,$(wildcard preprocess/import/readers/*.cc))))
 by_reader := $(call objects,preprocess/import/encoding)
 $(by_occt): CXXFLAGS += -isystem $(occt)
 $(bin)/plantcast-import-occt: $(by_occt) $(by_reader) $(out)/lib/prep.a $(out)/lib/base.a

@@ -691,7 +691,7 @@ test('a guessed unit is a question that reads again; lost elements are counted a
     try {
         await choose(sheet, [{ name: 'skid.stl', text: stl() }, { name: 'lines.ifc', text: ifc }]);
         await shown('skid.stl does not say its unit. Taken as metres: the model is 2 m long');
-        await shown('2 elements have no triangles');
+        await shown('2 elements lack triangles');
         await sheet.locator('#import [data-kind=lost] summary').click();
         await sheet.locator('#import [data-kind=lost] li').nth(1).waitFor();
         const items = await sheet.locator('#import [data-kind=lost] li').allTextContents();
@@ -709,7 +709,7 @@ test('a guessed unit is a question that reads again; lost elements are counted a
         await sheet.locator('#import .unit [data-unit=mm]').click();
         await sheet.waitForFunction(() => document.querySelector('#import .report') && !document.querySelector('#import .unit'), null,
             { timeout: 120000 });
-        await shown('^2 elements have no triangles');
+        await shown('^2 elements lack triangles');
         const { models } = await (await own.api('/report')).json(), state = await own.idle();
         assert.deepEqual([state.units, state.mesh_units, state.failed], ['', 'mm', null]);
         assert.deepEqual(models.map(({ file, unit, lost_count: count }) => [file, unit, count]),

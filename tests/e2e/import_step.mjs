@@ -6,6 +6,9 @@ import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSy
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
+import { volumeOf } from './support/glb_volume.mjs';
+import { secondCadReader } from './support/second_cad_reader.mjs';
+import { assembly, cone, CONE, without } from './support/step_parts.mjs';
 import { BIN, missing } from './support/tiny_plant.mjs';
 
 const absent = missing();
@@ -111,6 +114,75 @@ test('IGES without groups, and as Open CASCADE writes an assembly', { skip }, ()
     assert.ok(near(skid[5].size, [0.2, 0.2, 0.3]) && near(skid[5].centre, [0.3, 0.7, 0.15]), JSON.stringify(skid[5]));
 }));
 
+// Imports a file and returns its findings, its triangles' area and size, and what was printed.
+function imported(folder, name) {
+    const plant = join(folder, 'imported'), report = join(folder, 'report.json');
+    const { status, stdout, stderr } = plantcast('import', join(folder, name), '-o', plant, '--report', report, '--chord', '0.2');
+    const [found] = JSON.parse(readFileSync(report)).models;
+    const shown = status === 0 ? volumeOf(join(plant, `${name.replace(/\.\w+$/, '')}.glb`)) : { area: 0, size: [0, 0, 0] };
+    rmSync(plant, { recursive: true, force: true });
+    return { ...found, ...shown, status, out: `${stdout}${stderr}` };
+}
+
+test('a face that Open CASCADE cannot tessellate as it is has its triangles', { skip }, () => withSamples((folder) => {
+    writeFileSync(join(folder, 'cone.stp'), cone());
+    const { area, size, lost, out } = imported(folder, 'cone.stp'), slant = (CONE.large - CONE.small) * Math.SQRT2;
+    assert.ok(Math.abs(area / (Math.PI * (CONE.large + CONE.small) * slant * 1e-6) - 1) < 0.01, `${area} m2: ${out}`);
+    assert.ok(near(size, [0.0234, 0.0902, 0.0902]), JSON.stringify(size));
+    assert.deepEqual(lost, []);
+}));
+
+test('area and size are those of a second reader', { skip }, (t) => withSamples(async (folder) => {
+    const second = await secondCadReader();
+    if (!second)
+        return t.skip('no second reader: npm ci in tests/e2e brings occt-import-js');
+    writeFileSync(join(folder, 'cone.stp'), cone());
+    const files = ['skid_203.step', 'skid_214.stp', 'skid_242.STEP', 'tree.igs', 'inches.IGES', 'loose.igs', 'skid.igs', 'cone.stp'];
+    for (const name of files) {
+        const { area, size, lost, errors } = imported(folder, name), theirs = second(name, readFileSync(join(folder, name)));
+        console.log(`# ${name}: ${area.toFixed(6)} m2 of ${theirs.area.toFixed(6)}, ${size.map((v) => v.toFixed(4)).join(' x ')} m`);
+        // The second reader leaves out instances of subfigures that have another size.
+        const bolt = /tree|inches/.test(name) ? Math.PI * 0.04 * (2 * 0.2 + 2 * 0.04) : 0;
+        const good = Math.abs(area / (theirs.area + bolt) - 1) < 0.01 && (bolt || near(size, theirs.size));
+        assert.ok(good, JSON.stringify([name, size, theirs]));
+        assert.deepEqual([lost, errors], [[], []], name);
+    }
+}));
+
+test('parts in other files: names in other cases, of other folders, with escapes; missing ones are named', { skip },
+    () => withSamples((folder) => {
+        for (const name of ['a.stp', 'b.stp', 'Geh\u00e4use.step'])
+            writeFileSync(join(folder, name), cone());
+        writeFileSync(join(folder, 'line.stp'), assembly(['a.stp', 'C:\\CAD\\B.STP', 'Geh\\X2\\00E4\\X0\\use.step', 'gone.stp']));
+        const { size, lost, errors, out } = imported(folder, 'line.stp');
+        assert.match(out, /3 parts in 3 places/);
+        assert.ok(near(size, [0.0234, 0.2902, 0.0902]), JSON.stringify(size));
+        assert.deepEqual(lost.map(({ name, why }) => [name, why]), [['Part 4', 'its shape is empty, or in a file that is missing']]);
+        assert.deepEqual(errors, [{ count: 1, text: 'the file gone.stp, which it refers to, is not in its folder' }]);
+    }));
+
+// Each kind of statement is taken out once. What is then missing is named; Open CASCADE crashes at some kinds, which is one line, too.
+test('STEP: no kind of damage takes surface away without a word', { skip }, () => withSamples((folder) => {
+    const text = readFileSync(join(folder, 'skid_203.step'), 'latin1'), whole = imported(folder, 'skid_203.step').area, silent = [];
+    const table = { 'as before': 0, named: 0, refused: 0 };
+    for (const kind of ['ADVANCED_FACE', 'EDGE_LOOP', 'EDGE_CURVE', 'VERTEX_POINT', 'PLANE', 'CYLINDRICAL_SURFACE', 'AXIS2_PLACEMENT_3D',
+        'CLOSED_SHELL', 'MANIFOLD_SOLID_BREP', 'CONTEXT_DEPENDENT_SHAPE_REPRESENTATION', 'NEXT_ASSEMBLY_USAGE_OCCURRENCE',
+        'ADVANCED_BREP_SHAPE_REPRESENTATION']) {
+        const all = [...text.matchAll(new RegExp(`#(\\d+)\\s*=\\s*${kind}\\s*\\(`, 'g'))], [, number] = all.at(-1);
+        writeFileSync(join(folder, 'damaged.stp'), without(text, number), 'latin1');
+        const { status, area, lost, errors } = imported(folder, 'damaged.stp'), same = Math.abs(area / whole - 1) < 1e-6;
+        const good = status !== 0 || same || lost.length + errors.length > 0;
+        table[status !== 0 ? 'refused' : same ? 'as before' : 'named']++;
+        console.log(`# ${kind} #${number}: ${status !== 0 ? 'refused' : `${(area / whole * 100).toFixed(1)} % of the area`}, ` +
+            `${lost.length} lost, ${errors.length} errors`);
+        if (!good)
+            silent.push(kind);
+    }
+    console.log(`# ${JSON.stringify(table)}`);
+    assert.deepEqual(silent, []);
+    assert.ok(table.named >= 6, JSON.stringify(table));
+}));
+
 // Reading each broken file ends within its time limit: the file is refused with one line, or read. Nothing is left behind.
 test('broken files are one line each, and leave nothing behind', { skip }, () => withSamples((folder) => {
     const step = readFileSync(join(folder, 'skid_214.stp')), iges = readFileSync(join(folder, 'skid.igs'));
@@ -146,7 +218,7 @@ test('broken files are one line each, and leave nothing behind', { skip }, () =>
             name === 'nan.step' ? '2' : '8'); // Open CASCADE would search for the end for hours
         console.log(`# ${name}: ${status === 0 ? stdout.split('\n')[0].replace(/.*: /, 'read: ') : stderr.trim().replace(/.*: /, '')}`);
         if (name === 'nan.igs')
-            assert.match(`${stdout}${stderr}`, /\d+ of its \d+ entities could not be read/);
+            assert.match(`${stdout}${stderr}`, /error.*: Open CASCADE: \w+: .* D\d+/);
         if (status === 0) {
             rmSync(join(folder, 'plant'), { recursive: true });
         } else {

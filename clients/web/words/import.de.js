@@ -29,8 +29,8 @@ encoding.found: wie in den Dateien angegeben oder erkannt
 encoding.read: {file}: gelesen als {name}
 encoding.unsure: {file}: gelesen als {name}, vielleicht {other}
 outside: Weit außerhalb und nicht in der ersten Ansicht: {triangles} Dreiecke, bis {away_m} m entfernt.
-report.lost(one): {count} Element hat keine Dreiecke
-report.lost(other): {count} Elemente haben keine Dreiecke
+report.lost(one): {count} Element fehlen Dreiecke
+report.lost(other): {count} Elementen fehlen Dreiecke
 report.errors(one): {count} Fehler beim Lesen
 report.errors(other): {count} Fehler beim Lesen
 report.left(one): {count} Teil eines Modells ist weggelassen

@@ -29,8 +29,8 @@ encoding.found: as the files state, or as detected
 encoding.read: {file}: read as {name}
 encoding.unsure: {file}: read as {name}, but it may be {other}
 outside: Far outside and not in the first view: {triangles} triangles, up to {away_m} m away.
-report.lost(one): {count} element has no triangles
-report.lost(other): {count} elements have no triangles
+report.lost(one): {count} element lacks triangles
+report.lost(other): {count} elements lack triangles
 report.errors(one): {count} error while reading
 report.errors(other): {count} errors while reading
 report.left(one): {count} part of a model is left out

@@ -28,7 +28,7 @@ encoding.found: 파일에 적힌 대로 또는 자동 판별
 encoding.read: {file}: {name}(으)로 읽음
 encoding.unsure: {file}: {name}(으)로 읽음, {other}일 수 있음
 outside: 멀리 벗어나 첫 화면에 없음: 삼각형 {triangles}개, 최대 {away_m} m.
-report.lost(other): 삼각형이 없는 요소 {count}개
+report.lost(other): 삼각형이 빠진 요소 {count}개
 report.errors(other): 읽기 오류 {count}개
 report.left(other): 제외된 모델 항목 {count}개
 unit.ask: {file}에 단위가 적혀 있지 않습니다. {unit}(으)로 보면 모델 길이는 {length} m입니다.

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Converts shapes to triangles. */
-#include <BRepMesh_IncrementalMesh.hxx>
 #include <BRep_Tool.hxx>
 #include <Poly_Triangulation.hxx>
 #include <TopExp_Explorer.hxx>
@@ -9,6 +8,7 @@
 #include <cmath>
 
 #include "preprocess/import/readers/ifc_shape.hh"
+#include "preprocess/import/readers/occt_mesh.hh"
 
 namespace ifc
 {
@@ -48,7 +48,7 @@ void take_face(const TopoDS_Face &face, triangles *to)
 triangles triangles_of(const ifc_model &in, const TopoDS_Shape &shape)
 {
     triangles out;
-    BRepMesh_IncrementalMesh(shape, in.chord_mm, Standard_False, ANGLE_RAD, Standard_False);
+    occt_tessellate(shape, in.chord_mm, ANGLE_RAD, false);
     for (TopExp_Explorer faces(shape, TopAbs_FACE); faces.More(); faces.Next())
         take_face(TopoDS::Face(faces.Current()), &out);
     if (out.corners.empty())

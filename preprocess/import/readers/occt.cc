@@ -2,19 +2,19 @@
 /* `plantcast-import-occt INPUT OUTPUT.glb CHORD_MM UNITS UP ENCODING`: reads STEP and IGES with Open CASCADE, in its own process. The
  * assembly tree becomes nodes; each part is tessellated once and shared by its placements. For IFC files it builds some solids only
  * (ifc_shapes.hh); UNITS is then the path of a list of elements. Prints its findings; on failure the last line on stderr is the reason. */
-#include <BRepMesh_IncrementalMesh.hxx>
 #include <IGESControl_Reader.hxx>
-#include <Interface_InterfaceModel.hxx>
 #include <Interface_Static.hxx>
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
 #include <RWMesh_FaceIterator.hxx>
+#include <STEPCAFControl_ExternFile.hxx>
 #include <STEPCAFControl_Reader.hxx>
 #include <Standard_Failure.hxx>
 #include <TDF_LabelMap.hxx>
 #include <TDF_Tool.hxx>
 #include <TDataStd_Name.hxx>
 #include <TDocStd_Document.hxx>
+#include <TopExp_Explorer.hxx>
 #include <TopoDS_Shape.hxx>
 #include <XCAFApp_Application.hxx>
 #include <XCAFDoc_ColorTool.hxx>
@@ -36,12 +36,16 @@
 #include "preprocess/glb/glb_scene.h"
 #include "preprocess/import/readers/ifc_shapes.hh"
 #include "preprocess/import/readers/iges_tree.hh"
+#include "preprocess/import/readers/occt_losses.hh"
+#include "preprocess/import/readers/occt_mesh.hh"
 #include "preprocess/import/readers/reader.hh"
+#include "preprocess/import/readers/step_files.hh"
 
 namespace
 {
 
 constexpr size_t MAX_NODES = 2'000'000; /* limit of output nodes: assemblies nested in assemblies can grow exponentially */
+constexpr size_t MOST_NAMED = 20;
 constexpr double ANGLE_RAD = 0.5;       /* largest angle in radians between neighbouring facets, where the chord error would allow more */
 const double PLAIN[4] = { 0.35, 0.35, 0.35, 1 };
 
@@ -55,24 +59,13 @@ std::string utf8_of(const TCollection_ExtendedString &from)
     return at;
 }
 
-/* Suffix appended to names. Open CASCADE treats a name whose last character is not ASCII as empty and shows a number instead. */
-constexpr char NAME_END[] = "`|";
-
-std::string without_end(std::string name)
-{
-    size_t length = strlen(NAME_END);
-    if (name.size() >= length && name.compare(name.size() - length, length, NAME_END) == 0)
-        name.resize(name.size() - length);
-    return name;
-}
-
 /* Returns the name of a label, or "" for a generated name such as "=>[0:1:1:3]", which Open CASCADE gives to components without a name. */
 std::string name_of(const TDF_Label &label)
 {
     Handle(TDataStd_Name) name;
     if (!label.FindAttribute(TDataStd_Name::GetID(), name))
         return "";
-    std::string text = without_end(utf8_of(name->Get()));
+    std::string text = step_name_without_mark(utf8_of(name->Get()));
     return text.compare(0, 3, "=>[") == 0 || text == "COMPOUND" || text == "SOLID" || text == "SHELL" || text == "ASSEMBLY" ? "" : text;
 }
 
@@ -83,7 +76,7 @@ std::string layers_of(const Handle(XCAFDoc_LayerTool) & tool, const TDF_Label &l
     if (!tool->GetLayers(label, names) || names.IsNull())
         return out;
     for (int i = 1; i <= names->Length(); i++)
-        out += (out.empty() ? "" : ", ") + without_end(utf8_of(names->Value(i)));
+        out += (out.empty() ? "" : ", ") + step_name_without_mark(utf8_of(names->Value(i)));
     return out;
 }
 
@@ -126,7 +119,9 @@ struct occt_reader {
     struct glb_scene *scene;
     double chord_mm;
     std::map<std::string, occt_part> parts; /* tessellated parts, by label entry and inherited colour */
-    size_t nodes = 0, places = 0, skipped_faces = 0, empty_parts = 0;
+    std::map<std::string, step_external> externals; /* of STEP, as step_files.hh says */
+    size_t nodes = 0, places = 0, skipped_faces = 0;
+    std::vector<std::string> lines; /* names of parts that are only curves or points */
 };
 
 using key = std::array<double, 4>;
@@ -193,6 +188,32 @@ void write_groups(occt_reader *r, const std::map<key, color_group> &groups, cons
     }
 }
 
+/* Returns why a shape without faces has none, or "" for one that is only curves or points. */
+std::string reason_without_faces(const occt_reader *r, const TopoDS_Shape &shape)
+{
+    if (!shape.IsNull() && TopExp_Explorer(shape, TopAbs_VERTEX).More())
+        return "";
+    bool missing = std::any_of(r->externals.begin(), r->externals.end(), [](const auto &each) { return !each.second.found; });
+    return missing ? "its shape is empty, or in a file that is missing" : "its shape is empty";
+}
+
+/* Prints a part of which nothing, or not all, is shown. */
+void say_lost_part(occt_reader *r, const TDF_Label &label, const char *id, const mesh_outcome &of)
+{
+    std::string name = name_of(label), why;
+    std::replace_if(name.begin(), name.end(), [](unsigned char c) { return c < ' '; }, ' ');
+    if (of.faces == 0)
+        why = reason_without_faces(r, XCAFDoc_ShapeTool::GetShape(label));
+    else if (of.missing == 0)
+        why = "its " + std::to_string(of.faces) + " faces have no extent, or corners that are not finite";
+    else
+        why = std::to_string(of.missing) + " of its " + std::to_string(of.faces) + " faces could not be tessellated";
+    if (why.empty())
+        r->lines.push_back(name.empty() ? "a part without a name" : name);
+    else
+        printf("lost\t%s\t%s\tpart\t\t%s\n", id, name.c_str(), why.c_str());
+}
+
 /* Tessellates a simple shape, once for each colour it inherits. mesh is -1 if the shape has no faces. */
 occt_part part_of(occt_reader *r, const TDF_Label &label, const XCAFPrs_Style &style)
 {
@@ -207,13 +228,10 @@ occt_part part_of(occt_reader *r, const TDF_Label &label, const XCAFPrs_Style &s
     occt_part made = { -1, { 0, 0, 0 } };
     std::map<key, color_group> groups;
     TopoDS_Shape shape = XCAFDoc_ShapeTool::GetShape(label);
+    mesh_outcome outcome;
     bool shown = false;
     if (!shape.IsNull()) {
-        try {
-            BRepMesh_IncrementalMesh(shape, r->chord_mm, Standard_False, ANGLE_RAD, Standard_True);
-        } catch (const Standard_Failure &) {
-            r->skipped_faces++;
-        }
+        outcome = occt_tessellate(shape, r->chord_mm, ANGLE_RAD, true);
         for (RWMesh_FaceIterator face(label, TopLoc_Location(), Standard_True, style); face.More(); face.Next())
             if (!face.IsEmptyMesh())
                 take_face(r, face, &groups);
@@ -224,13 +242,9 @@ occt_part part_of(occt_reader *r, const TDF_Label &label, const XCAFPrs_Style &s
         find_origin(groups, made.origin);
         made.mesh = glb_scene_add_mesh(r->scene, name_of(label).c_str());
         write_groups(r, groups, made);
-    } else {
-        r->empty_parts++;
-        std::string name = name_of(label);
-        std::replace_if(name.begin(), name.end(), [](unsigned char c) { return c < ' '; }, ' ');
-        printf("lost\t%s\t%s\tpart\t\t%s\n",
-               entry.ToCString(), name.c_str(), shape.IsNull() ? "it has no shape" : "its shape has no faces");
     }
+    if (!shown || outcome.missing > 0)
+        say_lost_part(r, label, entry.ToCString(), outcome);
     r->parts[id] = made;
     return made;
 }
@@ -278,84 +292,35 @@ bool has_ending(const char *path, const char *ending)
     return length > count && !strcasecmp(path + length - count, ending);
 }
 
-/* Reports entities that could not be read as the type that they claim: their content is missing or wrong. */
-void say_damaged(const Handle(Interface_InterfaceModel) & model)
-{
-    int damaged = 0, first = 0;
-    for (int i = 1; i <= model->NbEntities(); i++)
-        if (model->IsErrorEntity(i)) {
-            damaged++;
-            first = first ? first : i;
-        }
-    if (damaged > 0)
-        printf("error\t1\tOpen CASCADE: %d of its %d entities could not be read, the first one is number %d\n",
-               damaged, model->NbEntities(), first);
-}
-
-/* Appends NAME_END to each string that has characters beyond ASCII, either raw or as STEP escapes. */
-std::string with_name_ends(const std::string &text)
-{
-    std::string out;
-    bool within = false, beyond = false;
-    for (size_t i = 0; i < text.size(); i++) {
-        size_t comment = !within && text.compare(i, 2, "/*") == 0 ? text.find("*/", i + 2) : std::string::npos;
-        if (comment != std::string::npos) {
-            out.append(text, i, comment + 2 - i);
-            i = comment + 1;
-            continue;
-        }
-        if (within && text[i] == '\'' && text.compare(i, 2, "''") == 0) {
-            out += "''";
-            i++;
-            continue;
-        }
-        if (text[i] == '\'') {
-            if (within && beyond)
-                out += NAME_END;
-            within = !within;
-            beyond = false;
-        }
-        beyond |= within && (static_cast<unsigned char>(text[i]) >= 0x80 || text[i] == '\\');
-        out += text[i];
-    }
-    return out;
-}
-
-/* Ensures that a STEP file is readable as UTF-8, which Open CASCADE expects. Standard STEP is ASCII with escapes, but many programs write
- * names in their system's encoding. If a name is not plain ASCII, writes a converted copy to `copy`. Returns the path to read. */
-const char *step_in_utf8(const char *path, const std::string &copy, const char *asked)
-{
-    std::string text = read_whole(path);
-    text_encoding encoding;
-    encoding.choose(text, asked, "");
-    encoding.say();
-    std::string converted = with_name_ends(encoding.utf8(text));
-    if (converted == text)
-        return path;
-    text.swap(converted);
-    FILE *file = fopen(copy.c_str(), "wb");
-    bool good = file && fwrite(text.data(), 1, text.size(), file) == text.size();
-    if (file && fclose(file) != 0)
-        good = false;
-    if (!good)
-        refuse("%s", strerror(errno));
-    return copy.c_str();
-}
-
 /* Reads a STEP file into the document. Returns the units stated by the file. */
-std::string read_step(const char *path, Handle(TDocStd_Document) document)
+std::string read_step(const char *path, const char *output, Handle(TDocStd_Document) document, const char *asked,
+                      std::map<std::string, step_external> *externals)
 {
+    const step_files files = step_files_prepare(path, std::string(output, strrchr(output, '/') + 1), asked);
     STEPCAFControl_Reader step;
     step.SetColorMode(Standard_True);
     step.SetNameMode(Standard_True);
     step.SetLayerMode(Standard_True);
-    if (step.ReadFile(path) != IFSelect_RetDone)
+    if (step.ReadFile(files.main.c_str()) != IFSelect_RetDone)
         refuse("it is no STEP file, or is cut off");
     TColStd_SequenceOfAsciiString lengths, angles, solid_angles;
     step.ChangeReader().FileUnits(lengths, angles, solid_angles);
-    if (!step.Transfer(document))
+    bool transferred = step.Transfer(document);
+    occt_losses_say(step.Reader().WS(), "");
+    for (NCollection_DataMap<TCollection_AsciiString, Handle(STEPCAFControl_ExternFile)>::Iterator each(step.ExternFiles()); each.More();
+         each.Next()) {
+        auto file = files.externals.find(each.Key().ToCString());
+        if (file != files.externals.end() && !each.Value()->GetWS().IsNull() && each.Value()->GetLoadStatus() == IFSelect_RetDone)
+            occt_losses_say(each.Value()->GetWS(), file->second.named + ": ");
+    }
+    for (const std::string &copy : files.copies)
+        remove(copy.c_str());
+    for (const auto &each : files.externals)
+        if (!each.second.found)
+            printf("error\t1\tthe file %s, which it refers to, is not in its folder\n", each.second.named.c_str());
+    *externals = files.externals;
+    if (!transferred)
         refuse("its shapes could not be read");
-    say_damaged(step.Reader().WS()->Model());
     std::string units;
     for (int i = 1; i <= lengths.Length(); i++)
         if (units.find(lengths.Value(i).ToCString()) == std::string::npos)
@@ -373,10 +338,20 @@ std::string read_iges(const char *path, Handle(TDocStd_Document) document, const
     encoding.choose(read_whole(path), asked, "");
     encoding.say();
     iges_tree_add(iges, document, encoding);
+    occt_losses_say(iges.WS(), "");
     if (iges.NbShapes() < 1)
         refuse("its shapes could not be read");
-    say_damaged(iges.WS()->Model());
     return iges_units(iges);
+}
+
+void say_lines(const occt_reader &r)
+{
+    std::string names;
+    for (size_t i = 0; i < r.lines.size() && i < MOST_NAMED; i++)
+        names += (i > 0 ? ", " : "") + r.lines[i];
+    if (!r.lines.empty())
+        printf("not shown: %zu parts that are only curves or points: %s%s\n",
+               r.lines.size(), names.c_str(), r.lines.size() > MOST_NAMED ? ", ..." : "");
 }
 
 /* Computes the root matrix: millimetres to metres, and Z up to Y up unless the model is Y up already. */
@@ -394,12 +369,10 @@ void convert(const char *input, const char *output, double chord_mm, bool y_up, 
     XCAFApp_Application::GetApplication()->NewDocument("BinXCAF", document);
     bool iges = has_ending(input, ".igs") || has_ending(input, ".iges");
     Interface_Static::SetCVal("xstep.cascade.unit", "MM");
-    std::string copy = std::string(output) + ".step";
-    std::string units = iges ? read_iges(input, document, asked) : read_step(step_in_utf8(input, copy, asked), document);
-    remove(copy.c_str());
+    occt_reader r = {};
+    std::string units = iges ? read_iges(input, document, asked) : read_step(input, output, document, asked, &r.externals);
     const char *slash = strrchr(input, '/'), *base = slash ? slash + 1 : input;
     std::string stem(base, strrchr(base, '.') ? static_cast<size_t>(strrchr(base, '.') - base) : strlen(base));
-    occt_reader r = {};
     r.shapes = XCAFDoc_DocumentTool::ShapeTool(document->Main());
     r.colors = XCAFDoc_DocumentTool::ColorTool(document->Main());
     r.layers = XCAFDoc_DocumentTool::LayerTool(document->Main());
@@ -412,6 +385,7 @@ void convert(const char *input, const char *output, double chord_mm, bool y_up, 
     r.shapes->GetFreeShapes(free);
     for (int i = 1; i <= free.Length(); i++)
         add(&r, free.Value(i), root, XCAFPrs_Style(), 0);
+    say_lines(r);
     if (r.places == 0)
         refuse("there is no surface in it");
     write_scene(&r.scene, output, ": a larger --chord makes it smaller");
@@ -422,9 +396,7 @@ void convert(const char *input, const char *output, double chord_mm, bool y_up, 
     if (!units.empty())
         printf("its units are: %s\n", units.c_str());
     if (r.skipped_faces > 0)
-        printf("left out: %zu faces that could not be tessellated\n", r.skipped_faces);
-    if (r.empty_parts > 0)
-        printf("%zu parts have no triangles\n", r.empty_parts);
+        printf("left out: %zu faces with corners that are not finite\n", r.skipped_faces);
 }
 
 /* Runs convert(). Translates Open CASCADE's exceptions, which do not derive from std::exception, to refuse(). */

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Volume, area and size of the triangles of a GLB file: { volume (m3), area (m2), size (m: x, y, z with Z up) }.
 import { readFileSync } from 'node:fs';
+import { triangleSums } from './triangle_sums.mjs';
 
 const HEAD = 20, CHUNK_HEAD = 8, TYPES = { 5126: Float32Array, 5125: Uint32Array, 5123: Uint16Array };
 const IDENTITY = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
 const product = (a, b) => Array.from({ length: 16 }, (_, i) =>
     [0, 1, 2, 3].reduce((sum, k) => sum + a[4 * k + i % 4] * b[i - i % 4 + k], 0));
-const minus = (a, b) => a.map((v, i) => v - b[i]);
-const cross = ([a, b, c], [x, y, z]) => [b * z - c * y, c * x - a * z, a * y - b * x];
 
 export function volumeOf(path) {
     const file = readFileSync(path), length = file.readUInt32LE(12), json = JSON.parse(file.subarray(HEAD, HEAD + length));
@@ -18,25 +17,19 @@ export function volumeOf(path) {
         const bytes = count * (type === 'VEC3' ? 3 : 1) * Type.BYTES_PER_ELEMENT;
         return new Type(Uint8Array.from(binary.subarray(from, from + bytes)).buffer);
     };
-    const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
-    let volume = 0, area = 0;
+    const sums = triangleSums();
     const walk = (number, above) => {
         const { matrix = IDENTITY, mesh, children = [] } = json.nodes[number], place = product(above, matrix);
         for (const { attributes, indices } of json.meshes[mesh]?.primitives ?? []) {
             const points = read(attributes.POSITION), corners = read(indices);
             const at = (k) => [0, 1, 2].map((row) => place[row] * points[3 * k] + place[4 + row] * points[3 * k + 1] +
                 place[8 + row] * points[3 * k + 2] + place[12 + row]);
-            for (let i = 0; i + 2 < corners.length; i += 3) {
-                const [a, b, c] = [0, 1, 2].map((k) => at(corners[i + k])), normal = cross(minus(b, a), minus(c, a));
-                volume += normal.reduce((sum, v, axis) => sum + v * a[axis], 0) / 6;
-                area += Math.hypot(...normal) / 2;
-                for (const p of [a, b, c])
-                    p.forEach((v, axis) => { low[axis] = Math.min(low[axis], v); high[axis] = Math.max(high[axis], v); });
-            }
+            for (let i = 0; i + 2 < corners.length; i += 3)
+                sums.add(...[0, 1, 2].map((k) => at(corners[i + k])));
         }
         children.forEach((child) => walk(child, place));
     };
     json.scenes[json.scene ?? 0].nodes.forEach((root) => walk(root, IDENTITY));
-    const [x, y, z] = minus(high, low);
+    const { volume, area, extent: [x, y, z] } = sums.result();
     return { volume, area, size: [x, z, y] };
 }

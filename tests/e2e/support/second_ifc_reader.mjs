@@ -2,9 +2,7 @@
 // A second reader of IFC, which shares no code with web-ifc or Open CASCADE: ifc-lite, in WebAssembly. It draws circles coarsely.
 import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
-
-const cross = ([a, b, c], [x, y, z]) => [b * z - c * y, c * x - a * z, a * y - b * x];
-const minus = (a, b) => a.map((v, i) => v - b[i]);
+import { triangleSums } from './triangle_sums.mjs';
 
 // Returns null if it is not installed; otherwise a function that takes a file's bytes and returns { area (m2), size (m: x, y, z) } of
 // everything that the file shows, or null if that is nothing. Openings are left out.
@@ -20,21 +18,16 @@ export async function secondReader() {
         const api = new lite.IfcAPI(), head = api.buildPrePassOnce(bytes);
         const meshes = api.processGeometryBatch(bytes, head.jobs, head.unitScale, 0, 0, 0, false, head.voidKeys, head.voidCounts,
             head.voidValues, head.styleIds, head.styleColors, head.planeAngleToRadians);
-        const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
-        let area = 0;
+        const sums = triangleSums();
         for (let i = 0; i < meshes.length; i++) {
             const { ifcType, positions, origin, indices } = meshes.get(i); // Y up
             const at = (k) => [0, 1, 2].map((axis) => positions[3 * k + axis] + origin[axis]);
-            for (let k = 0; ifcType !== 'IfcOpeningElement' && k + 2 < indices.length; k += 3) {
-                const [a, b, c] = [0, 1, 2].map((corner) => at(indices[k + corner]));
-                area += Math.hypot(...cross(minus(b, a), minus(c, a))) / 2;
-                for (const p of [a, b, c])
-                    p.forEach((v, axis) => { low[axis] = Math.min(low[axis], v); high[axis] = Math.max(high[axis], v); });
-            }
+            for (let k = 0; ifcType !== 'IfcOpeningElement' && k + 2 < indices.length; k += 3)
+                sums.add(...[0, 1, 2].map((corner) => at(indices[k + corner])));
         }
         meshes.free();
         api.free();
-        const [x, y, z] = minus(high, low);
+        const { area, extent: [x, y, z] } = sums.result();
         return area > 0 ? { area, size: [x, z, y] } : null;
     };
 }

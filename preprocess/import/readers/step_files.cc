@@ -1,0 +1,210 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Open CASCADE finds external files by their exact name in the folder of the file that it reads, and only those said to be of AP203 or
+ * AP214. Copies refer to each other by names of their own, so other folders, other cases and encoded names do no harm. */
+#include "preprocess/import/readers/step_files.hh"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+
+#include "preprocess/import/readers/reader.hh"
+
+namespace
+{
+
+constexpr char MARK[] = "`|";
+constexpr size_t MOST_FILES = 5000;
+constexpr size_t MOST_BEFORE = 1000; /* bytes of a statement that are searched for its keyword */
+
+struct preparing {
+    std::string input_folder, output_folder;
+    const char *asked;
+    step_files out;
+    std::map<std::string, std::string> names; /* of copies, by path, or by the name of a file that is missing */
+    std::vector<std::string> open;            /* paths of external files that are not copied yet */
+};
+
+std::string lower(std::string text)
+{
+    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(tolower(c)); });
+    return text;
+}
+
+std::string upper(std::string text)
+{
+    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(toupper(c)); });
+    return text;
+}
+
+bool ends_with(const std::string &text, const std::string &end)
+{
+    return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+bool is_step_name(const std::string &name)
+{
+    const std::string small = lower(name);
+    return ends_with(small, ".stp") || ends_with(small, ".step") || ends_with(small, ".p21");
+}
+
+void add_utf8(std::string *out, unsigned long code)
+{
+    if (code < 0x80) {
+        *out += static_cast<char>(code);
+    } else if (code < 0x800) {
+        *out += static_cast<char>(0xc0 | code >> 6);
+        *out += static_cast<char>(0x80 | (code & 0x3f));
+    } else {
+        *out += static_cast<char>(0xe0 | code >> 12);
+        *out += static_cast<char>(0x80 | (code >> 6 & 0x3f));
+        *out += static_cast<char>(0x80 | (code & 0x3f));
+    }
+}
+
+/* Decodes the escapes \X\HH, \X2\HHHH...\X0\ and \S\C of ISO 10303-21. */
+std::string without_escapes(const std::string &text)
+{
+    std::string out;
+    for (size_t i = 0; i < text.size(); i++) {
+        size_t end = text.compare(i, 4, "\\X2\\") == 0 ? text.find("\\X0\\", i) : std::string::npos;
+        if (end != std::string::npos) {
+            for (i += 4; i + 4 <= end; i += 4)
+                add_utf8(&out, strtoul(text.substr(i, 4).c_str(), nullptr, 16));
+            i = end + 3;
+        } else if (text.compare(i, 3, "\\X\\") == 0) {
+            add_utf8(&out, strtoul(text.substr(i + 3, 2).c_str(), nullptr, 16));
+            i += 4;
+        } else if (text.compare(i, 3, "\\S\\") == 0 && i + 3 < text.size()) {
+            add_utf8(&out, static_cast<unsigned char>(text[i + 3]) | 0x80UL);
+            i += 3;
+        } else {
+            out += text[i];
+        }
+    }
+    return out;
+}
+
+/* Returns the path of a file that lies in the folder, in the case in which it lies there, or "". The folder cannot be listed. */
+std::string find_beside(const preparing &p, const std::string &named)
+{
+    const std::string base = named.substr(named.find_last_of("/\\") == std::string::npos ? 0 : named.find_last_of("/\\") + 1);
+    const size_t dot = base.rfind('.');
+    const std::string stem = base.substr(0, dot), ending = base.substr(dot);
+    for (const std::string &start : { stem, lower(stem), upper(stem) })
+        for (const std::string &end : { ending, lower(ending), upper(ending) })
+            if (access((p.input_folder + start + end).c_str(), R_OK) == 0)
+                return p.input_folder + start + end;
+    return "";
+}
+
+/* Returns the name that copies use for an external file. */
+std::string external_name(preparing *p, const std::string &literal)
+{
+    const std::string named = without_escapes(literal), path = find_beside(*p, named), &known = path.empty() ? named : path;
+    auto entry = p->names.find(known);
+    if (entry != p->names.end())
+        return entry->second;
+    if (p->names.size() >= MOST_FILES)
+        refuse("it refers to more than %zu files", MOST_FILES);
+    const std::string copy = "external_" + std::to_string(p->names.size()) + ".stp";
+    p->names[known] = copy;
+    p->out.externals[copy] = { named, !path.empty() };
+    if (!path.empty())
+        p->open.push_back(path);
+    return copy;
+}
+
+bool names_files(const std::string &statement)
+{
+    for (const char *keyword : { "DOCUMENT_FILE", "DOCUMENT(", "EXTERNAL_SOURCE", "EXTERNAL_IDENTIFICATION_ASSIGNMENT" })
+        if (statement.find(keyword) != std::string::npos)
+            return true;
+    return false;
+}
+
+/* Returns the string to write into the copy. before: the copy up to the string, whose statement begins at `statement`. */
+std::string converted_string(preparing *p, const std::string &before, size_t statement, const std::string &text)
+{
+    if (is_step_name(text) && names_files(before.substr(statement, MOST_BEFORE)))
+        return external_name(p, text);
+    if (text.compare(0, 5, "STEP ") == 0 && before.substr(statement, MOST_BEFORE).find("'data format'") != std::string::npos)
+        return "STEP AP214";
+    bool plain = std::none_of(text.begin(), text.end(), [](unsigned char c) { return c >= 0x80 || c == '\\'; });
+    return plain ? text : text + MARK;
+}
+
+/* Returns the text of a STEP file with all its strings converted. */
+std::string converted_text(preparing *p, const std::string &text)
+{
+    std::string out;
+    size_t statement = 0; /* start of the current statement in out */
+    for (size_t i = 0; i < text.size(); i++) {
+        size_t comment = text.compare(i, 2, "/*") == 0 ? text.find("*/", i + 2) : std::string::npos;
+        size_t end = i;
+        while (text[i] == '\'' && (end = text.find('\'', end + 1)) != std::string::npos && text.compare(end, 2, "''") == 0)
+            end++;
+        if (comment != std::string::npos) {
+            out.append(text, i, comment + 2 - i);
+            i = comment + 1;
+        } else if (text[i] == '\'' && end != std::string::npos) {
+            out += "'" + converted_string(p, out, statement, text.substr(i + 1, end - i - 1)) + "'";
+            i = end;
+        } else {
+            out += text[i];
+            if (text[i] == ';')
+                statement = out.size();
+        }
+    }
+    return out;
+}
+
+void write_copy(preparing *p, const std::string &path, const std::string &text)
+{
+    FILE *file = fopen(path.c_str(), "wb");
+    bool good = file && fwrite(text.data(), 1, text.size(), file) == text.size();
+    if (file && fclose(file) != 0)
+        good = false;
+    if (!good)
+        refuse("%s", strerror(errno));
+    p->out.copies.push_back(path);
+}
+
+std::string utf8_of(const std::string &path, const char *asked, bool say)
+{
+    const std::string text = read_whole(path.c_str());
+    text_encoding encoding;
+    encoding.choose(text, asked, "");
+    if (say)
+        encoding.say();
+    return encoding.utf8(text);
+}
+
+} // namespace
+
+step_files step_files_prepare(const std::string &path, const std::string &folder, const char *asked)
+{
+    preparing p = { path.substr(0, path.rfind('/') + 1), folder, asked, {}, {}, {} };
+    const std::string text = read_whole(path.c_str());
+    p.names[path] = "external_0.stp"; /* a file that refers to itself */
+    const std::string converted = converted_text(&p, utf8_of(path, asked, true));
+    p.out.main = path;
+    if (converted != text) {
+        p.out.main = folder + "external_0.stp";
+        write_copy(&p, p.out.main, converted);
+    }
+    while (!p.open.empty()) {
+        const std::string next = p.open.back();
+        p.open.pop_back();
+        write_copy(&p, folder + p.names[next], converted_text(&p, utf8_of(next, asked, false)));
+    }
+    return p.out;
+}
+
+std::string step_name_without_mark(std::string name)
+{
+    if (ends_with(name, MARK))
+        name.resize(name.size() - strlen(MARK));
+    return name;
+}
