@@ -288,7 +288,8 @@ static void find_person(struct server_context *server, struct lws *wsi, struct c
         connection_tell_apart(server, &connection->holder);
 }
 
-/* Returns whether the client needs no token: it is on this machine and uses a local host name. */
+/* Returns whether the client needs no token: it is on this machine and uses a local host name, and either no tokens are configured or
+   --trust-local is set. */
 static bool is_trusted(const struct server_context *server, const struct connection *connection, const char *name)
 {
     const struct access_params *params = &server->params.access;

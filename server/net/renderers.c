@@ -50,8 +50,8 @@ struct renderer_peer {
     bool asks;               /* the peer is to be asked for its lease promise */
     struct core_samples *samples; /* samples for the peer's history, to be sent; NULL: none */
     int64_t journal_utc_ns;  /* standby: UTC time of the newest change that its journal has */
-    uint64_t told;           /* standby: number of the newest notifier state that it has */
-    uint64_t rows;           /* standby: number of rows that its journal has */
+    uint64_t told;           /* standby: number of the newest notifier state that was sent to it */
+    uint64_t rows;           /* standby: number of the last journal row that was sent to it */
     uint64_t alarms;         /* number of the last change of alarms that was sent */
     struct lists_seen lists;
     bool *links;             /* connection state of each source, as last sent; by source index */

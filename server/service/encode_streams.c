@@ -11,7 +11,7 @@
 static const int64_t JOIN_NS = 2 * NS_PER_S, JOIN_MAX_NS = 64 * NS_PER_S;
 /* number of packets that a client may lag behind and still catch up; frames are planned ahead by as many at most */
 enum { MAX_LAG_PACKETS = ENCODE_STREAM_KEPT / 2 };
-/* minimum size of the packets kept per stream in bytes; more if the last key frame was larger */
+/* half of the limit on the bytes of packets kept per stream; a larger last key frame replaces it */
 static const size_t KEPT_BYTES = 64 * 1024;
 
 /* --- members of streams ----------------------------------------------------------------------------------------------- */

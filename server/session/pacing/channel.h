@@ -14,7 +14,7 @@
 enum { CHANNEL_LAST = 3 };
 struct channel_last { /* ring of the last samples; zero-initialise */
     double at[CHANNEL_LAST];
-    int count; /* number of samples so far; channel_on_ack() keeps it small, so it is no total */
+    int count; /* number of samples so far, kept small so that it cannot overflow */
 };
 
 struct channel {                     /* zero-initialise; in all members 0 means not measured yet */

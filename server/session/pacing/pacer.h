@@ -6,7 +6,8 @@
 #define SESSION_PACING_PACER_H
 #include "session/pacing/quality_ladder.h"
 
-enum { PACER_LEAST = 2, PACER_MOST = 8 }; /* minimum and maximum number of frames under way, for any bandwidth */
+/* limit on the number of frames under way: PACER_LEAST, growing with the round-trip time up to PACER_MOST */
+enum { PACER_LEAST = 2, PACER_MOST = 8 };
 
 struct pacer_note {    /* facts about a frame that are needed when it is acknowledged */
     bool moving, full; /* moving: the frame is a preview, at ladder step `step`; full: it has full quality */
