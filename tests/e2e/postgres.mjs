@@ -133,7 +133,7 @@ test('what is recorded is there, each point once and with its quality', options,
     await until('Bad is there', () => server.ask("SELECT 1 FROM plantcast.history WHERE tag = 'PI-1' AND NOT good").length > 0);
     await plant.tell('release PI-1');
     await sent(200);
-    assert.ok(await assertSame(from) > 100);
+    assert.ok(await assertSame(from) > 20);
     assert.ok(server.ask("SELECT 1 FROM plantcast.history WHERE tag = 'PI-1' AND NOT good AND value IS NULL").length > 0, 'Bad is there');
     const [[name, unit, value, quality, good]] = server.ask(`SELECT plant, unit, value, quality, good FROM plantcast.history
         WHERE tag = 'TI-2' AND good ORDER BY time DESC LIMIT 1`);
@@ -223,7 +223,7 @@ test('nothing is lost while the server is killed, nor while it is frozen; live r
     assert.equal(await metric('history_good'), 1);
     server.thaw();
     const points = await assertSame(from);
-    assert.ok(points > 200 && waited < points);
+    assert.ok(waited >= 50 && points > waited, `${waited} waited, ${points} arrived`);
     t.diagnostic(`${waited} points waited, ${points} are there and in the files`);
     assert.equal(await metric('postgres_lost_total'), 0);
 });
@@ -238,7 +238,7 @@ test('the daemon is killed while the server is away, and started again: nothing 
     await plant.startDaemon();
     await waiting(60);
     await server.restart();
-    assert.ok(await assertSame(from) > 100);
+    assert.ok(await assertSame(from) > 20);
     assert.deepEqual(server.ask('SELECT kind, count(*) FROM plantcast.event GROUP BY 1'), [['gap', '1']]);
     const gaps = server.ask('SELECT 1 FROM plantcast.sample WHERE v IS NULL AND q = 2150694912');
     assert.ok(gaps.length >= TAGS.length, 'and when it did not run');
@@ -259,7 +259,7 @@ test('a connection that is cut in the middle of a batch', options, async () => {
     }
     link.cutAfter = 0;
     link.mend();
-    assert.ok(await assertSame(from) > 100);
+    assert.ok(await assertSame(from) > 20);
 });
 
 test('a disk of the server that is full', options, async (t) => {
@@ -282,7 +282,7 @@ test('a disk of the server that is full', options, async (t) => {
     rmSync(join(disk, 'filler'));
     await plant.daemon.line(/PostgreSQL can be written again/, 60000);
     await sent(200);
-    assert.ok(await assertSame(from) > 100);
+    assert.ok(await assertSame(from) > 20);
     await plant.daemon.stop();
     server.database = 'postgres';
 });
