@@ -19,7 +19,7 @@ enum { STRIP_GROUP = 22, STRIP_UNIT = 10 };
 struct strip {
     float min, max;
     bool log;
-    uint8_t show;            /* enum field_show */
+    uint8_t show;                                      /* enum field_show */
     char group[STRIP_GROUP + 1], unit[STRIP_UNIT + 1]; /* truncated between characters if longer */
 };
 

@@ -8,8 +8,8 @@
 
 #define WIRE_SUBPROTOCOL "plantcast.v1"
 #define WIRE_FRAME_HEADER_BYTES 112u
-#define WIRE_MAX_MESSAGE_BYTES 65536u  /* bytes of the largest text message that a client may send */
-#define WIRE_MAX_FRAME_PX 8192u        /* largest width or height */
+#define WIRE_MAX_MESSAGE_BYTES 65536u /* bytes of the largest text message that a client may send */
+#define WIRE_MAX_FRAME_PX 8192u       /* largest width or height */
 #define WIRE_MAX_PAYLOAD_BYTES (64u * 1024 * 1024)
 #define WIRE_NO_AGE UINT32_MAX
 
@@ -30,11 +30,11 @@ struct wire_frame { /* frame header; members are in the order of the bytes on th
     uint16_t flags;
     uint32_t payload_bytes;
     uint32_t seq;
-    uint32_t camera_seq, params_seq;  /* sequence numbers of the client's newest camera and parameters that this frame shows */
-    uint32_t oldest_age_ms;           /* age of the oldest reading used; WIRE_NO_AGE: none */
+    uint32_t camera_seq, params_seq;     /* sequence numbers of the client's newest camera and parameters that this frame shows */
+    uint32_t oldest_age_ms;              /* age of the oldest reading used; WIRE_NO_AGE: none */
     uint64_t data_time_us, sent_time_us; /* UTC microseconds since 1970, by the server's clock */
     uint32_t wait_us, field_us, render_us, encode_us; /* microseconds from the input to the start of rendering, then of each stage */
-    uint16_t x_px, y_px, width_px, height_px;  /* rectangle of the picture that the payload contains */
+    uint16_t x_px, y_px, width_px, height_px;         /* rectangle of the picture that the payload contains */
     uint16_t full_width_px, full_height_px;
     float eye_m[3], target_m[3], up[3]; /* camera of this frame, in the plant frame */
     float fov_deg;                      /* vertical, 1..120; 0: orthographic, with height_m */

@@ -18,7 +18,7 @@ struct packet {
     _Atomic int refs;
     struct frame *frame; /* metadata of the frame, without the pixels (frame->bgrx is NULL) */
     enum wire_codec codec;
-    bool key; /* key packet: can be decoded without the previous packet */
+    bool key;       /* key packet: can be decoded without the previous packet */
     bool is_signed; /* the bytes are a PNG file with statement and signature (provenance/signed_picture.h) */
     uint8_t *bytes;
     size_t count;

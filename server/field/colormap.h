@@ -14,9 +14,10 @@ struct colormap {
     /* name of the map: "relief" (the default) and "calm": low contrast, for shaded 3D; "viridis", "cividis", "diverging", "turbo" */
     const char *name;
     uint8_t rgb[256][3];
-    /* largest change of L* by light in either direction: at most COLORMAP_SHADING, less where lightness carries much of the value */
+    /* largest change of L* that light may cause in either direction: at most COLORMAP_SHADING, less where lightness carries much of the
+       value */
     double shading;
-    bool safe; /* true if 95 of 100 shaded pixels are read correctly within 3 % of the range, also after JPEG and by deuteranopes */
+    bool safe; /* whether 95 of 100 shaded pixels are read correctly within 3 % of the range, also after JPEG and by deuteranopes */
     uint8_t below[3], above[3]; /* colours for < MIN and > MAX; not on the map */
 };
 

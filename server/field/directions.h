@@ -15,7 +15,7 @@
 #define DIRECTION_LEAST 0.2
 
 struct sensor_direction {
-    float vector[3]; /* in the axes of the asset file; its length is the reading */
+    float vector[3]; /* vector in the axes of the asset file; its length is the reading */
     bool configured; /* the sensor has a direction */
     bool known;      /* reading and direction are usable: Good or Uncertain */
     bool uncertain;

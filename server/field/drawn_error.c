@@ -14,9 +14,9 @@ enum { GROUP = 64, GRAIN = 1024, MAX_PIECES = 96 };
 #define STEP 0.3f             /* longest piece relative to the distance to the nearest sensor; longer pieces are halved */
 #define MAX_POWER 2.0f        /* largest power of shepard for which STEP is fine enough */
 #define SHEPARD_ACCEPTED 6.0f /* L^2 K / (6 d^2) bounds the error of a triangle of side L where the weights bend by K / d^2 */
-#define PAPER_ACCEPTED 0.015f /* relative to the nearest distance, and to R */
+#define PAPER_ACCEPTED 0.015f /* accepted size relative to the nearest distance, and to R */
 #define STEP_OF_COLOR (1 / 255.0f)
-#define BORDER_SLACK 4       /* in units of `lacking`: tolerated displacement of the border of the data */
+#define BORDER_SLACK 4  /* tolerated displacement of the border of the data, in units of `lacking` */
 #define MIN_ERROR 1e-4f /* smaller errors are stored as 0 */
 
 struct triangle_piece {  /* part of a triangle; its sample point is the middle of its longest side */
@@ -350,8 +350,8 @@ static bool is_as_prepared(const struct weights *weights, const struct field_par
            (layout->sensor_count > 1 || plant_cuts_singles(group));
 }
 
-void drawn_error_measure(struct weights *weights, const struct field_params *params, const uint8_t *usable, size_t vertices,
-                         bool in_range, struct workers *workers)
+void drawn_error_measure(struct weights *weights, const struct field_params *params, const uint8_t *usable, size_t vertices, bool in_range,
+                         struct workers *workers)
 {
     const struct field_layout *layout = weights->layout;
     const struct asset_view *file = &layout->file->view;

@@ -12,7 +12,7 @@
    to the largest. params and usable are those of weights_create(). in_range: the readings differ by no more than preparation assumed. Does
    nothing if preparation left no error for these parameters and all sensors are used, if the weights are prepared (linear within triangles
    by definition), or when out of memory. */
-void drawn_error_measure(struct weights *weights, const struct field_params *params, const uint8_t *usable, size_t vertices,
-                         bool in_range, struct workers *workers);
+void drawn_error_measure(struct weights *weights, const struct field_params *params, const uint8_t *usable, size_t vertices, bool in_range,
+                         struct workers *workers);
 
 #endif

@@ -11,16 +11,16 @@
 
 enum { JUMPS = 2, COLUMNS = 3 + DRIFT_NEAREST + JUMPS, MIN_SENSORS = 3, ROUNDS = 20 };
 enum { CHANGE_BEFORE = 3, CHANGE_AFTER = 1 }; /* hours before and after an hour that determine how fast the plant changes then */
-static const double FAST_FACTOR = 2;              /* times the usual change: such an hour has half the weight */
-static const double STILL_PART = 0.1;           /* relative to the noise: a smaller change per hour counts as none */
-static const double MEAN_PART = 0.25;      /* part of the noise left in an hourly mean of at least 16 independent readings */
-enum { BESIDE = 3, WITHIN = 2 };           /* BESIDE: hours averaged before and after a jump; WITHIN: hours between the two means */
-static const double MIN_JUMP_FACTOR = 6;              /* smallest jump, relative to the usual change of residuals over as many hours */
-static const double LAG_HOURS = 12;        /* time that heat takes from the other sensors to this one */
-static const double DEPENDENT_PART = 1. / 6; /* fraction of the recorded time beyond which residuals count as independent */
-static const double MIN_NEW_PART = 1e-3;       /* smallest part of a column's length that must be independent of the other columns */
+static const double FAST_FACTOR = 2;          /* times the usual change: such an hour has half the weight */
+static const double STILL_PART = 0.1;         /* a change per hour below this part of the noise counts as none */
+static const double MEAN_PART = 0.25;         /* part of the noise left in an hourly mean of at least 16 independent readings */
+enum { BESIDE = 3, WITHIN = 2 };              /* BESIDE: hours averaged before and after a jump; WITHIN: hours between the two means */
+static const double MIN_JUMP_FACTOR = 6;      /* smallest jump, relative to the usual change of residuals over the same number of hours */
+static const double LAG_HOURS = 12;           /* time that heat takes from the other sensors to this one */
+static const double DEPENDENT_PART = 1. / 6;  /* fraction of the recorded time beyond which residuals count as independent */
+static const double MIN_NEW_PART = 1e-3;      /* smallest part of a column's length that must be independent of the other columns */
 
-struct week { /* hourly data of one sensor */
+struct week {                                   /* hourly data of one sensor */
     const double *values, *predicted, *nearest; /* nearest: [nearest_count][hours], readings of the nearest sensors */
     int nearest_count, hours;
     double noise, root[DRIFT_HOURS]; /* root: square root of each hour's weight */
@@ -91,7 +91,7 @@ static int reduce(struct drift_rows *rows, double largest)
         for (int k = 0; k < kept; k++)
             take_out(column, rows->at[k], n);
         double length = sqrt(dot(column, column, n));
-        /* for nearly constant readings only rounding is left; the first column is all 1 */
+        /* when readings are nearly constant, only rounding is left; the first column is all 1 */
         if (c > 0 && !(length > 1e-9 * sqrt(n) * (1 + largest)))
             continue;
         for (int i = 0; i < n; i++)
@@ -276,8 +276,8 @@ static void predict(const struct drift_search *search, const struct drift *drift
     struct neighbour *said = mem_array(search->count, sizeof(*said));
     for (int h = 0; h < search->hours; h++) {
         for (size_t i = 0; i < search->count; i++)
-            used[i] = drifts[i].verdict == DRIFT_FOUND ? (double)NAN
-                                                       : search->values[(size_t)h * search->count + i] - search->own[i] + level;
+            used[i] =
+                drifts[i].verdict == DRIFT_FOUND ? (double)NAN : search->values[(size_t)h * search->count + i] - search->own[i] + level;
         neighbours_predict(search->neighbours, used, said);
         for (size_t i = 0; i < search->count; i++)
             search->said[i * (size_t)search->hours + (size_t)h] = said[i].predicted - level + search->own[i];

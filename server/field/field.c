@@ -185,7 +185,7 @@ static const struct scalars *distance_scalars(struct field *field, int asset, co
 bool field_covers(struct field *field, int asset, const struct field_params *params)
 {
     const struct field_layout *layout = field_layout(field, asset, params);
-    if (field_params_cover(params) && layout && layout->assumed) /* the positions of its sensors are unknown */
+    if (field_params_cover(params) && layout && layout->assumed) /* the positions of the layout's sensors are unknown */
         return false;
     return params->show == SHOW_DISTANCE ? find_sensor(layout, params->sensor) >= 0 : layout != NULL;
 }

@@ -101,7 +101,7 @@ struct field_place {
     double parts[3];
 };
 struct field_point {
-    double value; /* in the unit of the shown quantity */
+    double value; /* value in the unit of the shown quantity */
     bool no_data, uncertain;
     double drawn_error; /* error bound of frames around this point; 0: less than 1/255 of the range */
 };
@@ -116,7 +116,7 @@ struct field_sensor {
     int tag;
     float surface_m[3]; /* position in the coordinates of the asset file */
     uint32_t column;    /* number among the asset file's sensors; beyond them: a trial sensor */
-    bool in_file;       /* true: its geodesic distances are in its column of the file; false: see along_m */
+    bool in_file;       /* whether the sensor's geodesic distances are in its column of the file; if not, see along_m */
     /* geodesic distance of each vertex, if not in the file; NULL: not known yet, or straight-line distances are used */
     const float *along_m;
     float strength, decay;

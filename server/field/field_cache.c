@@ -119,7 +119,7 @@ void field_cache_keep_columns(struct field *field, struct weights *weights, cons
         return;
     if (had == 0)
         field_cache_make_room(field, bytes < field->bound ? bytes : field->bound, params, previous);
-    else if (field->bytes - had + bytes > field->bound) /* there is no more room than before */
+    else if (field->bytes - had + bytes > field->bound) /* there is still no room for all columns */
         return;
     else
         columns_drop(field, weights);

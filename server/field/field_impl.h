@@ -12,13 +12,13 @@ struct field {
     const struct scene *scene;
     struct field_layout **layouts;          /* [asset][group]; NULL: not created yet, or there is none */
     struct field_state **states;            /* per asset: a list */
-    struct weights *weights[FIELD_BUCKETS]; /* all weights, by hash of their key */
+    struct weights *weights[FIELD_BUCKETS]; /* all weights, hashed by their key */
     struct baselines *baselines;            /* NULL: none */
     struct trials *trials;                  /* NULL: none */
     struct trial_layout {                   /* layouts with trial positions */
         const struct trial *trial;          /* reference to the trial */
         int asset, group;
-        struct field_layout *layout; /* NULL: the trial leaves no sensor there */
+        struct field_layout *layout; /* layout of the trial; NULL: the trial leaves no sensor there */
         struct trial_layout *next;
     } * tried;
     size_t bytes, bound;

@@ -7,7 +7,7 @@
 
 #include "base/mem.h"
 
-#define MIN_PIVOT_PART 1e-9 /* relative to a sensor's precision; below it nothing determines a lost sensor, and 0 is used */
+#define MIN_PIVOT_PART 1e-9 /* smallest pivot relative to a sensor's precision; below it nothing determines a lost sensor, and 0 is used */
 
 struct influence_fill {
     const double *precision;

@@ -15,7 +15,7 @@
 #define KERNEL SIMD_CLONES("avx512f", "avx2")
 
 #if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC optimize("no-trapping-math") /* both sides of a choice may be evaluated, which SIMD needs */
+#pragma GCC optimize("no-trapping-math") /* the compiler may evaluate both sides of a choice, which SIMD needs */
 #endif
 
 #define TINY 1e-37f

@@ -73,7 +73,8 @@ void lab_shade(const uint8_t rgb[3], double offset, uint8_t out[3])
     memcpy(out, rgb, 3);
     if (offset == 0)
         return;
-    for (int step = 0; step < 24; step++, reach -= 1.0 / 24) { /* near the border of sRGB the offset shrinks; hue and chroma stay */
+    /* near the border of sRGB the offset is reduced; hue and chroma stay the same */
+    for (int step = 0; step < 24; step++, reach -= 1.0 / 24) {
         lab[0] = lightness + reach * offset;
         if (rgb_from_lab(lab, out))
             return;

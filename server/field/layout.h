@@ -12,7 +12,7 @@ struct layout_sensor {
     uint32_t column;       /* number among the asset file's sensors; a trial sensor has a number of its own beyond them */
     float surface_m[3];    /* position in the coordinates of the asset file */
     uint32_t vertex;       /* vertex nearest to the sensor */
-    bool tried;            /* a trial sensor: its geodesic distances are not in the file, see tried_m */
+    bool tried;            /* whether this is a trial sensor: its geodesic distances are not in the file, see tried_m */
     const float *tried_m;  /* geodesic distance of each vertex; NULL: not known yet */
     const float *heat_m;   /* distance of each vertex by the heat method; NULL: not prepared */
     float strength, decay; /* as configured, >= 0 */
@@ -38,9 +38,9 @@ struct field_layout {
     struct layout_sensor *sensors;
     size_t sensor_count, vertex_count;
     const struct layout_points *points; /* points at which distances are requested; NULL: at the file's vertices */
-    bool assumed;       /* the positions of all sensors are assumed: one of them gives the value of the whole asset (field.h) */
-    float largest_m[DISTANCES]; /* largest distance by distance_mode; 0: not computed yet */
-    uint32_t trial;     /* trial that some of the positions belong to; 0: none */
+    bool assumed; /* whether the positions of all sensors are assumed: then one sensor gives the value of the whole asset (field.h) */
+    float largest_m[DISTANCES]; /* largest distance for each distance_mode; 0: not computed yet */
+    uint32_t trial;             /* trial that some of the positions belong to; 0: none */
 };
 
 /* Builds the layout of a group's sensors on an asset. trial: sensors at trial positions (NULL: none). Scene and trial must outlive the

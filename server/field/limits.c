@@ -22,7 +22,7 @@ static double middle_of(const struct plant_group *group, const struct limit_side
     return group->max > l ? group->max : l + range / 2;
 }
 
-/* 0 is the middle, from which all values are measured. */
+/* Returns a value's position between the limits on its side; 0 is the middle, from which all values are measured. */
 static double side_place(double value, double inner, double outer)
 {
     if (!isfinite(inner) && !isfinite(outer))

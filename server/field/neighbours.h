@@ -13,7 +13,7 @@
 struct neighbour {
     int tag;
     enum interpolation by;
-    double value;     /* its reading; NaN: not usable now */
+    double value;     /* reading of the sensor; NaN: not usable now */
     double predicted; /* NaN: no other good sensor determines a value at its position */
     double deviation; /* gp: standard deviation of the difference between reading and prediction; else NaN */
 };
@@ -39,11 +39,11 @@ size_t neighbours_nearest(const struct neighbours *neighbours, size_t sensor, co
 /* A cache of the latest predictions for each asset and group; zero-initialise. The scene must outlive the cache. Thread: one. */
 struct neighbours_cache {
     struct neighbours_kept {
-        struct neighbours *of; /* NULL: the group has no sensor with a known position on the asset */
+        struct neighbours *of;  /* neighbours of the group; NULL: the group has no sensor with a known position on the asset */
         struct neighbour *list; /* predictions by sensor, in the order of `of` */
         size_t count;
         int64_t taken_mono_ns, taken_utc_ns; /* time of the snapshot; 0: none yet */
-    } * kept; /* [asset][group]; NULL: nothing cached yet */
+    } * kept;                                /* [asset][group]; NULL: nothing cached yet */
     size_t count;
 };
 /* Returns the predictions from this snapshot, or from one at most NEIGHBOURS_FRESH_NS older, so that many callers cost one computation a

@@ -10,8 +10,9 @@ struct scalar {
     /* distance beyond the border of the data, encoded by weights_lacking(): above 127 there is none; as a number, so that the border is
        exact between vertices */
     uint8_t lacking;
-    /* above 127: at least half of the weight is on Uncertain sensors (or the value is filled); proportional to that part, so that this
-       border is exact, too. 255 also where triangles deviate from the field (struct scalars: drawn_error) */
+    /* A value above 127 means that at least half of the weight is on Uncertain sensors, or that the value is filled. The byte is
+       proportional to that part, so this border is exact after interpolation, too. It is also 255 where triangles deviate from the field
+       (struct scalars: drawn_error). */
     uint8_t uncertain;
     /* 255: in the operator's view, the nearest sensor is good but its tag has no limits, so there is data without a value */
     uint8_t no_limits;

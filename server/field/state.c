@@ -125,7 +125,7 @@ static double value_of(const struct field_state *state, const struct plant_tag *
 static struct state_input input_of(const struct field_state *state, const struct plant_tag *tag, const struct reading *reading)
 {
     bool good = !quality_is_bad(reading->quality) && isfinite(reading->value);
-    if (field_params_cover(&state->params)) /* the result does not depend on readings */
+    if (field_params_cover(&state->params)) /* covers do not depend on readings */
         return (struct state_input){ .usable = good ? SENSOR_USED : SENSOR_LOST };
     double value = good ? value_of(state, tag, reading->value) : 0;
     return (struct state_input){

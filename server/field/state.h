@@ -22,9 +22,9 @@ struct field_state {
     struct scalar *at;
     double *sums;                    /* numerator of each vertex; NULL: few sensors, always summed again */
     size_t room;                     /* number of vertices, from the first, for which `at` and `sums` have room */
-    double error_limit; /* vertices with a larger weights->errors are marked uncertain; initially 0 */
-    unsigned errors_version; /* version of weights->errors that the flags show */
-    double error_scale; /* factor from weights->errors to the largest error drawn */
+    double error_limit;              /* vertices with a larger weights->errors are marked uncertain; initially 0 */
+    unsigned errors_version;         /* version of weights->errors that the flags show */
+    double error_scale;              /* factor from weights->errors to the largest error drawn */
     unsigned added;                  /* updates since the sums were last recomputed */
     struct state_input *now, *shown; /* inputs by sensor of the layout: requested, and contained in the scalars */
     uint8_t *usable;                 /* enum sensor_use of `now`, by sensor of the layout */

@@ -14,7 +14,7 @@ struct trial_reach {
 };
 
 struct kept_trial {
-    struct trial trial; /* first member, so that pointers to both are interchangeable */
+    struct trial trial; /* first member, so that a pointer to either can be cast to the other */
     int users;
     bool dropped;
     struct kept_trial *next;

@@ -17,11 +17,11 @@ struct trial_reach *trial_reach_create(float *distance_m);
 void trial_reach_unref(struct trial_reach **reach);
 
 struct trial_sensor {
-    int tag, asset;            /* the sensor is on this asset only */
+    int tag, asset;            /* tag of the sensor, and the only asset it is on */
     float surface_m[3];        /* position in the coordinates of the asset file */
-    double place_m[3];         /* the same position in the plant frame */
+    double place_m[3];         /* position of the sensor in the plant frame */
     uint32_t vertex;           /* vertex nearest to the position */
-    struct trial_reach *reach; /* NULL: not known yet; straight-line distances are used meanwhile */
+    struct trial_reach *reach; /* geodesic distances; NULL: not known yet, straight-line distances are used meanwhile */
     uint32_t number;           /* unique number of this position with these distances, set by trials_put() */
 };
 

@@ -13,16 +13,16 @@
 #include "plant/influence.h"
 
 #define FLAG 255
-#define DRAWN_ERROR (1 / 255.0) /* of the range: vertices that may be drawn with a larger error are marked uncertain */
+#define DRAWN_ERROR (1 / 255.0) /* fraction of the range: vertices that may be drawn with a larger error are marked uncertain */
 #define ERROR_MARGIN 1.1        /* factor by which a newly chosen limit is too strict */
 #define ERROR_SLACK 1.5         /* a limit that is too strict by more than this factor is chosen again */
-#define MAX_BLIND 1000.0 /* largest hot spot shown, in multiples of the group's range: an undetectable one */
-#define STEP_LIMIT 1e6    /* in multiples of the range: a larger step would leave its rounding in the sums permanently */
-#define MAX_ADDED 4096   /* updates before all is summed again: the accumulated rounding stays below 1e-9 of the range */
-#define JOB_WORK 30000.0  /* nanoseconds of work that justify waking another thread */
-#define SMALL_WORK 1e6    /* updates with less work are not split if there are many */
-#define MAKE_WORK 1.0     /* nanoseconds to compute and add one column at one vertex */
-#define ADD_WORK 0.15     /* nanoseconds to add it only */
+#define MAX_BLIND 1000.0        /* largest undetectable hot spot shown, in multiples of the group's range */
+#define STEP_LIMIT 1e6          /* largest step in multiples of the range: a larger one would leave its rounding in the sums permanently */
+#define MAX_ADDED 4096          /* updates before all is summed again: the accumulated rounding stays below 1e-9 of the range */
+#define JOB_WORK 30000.0        /* nanoseconds of work that justify waking another thread */
+#define SMALL_WORK 1e6          /* updates with less work are not split if there are many */
+#define MAKE_WORK 1.0           /* nanoseconds to compute and add one column at one vertex */
+#define ADD_WORK 0.15           /* nanoseconds to add it only */
 
 struct update {
     struct field_state *state;
@@ -31,7 +31,7 @@ struct update {
     size_t next, old, end; /* block numbers: next to do, end of those shown before, end of those to be shown */
     bool anew;             /* sums all columns; else, below `old`, only changed ones */
     bool flags;            /* qualities changed, and so may flags; otherwise flags below `old` stay */
-    bool marks;            /* at least one sensor is Uncertain */
+    bool marks;            /* whether at least one sensor is Uncertain */
     pthread_mutex_t lock;
     /* --- below: under lock */
     bool value_changed, flag_changed;

@@ -14,7 +14,7 @@
 #define MIN_KNOWN_PART 0.1   /* gp: smallest part of the prior's variance that sensors must remove; else there is no data */
 #define MIN_SENSOR_SHARE 0.1 /* fin: smallest part of a value that must come from sensors rather than ambient; else there is no data */
 
-/* largest standard deviation, in multiples of the stated one: if all sensors of a body are lost, it has no bound */
+/* largest standard deviation, in multiples of the stated one: without this, it has no bound if all sensors of a body are lost */
 #define MAX_DEVIATIONS 4.0
 
 struct key_head { /* without padding, since it is compared as bytes */

@@ -11,9 +11,9 @@
 #include "field/layout.h"
 
 enum sensor_use {
-    SENSOR_LOST, /* does not contribute; there is no data around it */
+    SENSOR_LOST, /* the sensor does not contribute; there is no data around it */
     SENSOR_USED,
-    SENSOR_NO_LIMITS, /* does not contribute, but the area around it is known to be well measured */
+    SENSOR_NO_LIMITS, /* the sensor does not contribute, but the area around it is known to be well measured */
     SENSOR_ASIDE      /* ignored: another sensor gives the asset's value */
 };
 
@@ -25,7 +25,8 @@ enum place {
     PLACE_NO_LIMITS /* the nearest sensor within reach is SENSOR_NO_LIMITS */
 };
 
-enum weights_known { KNOWN_NEAR = 1, KNOWN_TOP = 2, KNOWN_TOTAL = 4 }; /* which arrays are filled: near_m and place; top; total */
+/* bits that say which arrays are filled: near_m and place; top; total */
+enum weights_known { KNOWN_NEAR = 1, KNOWN_TOP = 2, KNOWN_TOTAL = 4 };
 
 struct weights_key { /* everything that G depends on, as bytes */
     void *bytes;
@@ -41,17 +42,18 @@ struct weights {
     enum interpolation interpolation;
     enum distance_mode distance;
     float power, reach_m, radius_m, steps_per_m; /* steps_per_m: units of `lacking` per metre */
-    bool alike;                                  /* all members have the same strength */
+    bool alike;                                  /* whether all members have the same strength */
     float *strength, *decay;                     /* by sensor of the layout */
-    uint8_t *configured; /* by sensor of the layout: would contribute if its quality were good; more than 1: SENSOR_NO_LIMITS */
-    uint8_t *takes_part;                         /* by sensor of the layout: 1 if used */
-    uint32_t *members;                           /* used sensors of the layout, in the order of the columns. Prepared: all sensors */
+    /* for each sensor of the layout: whether it would contribute if its quality were good; more than 1: SENSOR_NO_LIMITS */
+    uint8_t *configured;
+    uint8_t *takes_part; /* for each sensor of the layout: 1 if used */
+    uint32_t *members;   /* used sensors of the layout, in the order of the columns; if prepared: all sensors */
     size_t member_count;
-    float *near_m, *top;         /* by vertex: distance of the nearest usable sensor; scale (kernels.h) */
+    float *near_m, *top;         /* for each vertex: distance of the nearest usable sensor; scale (kernels.h) */
     float *total;                /* sum of the weights of each vertex */
     uint8_t *place;              /* by vertex: enum place */
-    uint8_t *lost;               /* by vertex: how much nearer the nearest lost sensor is than near_m, encoded by weights_lacking() */
-    uint8_t *known;              /* by block: bits of enum weights_known for the arrays above */
+    uint8_t *lost;               /* for each vertex: how much nearer the nearest lost sensor is than near_m, encoded by weights_lacking() */
+    uint8_t *known;              /* for each block: bits of enum weights_known for the arrays above */
     const float *prepared;       /* [member][vertex]: columns from the asset's influence file; NULL: columns are computed from distances */
     struct influence_fill *fill; /* prepared with some sensor lost; else NULL */
     double *ones;                /* prepared: by sensor, its value if all used sensors read 1; else NULL */
@@ -59,18 +61,18 @@ struct weights {
     const float *deviations;     /* gp: standard deviation of the field at each vertex while all sensors are used; else NULL */
     const float *priors;         /* gp: the same without any sensor */
     float deviation;             /* gp: standard deviation of the prior */
-    float *errors;               /* by vertex: linear interpolation error of the adjacent triangles (drawn_error.h); NULL: not measured */
-    float largest_error;         /* largest element of `errors` */
+    float *errors;       /* for each vertex: linear interpolation error of the adjacent triangles (drawn_error.h); NULL: not measured */
+    float largest_error; /* largest element of `errors` */
     /* [b]: largest part of any level's surface with an error of at least 2^-b. Prepared: part of the vertices */
     float erring[WEIGHTS_ERRING];
-    uint64_t measured_levels;    /* bit per level of detail that `errors` covers */
-    unsigned errors_version;     /* counts changes of `errors` */
-    float *beyond_m;             /* fin, gp: by vertex, distance beyond the border of the known area; else NULL */
+    uint64_t measured_levels; /* one bit per level of detail that `errors` covers */
+    unsigned errors_version;  /* counts changes of `errors` */
+    float *beyond_m;          /* fin, gp: by vertex, distance beyond the border of the known area; else NULL */
     float *columns; /* [block][member][KERNEL_BLOCK] of the first kept_blocks, or NULL; columns of other blocks are recomputed each time */
     uint8_t *kept;  /* [block][member]: 1 if its column is filled */
     size_t kept_blocks;
     int users;           /* number of states that use these weights */
-    uint64_t used, sums; /* used: tick of the last use; sums: number of times summed */
+    uint64_t used, sums; /* used: tick of the last use; sums: how often the weights were summed */
     struct weights *next;
 };
 
@@ -119,7 +121,7 @@ void weights_deviations(const struct weights *weights, size_t begin, size_t coun
 struct weights_terms {
     const uint32_t *members;
     const double *factors;
-    const uint8_t *marked; /* by index in this list: the column is added to sums->marked, too */
+    const uint8_t *marked; /* for each entry of this list: whether the column is added to sums->marked, too */
     size_t count;
 };
 /* Sums of one block, which weights_add() adds to. */

@@ -18,7 +18,7 @@ struct gl_device { /* an EGL device, by index in the list or by PCI address */
 struct gl {
     enum gl_kind kind; /* kind of the context; never GL_AUTO */
     char vendor[128], renderer[128], version[128];
-    bool software; /* llvmpipe, softpipe, swrast */
+    bool software;       /* llvmpipe, softpipe, swrast */
     bool reads_in_place; /* a software driver that reads the caller's memory without a copy (GL_AMD_pinned_memory) */
     int max_texture_px, max_samples;
     const struct gl_impl *impl;

@@ -72,12 +72,12 @@ size_t assumed_places_choose(const struct scene *scene, const struct assumed_fil
     size_t accepted = 0;
     for (size_t i = 0; i < plant->tag_count; i++) {
         const struct plant_tag *tag = &plant->tags[i];
-        outcome[i] = !is_meant(filter, tag)                                                     ? ASSUMED_NOT_MEANT
-                     : !tag->has_position && !tag->node                                         ? ASSUMED_NOWHERE
-                     : isnan(distance_m[i])                                                     ? ASSUMED_MISSING
-                     : filter->within_m >= 0 && distance_m[i] > filter->within_m                ? ASSUMED_FAR
-                     : confidence && !(confidence[i] >= filter->confidence)                     ? ASSUMED_UNSURE
-                                                                                                : ASSUMED_ACCEPTED;
+        outcome[i] = !is_meant(filter, tag)                                      ? ASSUMED_NOT_MEANT
+                     : !tag->has_position && !tag->node                          ? ASSUMED_NOWHERE
+                     : isnan(distance_m[i])                                      ? ASSUMED_MISSING
+                     : filter->within_m >= 0 && distance_m[i] > filter->within_m ? ASSUMED_FAR
+                     : confidence && !(confidence[i] >= filter->confidence)      ? ASSUMED_UNSURE
+                                                                                 : ASSUMED_ACCEPTED;
         accepted += outcome[i] == ASSUMED_ACCEPTED;
     }
     mem_free(distance_m);

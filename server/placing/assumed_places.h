@@ -10,19 +10,19 @@
 #include "scene/scene.h"
 
 struct assumed_filter {
-    int asset, group;   /* indices in the plant; -1: any */
-    char pattern[101];  /* glob over the tag's name; without * and ? a substring of its name or description; case-insensitive; "": any */
-    double within_m;    /* largest distance from the asset's surface; negative: any */
-    double confidence;  /* smallest confidence of the match, 0..1, from matches.csv next to the tag list; negative: any */
+    int asset, group;  /* indices in the plant; -1: any */
+    char pattern[101]; /* glob over the tag's name; without * and ? a substring of its name or description; case-insensitive; "": any */
+    double within_m;   /* largest distance from the asset's surface; negative: any */
+    double confidence; /* smallest confidence of the match, 0..1, from matches.csv next to the tag list; negative: any */
 };
 
 enum assumed_outcome {
     ASSUMED_NOT_MEANT, /* the tag's position is not assumed, or asset, group or pattern do not match */
     ASSUMED_ACCEPTED,
-    ASSUMED_NOWHERE,   /* the tag's row has neither a node nor X, Y, Z */
-    ASSUMED_MISSING,   /* its asset has no model */
-    ASSUMED_FAR,       /* too far from the surface */
-    ASSUMED_UNSURE,    /* confidence too low or unknown */
+    ASSUMED_NOWHERE, /* the tag's row has neither a node nor X, Y, Z */
+    ASSUMED_MISSING, /* its asset has no model */
+    ASSUMED_FAR,     /* too far from the surface */
+    ASSUMED_UNSURE,  /* confidence too low or unknown */
     ASSUMED_OUTCOMES
 };
 

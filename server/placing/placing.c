@@ -25,7 +25,7 @@ struct distance_ask { /* pending request for the distances of one moved sensor *
 };
 
 struct placing_entry { /* private part of a moved sensor; set->placed holds the public part */
-    uint64_t asked; /* number of its pending request; 0: none */
+    uint64_t asked;    /* number of its pending request; 0: none */
     uint64_t ticket;
     struct trial_sensor sensor;
 };
@@ -299,7 +299,7 @@ bool place_set_moves(struct place_set *set, const struct place_move *moves, size
             return false;
         if (same[i] < 0 && !find_place(placing, &moves[i], &entries[i], &placed[i])) {
             refusal_set(why, REFUSAL_FAR, "tag=%s\nasset=%s", placing->params.scene->plant->tags[moves[i].tag].name,
-                   placing->params.scene->assets[moves[i].asset].plant->id);
+                        placing->params.scene->assets[moves[i].asset].plant->id);
             return false;
         }
     }

@@ -17,7 +17,7 @@ struct frame_marker {
     /* reading in engineering units, 0 where the quality is Bad; SHOW_DIFFERENCE: now minus baseline; SHOW_DISTANCE: metres, NAN if
        unknown */
     double value;
-    uint8_t half;     /* half of a split view that the marker is in: 0 left, 1 right */
+    uint8_t half; /* half of a split view that the marker is in: 0 left, 1 right */
 };
 
 struct frame_label { /* a visible point of an isoline, or of an arrow, that may carry a label */
@@ -44,10 +44,10 @@ struct frame {
     size_t marker_count;
     struct frame_label *labels; /* candidate points for isoline labels, more than fit; and arrows */
     size_t label_count;
-    int64_t data_utc_ns;                      /* UTC of the snapshot that the frame shows */
-    bool clock_unset;                         /* true if the clock that gave data_utc_ns was not synchronised */
-    int64_t oldest_age_ns;                    /* age of the oldest reading used; INT64_MAX: no reading contributes */
-    double drawn_error; /* error bound, in engineering units and rounded up, at places marked uncertain; 0: no place is */
+    int64_t data_utc_ns;   /* UTC of the snapshot that the frame shows */
+    bool clock_unset;      /* true if the clock that gave data_utc_ns was not synchronised */
+    int64_t oldest_age_ns; /* age of the oldest reading used; INT64_MAX: no reading contributes */
+    double drawn_error;    /* error bound, in engineering units and rounded up, at places marked uncertain; 0: no place is */
     int64_t field_ns, render_ns, readback_ns; /* duration of each stage */
     int64_t turn_ns;                          /* render thread's time for this frame, waiting included; 0: drawn elsewhere */
     struct baseline baseline;                 /* the baseline that a difference is taken from; id 0: none */

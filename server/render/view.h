@@ -62,8 +62,8 @@ struct view {
     bool dark;           /* dark backdrop; field colours are unchanged */
     enum directions_look directions;
     enum language language; /* language of the texts in an overlay, where one is drawn */
-    bool strip;          /* draws a machine-readable legend strip into the overlay */
-    int environment;     /* index of the surroundings: 0 the built-in sky, then the plant's own */
+    bool strip;             /* draws a machine-readable legend strip into the overlay */
+    int environment;        /* index of the surroundings: 0 the built-in sky, then the plant's own */
     struct visibility visibility;
     int64_t at_us;           /* the instant shown, UTC microseconds; 0: now. Set by view_set_instant */
     bool split;              /* true: two halves side by side under one camera: this struct is the left half, `right` the right half */

@@ -10,10 +10,10 @@
 /* Tilt of the views straight down and up, as a tangent: exactly vertical, north would have no direction. With it up stays the plant's, and
    orbiting continues the same way. */
 static const double VERTICAL_TILT = 1e-3;
-static const double DEFAULT_ASPECT = 16 / 9.0; /* aspect ratio assumed for the plant file's view */
-static const double SENSOR_PART = 0.35;                      /* part of the asset's size that is shown around a sensor */
+static const double DEFAULT_ASPECT = 16 / 9.0;            /* aspect ratio assumed for the plant file's view */
+static const double SENSOR_PART = 0.35;                   /* part of the asset's size that is shown around a sensor */
 static const double SENSOR_MIN_M = 0.3, SENSOR_MAX_M = 3; /* limits of that size */
-static const double SENSOR_RISE = 0.36;                      /* elevation of the camera above a sensor, as a tangent */
+static const double SENSOR_RISE = 0.36;                   /* elevation of the camera above a sensor, as a tangent */
 
 static const struct scene_sensor *find_sensor(const struct scene_asset *asset, int tag)
 {

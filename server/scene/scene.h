@@ -24,10 +24,10 @@ struct scene_asset {
     double bounds_min_m[3], bounds_max_m[3]; /* plant frame, axis-aligned */
     struct scene_sensor *sensors;            /* sensors of all groups, in the order of the tag list */
     size_t sensor_count;
-    bool stray;    /* true if a piece of the asset is far from the main part (scene/main_part.h) */
+    bool stray;                         /* true if a piece of the asset is far from the main part (scene/main_part.h) */
     double stray_at_m[3], stray_away_m; /* farthest corner, and its distance to the main part; 0: none */
-    char *missing; /* why it could not be prepared: it then has no sensors and is invisible; NULL: prepared */
-    int front;     /* rank where faces of two assets coincide: the asset with the higher value is visible (scene/coincident.h) */
+    char *missing;                      /* why it could not be prepared: it then has no sensors and is invisible; NULL: prepared */
+    int front; /* rank where faces of two assets coincide: the asset with the higher value is visible (scene/coincident.h) */
 };
 
 struct scene {

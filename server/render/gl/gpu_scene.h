@@ -14,7 +14,7 @@ struct gpu_scene {
     struct gl_model *models;
     size_t model_count;
     const struct gl_model **of_asset; /* model of each asset, by index in scene->assets */
-    double middle_m[3], radius_m;  /* centre and radius of a sphere that encloses the scene, in the plant frame */
+    double middle_m[3], radius_m;     /* centre and radius of a sphere that encloses the scene, in the plant frame */
     double up[3];
     GLuint depth_programs[2][2]; /* [clip planes][alpha-masked textures] */
 };

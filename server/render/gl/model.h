@@ -9,7 +9,7 @@
 
 enum model_map { MODEL_BASE_COLOR, MODEL_METALLIC_ROUGHNESS, MODEL_NORMAL, MODEL_OCCLUSION, MODEL_EMISSIVE, MODEL_MAPS };
 enum { MODEL_MUTED, MODEL_OWN, MODEL_RAMPS }; /* colour ramps: muted, for context; in the material's own colours */
-enum { MODEL_LIGHT_STEPS = 64 }; /* texels of a material's ramp */
+enum { MODEL_LIGHT_STEPS = 64 };              /* texels of a material's ramp */
 
 struct model_submesh { /* the triangles of one material in one level */
     uint32_t material;

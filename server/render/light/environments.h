@@ -22,7 +22,7 @@ struct environments {
     struct environment_slot slots[1 + PLANT_ENVIRONMENTS];
     int count;
     const float (*brdf_texels)[2]; /* environment_brdf() of ENVIRONMENT_BRDF_PX; shared by all renderers */
-    GLuint brdf;             /* texture of brdf_texels */
+    GLuint brdf;                   /* texture of brdf_texels */
 };
 enum { ENVIRONMENT_BRDF_PX = 48 };
 

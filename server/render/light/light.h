@@ -17,7 +17,7 @@ struct light {
     struct light_set sets[LIGHT_SETS];
     struct bake *bake; /* in progress; NULL: none */
     uint64_t uses, last_id;
-    bool kept; /* openness is written to its file, or the attempt was made */
+    bool kept;                      /* openness is written to its file, or the attempt was made */
     struct openness_writer *writer; /* writer of that file; NULL: none */
 };
 

@@ -20,8 +20,8 @@ enum { PEN_MAX_TAKEN = 512 };
 struct pen {
     cairo_t *cairo;
     const struct frame *frame;
-    struct view view; /* view of the half being drawn */
-    int half;         /* index of the half of a split view; else 0 */
+    struct view view;      /* view of the half being drawn */
+    int half;              /* index of the half of a split view; else 0 */
     struct label_box area; /* area of that half, in pixels of the frame */
     const struct scene *scene;
     const struct snapshot *snapshot;
@@ -29,7 +29,7 @@ struct pen {
     bool bare;                             /* nothing about sensors and alarms is drawn */
     bool calm;                             /* labels only for alarms and Bad readings */
     double unit, text_px;
-    struct burn_shift legend_shift;  /* shift of the legend, within its margin */
+    struct burn_shift legend_shift;        /* shift of the legend, within its margin */
     struct label_box taken[PEN_MAX_TAKEN]; /* occupied areas */
     int taken_count;
 };

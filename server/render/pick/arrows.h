@@ -6,7 +6,7 @@
 #include "field/directions.h"
 #include "render/plan/fields.h"
 
-struct arrow_set { /* arrows of one asset; zero-initialise, free with arrows_finish() */
+struct arrow_set {                  /* arrows of one asset; zero-initialise, free with arrows_finish() */
     struct direction_place *places; /* positions, ordered so that any prefix of the list is evenly spread */
     struct direction *found;
     size_t count;

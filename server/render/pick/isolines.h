@@ -12,8 +12,8 @@ struct isoline_point {
     double value, place_m[3]; /* plant frame */
     double along[3];          /* direction of an arrow, plant frame; 0: unknown */
     bool arrow, uncertain;
-    uint16_t stroke;          /* number of the stroke in this frame, from 1, equal for all of its points; 0: no stroke */
-    float slack_m;            /* depth tolerance in metres: how far the point may lie behind the drawn surface */
+    uint16_t stroke; /* number of the stroke in this frame, from 1, equal for all of its points; 0: no stroke */
+    float slack_m;   /* depth tolerance in metres: how far the point may lie behind the drawn surface */
 };
 struct isoline_set { /* points of one asset */
     uint64_t content;

@@ -16,7 +16,7 @@ struct stroke_set { /* strokes of one asset; zero-initialise, free with strokes_
     /* neighbour of each triangle of the level across the edge that begins at corner i, as 3 * triangle + edge; STROKE_NONE: none */
     uint32_t (*across)[3];
     struct stroke_point (*points)[STROKE_POINTS];
-    int *lengths;          /* number of points per stroke; 0: the direction at its start is unknown */
+    int *lengths; /* number of points per stroke; 0: the direction at its start is unknown */
     size_t count;
     bool sought;
     uint64_t content; /* hash of the directions that the strokes follow */

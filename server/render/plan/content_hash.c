@@ -45,8 +45,8 @@ static void add_visibility(XXH3_state_t *state, const struct frame_plan *plan)
 static void add_shape(XXH3_state_t *state, const struct frame_plan *plan)
 {
     const struct view *view = &plan->view;
-    int32_t choices[] = { view->width_px,       view->height_px,   (int32_t)view->look,        (int32_t)view->tier,
-                          view->selected_asset, view->environment, (int32_t)view->field.trial, view->dark,
+    int32_t choices[] = { view->width_px,           view->height_px,   (int32_t)view->look,        (int32_t)view->tier,
+                          view->selected_asset,     view->environment, (int32_t)view->field.trial, view->dark,
                           (int32_t)view->directions };
     double numbers[] = { view->camera.fov_deg, view->camera.height_m };
     add(state, choices, sizeof(choices));

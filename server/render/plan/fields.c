@@ -12,7 +12,7 @@
 #include "plant/influence.h"
 #include "render/reference/reference.h"
 
-static const uint64_t LOST = 0x6c6f7374;             /* content hash of fields->lost, which no other entry has */
+static const uint64_t LOST = 0x6c6f7374; /* content hash of fields->lost, which no other entry has */
 /* default bound in main memory, and the same on the GPU: about 700 assets of 66,000 vertices */
 static const size_t BOUND_BYTES = (size_t)384 << 20;
 

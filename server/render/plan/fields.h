@@ -16,8 +16,8 @@ struct fields_entry { /* field of one asset; without a slice it could not be com
     struct field_params params;
     double step;            /* smallest value step that can be seen (scale_step) */
     uint64_t flags_version; /* flags version of the shown scalars */
-    double travel; /* scalars->travel at the shown values, less their known error: `scalars->travel - travel` bounds the change since */
-    uint64_t content;       /* hash of the first `hashed` shown scalars, as many as the last request needs */
+    double travel;    /* scalars->travel at the shown values, less their known error: `scalars->travel - travel` bounds the change since */
+    uint64_t content; /* hash of the first `hashed` shown scalars, as many as the last request needs */
     size_t hashed;
     struct scalar *shown;
     size_t count, ready; /* vertices of the file; ready: how many of them, from the first, are shown */

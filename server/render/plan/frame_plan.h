@@ -15,13 +15,13 @@ struct frame_plan {
     double error_px;         /* largest error of levels of detail in pixels (lod_selection.h); 0: finest levels only */
     int *visible;            /* indices of visible assets, nearest first */
     size_t visible_count;
-    size_t *vertex_counts;   /* number of vertices, from the first, that are drawn or examined for labels, by index in `visible` */
+    size_t *vertex_counts; /* number of vertices, from the first, that are drawn or examined for labels, by index in `visible` */
     /* --- once it is complete --- */
     /* field of each asset; NULL: the asset shows no field. Valid until a plan with newer readings is completed */
     const struct fields_entry **fields;
-    int64_t data_utc_ns;                /* of the snapshot */
-    uint64_t content, shape;            /* hashes of the frame and of its geometry and light (content_hash.h) */
-    int64_t field_ns;                   /* time spent on bringing the fields up to date */
+    int64_t data_utc_ns;     /* of the snapshot */
+    uint64_t content, shape; /* hashes of the frame and of its geometry and light (content_hash.h) */
+    int64_t field_ns;        /* time spent on bringing the fields up to date */
 };
 
 #endif

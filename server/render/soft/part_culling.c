@@ -9,8 +9,8 @@
 #include "render/matrix.h"
 #include "render/gl/ghosts.h"
 
-#define SLACK_PX 0.02f    /* boxes and vertices round differently */
-#define SLACK_DEPTH 1e-5f /* relative to depth */
+#define SLACK_PX 0.02f        /* boxes and vertices round differently */
+#define SLACK_DEPTH 1e-5f     /* relative to depth */
 #define IN_FRONT_OF_NEAR 2.0f /* depth of anything in front of the near plane */
 
 /* Bounds a box's rectangle in the frame and its nearest depth. Returns false if the box is outside. */

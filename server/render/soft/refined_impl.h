@@ -44,7 +44,7 @@ struct refined {
     struct environment_light surroundings;
     float sun_from_pixel[4][4], sun_from_ground[4][4]; /* matrices, as columns */
     float sun_from_normal[3][3]; /* columns: from a normal to the offset on the sun's map that lifts the point off its surface */
-    float ground_step[3];                              /* offset on the sun's map that lifts points off the ground */
+    float ground_step[3];        /* offset on the sun's map that lifts points off the ground */
 };
 
 struct refined_item { /* one surface within a pixel */

@@ -23,11 +23,11 @@ void soft_destroy(struct soft **soft); /* &NULL is fine; sets it to NULL */
 
 /* sets the bound of visibility buffers that a tier keeps for still cameras */
 void soft_bound(struct soft *soft, enum tier tier, size_t bytes);
-size_t soft_kept_bytes(const struct soft *soft);                  /* bytes of kept visibility buffers */
-size_t soft_room_bytes(const struct soft *soft);                  /* bytes of working memory, except that of refined frames under way */
-size_t soft_light_bytes(const struct soft *soft);                 /* bytes of baked light copied from the GPU */
-void soft_drop_spare(struct soft *soft);                          /* frees the working memory that refined frames left for reuse */
-void soft_rest(struct soft *soft);                                /* frees working memory, copied light and kept visibility buffers */
+size_t soft_kept_bytes(const struct soft *soft);  /* bytes of kept visibility buffers */
+size_t soft_room_bytes(const struct soft *soft);  /* bytes of working memory, except that of refined frames under way */
+size_t soft_light_bytes(const struct soft *soft); /* bytes of baked light copied from the GPU */
+void soft_drop_spare(struct soft *soft);          /* frees the working memory that refined frames left for reuse */
+void soft_rest(struct soft *soft);                /* frees working memory, copied light and kept visibility buffers */
 
 /* Draws pixels, markers and labels. Returns false when out of memory; logged. */
 bool preview_draw(struct soft *soft, const struct frame_context *context, const struct light *light, const struct isoline_points *points,

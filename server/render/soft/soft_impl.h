@@ -144,8 +144,8 @@ struct soft { /* shared by all frames */
     const struct soft_kernels *kernels;
     const struct gpu_scene *gpu_scene;
     const struct environments *environments;
-    size_t material_count;                                /* number of materials of all models */
-    uint32_t *material_of_model;                          /* number of the first material of each model */
+    size_t material_count;       /* number of materials of all models */
+    uint32_t *material_of_model; /* number of the first material of each model */
     /* ramps: RAMP_STEPS colours per row; ramp_of_material: row by number of the material */
     uint32_t *muted_ramps, *own_ramps, *ramp_of_material;
     struct soft_materials materials;
@@ -174,8 +174,8 @@ size_t raster_bytes(const struct raster *raster);
 void refined_destroy(struct refined **refined); /* &NULL is fine; sets it to NULL */
 size_t refined_bytes(const struct refined *refined);
 /* The functions below are the steps of a frame, in order. */
-void raster_aim(struct raster *raster, const struct light *light);                  /* computes the matrices from pixels */
-void raster_aim_cuts(struct raster *raster);                                        /* computes the section planes; call first */
+void raster_aim(struct raster *raster, const struct light *light); /* computes the matrices from pixels */
+void raster_aim_cuts(struct raster *raster);                       /* computes the section planes; call first */
 /* returns whether a point is cut off; at: x w and y w in pixels, z, w; planes: number of section planes to test */
 bool raster_is_cut_off(const struct raster *raster, const float at[4], int planes);
 /* Tests a box of the mesh against one section plane. Returns true if the box is cut away entirely; sets *cut to true if the plane cuts
@@ -187,7 +187,7 @@ float raster_entry_depth(const struct raster *raster, float x, float y);
 /* Finds meshes and their parts that may be visible. bodies: also parts that bound bodies cut open. Returns false when out of memory. */
 bool raster_find(struct raster *raster, bool bodies);
 bool raster_find_only(struct raster *raster, int asset); /* finds one asset's parts, both sides */
-bool raster_find_ghosts(struct raster *raster); /* finds the parts of ghosted assets */
+bool raster_find_ghosts(struct raster *raster);          /* finds the parts of ghosted assets */
 /* computes how much of a ghost line covers each pixel, 0..255; veil has rows of width_px; destroys the marks. Returns false when out of
    memory */
 bool raster_ghosts(struct raster *raster, uint8_t *veil, uint8_t bgr[3]);

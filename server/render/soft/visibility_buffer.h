@@ -42,9 +42,9 @@ struct visibility_slopes {
     float w1_x, w1_y, w2_x, w2_y, sum_x, sum_y, sum;
 };
 
-struct visibility_band {              /* a band of rows; written by one worker */
-    uint32_t (*triangles)[3];         /* vertex numbers: of the frame, and after visibility_buffer_settle() of the kept vertices */
-    float (*corners)[4]; /* values carried by each triangle now: the first corner's, and the second's and third's minus the first's */
+struct visibility_band {      /* a band of rows; written by one worker */
+    uint32_t (*triangles)[3]; /* vertex numbers: of the frame, and after visibility_buffer_settle() of the kept vertices */
+    float (*corners)[4];      /* values carried by each triangle now: the first corner's, and the second's and third's minus the first's */
     struct visibility_slopes *slopes; /* slopes of each triangle; only filled in where there are isolines */
     struct visibility_part *parts;
     struct visibility_gloss *gloss; /* per part, for glossy frames */
@@ -67,16 +67,16 @@ struct visibility_buffer {
     uint8_t *rows;                  /* row of the colour map (brightness) for each pixel */
     struct visibility_gloss *gloss; /* light of glossy surfaces for each pixel; NULL: not glossy, brightness is in `rows` */
     const struct soft_tones *tones; /* set with gloss; not owned */
-    uint8_t *ink; /* ink of each pixel; visibility_buffer_settle() applies ink and veil to fixed colours and clears both there */
-    uint8_t *veil;                  /* coverage by ghost lines, 0..255. NULL: there are no ghosts */
+    uint8_t *ink;  /* ink of each pixel; visibility_buffer_settle() applies ink and veil to fixed colours and clears both there */
+    uint8_t *veil; /* coverage by ghost lines, 0..255. NULL: there are no ghosts */
     uint8_t veil_bgr[3];
     bool lined;   /* slopes are stored, so isolines can be drawn */
     float *depth; /* depth for placing isoline labels, rows of width_px. NULL: there are none */
     struct visibility_band *bands;
     struct visibility_mesh *meshes;
     size_t mesh_count, mesh_capacity, vertex_count;
-    float scale[4];               /* scale in struct frame_uniforms when the vertices were read */
-    uint32_t *vertices;           /* kept vertices, mesh by mesh: number in the asset's file */
+    float scale[4];     /* scale in struct frame_uniforms when the vertices were read */
+    uint32_t *vertices; /* kept vertices, mesh by mesh: number in the asset's file */
     /* carried value of each kept vertex: column of the colour map (logarithmic scale: the value); NAN: it has a pattern's flag */
     float *carried;
     float *plain;                 /* the same without NAN */

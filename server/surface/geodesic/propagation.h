@@ -33,8 +33,8 @@ void propagation_finish(struct propagation *propagation);
 
 /* State of one propagation, used by one thread; zero-initialise; may be reused. */
 struct propagation_front {
-    float *distance_m;     /* per point; INFINITY: not reached */
-    float *straight_m;     /* straight-line distance of each point from the source */
+    float *distance_m; /* per point; INFINITY: not reached */
+    float *straight_m; /* straight-line distance of each point from the source */
     char *settled;
     uint32_t *buckets;
     struct propagation_item {

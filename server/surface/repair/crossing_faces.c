@@ -18,7 +18,7 @@ struct crossing_face {
 struct crossing_search {
     const struct body_parts *parts;
     double rounding_m, sliver_m;
-    uint32_t tri;     /* the face being tested */
+    uint32_t tri;              /* the face being tested */
     struct crossing_face face; /* geometry of `tri` */
     bool crosses;
 };

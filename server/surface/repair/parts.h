@@ -9,7 +9,7 @@
    bodies one part. */
 struct body_parts {
     struct trimesh solid;
-    uint32_t *of_tri;                     /* part of each triangle of `solid` */
+    uint32_t *of_tri; /* part of each triangle of `solid` */
     /* orientation of each triangle of `solid`: +1 or -1 makes each patch face outwards; 0: the triangle bounds nothing */
     signed char *side;
     uint32_t *of_source, *body_of_source; /* part and body of each model triangle; usually equal */
@@ -20,8 +20,8 @@ struct body_parts {
     char *thin;                           /* 1 for parts that are closed and have a reach below the tolerance */
     double *reach_m;                      /* reach of each part: surfaces nearer than this touch it */
     double tolerance_m;                   /* largest reach of a part */
-    double size_m;              /* diagonal of the main part; 0: of `solid`. May be set after parts_init() */
-    size_t count, source_count; /* count: parts; source_count: model triangles */
+    double size_m;                        /* diagonal of the main part; 0: of `solid`. May be set after parts_init() */
+    size_t count, source_count;           /* count: parts; source_count: model triangles */
 };
 
 /* Finds the parts of `mesh`: the model's source_count triangles after welding and closing seams, with multiplicities. Every part's reach is
