@@ -9,7 +9,7 @@ legend: Legende
 card: Messstelle
 place: Stelle
 status: Status
-timings: Leistung
+timings: Leistungswerte
 
 [part]
 failed: Dieser Teil der Seite konnte nicht geladen werden. Er wird geladen, sobald der Server antwortet.

@@ -72,8 +72,8 @@ turn: Azimuth
 turn.why: Azimuth of the sun, degrees from north
 height: Elevation
 height.why: Elevation of the sun, degrees
-around: Background
-around.why: Background
+around: Backdrop
+around.why: Backdrop
 split: Split view
 right: Right side
 

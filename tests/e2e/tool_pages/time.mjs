@@ -273,7 +273,8 @@ test('marks lead to their instant, from alarm to alarm, and to a date', options,
         await page.locator('#time-after').click();
         await instantOf([...new Set(raises)][1]);
     }
-    const us = (BEGIN_S + 777) * 1e6;
+    // Chromium drops seconds of :00 from a field, so the instant has others.
+    const us = (BEGIN_S + 777 + ((BEGIN_S + 777) % 60 === 0)) * 1e6;
     await page.locator('#time-date').fill(timeText(us));
     await instantOf(us);
     await page.locator('#time-slider').focus();
