@@ -14,7 +14,7 @@
 #include "tour.h"
 #include "video.h"
 
-enum { MOST_PICTURES = 1000000, SAY_EACH = 250 };
+enum { MAX_PICTURES = 1000000, SAY_EACH = 250 };
 
 struct film {
     struct snapshot_options *options;
@@ -148,10 +148,10 @@ static bool make(struct film *film, picture_fn *picture, const json_t *stops)
     size_t i;
     json_array_foreach(stops, i, stop)
         count += (double)pictures_of(film, stop);
-    bool good = count <= MOST_PICTURES;
+    bool good = count <= MAX_PICTURES;
     if (!good)
         fprintf(stderr, "plantcast: %.0f pictures would be made, and at most %d are; a greater --speed, or less time\n", count,
-                MOST_PICTURES);
+                MAX_PICTURES);
     if (good && !stops)
         good = shoot(film, picture, (long)count, count);
     for (i = 0; i < json_array_size(stops) && good; i++) {

@@ -11,7 +11,7 @@
 
 #define FAIL(...) (snprintf(why, FILM_BOXES_WHY_BYTES, __VA_ARGS__), false)
 enum { HEAD = 8 };
-static const size_t MOST_MOOV_BYTES = (size_t)256 << 20;
+static const size_t MAX_MOOV_BYTES = (size_t)256 << 20;
 
 /* One allowed box. Content is in hexadecimal digits; '?': any digit; 'W', 'H': the four digits of width and height in pixels; '*' at the
    end: any further bytes. `children`: offset of the child boxes; 0: none. */
@@ -185,7 +185,7 @@ static bool take_boxes(struct box_walk *walk, const char *parent, const uint8_t 
 static bool take_moov(struct box_walk *walk, FILE *file, uint64_t count)
 {
     char *why = walk->why;
-    uint8_t *moov = count <= MOST_MOOV_BYTES ? mem_try_array(count + 1, 1) : NULL;
+    uint8_t *moov = count <= MAX_MOOV_BYTES ? mem_try_array(count + 1, 1) : NULL;
     bool good = moov && fread(moov, 1, count, file) == count;
     if (good) {
         learn_size(walk, moov, count);

@@ -16,7 +16,7 @@
 #include "film_boxes.h"
 
 #define FILM_KEY "plantcast_statements"
-static const size_t MOST_BYTES = (size_t)64 << 20, MOST_TEXT_BYTES = (size_t)1 << 30; /* limits of the compressed and the uncompressed
+static const size_t MAX_BYTES = (size_t)64 << 20, MAX_TEXT_BYTES = (size_t)1 << 30; /* limits of the compressed and the uncompressed
                                                                                          text */
 
 /* --- writing ------------------------------------------------------------------------------------------------------------------- */
@@ -61,8 +61,8 @@ bool film_statements_put(const struct film_statements *statements, struct video 
     text_add(&all, "]");
     uLongf count = compressBound(all.length);
     uint8_t *bytes = mem_array(count, 1);
-    bool good = all.length <= MOST_TEXT_BYTES && compress2(bytes, &count, (const Bytef *)all.at, all.length, 9) == Z_OK;
-    good = good && count <= MOST_BYTES;
+    bool good = all.length <= MAX_TEXT_BYTES && compress2(bytes, &count, (const Bytef *)all.at, all.length, 9) == Z_OK;
+    good = good && count <= MAX_BYTES;
     if (good) {
         char *base64 = mem_array(4 * (count / 3 + 1) + 1, 1);
         EVP_EncodeBlock((unsigned char *)base64, bytes, (int)count);
@@ -96,7 +96,7 @@ static bool read_statements(struct film_reader *reader)
 {
     const AVDictionaryEntry *entry = av_dict_get(reader->format->metadata, FILM_KEY, NULL, AV_DICT_MATCH_CASE);
     size_t length = entry ? strlen(entry->value) : 0;
-    if (length < 4 || length % 4 || length > 2 * MOST_BYTES)
+    if (length < 4 || length % 4 || length > 2 * MAX_BYTES)
         return FAIL("there are no statements in it, or the file is damaged");
     uint8_t *bytes = mem_array(length, 1);
     int count = EVP_DecodeBlock(bytes, (const unsigned char *)entry->value, (int)length);
@@ -105,7 +105,7 @@ static bool read_statements(struct film_reader *reader)
     uint8_t piece[65536];
     z_stream stream = { .next_in = bytes, .avail_in = count > 0 ? (uInt)count : 0 };
     int status = inflateInit(&stream);
-    while (status == Z_OK && text.length < MOST_TEXT_BYTES) {
+    while (status == Z_OK && text.length < MAX_TEXT_BYTES) {
         stream.next_out = piece;
         stream.avail_out = sizeof(piece);
         status = inflate(&stream, Z_NO_FLUSH);

@@ -5,7 +5,7 @@
 #include <gst/app/gstappsink.h>
 #include <stdio.h>
 
-enum { KEY_S = 2, MOST_WAITING = 2 };
+enum { KEY_S = 2, MAX_WAITING = 2 };
 
 struct video_encoder {
     GstElement *pipeline;
@@ -73,7 +73,7 @@ void encoder_destroy(struct video_encoder **pointer)
 
 bool encoder_is_ready(const struct video_encoder *encoder)
 {
-    return gst_app_src_get_current_level_bytes(encoder->in) < MOST_WAITING * encoder->frame_bytes;
+    return gst_app_src_get_current_level_bytes(encoder->in) < MAX_WAITING * encoder->frame_bytes;
 }
 
 /* Requests a key frame by the clock, regardless of dropped frames. */

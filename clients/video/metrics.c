@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { MOST_REQUEST_BYTES = 4096, IDLE_S = 5, MOST_CONNECTIONS = 8 };
+enum { MAX_REQUEST_BYTES = 4096, IDLE_S = 5, MAX_CONNECTIONS = 8 };
 
 struct metrics {
     GSocketService *service;
@@ -35,12 +35,12 @@ static void metrics_unref(struct metrics *metrics)
     g_atomic_rc_box_release_full(metrics, metrics_clear);
 }
 
-static bool read_request(GInputStream *in, char request[MOST_REQUEST_BYTES + 1])
+static bool read_request(GInputStream *in, char request[MAX_REQUEST_BYTES + 1])
 {
     gsize n = 0;
     request[0] = 0;
-    while (n < MOST_REQUEST_BYTES && !strstr(request, "\r\n\r\n")) {
-        gssize count = g_input_stream_read(in, request + n, MOST_REQUEST_BYTES - n, NULL, NULL);
+    while (n < MAX_REQUEST_BYTES && !strstr(request, "\r\n\r\n")) {
+        gssize count = g_input_stream_read(in, request + n, MAX_REQUEST_BYTES - n, NULL, NULL);
         if (count <= 0)
             return false;
         n += (gsize)count;
@@ -65,7 +65,7 @@ static gpointer serve(gpointer data)
 {
     struct metrics_request *request = data;
     GIOStream *stream = G_IO_STREAM(request->connection);
-    char text[MOST_REQUEST_BYTES + 1];
+    char text[MAX_REQUEST_BYTES + 1];
     if (read_request(g_io_stream_get_input_stream(stream), text))
         answer(request->metrics, g_io_stream_get_output_stream(stream), g_str_has_prefix(text, "GET /metrics "));
     g_io_stream_close(stream, NULL, NULL);
@@ -82,7 +82,7 @@ static gboolean on_connection(GSocketService *service, GSocketConnection *connec
     struct metrics *metrics = data;
     (void)service;
     (void)from;
-    if (g_atomic_int_get(&metrics->connections) >= MOST_CONNECTIONS)
+    if (g_atomic_int_get(&metrics->connections) >= MAX_CONNECTIONS)
         return TRUE; /* closes the connection */
     g_socket_set_timeout(g_socket_connection_get_socket(connection), IDLE_S);
     struct metrics_request *request = g_new(struct metrics_request, 1);

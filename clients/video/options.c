@@ -9,11 +9,11 @@
 #include "version.h"
 
 enum {
-    LEAST_PX = 320,
-    MOST_PX = 4096,
-    LEAST_HEIGHT_PX = 180,
-    LEAST_FPS = 5,
-    MOST_FPS = 30,
+    MIN_PX = 320,
+    MAX_PX = 4096,
+    MIN_HEIGHT_PX = 180,
+    MIN_FPS = 5,
+    MAX_FPS = 30,
     SRT_LEAST_CHARS = 10,
     SRT_MOST_CHARS = 79
 };
@@ -99,10 +99,10 @@ static int read_size(struct video_options *options, const char *text)
     int n = 0;
     if (text && (sscanf(text, "%dx%d%n", &options->width_px, &options->height_px, &n) != 2 || text[n]))
         return wrong("--size %s: expected WIDTHxHEIGHT, as 1920x1080", text);
-    if (options->width_px < LEAST_PX || options->width_px > MOST_PX || options->height_px < LEAST_HEIGHT_PX ||
-        options->height_px > MOST_PX || options->width_px % 2 || options->height_px % 2)
-        return wrong("--size %dx%d: even numbers from %dx%d to %dx%d are expected", options->width_px, options->height_px, LEAST_PX,
-                     LEAST_HEIGHT_PX, MOST_PX, MOST_PX);
+    if (options->width_px < MIN_PX || options->width_px > MAX_PX || options->height_px < MIN_HEIGHT_PX ||
+        options->height_px > MAX_PX || options->width_px % 2 || options->height_px % 2)
+        return wrong("--size %dx%d: even numbers from %dx%d to %dx%d are expected", options->width_px, options->height_px, MIN_PX,
+                     MIN_HEIGHT_PX, MAX_PX, MAX_PX);
     return -1;
 }
 
@@ -116,7 +116,7 @@ static int check_numbers(const struct video_options *options)
     const struct {
         const char *name;
         int value, least, most;
-    } numbers[] = { { "--fps", options->fps, LEAST_FPS, MOST_FPS }, { "--kbps", options->kbps, 100, 100000 },
+    } numbers[] = { { "--fps", options->fps, MIN_FPS, MAX_FPS }, { "--kbps", options->kbps, 100, 100000 },
                     { "--every", options->every_ms, 200, 1000 },    { "--most-readers", options->most_readers, 1, OPTIONS_MOST_READERS },
                     { "--rtsp", options->rtsp_port, 0, 65535 },     { "--http", options->http_port, 0, 65535 },
                     { "--srt", options->srt_port, 0, 65535 } };

@@ -2,7 +2,7 @@
 /* Distributes one encoded stream to any number of outputs. */
 #include "outputs.h"
 
-enum { MOST_BYTES = 4 << 20 }; /* limit of bytes queued per output */
+enum { MAX_QUEUED_BYTES = 4 << 20 }; /* limit of bytes queued per output */
 static const GstClockTimeDiff SLACK = 500 * GST_MSECOND;
 
 struct output {
@@ -82,7 +82,7 @@ static bool push(struct output *output, GstBuffer *unit)
     bool key = !GST_BUFFER_FLAG_IS_SET(unit, GST_BUFFER_FLAG_DELTA_UNIT);
     if (!running_time(output->src, &now))
         return true;
-    if (gst_app_src_get_current_level_bytes(output->src) > MOST_BYTES)
+    if (gst_app_src_get_current_level_bytes(output->src) > MAX_QUEUED_BYTES)
         output->begun = false;
     else
         output->begun = output->begun || key;

@@ -19,7 +19,7 @@
    views, of views without permission, and after a rejected token. */
 static const gint64 OLDEST_US = 2700000, SLOWEST_US = 1300000, OTHERS_US = 1200000, VIEWS_US = 5000000, LIMITED_US = 600000000,
                     DENIED_US = 8000000;
-enum { MOST_BYTES = 128 << 20 }; /* limit of a response */
+enum { MAX_BYTES = 128 << 20 }; /* limit of a response */
 
 enum ask { ASK_PLANT, ASK_VIEWS, ASK_PICTURE, ASK_COUNT };
 
@@ -396,7 +396,7 @@ struct video_source *source_create(const struct video_options *options)
     struct video_source *source = g_new0(struct video_source, 1);
     source->options = options;
     source->zone = g_time_zone_new_local();
-    source->http = (struct http_request){ .most_bytes = MOST_BYTES, .stop = &source->ended };
+    source->http = (struct http_request){ .most_bytes = MAX_BYTES, .stop = &source->ended };
     if (!http_request_make(&source->http, "plantcast-video", options->ca_path)) {
         source_destroy(&source);
         return NULL;

@@ -150,7 +150,7 @@ plantcast_history_free_bytes 900000000\nplantcast_history_good 0\nplantcast_buil
         await card('trouble').locator('.count.p1').waitFor();
         assert.equal(await card('trouble').locator('h2').textContent(), 'Cracker 2 <b>');
         assert.deepEqual(await card('trouble').locator('.wrong').allTextContents(),
-            ['1 of 2 down', 'cannot be written', '5 days', '0.9 GB', '6 days ago']);
+            ['1 of 2 down', 'not writable', '5 days', '0.9 GB', '6 days ago']);
         assert.equal(await card('boxes').locator('a').getAttribute('href'), `http://127.0.0.1:${plant.port}/`);
         assert.equal(await card('gone').locator('.away').textContent(), 'No answer yet');
         assert.ok(await card('boxes').locator('img').evaluate((img) => img.complete && img.naturalWidth === 320));

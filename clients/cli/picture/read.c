@@ -14,7 +14,7 @@
 #include "field/params.h"
 #include "provenance/strip_reader.h"
 
-static const size_t MOST_BYTES = (size_t)256 << 20;
+static const size_t MAX_BYTES = (size_t)256 << 20;
 
 static void print_usage(FILE *out)
 {
@@ -63,7 +63,7 @@ static bool read_png(const uint8_t *at, size_t count, struct strip_picture *pict
 static bool read_picture(const char *path, struct strip_picture *picture)
 {
     size_t count = 0;
-    char *bytes = text_read_file(path, MOST_BYTES, &count);
+    char *bytes = text_read_file(path, MAX_BYTES, &count);
     if (!bytes) {
         fprintf(stderr, "plantcast: %s: %m\n", path);
         return false;

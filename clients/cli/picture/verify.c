@@ -11,7 +11,7 @@
 #include "provenance/png_pixels.h"
 #include "verify.h"
 
-static const size_t MOST_BYTES = (size_t)256 << 20;
+static const size_t MAX_BYTES = (size_t)256 << 20;
 
 static void print_statement(const char *path, const json_t *statement)
 {
@@ -51,7 +51,7 @@ static int verify(const struct verify_options *options)
     char why[SIGNED_PICTURE_WHY_BYTES];
     size_t count;
     struct signing_key *key = signing_key_load_public(options->key, why);
-    char *png = key ? text_read_file(options->path, MOST_BYTES, &count) : NULL;
+    char *png = key ? text_read_file(options->path, MAX_BYTES, &count) : NULL;
     if (!key)
         fprintf(stderr, "plantcast: --key: %s\n", why);
     else if (!png)

@@ -12,7 +12,7 @@
 #include "plant/plant.h"
 #include "scene/scene_create.h"
 
-enum { MOST_ADDED = 100 };
+enum { MAX_ADDED = 100 };
 
 struct suggest_options {
     const char *plant, *group, *asset, *prepared;
@@ -74,7 +74,7 @@ static int suggest_in(const struct suggest_options *options, const struct plant 
     char *folder = options->prepared ? mem_strdup(options->prepared) : plant_prepared_folder(plant);
     struct scene *scene = scene_create(log, plant, folder);
     struct workers *workers = scene ? workers_create(0) : NULL;
-    struct suggestion list[MOST_ADDED];
+    struct suggestion list[MAX_ADDED];
     const struct suggest_query query = { log, workers, scene, folder, group, asset, options->count };
     size_t count = scene ? sensor_suggest(&query, list) : 0;
     if (count > 0)
@@ -130,9 +130,9 @@ int cmd_sensors(int argc, char **argv)
             break;
         }
     }
-    if (argc - optind != 2 || strcmp(argv[optind], "suggest") != 0 || taken.count < 1 || taken.count > MOST_ADDED) {
+    if (argc - optind != 2 || strcmp(argv[optind], "suggest") != 0 || taken.count < 1 || taken.count > MAX_ADDED) {
         if (argc - optind == 2 && !strcmp(argv[optind], "suggest"))
-            fprintf(stderr, "plantcast: --add: 1 to %d expected\n", MOST_ADDED);
+            fprintf(stderr, "plantcast: --add: 1 to %d expected\n", MAX_ADDED);
         print_usage(stderr);
         return 2;
     }

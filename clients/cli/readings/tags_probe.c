@@ -15,7 +15,7 @@
 #include "value/modbus_link.h"
 #include "value/quality.h"
 
-enum { MOST = 4 }; /* registers of a 64-bit value */
+enum { MAX_REGISTERS = 4 }; /* registers of a 64-bit value */
 
 static const enum byte_order orders[] = { BYTE_ORDER_ABCD, BYTE_ORDER_CDAB, BYTE_ORDER_BADC, BYTE_ORDER_DCBA };
 static const char *const prefixes[] = { [TABLE_COIL] = "co", [TABLE_DISCRETE] = "di", [TABLE_INPUT] = "ir", [TABLE_HOLDING] = "hr" };
@@ -72,10 +72,10 @@ static void print_registers(const uint16_t *words, int count)
 }
 
 /* Returns how many registers (4, 2 or 1) the device returns at this address; 0: none, with the reason in *status. */
-static int read_most(struct modbus_link *link, int unit, const struct modbus_address *at, uint16_t words[MOST], int *status)
+static int read_most(struct modbus_link *link, int unit, const struct modbus_address *at, uint16_t words[MAX_REGISTERS], int *status)
 {
     bool bits = at->table == TABLE_COIL || at->table == TABLE_DISCRETE;
-    for (int count = bits ? 1 : MOST; count > 0; count /= 2) {
+    for (int count = bits ? 1 : MAX_REGISTERS; count > 0; count /= 2) {
         *status = at->index + count > 65536 ? MODBUS_EXCEPTION_ILLEGAL_DATA_ADDRESS
                                             : modbus_link_read(link, unit, at->table, at->index, count, words);
         if (*status < 0 && modbus_link_answers(link) > 0 && modbus_link_open(link) == 0) /* the device closed the connection after an error
@@ -91,7 +91,7 @@ static int read_most(struct modbus_link *link, int unit, const struct modbus_add
 
 static int probe(struct log *log, const struct plant_source *source, const struct modbus_address *at, int stop_fd)
 {
-    uint16_t words[MOST] = { 0 };
+    uint16_t words[MAX_REGISTERS] = { 0 };
     int unit = at->unit >= 0 ? at->unit : source->unit;
     struct modbus_link *link = modbus_link_create(log, source, stop_fd);
     if (!link)

@@ -14,10 +14,10 @@
 #include "viewer_impl.h"
 
 enum { EVENTS = 256 };
-static const int64_t PATIENCE_NS = 20 * NS_PER_S; /* time limit for connecting */
+static const int64_t CONNECT_TIMEOUT_NS = 20 * NS_PER_S; /* time limit for connecting */
 /* Interval between polls; packets that arrived meanwhile are handled together. Waking for each packet would run inside the daemon's send()
    and took a quarter of its time. */
-static const int64_t PAUSE_NS = 2 * NS_PER_MS;
+static const int64_t POLL_INTERVAL_NS = 2 * NS_PER_MS;
 
 struct load_generator {
     int epoll, count;
@@ -98,7 +98,7 @@ static bool on_time(struct load_generator *load, int64_t now_ns)
         struct viewer *viewer = load->viewers[i];
         if (!viewer->done)
             viewer_on_time(viewer, now_ns);
-        if (viewer->raw && !raw_websocket_is_open(viewer->raw) && now_ns - viewer->begin_ns > PATIENCE_NS)
+        if (viewer->raw && !raw_websocket_is_open(viewer->raw) && now_ns - viewer->begin_ns > CONNECT_TIMEOUT_NS)
             viewer_fail(viewer, "no answer for 20 s");
         speak(viewer);
         if (viewer->done)
@@ -133,7 +133,7 @@ bool load_generator_run(struct viewer **viewers, int count)
         for (int i = 0; i < found; i++)
             on_event(&load, &events[i]);
         if (found < EVENTS)
-            nanosleep(&(struct timespec){ .tv_nsec = PAUSE_NS }, NULL);
+            nanosleep(&(struct timespec){ .tv_nsec = POLL_INTERVAL_NS }, NULL);
     }
     close(load.epoll);
     return true;

@@ -11,7 +11,7 @@
 #include "viewer_impl.h"
 
 enum { MAX_MESSAGE_BYTES = WIRE_MAX_PAYLOAD_BYTES + WIRE_FRAME_HEADER_BYTES };
-static const int64_t PATIENCE_NS = 20 * NS_PER_S; /* timeout for the first frame, and for each further frame while the camera orbits */
+static const int64_t FRAME_TIMEOUT_NS = 20 * NS_PER_S; /* timeout for the first frame, and for each further frame while the camera orbits */
 
 static void add(struct latency_samples *samples, double ms)
 {
@@ -251,7 +251,7 @@ void viewer_on_time(struct viewer *viewer, int64_t now_ns)
     int64_t since_ns = viewer->result.frames ? viewer->result.last_ns : viewer->begin_ns;
     if (viewer->result.frames && (double)(now_ns - viewer->result.first_ns) >= viewer->params.seconds * 1e9)
         viewer->done = true;
-    else if (now_ns - since_ns > PATIENCE_NS && expects_frames(viewer))
+    else if (now_ns - since_ns > FRAME_TIMEOUT_NS && expects_frames(viewer))
         viewer_fail(viewer, "no frame for 20 s");
     else
         viewer_schedule(viewer, now_ns);

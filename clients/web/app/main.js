@@ -86,7 +86,7 @@ viewport.onDrawn = (newPicture) => {
             probeCodecs();
     }
     if (newPicture && (session.picture.past || status.past))
-        status.show(); // picture and status text change together
+        status.show(); // the status bar changes together with the picture
     if (newPicture || overlay.dirty) {
         for (const name of ['card', 'place', 'measure', 'clipGizmo', 'notes'])
             modules.there(name)?.show();
@@ -145,7 +145,7 @@ session.on('welcome', () => {
     viewport.invalidate();
 });
 session.on('status', () => status.show());
-// After a logout, or a lock for inactivity, clears the page so that it shows nothing.
+// After access was denied, or a lock for inactivity, clears the page and asks for a token.
 session.on('denied', ({ code }) => {
     document.body.classList.add('denied');
     modules.use('token', (token) => token.ask(code));

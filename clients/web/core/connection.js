@@ -54,7 +54,7 @@ export class Connection {
             this.connect();
     }
 
-    // Sets the minimum wait, as a full server demands.
+    // Sets the minimum wait before the next attempt, in ms; a full server asks for it.
     hold(ms) {
         this.leastWait = ms;
     }

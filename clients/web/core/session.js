@@ -60,7 +60,7 @@ export class Session {
         this.skew = null;        // { us, roundTripMs }: server clock minus ours, at the shortest round trip
         this.id = null;          // number of this session, by which others follow it
         this.following = null;   // the followed view: { session, width, height, gone (its last view) }
-        this.leader = null;      // session to follow, also after a reconnect
+        this.leader = null;      // session to follow, also after a reconnect; null: none
         this.lent = null;        // camera taken over from the followed session; null: none
         this.followers = { count: 0, sessions: [] }; // sessions that follow this one
         this.forget();

@@ -4,7 +4,7 @@
 // ISO 9241-303: a capital letter is read comfortably from 20 minutes of arc, and needs at least 16.
 export const MINUTES = 16;
 const CAPITAL = 0.72;  // height of a capital letter, relative to the font size
-const SMALLEST_PX = 12.5; // smallest text of the page before scaling
+const SMALLEST_PX = 12.5; // smallest font size of the page in pixels, before scaling
 export const USUAL = { inches: 55, metres: 3 };
 
 // Parses ?wall, ?wall=65 (screen inches), ?wall=65,4 (and metres of distance). Returns null if it is not a wall.

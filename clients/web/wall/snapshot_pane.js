@@ -28,7 +28,7 @@ export function SnapshotPane(pane, { session, title, body, timeOf }) {
     }
 
     async function look() {
-        const at = askedAt = clock.now(); // the response time counts as age
+        const at = askedAt = clock.now(); // start of the request: the response time counts as age of the picture
         asks = true;
         try {
             const { list: [said] } = await (await ask('api/v1/other_plants', { id }, session.token)).json();

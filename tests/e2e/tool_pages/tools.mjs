@@ -72,7 +72,8 @@ test('a distance between two places', options, async () => {
             ['second point', 'measure again'][i]);
     }
     await page.locator('#measured').waitFor();
-    const [, metres] = (await page.locator('#measured').textContent()).match(/^(0\.\d{3}) m horizontal 0\.0\d\d m, vertical −0\.\d{3} m$/);
+    const said = await page.locator('#measured').textContent();
+    const [, metres] = said.match(/^(0\.\d{3}) m horizontal 0\.0\d\d m, vertical −0\.\d{3} m$/);
     assert.ok(Math.abs(metres - 0.4) < 0.012, `${metres} m`);
     await shoot(page, 'measure');
     const before = await page.locator('#measured').boundingBox();

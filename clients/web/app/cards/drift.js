@@ -6,7 +6,7 @@ import { ask } from '../../core/history.js';
 import { say } from '../../core/words.js';
 
 const WIDTH = 168, HEIGHT = 28, AGAIN_MS = 600000;
-const kept = new Map(); // query -> { at, rows }; results change once an hour
+const kept = new Map(); // cached answers: query -> { at, rows }; the daemon computes new ones once an hour
 
 // Returns a promise of rows; empty if nothing is recorded or the daemon cannot tell.
 export async function driftOf(session, query) {

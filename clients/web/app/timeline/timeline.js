@@ -124,7 +124,7 @@ export class Timeline {
         this.go((this.wanted ?? this.atUs ?? this.session.clockUs()) + us);
     }
 
-    // --- by date, and from alarm to alarm
+    // --- going to a date, and from alarm to alarm
 
     showDate() {
         const field = byId('time-date');

@@ -102,7 +102,7 @@ export class Overlay {
     // Thins out the markers of each half; returns the drawn ones, farthest first.
     thinned() {
         const id = ({ tag, half }) => tag.index * 2 + half, { selected } = this.session.params;
-        // not markers that were drawn only because they are always kept
+        // without markers that were drawn only because they are always kept
         const before = new Set(this.markers.filter(({ kept, held }) => held || !kept).map(id));
         for (const marker of this.all) {
             const { tag, alarm, origin, reading } = marker;
