@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Converts rows of sensors into the file's blocks of vertices. */
+/* Converts distances from one row of sensors per position into the asset file's blocks of vertices. */
 #include "preprocess/subdivision/distance_rows.h"
 
 #include <errno.h>
@@ -12,7 +12,7 @@
 
 /* offset between the sensors' output lines, chosen so that they do not evict each other from the CPU cache */
 #define APART (ASSET_DISTANCE_BLOCK + 32)
-#define AHEAD 8  /* prefetch distance in vertices, because rows are scattered in memory */
+#define AHEAD 8  /* prefetch distance in vertices: the next vertex's row is probably not in the CPU cache */
 #define LINE 32u /* sensors processed at a time, so that their output lines fit the first-level cache */
 
 void distance_rows_finish(struct distance_rows *rows)
@@ -37,7 +37,7 @@ struct rows_block {
     const struct distance_rows *rows;
     int fd;
     off_t at;
-    atomic_int error; /* errno of the first failed write; 0: none */
+    atomic_int error; /* errno of the first failed write; 0: all writes succeeded */
 };
 
 static void fetch_row(const struct distance_rows *rows, size_t vertex, size_t begin, size_t width)

@@ -20,8 +20,8 @@ struct distance_rows {
 void distance_rows_finish(struct distance_rows *rows);
 /* Renumbers the vertices by new_of (TRIMESH_NONE: dropped); `kept` is the new number of vertices. */
 void distance_rows_renumber(struct distance_rows *rows, const uint32_t *new_of, uint32_t kept);
-/* Writes the distances as codes of an asset file (protocol/asset_distance.h) to fd, from offset `at` on. Uses write() and not a mapping,
- * whose page faults would double the cost. workers may be NULL. Returns 0 or an errno value. */
+/* Writes the distances as 16-bit codes (protocol/asset_distance.h) to fd, from offset `at` on. Uses write() and not a mapping, whose page
+ * faults would double the cost. workers may be NULL. Returns 0 or an errno value. */
 int distance_rows_write(const struct distance_rows *rows, struct workers *workers, int fd, off_t at);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sums over sensors, eight at a time. */
+/* Computes interpolation weights, and sums over sensors, eight sensors at a time (SIMD). */
 #include "preprocess/subdivision/interp_weights.h"
 
 #include <math.h>
@@ -9,12 +9,13 @@
 #include "base/math/simd.h"
 
 #define L INTERP_LANES
-#define MIN_M 1e-5f        /* metres; a sensor nearer than this has all the weight */
-#define MIN_EXP -87.0f     /* argument below which exp() is denormal */
-#define MIN_NEARNESS 1e-3f /* lower limit of nearness for slopes: a decay below 1 has an infinite slope at the end of the radius */
+#define MIN_M 1e-5f    /* metres; a sensor nearer than this has all the weight */
+#define MIN_EXP -87.0f /* argument of exp() below which the result would be denormal; smaller arguments are raised to it */
+/* lower limit of the nearness that slopes are computed from: with a decay below 1, the slope is infinite at the radius */
+#define MIN_NEARNESS 1e-3f
 
 typedef float lanes __attribute__((vector_size(4 * L)));
-typedef int32_t mask __attribute__((vector_size(4 * L))); /* mask: per lane all bits set or none */
+typedef int32_t mask __attribute__((vector_size(4 * L))); /* a mask with one lane per sensor; all bits of a lane are set, or none */
 
 SIMD_BODY void load(const float *from, lanes *to)
 {
@@ -94,8 +95,8 @@ SIMD_BODY void raise_lanes(lanes *x, float power)
             (*x)[l] = powf(base[l], power);
 }
 
-/* Fades a weight towards the reach: multiplies by the square of the remaining distance relative to the nearest sensor's. Beyond the reach,
- * the weight is 0 except for the nearest sensor. */
+/* Fades a weight to 0 at the reach: multiplies it by the square of (reach - distance) / (reach - distance of the nearest sensor). Beyond
+ * the reach, the weight is 0, but the nearest sensor's stays 1. */
 SIMD_BODY void fade(const struct interp_group *group, float near_m, const lanes *far, lanes *weight)
 {
     const lanes zero = { 0 }, near = zero + near_m;
@@ -123,7 +124,7 @@ SIMD_BODY void shepard_weight(const struct interp_group *group, size_t i, float 
         fade(group, near_m, &far, weight);
 }
 
-/* Computes the relative change of a fading weight per metre. */
+/* Computes the relative change of a weight per metre of distance, where it fades towards the reach. */
 SIMD_BODY void per_left(const struct interp_group *group, const lanes *far, lanes *out)
 {
     const lanes least_m = (lanes){ 0 } + MIN_M;
@@ -206,7 +207,8 @@ SIMD_BODY void exponential(lanes *x)
     const lanes lowest = (lanes){ 0 } + MIN_EXP;
     take_more(&lowest, x);
     lanes halves = *x * 1.44269504f - 0.5f;
-    mask n = __builtin_convertvector(halves, mask); /* conversion truncates towards 0, which rounds to the nearest integer here */
+    /* conversion truncates towards 0, which rounds to the nearest integer here because the number is at most 0 and 0.5 is subtracted */
+    mask n = __builtin_convertvector(halves, mask);
     lanes whole = __builtin_convertvector(n, lanes), r = *x - whole * 0.693359375f + whole * 2.12194440e-4f, p;
     p = 1.3888889e-3f * r + 8.3333333e-3f;
     p = p * r + 4.1666667e-2f;
@@ -222,7 +224,7 @@ struct softmax {
     float near_m;         /* distance to the nearest sensor, metres; used only with a reach */
 };
 
-/* Computes the nearness of sensors: 1 at the sensor, 0 at the radius and beyond. */
+/* Computes the nearness of sensors: 1 at a sensor, falling to 0 at the radius of Algorithm 1 and beyond. */
 SIMD_BODY void nearness(const float *distance_m, float per_m, lanes *out)
 {
     const lanes zero = { 0 };
@@ -248,8 +250,9 @@ SIMD_BODY void paper_weight(const struct interp_group *group, size_t i, const st
         fade(group, softmax->near_m, &far, weight);
 }
 
-/* Returns the largest change of the value if each nearness changes by at most one. A sensor changes its own share, through its weight and
- * its decay, and the others' shares, which sum to 1 minus its own. Sensors beyond the radius change nothing. */
+/* Returns the largest change of the interpolated value, as a share of the range, if each sensor's nearness changes by at most 1. A sensor
+ * changes its own share, through its weight and its decay, and the others' shares, which sum to 1 minus its own. Sensors beyond the radius
+ * change nothing. */
 SIMD_BODY float paper_slope(const struct interp_group *group, const struct softmax *softmax, const float *distance_m, float per,
                             const float *interp, float all)
 {

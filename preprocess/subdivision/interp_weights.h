@@ -21,13 +21,14 @@ float interp_least(const float *values, size_t count);
 
 struct interp_group {
     const float *strength, *decay;
-    bool decays;          /* some sensor's decay differs from 1 */
+    bool decays;          /* the decay of at least one sensor differs from 1 */
     float power, reach_m; /* reach_m: INFINITY for no limit; out of reach of all sensors, the nearest one has all the weight */
     size_t count;
 };
 /* Converts Shepard weights relative to the nearest sensor into weights that sum to 1. */
 struct interp_norm {
-    /* near_m: distance to the nearest sensor, metres; per: 1 / sum of the relative weights; INFINITY: no sensor within reach */
+    /* near_m: distance to the nearest sensor, metres; per: 1 / sum of the relative weights, which is INFINITY if no sensor is within
+     * reach */
     float near_m, per;
 };
 /* Writes the inverse-distance (Shepard) weights of a group's sensors to `interp` and their normalisation to *norm. With `slopes`, returns
@@ -41,8 +42,8 @@ void interp_shepard_norm(const struct interp_group *group, const float *distance
 /* Writes the same weights as interp_shepard() from their normalisation, in less than half the time. */
 void interp_shepard_again(const struct interp_group *group, const float *distance_m, const struct interp_norm *norm, float *interp);
 
-/* Compares the weights at a point with the linear combination of the corners' weights. Returns the sum of the positive differences or of
- * the negative ones, whichever is larger: the largest error of linear interpolation, as a share of the range. */
+/* Compares the weights at a point with the linear combination of the corners' weights. Returns the largest error of linear interpolation,
+ * as a share of the range (0 to 1): the sum of the positive differences or of the negative ones, the larger sum. */
 float interp_error(const float *const *corners, const float *weights, size_t corner_count, const float *sample, size_t count);
 
 #endif

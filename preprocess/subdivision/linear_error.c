@@ -94,7 +94,7 @@ void linear_error_set_radius(struct linear_error *linear, const float *const lar
         }
 }
 
-/* Buffer for distances: on the caller's stack if there are few sensors. */
+/* Buffer for one distance per sensor: on the caller's stack for at most FEW sensors, else on the heap. */
 #define FEW 1024
 struct corner_room {
     float few[FEW], *at;
@@ -112,7 +112,7 @@ static void room_finish(struct corner_room *room)
         mem_free(room->at);
 }
 
-/* Distances from a point to every sensor, by both distance modes. */
+/* Distances from a point to every sensor: one array along the surface (geodesic), one straight (Euclidean). */
 struct distances {
     const float *of[2]; /* by enum distance_mode */
     struct corner_room straight_m, picked_m;
@@ -218,7 +218,8 @@ struct error_question {
     double wide_m, slack_m;
 };
 
-/* Returns the largest error over all groups. A group without a value at a corner, because no path connects it to a sensor, has no error. */
+/* Returns the largest error over all groups, as a share of the range. A group without a value at a corner, because no path connects it to a
+ * sensor, has no error. */
 static double worst_of(const struct linear_error *linear, const struct error_question *question, const float *sample)
 {
     double most = 0;
@@ -235,7 +236,7 @@ static double worst_of(const struct linear_error *linear, const struct error_que
             at[c] = question->corners[c] + first;
             reached = reached && (g % 2 != INTERPOLATION_SHEPARD || has_value(at[c], count));
         }
-        /* if below 0: minus the distance in metres from the end of the group's data */
+        /* change of the value per metre; a negative number is minus the distance in metres from the end of the group's data */
         double slope = (double)sample[linear->share_count + g];
         if (reached && slope >= -question->wide_m && question->modes & 1 << g / 2 / linear->group_count)
             most = max_of((double)interp_error(at, question->weights, question->corner_count, sample + first, count) -

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Linear interpolation error: how wrong a triangle or edge can be that interpolates the field linearly between its corners. For any
- * readings (within MIN and MAX), a value is the sum of readings times interpolation weights. So the largest error at a point is the sum of
- * the weights above, or of the weights below, their linear interpolation, as a share of the range. The maximum is taken over all groups
- * with sensors on the asset, both interpolations and both kinds of distance, with the plant file's parameters. Sensors with an assumed
- * position are ignored: they show nothing, or colour the whole asset evenly. Where no sensor of a group reaches, there is no data, and the
- * nearest sensor's value is continued. Thread: any, once initialised. */
+ * readings (within MIN and MAX), a value is the sum of readings times interpolation weights. So the largest error at a point, as a share of
+ * the range, is a sum over sensors: of the amounts by which weights exceed their linear interpolation, or of those by which weights fall
+ * below it, the larger sum. The maximum is taken over all groups with sensors on the asset, both interpolations and both kinds of distance,
+ * with the plant file's parameters. Sensors with an assumed position are ignored: they show nothing, or colour the whole asset evenly.
+ * Where no sensor of a group reaches, there is no data, and the nearest sensor's value is continued. Thread: any, once initialised. */
 #ifndef PREPROCESS_SUBDIVISION_LINEAR_ERROR_H
 #define PREPROCESS_SUBDIVISION_LINEAR_ERROR_H
 #include "plant/plant.h"
@@ -53,16 +53,16 @@ void linear_error_norms(const struct linear_error *linear, const float point_m[3
  * metre. */
 void linear_error_weights_again(const struct linear_error *linear, const float point_m[3], const float *geodesic_m,
                                 const struct interp_norm *norms, float *interp);
-/* Returns, from a sample's normalisations, a lower bound of the distance in metres to the nearest end of a group's data. Where the reaches
- * of two sensors end at the same point, the field has a peak. */
+/* Returns, from a sample's normalisations, a lower bound of the distance in metres to the nearest point where a group's data ends, because
+ * all its sensors are out of reach. Where the reaches of two sensors end at the same point, the field has a peak. */
 double linear_error_rim_of(const struct linear_error *linear, const struct interp_norm *norms);
-/* Returns, from a sample's normalisations, the distance in metres to the nearest sensor (straight line) or to the nearest end of data,
- * whichever is less. */
+/* Returns, from a sample's normalisations, the distance in metres to the nearest sensor (straight line) or to the nearest point where a
+ * group's data ends, the shorter distance. */
 double linear_error_nearest_of(const struct linear_error *linear, const struct interp_norm *norms);
-/* Return the error of a sample, as a share of the range: on an edge against the linear interpolation between two other samples at fraction
- * t; in a triangle against the interpolation of three corners with these weights. modes: kinds of distance to include. The change of the
- * value within slack_m, at most one colour step, is subtracted. Outside a group's data, farther than wide_m from its end, the error is 0;
- * nearer, the wrong values would bleed into the data across so wide an edge or triangle. */
+/* Return the error of a sample, as a share of the range: linear_error_on_edge() compares with the linear interpolation at fraction t
+ * between the samples at the edge's ends, linear_error_in_triangle() with the interpolation of three corners by these weights. modes: kinds
+ * of distance to include. The change of the value within slack_m, at most one colour step, is subtracted. Outside a group's data, farther
+ * than wide_m from its end, the error is 0; nearer, the wrong values would bleed into the data across so wide an edge or triangle. */
 enum linear_error_modes {
     LINEAR_ERROR_GEODESIC = 1 << DISTANCE_GEODESIC,
     LINEAR_ERROR_EUCLIDEAN = 1 << DISTANCE_EUCLIDEAN,

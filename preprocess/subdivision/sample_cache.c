@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Hash table from point keys to triangle indices, 8 bytes per entry, in memory as in the file. */
+/* Hash table from point keys to triangle indices, 8 bytes per entry. The file holds the table in the same layout, so it is mapped and used
+ * directly. */
 #include "preprocess/subdivision/sample_cache.h"
 
 #include <string.h>
@@ -12,7 +13,7 @@
 #define TRI_BITS 24
 #define NOWHERE ((1u << TRI_BITS) - 1)
 #define FULL 0.85
-#define WORTH 0.5 /* share of a run's lookups that the file must answer, or it is rewritten */
+#define WORTH 0.5 /* minimum share of a run's lookups that the file must answer; below it, the file is rewritten */
 
 void sample_cache_open(struct sample_cache *sample_cache, const char *folder, uint64_t key)
 {
@@ -32,7 +33,7 @@ void sample_cache_close(struct sample_cache *sample_cache)
     *sample_cache = (struct sample_cache){ 0 };
 }
 
-/* Returns the key's slot, or the empty slot where it would be inserted. */
+/* Returns the slot that holds the key, or if the key is absent the empty slot for it. */
 static size_t slot_of(const uint64_t *table, size_t count, uint64_t key)
 {
     size_t slot = (size_t)((key >> 32) * count >> 32);

@@ -31,14 +31,14 @@ struct sample_cache_notes { /* lookups recorded by one thread; zero-initialise *
 void sample_cache_open(struct sample_cache *sample_cache, const char *folder, uint64_t key);
 /* Unmaps the file and frees the recorded lookups. */
 void sample_cache_close(struct sample_cache *sample_cache);
-/* Writes the lookups of this run if enough of them were missing. Ignores errors: then nothing is cached. */
+/* Writes the lookups of this run if enough lookups were missing from the file. Ignores errors: then nothing is cached. */
 void sample_cache_write(const struct sample_cache *sample_cache, const char *folder, uint64_t key);
 
 /* Looks up the triangle that a sample point projects onto; *tri is TRIMESH_NONE if it projects onto none. key: a hash of everything the
  * projection depends on, except the surface. Returns false if it is not cached. Thread: any. */
 bool sample_cache_find(const struct sample_cache *sample_cache, uint64_t key, uint32_t *tri);
-/* Records a lookup in the calling thread's notes: its triangle, and whether it was cached. Full notes are moved to the cache. Thread: any,
- * one per notes. */
+/* Records a lookup in the calling thread's notes: the key, the triangle, and whether the lookup was answered by the cache. Moves full notes
+ * to the cache. Thread: any, one at a time per notes object. */
 void sample_cache_note(struct sample_cache *sample_cache, struct sample_cache_notes *notes, uint64_t key, uint32_t tri, bool known);
 /* Moves a thread's notes into the cache, for sample_cache_write(). Thread: any. */
 void sample_cache_hand_over(struct sample_cache *sample_cache, struct sample_cache_notes *notes);

@@ -10,10 +10,11 @@
 #define SAMPLE_OF 8 /* one block of triangles in this many is sampled; a power of 2 */
 #define BLOCK 8     /* triangles per block */
 #define GRAIN 4096  /* triangles per unit of work: a few tenths of a millisecond */
-#define SURE 1.5    /* standard deviations by which the sample must exceed the limit */
+#define SURE 1.5    /* number of standard deviations by which the estimate from the sample must exceed the level's triangle limit */
 
-/* Returns the number of triangles needed to fix a triangle. An edge with an error needs a split, and further ones until its error is small
- * enough: each split leaves a quarter of the error where the field bends evenly, and more at a peak. */
+/* Returns the number of triangles needed that replace one triangle once its errors are fixed. An edge with an error needs a split, and
+ * further ones until its error is small enough: each split leaves a quarter of the error where the field bends evenly, and more at a
+ * peak. */
 static size_t tris_needed(const struct subdiv *subdiv, const struct subdiv_tri *tri)
 {
     size_t needed = 1;
@@ -23,7 +24,8 @@ static size_t tris_needed(const struct subdiv *subdiv, const struct subdiv_tri *
     return needed;
 }
 
-/* Returns a lower bound of the triangles that the whole level needs. The variance between the sample's blocks gives the uncertainty. */
+/* Returns a lower bound of the triangles that the whole level will have, estimated from the triangles of the sample. The variance between
+ * the sample's blocks gives the uncertainty. */
 static double least_needed_by_sample(const struct subdiv *subdiv)
 {
     const struct subdiv_mesh *mesh = &subdiv->mesh;
@@ -76,7 +78,7 @@ size_t subdiv_take_sample(struct level *sample, const struct level *level)
         to->first_index = sample->index_count;
         for (uint32_t i = 0; i + 3 * BLOCK <= level->primitives[p].index_count; i += 3 * BLOCK) {
             uint32_t at = level->primitives[p].first_index + i;
-            /* choosing blocks by a hash avoids resonance with repetition in the model */
+            /* choose blocks by a hash: every eighth block could always hit the same part of a repeated shape */
             if (at / (3 * BLOCK) * 0x9e3779b9u >> 16 & (SAMPLE_OF - 1))
                 continue;
             memcpy(sample->indices + sample->index_count, level->indices + at, 3 * BLOCK * sizeof(*sample->indices));

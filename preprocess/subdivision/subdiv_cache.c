@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Stores findings by the positions of their corners, and decides whether they still hold. */
+/* Stores findings (errors of edges and triangles), with a hash of the corners' positions as key, and decides whether they still hold. */
 #include "preprocess/subdivision/subdiv_cache.h"
 
 #include <math.h>
@@ -14,10 +14,11 @@
 
 #define MAX_CHANGES 16 /* limit of sensor changes */
 #define FEW 16         /* cached findings are used only if fewer than one sensor in this many changed */
-/* measured: at this doubt, one in a thousand edges with an error of about a step is off by a tenth of a step or more */
+/* maximum doubt of a finding that is used. Measured: with this doubt, one in a thousand edges with an error of about one colour step is
+ * wrong by a tenth of a colour step or more. */
 #define MAX_DOUBT 0.05f
-#define MAX_SETTLED 0.5f /* maximum doubt for findings whose error is too far from any limit to cross it */
-#define LITTLE 0.4f      /* share of the relevant error; an edge with a smaller error at its midpoint was not measured elsewhere */
+#define MAX_SETTLED 0.5f /* maximum doubt for findings whose error is so far from any limit that a change would not cross the limit */
+#define LITTLE 0.4f      /* share of SUBDIV_AIM; if an edge's error at the midpoint is smaller, no other points of the edge were measured */
 
 struct subdiv_cache_entry {
     uint64_t key;
@@ -35,10 +36,11 @@ struct subdiv_head {
     uint64_t given_up, changes_since; /* see subdiv_cache.h */
 };
 
-/* Flags for the optional numbers of a finding; most findings have only a key and an error. The numbers follow in this order. */
+/* Flags for the optional numbers of a finding; most findings have only a key and an error. The file stores the numbers in the order of
+ * these flags. */
 #define SHARE_FOLLOWS 1
 #define BARRED_FOLLOWS 2
-#define DOUBT_FOLLOWS 4 /* the finding's doubt follows, and how far its error may be off */
+#define DOUBT_FOLLOWS 4 /* two numbers follow: the finding's doubt, and the amount by which its error may be wrong */
 #define SHARE_IS_HALF 8 /* the split fraction is 0.5; without this flag and SHARE_FOLLOWS it is 0 */
 #define JUMPS 16
 
@@ -83,8 +85,8 @@ static uint32_t column_of(const struct linear_error *linear, const struct sensor
     return UINT32_MAX;
 }
 
-/* Lists the sensors that only one of the two sorted lists has. Returns false if they are too many, or belong to a group that no longer
- * exists. */
+/* Lists the sensors that were added or removed between two sorted lists. Returns false if they are too many, or belong to a group that no
+ * longer exists. */
 static bool find_changes(struct subdiv_cache *cache, const struct linear_error *linear, const struct sensor *old, size_t old_count)
 {
     const struct sensor *now = (const struct sensor *)(const void *)cache->sensors.at;
@@ -274,8 +276,9 @@ uint64_t subdiv_cache_key(const struct subdiv *subdiv, const uint32_t *corners, 
     return XXH3_64bits_withSeed(places_m, count * sizeof(*places_m), subdiv->level);
 }
 
-/* Returns an upper bound of the non-linearity of a new sensor's weight between these corners: from its curvature, and from a kink where two
- * paths along the surface are equally long. On an edge, a kink is possible only if the distance grows less than it could. */
+/* Returns an upper bound of the interpolation error that a new sensor's weight causes between these corners: from the weight's curvature,
+ * and from a kink where two paths along the surface are equally long. On an edge, a kink is possible only if the distance to the sensor
+ * grows by less than the edge's length. */
 static float bend_of(const struct subdiv *subdiv, const struct subdiv_sensor_change *change, const uint32_t *corners, size_t count,
                      double wide_m, double near_m, double far_m, double share)
 {
@@ -320,7 +323,8 @@ static float share_of_changes(const struct subdiv *subdiv, const uint32_t *corne
     return share;
 }
 
-/* Returns whether the error is so far from the relevant limit that it certainly stays on the same side. */
+/* Returns whether the error is so far from the limits SUBDIV_AIM and LITTLE that it certainly stays on the same side of both, despite the
+ * sensor changes. */
 static bool is_settled(const struct subdiv_cache_entry *old, float doubt, float off)
 {
     const float matters = (float)SUBDIV_AIM, error = fmaxf(old->error, old->barred);
@@ -345,7 +349,8 @@ static void unpack_finding(const struct subdiv_cache *cache, size_t i, struct su
     }
 }
 
-/* Finds a finding by key. Most are looked up in the order of the last run, so the guess *next is tried first. */
+/* Finds a finding by key. Most findings are looked up in the order of the last run, so the index *next is tried first. Returns false if the
+ * key is absent. */
 static bool find(const struct subdiv_cache *cache, uint64_t key, uint32_t *next, struct subdiv_cache_entry *found)
 {
     if (*next >= cache->finding_count || cache->keys[*next] != key) {

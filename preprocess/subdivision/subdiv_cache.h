@@ -20,7 +20,7 @@ struct subdiv_cache {
     const uint64_t *keys; /* keys of the last run's findings, in the mapped file */
     const float *errors, *rest;
     const unsigned char *kinds;
-    uint32_t *rest_at; /* by finding: index of its first number in `rest` */
+    uint32_t *rest_at; /* by finding: index in `rest` of the first of its optional numbers */
     uint32_t *slots;   /* hash table by key: finding index + 1; 0: empty slot. NULL: no usable findings */
     size_t mask, finding_count;
     struct subdiv_sensor_change { /* a sensor that was added or removed */
@@ -29,9 +29,10 @@ struct subdiv_cache {
         uint32_t column; /* column of an added sensor; UINT32_MAX: the sensor was removed */
     } * changes;
     size_t change_count;
-    uint64_t hopeless, given_up; /* bit masks of levels: those not to try in this run; those dropped in this run */
-    uint64_t changes_since;      /* sensor changes since the dropped levels were last tried */
-    struct text sensors, found;  /* sensors and findings of this run, to be written to the file */
+    /* bit masks of levels; hopeless: skipped in this run because an earlier run dropped them; given_up: dropped in this run */
+    uint64_t hopeless, given_up;
+    uint64_t changes_since;     /* count of sensor changes since the dropped levels were last tried */
+    struct text sensors, found; /* sensors and findings of this run, to be written to the file */
     size_t measured_count, kept_count;
 };
 

@@ -8,18 +8,18 @@
 #include "preprocess/subdivision/subdivide_impl.h"
 
 #define MAX_FLIP_ROUNDS 4  /* maximum consecutive rounds of flips */
-#define FLAT_OF_ERROR 0.02 /* share of the level's error by which the surface may move */
-#define GAIN 0.7           /* a flip must reduce the error to at most this share */
-#define CROSSING 0.02      /* share of either edge's length; the crossing must be at least this far from its ends */
+#define FLAT_OF_ERROR 0.02 /* share of the level's surface error; a flip may move the surface by at most that */
+#define GAIN 0.7           /* maximum ratio of the error after a flip to the error before it */
+#define CROSSING 0.02      /* share of either edge's length; both edges must cross at least this far from their ends */
 
 #define GRAIN 1024 /* flips per unit of work: a few tenths of a millisecond */
 
 struct edge_flip {
     uint32_t edge, tris[2], across;
-    bool may; /* the flip is allowed: the edges cross, and the surface stays about in place */
+    bool may; /* whether the flip is allowed: the two diagonals cross, and the surface moves by less than the limit */
 };
 
-/* Lists edges with an error above the limit, among the triangles from index `first` of mesh->made on. */
+/* Lists edges with an error above the limit, of the triangles mesh->made.at[first] and after. */
 static void list_edges(struct subdiv *subdiv, double limit, size_t first, struct subdiv_list *edges)
 {
     const struct subdiv_mesh *mesh = &subdiv->mesh;
@@ -128,7 +128,7 @@ static float error_of(const struct subdiv_edge *edge)
     return fmaxf(edge->error, edge->barred);
 }
 
-/* Applies the flips that reduce the error, at most one per triangle. Returns their number. */
+/* Applies the flips that reduce the error, at most one per triangle. Returns the number of flips. */
 static size_t turn_better(struct subdiv *subdiv, const struct edge_flip *turns, size_t count)
 {
     struct subdiv_mesh *mesh = &subdiv->mesh;

@@ -10,8 +10,10 @@
 #include "protocol/asset_distance.h"
 #include "surface/mesh/bvh.h"
 
-#define PROBABLE 0.4 /* share of the relevant error: if the error at an edge's midpoint is smaller, it is small along the whole edge */
-#define CLOSE 0.5    /* share of the distance to the nearest sensor; PROBABLE applies only to edges shorter than that */
+/* share of SUBDIV_AIM; if the error at an edge's midpoint is smaller, the error is assumed small along the whole edge */
+#define PROBABLE 0.4
+/* share of the distance to the nearest sensor; edges longer than that are measured at all points, without the PROBABLE test */
+#define CLOSE 0.5
 /* share of the distance to the nearest sensor; longer edges are split in the middle, so that splits of neighbours line up */
 #define WIDE 0.3
 #define GRAIN 256     /* minimum edges, triangles or positions per unit of work: half a millisecond */
@@ -60,10 +62,11 @@ bool subdiv_find_parts(struct subdiv *subdiv)
     return list_faces(subdiv);
 }
 
-struct origin_sight { /* the triangles of the original model that a point may lie on */
+struct origin_sight { /* conditions for the triangles of the original model that a point is projected onto */
     const struct subdiv *subdiv;
-    uint32_t origin[2]; /* in the finest level: the point lies on one of these two triangles */
-    uint32_t part;      /* in coarser levels: the point lies on triangles of this connected component that face the same way */
+    uint32_t origin[2]; /* used in the finest level: the point is projected onto one of these two triangles */
+    /* used in coarser levels: the point is projected onto a triangle of this connected component that faces the same way as `normal` */
+    uint32_t part;
     double normal[3];
     struct sample_cache_notes *notes; /* notes of the calling thread */
 };
@@ -99,8 +102,8 @@ static void to_doubles(const float point[3], double at[3])
         at[i] = (double)point[i];
 }
 
-/* Finds the surface point for a sample point. In a coarser level it is on the point's own component, or else on another component that
- * hides it, from which it may protrude. */
+/* Finds the surface point for a sample point. In a coarser level, first searches the point's own connected component, then all others: a
+ * point that protrudes slightly may belong to the component that hides its own. */
 static bool search(const struct origin_sight *sight, const double at[3], struct surface_point *hit)
 {
     const struct subdiv *subdiv = sight->subdiv;
@@ -145,9 +148,9 @@ static bool project(const struct origin_sight *sight, const float point[3], cons
     return seen;
 }
 
-/* Finds the visible point of a partly hidden triangle that is nearest to the position `from` inside it; large triangles may protrude from
- * other parts. *hit: in: result for another position, or none; out: result for this one, even if it is too far away to count; none: the
- * whole triangle is hidden. Returns whether the result counts. */
+/* Finds the visible point nearest to the position `from` inside a partly hidden triangle: only a piece of a large triangle may protrude
+ * from other components. *hit: in: result for another position, or TRIMESH_NONE; out: result for this position, even if it is too far away
+ * to count, or TRIMESH_NONE if the whole triangle is hidden. Returns whether the result counts. */
 static bool find_seen(const struct origin_sight *sight, const double corners[3][3], const double from[3], double weights[3],
                       struct surface_point *hit)
 {
@@ -185,7 +188,7 @@ static bool measure(const struct origin_sight *sight, const float point[3], floa
     return true;
 }
 
-/* Computes the distances like measure(); for a hidden point, those of the nearest visible point. */
+/* Computes distances along the surface like measure(); if the point is hidden, takes those of the nearest visible point. */
 static void measure_always(const struct origin_sight *sight, const float point[3], float *geodesic_m)
 {
     struct surface_point hit;
@@ -219,7 +222,7 @@ static double error_at(const struct line *line, enum linear_error_modes modes, i
                                 line->length_m, line->subdiv->slack_m);
 }
 
-/* Adds a sample point if it is visible. Returns its error against linear interpolation between the ends. */
+/* Adds a sample point if it is visible. Returns its error against linear interpolation between the edge's ends, or 0 if it is hidden. */
 static double add_point(struct line *line, double t)
 {
     const struct linear_error *linear = line->subdiv->in->linear;
@@ -253,7 +256,7 @@ static bool jumps(const struct line *line, double length_m)
     return false;
 }
 
-/* Returns the error that remains if the edge is split at one of its sample points. Stops once it exceeds `enough`. */
+/* Returns the largest error that remains if the edge is split at one of its sample points. Stops early once the error exceeds `enough`. */
 static double left_after(const struct line *line, int cut, double enough)
 {
     double most = 0;
@@ -313,12 +316,15 @@ struct measure_job {
     double enough;
 };
 
-/* A thread's buffers: for sample points, and for the samples of recently used corners, which the next edge probably shares. */
+/* A thread's buffers: points of the current edge, and a cache of the samples at recently used corners, because the next edge probably
+ * shares a corner. */
 struct measure_room {
     float *points, *corners;
     struct interp_norm *norms; /* of the last sample point */
-    uint32_t of[CORNERS + 3];  /* by slot: the position whose sample is stored; the last three slots are used when slots collide */
-    uint32_t taken[3];         /* by corner of the current edge or triangle: its slot */
+    /* by cache slot: the position whose sample is stored; the last three slots serve corners whose slot another corner of the same edge
+     * or triangle occupies */
+    uint32_t of[CORNERS + 3];
+    uint32_t taken[3]; /* by corner of the current edge or triangle: its cache slot */
     struct sample_cache_notes notes;
 };
 
@@ -376,8 +382,8 @@ static void bar_jump(struct subdiv_finding *finding, const struct line *line)
     }
 }
 
-/* Returns the distance from the edge's midpoint to the nearest sensor or end of data. If the midpoint was the last sample, its
- * normalisations are used. */
+/* Returns the distance from the edge's midpoint to the nearest sensor or end of data. Reuses the normalisations if the midpoint was
+ * measured last. */
 static double nearest_to_middle(const struct line *line, uint32_t end)
 {
     const struct linear_error *linear = line->subdiv->in->linear;
@@ -451,8 +457,8 @@ static void try_edges(void *arg, size_t begin, size_t end)
     room_finish(&room, subdiv);
 }
 
-/* Returns whether a distance jumps between a point inside a triangle and a corner, and the triangle's edges are too short for a split to
- * help. */
+/* Returns whether the geodesic distance jumps between a point inside a triangle and one of the corners, and the triangle's edges are so
+ * short that a split would not help. */
 static bool jumps_inside(const struct subdiv *subdiv, const struct subdiv_tri *tri, const float middle[3], const float *geodesic_m)
 {
     for (int c = 0; c < 3; c++) {
@@ -467,7 +473,7 @@ static bool jumps_inside(const struct subdiv *subdiv, const struct subdiv_tri *t
     return false;
 }
 
-struct inside { /* a triangle measured at inner points */
+struct inside { /* a triangle while its error is measured at inner points */
     struct origin_sight sight;
     const struct subdiv_tri *tri;
     const float *interp[3]; /* samples at its corners */
@@ -592,7 +598,8 @@ void subdiv_parallel(const struct subdiv *subdiv, size_t count, size_t grain, vo
         body(arg, 0, count);
 }
 
-/* Measures the interpolation error along `count` edges. Errors below `enough` need not be exact, and then no cut position is found. */
+/* Measures the interpolation error along `count` edges. Errors below `enough` need not be exact, and for those edges no split point is
+ * determined. */
 static void measure_edges(struct subdiv *subdiv, struct subdiv_finding *findings, size_t count, double enough)
 {
     subdiv_parallel(subdiv, count, GRAIN, try_edges, &(struct measure_job){ .subdiv = subdiv, .findings = findings, .enough = enough });

@@ -112,7 +112,7 @@ static uint32_t edge_of(struct subdiv_mesh *mesh, uint32_t a, uint32_t b, uint32
 
 #define LOOK_UP TRIMESH_NONE
 
-/* Creates a triangle. known: indices of edges that are known already, because looking them up is expensive. */
+/* Creates a triangle. known: indices of its edges, TRIMESH_NONE where an edge must be looked up, which is expensive. */
 static struct subdiv_tri make_tri(struct subdiv_mesh *mesh, const struct subdiv_tri *like, const uint32_t v[3], const uint32_t known[3])
 {
     struct subdiv_tri tri = { .v = { v[0], v[1], v[2] }, .primitive = like->primitive, .origin = like->origin };
@@ -182,7 +182,7 @@ void subdiv_mesh_load(struct subdiv_mesh *mesh, const struct level *level)
     mesh->tri_count = 0;
     mesh->loads++;
     mesh->made.count = mesh->open.count = 0;
-    /* forget the errors of edges that are not proven, because limits depend on the level */
+    /* errors of edges without `proven` are unknown again, because the limits depend on the level */
     for (size_t e = 0; e < mesh->edges.count; e++) {
         mesh->cuts[e].error = mesh->cuts[e].proven ? mesh->cuts[e].error : -1;
         mesh->cuts[e].corner = TRIMESH_NONE;
@@ -228,7 +228,7 @@ static uint32_t add_place(struct subdiv_mesh *mesh, const float position_m[3])
     return (uint32_t)mesh->welded.count++;
 }
 
-/* Interpolates the texture coordinates of the last vertex, if there are any. */
+/* Interpolates the texture coordinates of the newest vertex, if the geometry has texture coordinates. */
 static void add_texcoord(float (**texcoords)[2], size_t *capacity, uint32_t vertex, const uint32_t *from, const double *weights, int count)
 {
     float mixed[2] = { 0 };
@@ -308,7 +308,8 @@ static double distance2(const struct subdiv_mesh *mesh, uint32_t a, uint32_t b)
     return x * x + y * y + z * z;
 }
 
-/* Splits a triangle at one edge. Unsplit edges pass to the pieces, which also share a new edge; e holds the known indices. */
+/* Splits a triangle at one edge. The two pieces take over the unsplit edges and share a new edge. e: indices of edges that are known
+ * already. */
 static struct subdiv_tri cut_once(struct subdiv_mesh *mesh, const struct subdiv_tri *old, const uint32_t v[3], const uint32_t e[3],
                                   uint32_t m)
 {
@@ -401,7 +402,8 @@ uint32_t subdiv_mesh_insert(struct subdiv_mesh *mesh, size_t tri, const double w
 
 /* --- flipping ------------------------------------------------------------------------------------------------------------- */
 
-/* Lists the corners in winding order, beginning with the edge's two; e: the edges, beginning with that edge. */
+/* Writes the three corners in winding order, starting with the two corners of the edge, and to `e` the three edges, starting with that
+ * edge. */
 static void corners_from(const struct subdiv_tri *tri, uint32_t edge, uint32_t v[3], uint32_t e[3])
 {
     int first = tri->e[0] == edge ? 0 : tri->e[1] == edge ? 1 : 2;

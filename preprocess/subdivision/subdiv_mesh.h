@@ -9,25 +9,25 @@
 #include "surface/mesh/trimesh.h"
 
 struct subdiv_tri {
-    uint32_t v[3], e[3];        /* e[i]: the edge from v[i] to v[i + 1] */
-    /* primitive: index within the level; origin: the original triangle that this one is a piece of, as its first index / 3 */
+    uint32_t v[3], e[3]; /* e[i]: the edge from v[i] to v[i + 1] */
+    /* primitive: index of the level's primitive; origin: index of the level's original triangle that contains this one (first index / 3) */
     uint32_t primitive, origin;
     bool good;  /* the inside of the triangle has been measured */
     bool aimed; /* the triangle has been checked for flatness (aim_at_corners()) */
 };
 
-struct subdiv_edge {    /* an edge between two positions, shared by all levels */
-    /* vertices at the edge's ends; where several vertices share a position (split normals or texture coordinates), one of them */
+struct subdiv_edge { /* an edge between two positions, shared by all levels */
+    /* vertices at the edge's ends; where several vertices share a position (with different normals or texture coordinates), any one */
     uint32_t a, b;
     uint32_t origin[2]; /* two original triangles that contain the edge, of the first level that had it; TRIMESH_NONE: none */
     uint32_t middle;    /* position index of the split point; TRIMESH_NONE: not split */
-    uint32_t load;      /* number of the last level (mesh.loads) that splits the edge */
+    uint32_t load;      /* value of mesh.loads for the last level that splits the edge */
     /* first corner of the current level's triangles at which the edge begins, 3 * triangle + i; TRIMESH_NONE: no triangle has the edge */
     uint32_t corner;
     float share;  /* fraction of the way from a to b at which the edge is split, or should be */
     float error;  /* field error along the edge that a split may fix; below 0: not measured yet */
     float barred; /* field error along the edge that no split may fix */
-    bool jumps;   /* reason for `barred`: the distance jumps; false: the edge is too short */
+    bool jumps;   /* reason for `barred`; true: the distance jumps along the edge; false: the edge is too short */
     bool unasked; /* the edge is too short to split in the current level, so it is not measured */
     bool proven;  /* the edge was measured and needs no split; coarser levels have looser limits */
 };
@@ -49,10 +49,10 @@ struct subdiv_mesh {
     uint32_t loads;          /* number of levels loaded so far */
     struct subdiv_tri *tris; /* triangles of the current level */
     size_t tri_count, tri_capacity;
-    uint32_t *next; /* by corner: the next corner at the same edge; TRIMESH_NONE: none */
+    uint32_t *next; /* by corner (3 * triangle + i): the next corner at which the same edge begins; TRIMESH_NONE: none */
     size_t next_capacity;
     struct subdiv_list made; /* triangles made since the list was last emptied */
-    struct subdiv_list open; /* triangles that had a split edge when they were listed */
+    struct subdiv_list open; /* triangles that subdiv_mesh_apply() still has to split */
 };
 
 /* Builds the mesh over a geometry, to which it will add vertices. Returns false if out of memory. Call subdiv_mesh_finish() in both
@@ -86,18 +86,19 @@ static inline void subdiv_mesh_list(struct subdiv_list *list, uint32_t number)
 void subdiv_mesh_sort(struct subdiv_list *list);
 /* Marks all triangles of the current level as new (mesh->made). */
 void subdiv_mesh_list_all(struct subdiv_mesh *mesh);
-/* Splits triangles until none has a split edge. Returns the number of triangles added. */
+/* Splits the triangles at all edges that subdiv_mesh_split_edge() or another level has split. Returns the number of triangles added. */
 size_t subdiv_mesh_apply(struct subdiv_mesh *mesh);
 /* Inserts a vertex into a triangle at these barycentric weights. Returns the vertex. */
 uint32_t subdiv_mesh_insert(struct subdiv_mesh *mesh, size_t tri, const double weights[3], const float position_m[3]);
 
 /* Returns the other diagonal of the two triangles at an edge: the edge between their opposite corners, which need not exist in the level.
- * tris[1] must have the edge in the reverse direction. Returns TRIMESH_NONE if the triangles do not share the edge's two vertices. */
+ * The two triangles must run through the edge in opposite directions. Returns TRIMESH_NONE if the triangles do not share the edge's two
+ * vertices. */
 uint32_t subdiv_mesh_opposite_edge(struct subdiv_mesh *mesh, const uint32_t tris[2], uint32_t edge);
 /* Flips the two triangles' common edge to the other diagonal, `across`. */
 void subdiv_mesh_flip_edge(struct subdiv_mesh *mesh, const uint32_t tris[2], uint32_t edge, uint32_t across);
 
-/* Writes the surface normal at an edge, not normalised. */
+/* Writes the surface normal at an edge, not of unit length. */
 void subdiv_mesh_normal(const struct subdiv_mesh *mesh, const struct subdiv_edge *edge, double normal[3]);
 
 #endif

@@ -8,9 +8,9 @@
 #include "preprocess/subdivision/subdivide_impl.h"
 #include "surface/mesh/bvh.h"
 
-#define ON_OF_SIZE 1e-5 /* relative to the asset's size; a sensor at most this far from a vertex or an edge is placed on it */
-#define MAX_CUTS 30     /* maximum number of splits, at a sensor, of edges that other levels split elsewhere */
-#define FEW 32          /* number of sensors up to which no search tree of the level is built */
+#define ON_OF_SIZE 1e-5 /* relative to the asset's size; a sensor this close to a vertex or an edge gets its vertex there */
+#define MAX_CUTS 30     /* maximum number of edges split at one sensor because another level splits them elsewhere */
+#define FEW 32          /* number of sensors up to which all triangles are searched instead of building a tree */
 
 struct sensor_hit { /* the point of a level nearest to a sensor */
     size_t tri;
@@ -46,7 +46,8 @@ static double try_piece(const struct subdiv *subdiv, size_t t, const double poin
     return distance_m;
 }
 
-/* Finds the piece nearest to a point among the pieces of one of the level's original triangles: its own slot, and appended ones. */
+/* Finds the piece nearest to a point among the pieces of one original triangle of the level: the piece in the original's slot, and the
+ * appended pieces. */
 static double find_piece(const struct subdiv *subdiv, uint32_t tri, const double point[3], struct sensor_hit *hit)
 {
     double best_m = try_piece(subdiv, tri, point, INFINITY, hit);
@@ -68,7 +69,7 @@ static void know_place(struct subdiv *subdiv, uint32_t place, uint32_t part, con
     subdiv_measure_places(subdiv, place, edge, 1);
 }
 
-/* Splits the triangle's edge that passes through the point, if there is one. */
+/* Splits the edge of the triangle that the point lies on. Returns false if the point lies on none. */
 static bool cut_edge_at(struct subdiv *subdiv, const struct sensor_hit *hit, const float point[3])
 {
     struct subdiv_mesh *mesh = &subdiv->mesh;
@@ -100,7 +101,7 @@ static uint32_t put_into_triangle(struct subdiv *subdiv, const struct sensor_hit
 }
 
 /* Finds or creates the vertex at a sensor: an existing one, or a new one on an edge or inside a triangle. An edge that another level split
- * elsewhere is split there first. Returns false if the part below the sensor is not in this level. */
+ * elsewhere is split there first. Returns false if the level omits the connected component that the sensor sits on. */
 static bool find_vertex(struct subdiv *subdiv, uint32_t tri, const double point[3], double error_m, uint32_t *vertex)
 {
     struct sensor_hit hit = { 0 };

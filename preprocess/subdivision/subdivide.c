@@ -11,44 +11,53 @@
 #include "preprocess/subdivision/subdivide_impl.h"
 
 #define MAX_ROUNDS 16
-#define GRAIN 2048              /* triangles per unit of work: a few tenths of a millisecond */
-#define MAX_STORED 512          /* samples are stored if they have at most this many numbers */
-#define LARGE 0.25              /* share of the distance to the nearest sensor; a triangle with a longer edge is large */
-#define LIKELY 1.0     /* sum of a triangle's edge errors, in limits, below which one of 500 large triangles has a larger error inside */
-#define MIN_INSIDE 2.0 /* length in shortest pieces; smaller triangles are not measured inside */
-#define FLAT 1e-3               /* a triangle is flat if its longest edge is shorter than the sum of the other two by at most this share */
-#define ASIDE 0.1               /* share of the longest edge; a flat triangle's opposite corner must be this far from its ends */
-#define LINE_OF_SIZE 2.5e-7 /* height relative to the asset's size; a lower triangle, a few units in the last place high, is degenerate */
-#define MORE_PLACES 12.0    /* capacity for positions, in multiples of the model's number of positions */
+#define GRAIN 2048     /* triangles per unit of work: a few tenths of a millisecond */
+#define MAX_STORED 512 /* samples at positions are stored if one has at most this many numbers, else computed again */
+#define LARGE 0.25     /* share of the distance to the nearest sensor; a triangle with a longer edge is large */
+/* sum of a triangle's edge errors, in limits; below it, only one of 500 large triangles has an error inside above the limit */
+#define LIKELY 1.0
+#define MIN_INSIDE 2.0 /* in multiples of shortest_m; a triangle whose longest edge is at most this long is not measured inside */
+#define FLAT 1e-3      /* a triangle is flat if its longest edge is shorter than the sum of the other two by at most this share */
+/* share of the longest edge; the opposite corner of a flat triangle must be at least this far from the edge's ends */
+#define ASIDE 0.1
+/* height relative to the asset's size, a few rounding errors of a float; a triangle below this height is degenerate */
+#define LINE_OF_SIZE 2.5e-7
+#define MORE_PLACES 12.0        /* capacity for positions, in multiples of the model's number of positions */
 #define MAX_REPORTED_EDGES 2000 /* maximum number of short edges of a coarser level that are measured for the report */
-#define FULL 2e-4               /* a level that can grow by less than this share is done, because each round uses half of the rest */
+/* subdivision of a level stops when it may grow by less than this share of its limit; each round uses half of the rest */
+#define FULL 2e-4
 
-/* Growth limits of the finest level: share of its triangles, and number of triangles; the larger one counts. */
+/* Growth limits of the finest level: additional triangles as a multiple of its own, and as a count. The larger limit applies. */
 #define FINEST_GROWTH 2.0
 #define FINEST_GROWTH_TRIS 100000.0
 #define WORTH 0.95 /* a coarser level is dropped if it would need more than this share of the next finer one's triangles */
-/* WORTH for plants with MANY_SENSORS or more, whose distances take most of a file, and if the finest level reached its limit */
+/* used instead of WORTH with MANY_SENSORS or more, because distances then take most of a file, and if the finest level reached its limit */
 #define WORTH_MANY 0.5
 #define MANY_SENSORS 128
-#define SAMPLE_WORTH 9000 /* triangle count from which on a level is first tried on a sample; samples of smaller levels are unreliable */
-#define SAMPLE_ROUNDS 4   /* rounds of splits on a sample; if a level is not hopeless after them, it never will be */
-#define SHORTEST_NEAR 0.125 /* shortest pieces of the finest level, in tolerances: sensors may be close together */
-#define SHORTEST 1.0        /* shortest pieces of coarser levels, in their errors: two pixels */
-#define JUMP_WIDTH 8        /* in tolerances or errors */
-#define ON_SURFACE 0.25     /* in tolerances; positions at most this far apart may count as equal */
-#define SLACK 0.7           /* in errors of the level; how far from a point the field that a coarser level shows there may be */
+/* minimum triangle count of a level whose final size is first estimated on a sample; smaller samples are unreliable */
+#define SAMPLE_WORTH 9000
+#define SAMPLE_ROUNDS 4 /* maximum rounds of splits on a sample; more rounds would not change the estimate */
+/* minimum length of pieces of an edge in the finest level, in tolerances; short because sensors may be close together */
+#define SHORTEST_NEAR 0.125
+/* minimum length of pieces of an edge in a coarser level, in its error_m: at most a pixel where the level is drawn */
+#define SHORTEST 1.0
+#define JUMP_WIDTH 8    /* in tolerances or errors */
+#define ON_SURFACE 0.25 /* in tolerances; distance from the surface up to which a point counts as being on it */
+/* in multiples of the level's error_m; a coarser level may show at a point the field of another point up to this far away */
+#define SLACK 0.7
 
 /* --- cutting -------------------------------------------------------------------------------------------------------------- */
 
 #define BINS (1u << 16)
-static uint32_t bin_of(float error) /* positive floats sort like their bit patterns, so the upper 16 bits select the bin */
+static uint32_t bin_of(float error) /* positive floats compare like their bit patterns, so the upper 16 bits serve as bin index */
 {
     uint32_t bits;
     memcpy(&bits, &error, sizeof(bits));
     return bits >> 16;
 }
 
-/* Keeps the `most` largest errors, in their present order; of nearly equal ones at the threshold, the first. Returns the number kept. */
+/* Removes all findings but the `most` with the largest errors, without changing their order. Of findings in the threshold's bin, keeps the
+ * first ones. Returns the number of findings kept. */
 static size_t keep_worst(struct subdiv_finding *findings, size_t count, size_t most)
 {
     if (count <= most)
@@ -88,7 +97,7 @@ static bool is_too_short(const struct subdiv *subdiv, const struct subdiv_edge *
     return !subdiv->finest && subdiv_is_short(subdiv, subdiv_length(subdiv_position(subdiv, edge->a), subdiv_position(subdiv, edge->b)));
 }
 
-/* Flags of a new triangle; those of an edge are shifted by its index. */
+/* Flags of a new triangle. SIDE_* flags exist per edge, shifted left by the edge's index 0 to 2. */
 #define SIDE_IS_NEW 1u
 #define SIDE_IS_TOO_SHORT 8u
 #define ASKS 64u /* the triangle has new edges and is not degenerate */
@@ -117,8 +126,8 @@ static void look_at_sides(void *arg, size_t begin, size_t end)
     }
 }
 
-/* Lists the new edges to measure, of triangles with ASKS set (or not set). Edges that only degenerate triangles have get error 0. Returns
- * their number. */
+/* Processes new edges. With asks = ASKS, of triangles with ASKS: lists the edges to measure and returns their number. With asks = 0, of
+ * degenerate triangles: sets the error of edges still unmeasured to 0 and returns 0. */
 static size_t take_new_sides(struct subdiv *subdiv, const struct sides *sides, unsigned asks, struct subdiv_finding *findings)
 {
     struct subdiv_mesh *mesh = &subdiv->mesh;
@@ -139,8 +148,8 @@ static size_t take_new_sides(struct subdiv *subdiv, const struct sides *sides, u
     return count;
 }
 
-/* Measures new edges. Edges of degenerate triangles only are invisible; splitting them would make more of them. Half of the edges of
- * coarser levels are too short to split, so their error does not matter. */
+/* Measures new edges. Edges that only degenerate triangles have are invisible, and splitting them would add degenerate triangles, so they
+ * get error 0. Half of the edges of coarser levels are too short to split, so their error does not matter. */
 static void measure_edges(struct subdiv *subdiv)
 {
     struct subdiv_mesh *mesh = &subdiv->mesh;
@@ -170,8 +179,8 @@ static int longest_edge(const struct subdiv *subdiv, const struct subdiv_tri *tr
 }
 
 /* Returns whether the error inside a triangle may exceed the limit. Where a field bends evenly, the error at the centre is 4/9 of the sum
- * of the three edges' errors. In a triangle that is large compared with the distance to the nearest sensor, it may be anything; before the
- * last limit, such triangles with small edge errors are left for later. */
+ * of the three edges' errors. In a triangle that is large compared with the distance to the nearest sensor, the error inside may have any
+ * size. Such a triangle with small edge errors is measured only in the last pass, which has the smallest limit. */
 static bool inside_may_err(const struct subdiv *subdiv, const struct subdiv_tri *tri, double limit)
 {
     const struct subdiv_mesh *mesh = &subdiv->mesh;
@@ -207,7 +216,8 @@ static void choose_insides(void *arg, size_t begin, size_t end)
     }
 }
 
-/* Measures new triangles whose edges are good. If the error inside is too large, marks the longest edge to be split. */
+/* Measures the error inside new triangles whose edges need no split. If it exceeds the limit, records it at the triangle's longest edge, so
+ * that this edge is split. */
 static void measure_insides(struct subdiv *subdiv, double limit)
 {
     struct subdiv_mesh *mesh = &subdiv->mesh;
@@ -298,7 +308,7 @@ static void find_flat(void *arg, size_t begin, size_t end)
     }
 }
 
-/* Sets the split points of the longest edges of new flat triangles. */
+/* Moves the split points of the longest edges of new flat triangles next to their opposite corners. */
 static void aim_at_corners(struct subdiv *subdiv)
 {
     struct subdiv_mesh *mesh = &subdiv->mesh;
@@ -313,7 +323,8 @@ static void aim_at_corners(struct subdiv *subdiv)
     mem_free(aims.flat);
 }
 
-/* Splits longest edges next to corners at which other edges are split; else the pieces would stay as long as the edge. */
+/* Also splits the longest edge of a flat triangle if another of its edges is split; otherwise the pieces would stay as long as the longest
+ * edge. */
 static void cut_beside_corners(struct subdiv *subdiv)
 {
     struct subdiv_mesh *mesh = &subdiv->mesh;
@@ -332,12 +343,12 @@ static void cut_beside_corners(struct subdiv *subdiv)
     mem_free(findings);
 }
 
-/* Lists edges with an error above the limit, once for each triangle that has them, in the triangles' order. */
+/* Lists edges with an error above the limit, once for each triangle that has them, in ascending order of triangles. */
 static struct subdiv_finding *list_errors(const struct subdiv *subdiv, double limit, size_t *count)
 {
     const struct subdiv_mesh *mesh = &subdiv->mesh;
     struct subdiv_list corners = { 0 };
-    bool all = mesh->made.count == mesh->tri_count; /* all triangles are new, so corners are visited in order */
+    bool all = mesh->made.count == mesh->tri_count; /* all triangles are new, so their corners can be visited directly in order */
     for (size_t t = 0; t < mesh->tri_count && all; t++)
         for (uint32_t i = 0; i < 3; i++)
             if ((double)mesh->cuts[mesh->tris[t].e[i]].error > limit)
@@ -388,8 +399,8 @@ static void note_left(struct level *level, enum level_limit limit, float error, 
     level->left[limit].steps = fmaxf(level->left[limit].steps, error / (float)SUBDIV_ERROR);
 }
 
-/* Measures some of the edges that were too short to be measured; the rest are assumed to be similar. Returns the number of edges that each
- * measured one represents. */
+/* Measures a sample of the edges that were too short to be measured, for the report. Returns the number of edges that each measured one
+ * represents. */
 static uint32_t ask_some(struct subdiv *subdiv)
 {
     struct subdiv_mesh *mesh = &subdiv->mesh;
@@ -444,8 +455,8 @@ static void cut_to(struct subdiv *subdiv, double limit)
     }
 }
 
-/* Splits a sample of the level for large errors. Returns whether the result shows that the level would need too many triangles, which saves
- * most of the work for such levels. */
+/* Estimates a level's final size by splitting a sample of its triangles down to the largest limit. Returns whether the level would
+ * certainly need too many triangles; then most of its work is saved. */
 static bool is_hopeless(struct subdiv *subdiv, const struct level *level, double large)
 {
     struct level sample;
@@ -568,7 +579,7 @@ static bool start(struct subdiv *subdiv, struct geometry *geometry)
     return true;
 }
 
-/* Moves the distances out of the subdivision, which no longer needs them. */
+/* Moves the distances of all positions from the subdivision's state to the result. */
 static void take_rows(struct subdiv *subdiv, struct distance_rows *rows)
 {
     *rows = (struct distance_rows){ .distances_m = subdiv->geodesic_m,

@@ -7,13 +7,14 @@
 #include "preprocess/subdivision/subdiv_mesh.h"
 #include "preprocess/subdivision/subdivide.h"
 
-#define SUBDIV_AIM (0.9 * SUBDIV_ERROR) /* error limit at the sampled points; the reserve covers larger errors between them */
+/* error limit at the sampled points; the reserve of a tenth is for larger errors between these points */
+#define SUBDIV_AIM (0.9 * SUBDIV_ERROR)
 
 struct subdiv {
     const struct subdiv_input *in;
     struct subdiv_mesh mesh;
-    const uint32_t *model;      /* vertex indices of the finest level's triangles before subdivision */
-    size_t sensors, samples;    /* numbers per position: sensors, and numbers of a sample */
+    const uint32_t *model;      /* vertex indices of the original model's triangles (the finest level before subdivision) */
+    size_t sensors, samples;    /* array strides per position: sensor count, and count of numbers in a sample (linear_error.h) */
     float *geodesic_m, *interp; /* [position][sensor] distances in metres; [position][sample] weights, or NULL if too large */
     struct interp_norm *norms;  /* [position][norm] */
     size_t geodesic_capacity, share_capacity, norm_capacity, norm_count; /* norm_count: normalisations per position */
@@ -29,12 +30,14 @@ struct subdiv {
     bool finest;
     double on_surface_m; /* a point farther than this from the surface is hidden inside another part */
     double error_m, shortest_m, slack_m;
-    double jump_m;                 /* length in metres; where a distance jumps, shorter edges are not split */
-    bool finest_full;              /* the finest level reached its triangle limit */
-    bool full;                     /* the level has almost reached its triangle limit */
-    size_t sample_blocks;          /* number of blocks while a sample of the level is processed; else 0 */
-    double sample_of;              /* number of the level's triangles per triangle of the sample */
-    size_t most_tris, first_count; /* first_count: triangles before sensors were inserted */
+    double jump_m;    /* length in metres; where a distance jumps, shorter edges are not split */
+    bool finest_full; /* the finest level reached its triangle limit */
+    bool full;        /* the level has almost reached, or would certainly reach, its triangle limit */
+    /* count of sampled blocks of triangles while a sample of the level is processed; 0: the whole level is */
+    size_t sample_blocks;
+    double sample_of; /* number of the level's triangles per triangle of the sample */
+    /* triangle limit of the level; first_count: triangles of the level before vertices were inserted at sensors */
+    size_t most_tris, first_count;
 };
 
 /* Writes the point at fraction t between a and b. */
@@ -69,14 +72,14 @@ void subdiv_parallel(const struct subdiv *subdiv, size_t count, size_t grain, vo
 struct subdiv_finding {
     uint32_t number;
     float error, share; /* share: the best fraction at which to split the edge */
-    float barred;       /* error of the edge or triangle that no split may fix */
+    float barred;       /* error, as a share of the range, that no split may fix */
     bool jumps;
-    bool is_cached;   /* the finding is from the last run */
+    bool is_cached;   /* the finding was taken from the last run's cache, not measured */
     float doubt, off; /* see subdiv_cache.h */
     uint64_t key;     /* cache key */
 };
 
-/* Determines the connected component of each position. Returns false if out of memory. */
+/* Writes the connected component of each position to subdiv->part. Returns false if out of memory. */
 bool subdiv_find_parts(struct subdiv *subdiv);
 /* Sets the connected component of a new position. */
 void subdiv_add_place(struct subdiv *subdiv, uint32_t place, uint32_t part);
@@ -89,8 +92,8 @@ void subdiv_measure_insides(struct subdiv *subdiv, struct subdiv_finding *findin
 
 /* --- levels that would grow too large (subdiv_bound.c) --- */
 
-/* Returns whether a coarser level, or the level that the current sample represents, will certainly need more triangles than allowed. This
- * is known before the splits are made. */
+/* Returns whether a coarser level, or the level that the current sample represents, will certainly need more triangles than allowed.
+ * Estimated from the measured errors, before the splits are made. */
 bool subdiv_will_exceed_bound(const struct subdiv *subdiv);
 /* Copies some of a level's triangles, in blocks of a few neighbours, into *sample, which the caller frees (level_finish()). Returns the
  * number of blocks. */
@@ -115,7 +118,7 @@ void subdiv_flip_edges(struct subdiv *subdiv, double limit);
 
 /* --- sensors (subdiv_sensors.c) --- */
 
-/* Inserts a vertex at each sensor. error_m: how far the level's surface may be off. */
+/* Inserts a vertex at each sensor. error_m: largest distance of the level's surface from the finest level's. */
 void subdiv_place_sensors(struct subdiv *subdiv, double error_m);
 
 #endif
