@@ -76,11 +76,13 @@ CASE(honest_paths_are_served)
     expect(f, "/core/wire.js", "export {};", "text/javascript; charset=utf-8");
 }
 
-/* Lines keep their numbers; what only looks like a comment, and what is not the page's own, stays. */
-CASE(scripts_come_without_comments)
+/* Lines keep their numbers; what only looks like a comment, texts of template literals, and what is not the page's own, stays. */
+CASE(scripts_come_without_comments_and_indentation)
 {
-    static const char source[] = "// licence\n// what it is\nconst a = 1; // why\n    // more\n\nconst b = 'x//y';\n// end";
-    static const char served[] = "// licence\n\nconst a = 1; // why\n\n\nconst b = 'x//y';\n";
+    static const char source[] = "// licence\n// what it is\nconst a = 1; // why\n    // a `tick\n\n    const b = 'x//y';\n"
+                                 "  f(`a \\` ${b\n  // text\n   } c`, `d`);\n  // gone\n  g(/  x/);\n// end";
+    static const char served[] = "// licence\n\nconst a = 1; // why\n\n\nconst b = 'x//y';\n"
+                                 "f(`a \\` ${b\n  // text\n   } c`, `d`);\n\ng(/  x/);\n";
     char *vendor = mem_printf("%s/vendor", f->web);
     assert_int_equal(mkdir(vendor, 0700), 0);
     write_file(f->web, "a.js", source);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The daemon serves the page's scripts without their comment lines (server/net/http/site.c), so no such line may be part of a string.
+// The daemon serves the page's scripts without comment lines and indentation (server/net/http/site.c), except within template literals,
+// which it finds by their backticks: each is in code, and no line of a text begins as a comment does.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { test } from 'node:test';

@@ -70,19 +70,34 @@ static bool is_own_script(const char *path)
     return dot && !strcmp(dot, ".js") && strncmp(path, "/vendor/", 8) != 0;
 }
 
-/* Empties lines that hold only a comment (a tenth of what a page loads), except the first, which is the licence. Line numbers stay those
-   of the source. Returns the bytes left of `count`. */
+/* Returns whether a line of a script opens a template literal that it does not close, or closes one of a line before. */
+static bool toggles_template(const char *line, const char *end)
+{
+    bool toggles = false;
+    for (; line < end; line++)
+        if (*line == '\\')
+            line++;
+        else if (*line == '`')
+            toggles = !toggles;
+    return toggles;
+}
+
+/* Drops indentation and empties lines that hold only a comment, except the first, which is the licence: a fifth of what a page loads. Lines
+   of template literals stay as they are. Line numbers stay those of the source. Returns the bytes left of `count`. */
 static size_t drop_comments(char *bytes, size_t count)
 {
     size_t out = 0;
+    bool in_template = false;
     for (size_t at = 0, end; at < count; at = end) {
         const char *stop = memchr(bytes + at, '\n', count - at);
         size_t text = at;
         end = stop ? (size_t)(stop - bytes) + 1 : count;
-        while (text < end && bytes[text] == ' ')
+        while (!in_template && text < end && bytes[text] == ' ')
             text++;
-        bool comment = at > 0 && end - text >= 2 && bytes[text] == '/' && bytes[text + 1] == '/';
-        size_t from = comment ? end - (stop != NULL) : at;
+        bool comment = !in_template && at > 0 && end - text >= 2 && bytes[text] == '/' && bytes[text + 1] == '/';
+        size_t from = comment ? end - (stop != NULL) : text;
+        if (!comment && toggles_template(bytes + text, bytes + end))
+            in_template = !in_template;
         memmove(bytes + out, bytes + from, end - from);
         out += end - from;
     }
