@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Who may do what: each message by each role, where a daemon may listen, names, pages, and what headers say. */
+/* Access control: which role may send which message, on which addresses a daemon may listen, login names, page origins and proxy
+   headers. */
 #include "access/access.h"
 
 #include "tests/support/test.h"
@@ -12,7 +13,7 @@
 
 #define HELLO_WITH(params) "{\"type\":\"hello\",\"width\":64,\"height\":64,\"codecs\":[\"png\"],\"params\":{\"seq\":1," params "}}"
 
-/* A role that is not let may not, the one above may. */
+/* Asserts that the role `least` may send this message and that the role below may not. */
 static void expect_least(const char *text, enum role least)
 {
     struct message message;
@@ -101,7 +102,7 @@ TEST(where_a_daemon_may_listen)
     assert_false(access_allowed_at(&params, true, &why)); /* by which name? */
     params.host_count = 1;
     assert_true(access_allowed_at(&params, true, &why));
-    assert_false(access_allowed_at(&params, false, &why)); /* what comes from the proxy would go in the clear */
+    assert_false(access_allowed_at(&params, false, &why)); /* credentials from the proxy would cross the network unencrypted */
 }
 
 TEST(hosts_are_names_without_ports)
@@ -138,7 +139,8 @@ TEST(pages_of_other_hosts_may_not)
     assert_true(access_origin(&params, "http://plant.example:8080", "plant.example:8080", false));
     assert_true(access_origin(&params, "https://plant.example", "plant.example", true));
     assert_true(access_origin(&params, "https://portal.example", "plant.example", true));
-    assert_false(access_origin(&params, "http://plant.example", "plant.example", true)); /* a page that anyone on the line may change */
+    /* over plain http anybody on the network could change the page */
+    assert_false(access_origin(&params, "http://plant.example", "plant.example", true));
     assert_false(access_origin(&params, "http://plant.example:81", "plant.example", false));
     assert_false(access_origin(&params, "https://portal.example.evil.example", "plant.example", false));
     assert_false(access_origin(&params, "null", "plant.example", false));
@@ -173,7 +175,7 @@ TEST(lists_in_headers)
     assert_true(access_forwarded("203.0.113.7:1234", out, sizeof(out)) && !strcmp(out, "203.0.113.7"));
     assert_true(access_forwarded("unknown, [2001:db8::1]:99", out, sizeof(out)) && !strcmp(out, "2001:db8::1"));
     assert_true(access_forwarded("2001:db8::1", out, sizeof(out)) && !strcmp(out, "2001:db8::1"));
-    assert_false(access_forwarded("203.0.113.7, unknown", out, sizeof(out))); /* the last word is the proxy's own */
+    assert_false(access_forwarded("203.0.113.7, unknown", out, sizeof(out))); /* only the last address of the header comes from our proxy */
     assert_false(access_forwarded("", out, sizeof(out)));
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Distances along surfaces against an exact polyhedral solver, on shapes that no formula covers, clean and with every fault that exports
-   have. (Shapes with a formula: surface_test.c.) The clean shape is the truth; of interpenetrating pipes, their union. */
+/* Distances along surfaces compared with an exact polyhedral solver, on shapes without a formula (shapes with one: surface_test.c). Each
+   shape is tested clean and with every fault of CAD exports. The truth is the solver's result on the clean shape, or on the union of
+   interpenetrating pipes. */
 #include "surface/surface.h"
 
 #include "tests/support/test.h"
@@ -20,7 +21,7 @@
 
 struct distance_truth {
     double sources[SOURCES][3];
-    double *distances[SOURCES]; /* of the clean shape's vertices; NaN: not on the outer surface */
+    double *distances[SOURCES]; /* true distances by vertex of the clean shape; NaN: the vertex is not on the outer surface */
 };
 
 static struct oracle_mesh mesh_of(const struct cad *cad, size_t first_vertex, size_t vertex_count, size_t first_triangle,
@@ -30,7 +31,7 @@ static struct oracle_mesh mesh_of(const struct cad *cad, size_t first_vertex, si
                                  triangle_count };
 }
 
-/* The vertex of the outer surface at a clean vertex's place, or -1. */
+/* Returns the vertex of the outer surface at position p of a clean vertex, or -1. */
 static long same_place(const struct oracle_mesh *outer, const float p[3])
 {
     for (size_t v = 0; v < outer->vertex_count; v++) {
@@ -41,13 +42,14 @@ static long same_place(const struct oracle_mesh *outer, const float p[3])
     return -1;
 }
 
-/* The first source is a vertex, the second lies inside a triangle; by default one of them is tried, of each shape another one. */
+/* Source 0 is a vertex, source 1 lies inside a triangle. A full sweep tries both; the default run tries one, alternating by shape. */
 static bool is_source_tried(int row, int source)
 {
     return sweep_takes(row, source, SOURCES);
 }
 
-/* As fine as the shapes of whole sweeps are; by default half so, each way: the solver takes a fifth of the time. */
+/* Returns the number of grid cells per direction: `whole` in a full sweep, half of it by default, which makes the solver five times
+   faster. */
 static int cells(int whole)
 {
     return sweep(whole, whole / 2);
@@ -114,7 +116,7 @@ static void put_point(const struct cad_place *place, const double p[3], double o
     }
 }
 
-/* Clean, and with each fault; by default with one of them, of each shape another. */
+/* Tests the clean shape and each fault. The default run takes one fault per shape, a different one for each shape. */
 static void test_faults(const char *name, int row, const struct cad *clean, const struct oracle_mesh *outer)
 {
     struct distance_truth truth = { 0 };
@@ -156,7 +158,7 @@ static void test_alone(const char *name, int row, struct cad *clean)
     cad_finish(clean);
 }
 
-/* The solver takes minutes under a sanitizer, and is not what they watch. */
+/* Skips the test under a sanitizer: the solver would take minutes and is not the code under test. */
 static void skip_if_watched(void)
 {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)

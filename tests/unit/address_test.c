@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Modbus addresses, data types, byte orders and numbers as tag lists write them. */
+/* Parsing of Modbus addresses, data types, byte orders and numbers as tag lists write them. */
 #include "plant/sources/address.h"
 
 #include "tests/support/test.h"

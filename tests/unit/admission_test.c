@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* How much clients may have: limits by name, what addresses have, and whether drawing has room for one more. */
+/* Resource limits of clients: limits by name, limits per address, and whether the render thread has room for one more session. */
 #include "session/pacing/admission.h"
 
 #include "tests/support/test.h"
@@ -87,7 +87,8 @@ TEST_WITH(messages_of_an_address_are_counted_together, set_up, NULL)
 
 /* --- room ------------------------------------------------------------------------------------------------------------------------ */
 
-/* A second in which `moving` sessions get `fps` pictures each that take cost_ms to draw, and readings wait data_wait_ms. */
+/* Simulates one second: each of `moving` sessions gets `fps` frames that take cost_ms each to draw, and one data frame waits
+   data_wait_ms. */
 static void a_second(struct admission *admission, struct address_share *share, int moving, int fps, int cost_ms, int data_wait_ms)
 {
     static uint64_t content;
@@ -117,7 +118,7 @@ static void seconds(struct admission *admission, struct address_share *share, in
         a_second(admission, share, moving, fps, cost_ms, data_wait_ms);
 }
 
-/* A session more of an address of which so many move. */
+/* Asks to admit one more session from an address that has `moving` moving sessions. Returns the reason for refusal, or NULL. */
 static const char *refuses(const struct admission *admission, struct address_share *share, int64_t pixels, int moving)
 {
     share->moving = moving;
@@ -130,7 +131,7 @@ TEST_WITH(who_would_slow_the_others_down_too_far_is_refused, set_up, NULL)
     struct address_share share = { 0 };
     admission_join(&admission, &share);
     assert_null(refuses(&admission, &share, 1000, 0));
-    seconds(&admission, &share, 4, 6, 40, 0); /* 4 at 6 frames/s: a fifth would leave 4.8 */
+    seconds(&admission, &share, 4, 6, 40, 0); /* 4 sessions at 6 frames/s each: a fifth session would leave 4.8 */
     assert_int_equal(admission_busy_percent(&admission), 96);
     assert_non_null(refuses(&admission, &share, 1000, 4));
     seconds(&admission, &share, 4, 7, 34, 0); /* 5.6 */
@@ -151,7 +152,7 @@ TEST_WITH(a_busy_second_is_no_reason, set_up, NULL)
     assert_non_null(refuses(&admission, &share, 1000, 2));
 }
 
-/* A second in which each address draws `of_each` pictures per moving session, that take cost_ms. */
+/* Simulates one second: every address draws `of_each` frames per moving session, and each frame takes cost_ms. */
 static void a_second_of(struct admission *admission, struct address_share *shares, int count, int of_each, int cost_ms)
 {
     static uint64_t content = 1 << 20;
@@ -175,18 +176,18 @@ TEST_WITH(one_address_keeps_no_other_out, set_up, NULL)
     struct address_share shares[2] = { { .moving = 30 }, { .moving = 0 } };
     admission_join(&admission, &shares[0]);
     for (int i = 0; i < ADMISSION_WINDOWS; i++)
-        a_second_of(&admission, shares, 1, 1, 30); /* 30 sessions with a picture a second each */
+        a_second_of(&admission, shares, 1, 1, 30); /* 30 sessions with one frame per second each */
     assert_non_null(admission_refuses(&admission, &shares[0], 1000));
     assert_null(admission_refuses(&admission, &shares[1], 1000));
     admission_join(&admission, &shares[1]);
     shares[1].moving = 1;
     for (int i = 0; i < ADMISSION_WINDOWS; i++)
         a_second_of(&admission, shares, 2, 1, 30);
-    assert_null(admission_refuses(&admission, &shares[1], 1000)); /* half of 31 pictures for two */
+    assert_null(admission_refuses(&admission, &shares[1], 1000)); /* 31 frames per second, shared by two addresses */
     shares[1].moving = 3;
     assert_non_null(admission_refuses(&admission, &shares[1], 1000)); /* but not for four */
     struct address_share third = { 0 };
-    assert_null(admission_refuses(&admission, &third, 1000)); /* a third of 31 pictures is 10 */
+    assert_null(admission_refuses(&admission, &third, 1000)); /* 31 frames per second shared by three addresses are 10 each */
     quotas_parse(&quotas, "least-fps=11");
     assert_non_null(admission_refuses(&admission, &third, 1000));
 }

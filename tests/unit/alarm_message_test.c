@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Alarms on the wire: what sessions hear, what they may do, what programs get. */
+/* Alarm messages: what sessions receive, which alarm commands they may send, and what programs receive. */
 #include "tests/support/test.h"
 #include <jansson.h>
 #include <math.h>
@@ -15,7 +15,7 @@
 #include "tests/support/temp.h"
 #include "value/quality.h"
 
-struct alarm_message_setup { /* two tags with H 80 and HH 90 */
+struct alarm_message_setup { /* a plant of two tags with limits H 80 and HH 90 */
     struct log *log;
     struct counters *counters;
     struct plant *plant;
@@ -60,7 +60,7 @@ static int tear_down(void **state)
 
 #define CASE(name) TEST_ON(struct alarm_message_setup *s, name, set_up, tear_down)
 
-/* And waits until alarms know it. */
+/* Sets a tag's reading and waits until the alarm service has processed it. */
 static void give(struct alarm_message_setup *s, int tag, double value, uint32_t quality)
 {
     uint64_t before = alarm_service_number(s->alarm_service);
@@ -104,7 +104,8 @@ CASE(sessions_hear_what_changed)
     assert_int_equal(json_array_size(json_object_get(all, "alarms")), 2);
     assert_string_equal(state_of(all, "HH"), "unacknowledged");
     json_decref(all);
-    json_decref(parse(alarms_text(&said, s->alarm_service, s->plant, 5000, &other))); /* as it was said to the one before */
+    /* the text that another session already got is reused */
+    json_decref(parse(alarms_text(&said, s->alarm_service, s->plant, 5000, &other)));
     assert_int_equal(number, other);
     give(s, 0, 85, QUALITY_GOOD);
     json_t *changed = parse(alarms_text(&said, s->alarm_service, s->plant, 6000, &number));
@@ -139,7 +140,7 @@ CASE(what_is_asked_is_done_or_refused)
     mem_free(text);
 }
 
-/* The device of both tags: by its name, once. */
+/* A device alarm covers both tags: it appears once, under the device's name. */
 CASE(a_device_has_its_own)
 {
     struct message message;
@@ -160,7 +161,8 @@ CASE(a_device_has_its_own)
     assert_true(ask(s, "{\"type\":\"alarm\",\"seq\":1,\"action\":\"acknowledge\",\"alarms\":[[\"plc\",\"LINK\"],[\"TT-1\",\"BAD\"]]}",
                     &message, &error));
     json_t *answer = parse(alarm_do(s->alarm_service, s->plant, &message, "local"));
-    assert_int_equal(json_integer_value(json_object_get(answer, "done")), 1); /* a carried one is not to be acknowledged */
+    assert_int_equal(json_integer_value(json_object_get(answer, "done")), 1); /* an alarm carried by its device's alarm cannot be
+                                                                                 acknowledged */
     json_decref(answer);
     assert_false(ask(s, "{\"type\":\"alarm\",\"seq\":2,\"action\":\"acknowledge\",\"alarms\":[[\"TT-1\",\"LINK\"]]}", &message, &error));
     assert_non_null(strstr(error.text, "this plant has no device “TT-1”"));

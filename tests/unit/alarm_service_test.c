@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Alarms of a running store: journalled, taken up after kill -9, and when the journal was damaged. */
+/* Alarms of a running store: written to the journal, and restored after kill -9 and from a damaged journal. */
 #include "tests/support/test.h"
 #include <math.h>
 #include <stdatomic.h>
@@ -165,7 +165,7 @@ static int alarms_of(struct alarm_service_setup *s, struct history_reader *reade
     return count;
 }
 
-/* What was there when recording ended: nobody knows how long it lasted. */
+/* When nothing was recorded, no duration is known for an alarm that was active when recording ended. */
 CASE(while_nothing_was_recorded_no_alarm_is_known)
 {
     int error;
@@ -186,7 +186,7 @@ CASE(while_nothing_was_recorded_no_alarm_is_known)
     history_reader_destroy(&reader);
 }
 
-/* What was told a second before outlives a kill; what follows goes on from it. */
+/* An alarm journalled one second before a kill survives it, and later transitions continue from that state. */
 CASE(killed_at_any_moment_it_goes_on)
 {
     pid_t child = fork();
@@ -222,7 +222,7 @@ static double counted(struct alarm_service_setup *s, const char *name)
     return (double)*counters_add(s->counters, name, "counter", "");
 }
 
-/* A thousand tags whose device does not answer: each is journalled, and one is to be acknowledged. */
+/* A thousand tags of a device that does not answer: each alarm is journalled, and only one needs acknowledgement. */
 CASE(a_lost_device_is_no_flood)
 {
     for (int i = 0; i < TAGS; i++)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The states of an alarm: every state and every event, by a table that says where each leads; limits, deadbands and delays. */
+/* Alarm states: a table gives the next state for every state and event; also limits, deadbands and delays. */
 #include "tests/support/test.h"
 #include <math.h>
 
@@ -10,8 +10,8 @@
 
 /* --- the table -------------------------------------------------------------------------------------------------------------- */
 
-/* States of a local alarm, by name: what it is, then +a where its cause is there although the word does not say so, +l latched,
-   and what else it is set aside by. */
+/* Names of the states of a local alarm: the status, "+a" if the cause is active although the status does not show it, "+l" if latched,
+   and any further reasons for which the alarm is set aside. */
 static const struct {
     const char *name, *word;
     struct alarm_state state;
@@ -38,9 +38,10 @@ static const struct {
 };
 enum { STATE_COUNT = sizeof(states) / sizeof(states[0]), ROWS = 18 };
 
-/* Columns in the order of enum alarm_event. "=": as it was; "-": refused. Rows of an alarm that does not latch. */
+/* Transition table of an alarm that does not latch. Columns follow enum alarm_event. "=": the state stays; "-": the event is refused. */
 static const char *const table[ROWS][1 + ALARM_EVENTS] = {
-    /* each row: from; raise, clear, acknowledge, reset, shelve, unshelve, suppress, unsuppress, take out, put back, carry, call */
+    /* columns: from state; raise, clear, acknowledge, reset, shelve, unshelve, suppress, unsuppress, take out of service, return to
+       service, carry, call */
     { "normal", "unack", "=", "-", "-", "shelved", "=", "suppr", "=", "out", "=", "=", "=" },
     { "unack", "=", "returned", "acked", "-", "shelved+a", "=", "suppr+a", "=", "out+a", "=", "carried", "=" },
     { "acked", "=", "normal", "-", "-", "shelved+a", "=", "suppr+a", "=", "out+a", "=", "carried", "=" },
@@ -82,7 +83,7 @@ TEST(every_event_leads_where_the_table_says)
             struct alarm_state reached = states[from].state;
             enum alarm_outcome outcome = alarm_state_step(&reached, &rule, (enum alarm_event)event);
             if (!wanted)
-                continue; /* leads to a mixture that has no name here; the invariants below hold for it */
+                continue; /* the next state is a combination without a name here; check_invariants() still covers it */
             said++;
             enum alarm_outcome meant = !strcmp(wanted, "=") ? ALARM_AS_IT_WAS : !strcmp(wanted, "-") ? ALARM_REFUSED : ALARM_CHANGED;
             int to = meant == ALARM_CHANGED ? find_state(wanted) : from;
@@ -104,7 +105,7 @@ TEST(every_state_has_its_word)
     assert_int_equal(alarm_kind_find("XX"), ALARM_NONE);
 }
 
-/* All that can be reached, whatever the rule is. */
+/* Checks what must hold for every reachable state under any rule. */
 static void check_invariants(const struct alarm_state *state, const struct alarm_rule *rule)
 {
     enum alarm_status word = alarm_state_status(state, rule);
@@ -115,7 +116,7 @@ static void check_invariants(const struct alarm_state *state, const struct alarm
     assert_false(word == ALARM_NORMAL && state->active);
     assert_false(rule->forgets && !state->active && state->unacknowledged);
     if (rule->latches && rule->acknowledges && state->active && !state->aside)
-        assert_true(state->latched); /* what is seen stays until it is reset */
+        assert_true(state->latched); /* a latched alarm stays visible until somebody resets it */
 }
 
 TEST(no_sequence_breaks_what_must_hold)
@@ -143,7 +144,7 @@ TEST(a_deadband_lies_inside_its_limit)
     assert_int_equal(condition_side(ALARM_H, 85, 2, 83), CONDITION_BETWEEN);
     assert_int_equal(condition_side(ALARM_H, 85, 2, 82.999), CONDITION_CLEAR);
     assert_int_equal(condition_side(ALARM_HH, 85, 0, 84.999), CONDITION_CLEAR);
-    assert_int_equal(condition_side(ALARM_L, 0, 1, 0), CONDITION_BEYOND); /* zero is a limit, and a reading */
+    assert_int_equal(condition_side(ALARM_L, 0, 1, 0), CONDITION_BEYOND); /* zero is a valid limit and a valid reading */
     assert_int_equal(condition_side(ALARM_L, 0, 1, 1), CONDITION_BETWEEN);
     assert_int_equal(condition_side(ALARM_LL, 0, 1, 1.001), CONDITION_CLEAR);
     assert_int_equal(condition_side(ALARM_LL, -5, 0, -4.999), CONDITION_CLEAR);
@@ -156,12 +157,12 @@ TEST(delays_run_whole)
     int64_t at = 0;
     assert_false(condition_put(&c, &delays, CONDITION_BEYOND, 10 * S));
     assert_false(condition_advance(&c, &delays, 13 * S - 1, &at));
-    condition_put(&c, &delays, CONDITION_BETWEEN, 13 * S - 1); /* back below the limit: it begins anew */
+    condition_put(&c, &delays, CONDITION_BETWEEN, 13 * S - 1); /* back below the limit: the delay starts again from zero */
     assert_false(condition_advance(&c, &delays, 20 * S, &at));
     assert_false(condition_put(&c, &delays, CONDITION_BEYOND, 20 * S));
     assert_false(condition_put(&c, &delays, CONDITION_BEYOND, 22 * S));
     assert_true(condition_advance(&c, &delays, 99 * S, &at));
-    assert_true(c.active && at == 23 * S); /* when it was over, not when somebody looked */
+    assert_true(c.active && at == 23 * S); /* the alarm's time is when the delay ended, not when the condition was polled */
     assert_false(condition_put(&c, &delays, CONDITION_CLEAR, 100 * S));
     condition_hold(&c);
     assert_false(condition_advance(&c, &delays, 200 * S, &at)); /* nothing is known: nothing goes */
@@ -175,7 +176,7 @@ static bool turns(int side, bool active)
     return side == (active ? CONDITION_CLEAR : CONDITION_BEYOND);
 }
 
-/* The truth, slowly: looking back from each second, for how many it held. */
+/* Slow reference: for each second, looks back to see for how many seconds the condition has held. */
 static bool slow_active(const int *sides, int now, const struct condition_delays *delays)
 {
     bool active = false;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The alarms of a plant: made of samples, time and people; in the three modes; after a restart and a reload. */
+/* Alarms of a plant: driven by samples, time and operators; in all three alarm modes; after a restart and after a reload. */
 #include "tests/support/test.h"
 #include <math.h>
 
@@ -11,7 +11,8 @@
 #define S INT64_C(1000000000)
 #define UTC (1000000 * S)
 
-struct stage { /* TT: LL 0, L 10, H 80, HH 90; PT: H 5, after 2 s; SD: a bit that suppresses PT; B1, B2: bits of a DCS */
+struct stage { /* fixture. Limits: TT: LL 0, L 10, H 80, HH 90; PT: H 5 with a delay of 2 s; SD: a bit that suppresses PT; B1, B2: alarm
+                  bits of a DCS */
     struct plant *plant;
     struct alarms *alarms;
     struct snapshot *snapshot;
@@ -82,7 +83,7 @@ static void hear(struct stage *s, int second, int tag, double value, uint32_t qu
     alarms_put(s->alarms, &(struct sample_event){ tag, quality_is_bad(quality) ? NAN : value, quality, second * S, UTC + second * S }, 1);
 }
 
-/* All tags at once, as a lost link tells it. */
+/* Sends one sample event for each of the five tags at once, as a lost link does. */
 static void hear_all(struct stage *s, int second, double value, uint32_t quality)
 {
     struct sample_event heard[5];
@@ -116,7 +117,7 @@ static enum refusal_code act(struct stage *s, int second, int tag, enum alarm_ki
     return alarms_act(s->alarms, alarms_find(s->alarms, tag, kind), &wish, at(second));
 }
 
-/* What was told since the last time. */
+/* Compares the alarm notifications since the last call with `wanted`. */
 static void assert_told(struct stage *s, const char *wanted)
 {
     assert_string_equal(s->log, wanted);
@@ -151,7 +152,7 @@ TEST(delays_are_monotonic_and_exact)
     begin(&s, ALARMS_LOCAL);
     hear(&s, 9, 0, 50, QUALITY_GOOD);
     hear(&s, 10, 1, 6, QUALITY_GOOD);
-    s.snapshot->taken_utc_ns = UTC + 4000 * S; /* the wall clock is set forward by an hour */
+    s.snapshot->taken_utc_ns = UTC + 4000 * S; /* the wall clock jumps forward by an hour */
     s.snapshot->taken_mono_ns = 11 * S;
     alarms_tick(s.alarms, s.snapshot);
     assert_told(&s, "");
@@ -169,7 +170,7 @@ TEST(what_is_bad_is_held_and_says_so)
     s.log[0] = 0;
     hear(&s, 2, 0, 0, QUALITY_BAD_SENSOR_FAILURE);
     assert_told(&s, "2 TT.BAD raise: normal > unacknowledged\n");
-    hear(&s, 2, 2, 0, QUALITY_GOOD); /* of the same device, which is there */
+    hear(&s, 2, 2, 0, QUALITY_GOOD); /* a tag of the same device, which still answers */
     assert_string_equal(word(&s, 0, ALARM_H), "acknowledged");
     assert_true(alarms_at(s.alarms, alarms_find(s.alarms, 0, ALARM_H))->held);
     hear(&s, 3, 0, 50, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE);
@@ -179,7 +180,7 @@ TEST(what_is_bad_is_held_and_says_so)
     s.snapshot->readings[0].quality = QUALITY_BAD_COMMUNICATION_ERROR; /* stale: nobody told */
     tick(&s, 9);
     assert_told(&s, "9 TT.BAD raise: returned > unacknowledged\n");
-    /* What never came is no alarm at first, and one once it should have. */
+    /* A tag that never had a reading has no alarm at first; it gets one once its stale time has passed. */
     tick(&s, 10);
     assert_told(&s, "");
     tick(&s, 14);
@@ -248,8 +249,8 @@ TEST(a_mirror_shows_what_the_other_system_says)
 {
     struct stage s;
     begin(&s, ALARMS_MIRROR);
-    assert_int_equal(alarms_count(s.alarms), 4); /* one, two bits that may go bad, and their device */
-    hear(&s, 1, 0, 95, QUALITY_GOOD);            /* the limit is the other's to watch */
+    assert_int_equal(alarms_count(s.alarms), 4); /* alarms: one limit, two bits that may turn bad, and their device */
+    hear(&s, 1, 0, 95, QUALITY_GOOD);            /* the DCS watches this limit, not we */
     assert_told(&s, "");
     hear(&s, 2, 3, 1, QUALITY_GOOD);
     hear(&s, 3, 4, 1, QUALITY_GOOD);
@@ -275,7 +276,7 @@ TEST(what_was_kept_is_taken_up)
     for (int kind = ALARM_H; kind <= ALARM_HH; kind++)
         alarms_restore(next.alarms, alarms_find(next.alarms, 0, (enum alarm_kind)kind),
                        alarms_at(s.alarms, alarms_find(s.alarms, 0, (enum alarm_kind)kind)), (struct instant){ 5 * S, UTC + 40 * S });
-    assert_told(&next, ""); /* nothing happened meanwhile that anybody knows of */
+    assert_told(&next, ""); /* no known event happened between the two runs */
     assert_string_equal(word(&next, 0, ALARM_HH), "unacknowledged");
     assert_string_equal(word(&next, 0, ALARM_H), "shelved");
     assert_true(alarms_at(next.alarms, alarms_find(next.alarms, 0, ALARM_HH))->held);
@@ -286,12 +287,12 @@ TEST(what_was_kept_is_taken_up)
     alarms_tick(next.alarms, next.snapshot);
     assert_told(&next, "62 TT.H unshelve: shelved > unacknowledged\n");
     end(&next);
-    begin(&next, ALARMS_DISPLAY); /* the site has decided otherwise meanwhile */
+    begin(&next, ALARMS_DISPLAY); /* the site changed its alarm mode between the two runs */
     for (int kind = ALARM_H; kind <= ALARM_HH; kind++)
         alarms_restore(next.alarms, alarms_find(next.alarms, 0, (enum alarm_kind)kind),
                        alarms_at(s.alarms, alarms_find(s.alarms, 0, (enum alarm_kind)kind)), at(5));
     assert_string_equal(word(&next, 0, ALARM_HH), "active");
-    assert_string_equal(word(&next, 0, ALARM_H), "active"); /* nobody could take it off the shelf */
+    assert_string_equal(word(&next, 0, ALARM_H), "active"); /* in this mode no user could unshelve it */
     end(&next);
     end(&s);
 }
@@ -301,7 +302,7 @@ TEST(a_reload_keeps_what_stays)
     struct stage s, next;
     begin(&s, ALARMS_LOCAL);
     hear(&s, 1, 0, 95, QUALITY_GOOD);
-    hear(&s, 9, 1, 9, QUALITY_GOOD); /* PT's delay of 2 s runs */
+    hear(&s, 9, 1, 9, QUALITY_GOOD); /* PT's on-delay of 2 s is still running */
     begin(&next, ALARMS_LOCAL);
     alarms_adopt(next.alarms, s.alarms);
     assert_told(&next, "");
@@ -353,7 +354,7 @@ TEST(counts_are_what_there_is)
     end(&s);
 }
 
-/* TT: LL 0, L 10, a deadband of 2. */
+/* TT has LL 0 and L 10 with a deadband of 2. */
 TEST(what_is_there_stands_before_what_has_gone)
 {
     struct stage s;
@@ -361,17 +362,19 @@ TEST(what_is_there_stands_before_what_has_gone)
     hear(&s, 1, 0, -5, QUALITY_GOOD);
     assert_int_equal(s.told[0], ALARM_LL);
     act(&s, 2, 0, ALARM_L, ALARM_ACKNOWLEDGE, 0);
-    hear(&s, 3, 0, 5, QUALITY_GOOD); /* LL returns unacknowledged; L is there, and acknowledged */
+    hear(&s, 3, 0, 5, QUALITY_GOOD); /* LL has returned to normal unacknowledged; L is active and acknowledged */
     assert_string_equal(word(&s, 0, ALARM_LL), "returned");
     assert_int_equal(s.told[0], ALARM_L);
     hear(&s, 4, 0, 50, QUALITY_GOOD);
     assert_int_equal(s.told[0], ALARM_LL);
     const struct alarm_grade high = { 4, ALARM_H, ALARM_UNACKNOWLEDGED }, highest = { 4, ALARM_HH, ALARM_ACKNOWLEDGED };
-    assert_true(alarm_graver(&highest, &high) && !alarm_graver(&high, &highest)); /* the outer one, where both are of one priority */
+    /* of two alarms with equal priority the outer limit is graver */
+    assert_true(alarm_graver(&highest, &high) && !alarm_graver(&high, &highest));
     end(&s);
 }
 
-/* Whatever comes, in whatever order: each step goes on from where the one before ended, and the gravest is the gravest. */
+/* Random event sequences: each reported transition starts from the state in which the previous one ended, and the highest alarm is
+   always the gravest one. */
 TEST(no_sequence_tells_a_contradiction)
 {
     static const uint32_t bad[12] = {
@@ -435,7 +438,7 @@ TEST(a_lost_device_is_one_alarm)
     hear_all(&s, 1, 50, QUALITY_GOOD);
     hear(&s, 1, 1, 1, QUALITY_GOOD);
     s.log[0] = 0;
-    hear(&s, 1, 2, 0, QUALITY_GOOD); /* PT is not suppressed by design */
+    hear(&s, 1, 2, 0, QUALITY_GOOD); /* PT is not suppressed by design: SD is 0 */
     s.log[0] = 0;
     hear_all(&s, 10, 50, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE);
     hear(&s, 10, 1, 1, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE);
@@ -448,7 +451,7 @@ TEST(a_lost_device_is_one_alarm)
     assert_told(&s, "15 a.LINK raise: normal > unacknowledged\n15 TT.BAD raise: normal > suppressed\n"
                     "17 PT.BAD raise: normal > suppressed\n");
     assert_int_equal(active_count(&s), 1);
-    assert_int_equal(s.told[0], ALARM_NONE); /* that it is bad, its marker shows by itself */
+    assert_int_equal(s.told[0], ALARM_NONE); /* the tag's marker already shows bad quality, so no alarm is reported */
     assert_int_equal(act_on_link(&s, 19, "a", ALARM_ACKNOWLEDGE), REFUSAL_NONE);
     assert_int_equal(alarms_find_named(s.alarms, "b", ALARM_LINK), -1);
     hear(&s, 20, 0, 50, QUALITY_GOOD);
@@ -456,13 +459,13 @@ TEST(a_lost_device_is_one_alarm)
                     "20 TT.BAD clear: suppressed > normal\n");
     tick(&s, 24);
     assert_told(&s, "");
-    tick(&s, 25); /* PT's own: its device gives readings, and it gives none for its stale time */
+    tick(&s, 25); /* PT has an alarm of its own: its device answers, but PT got no reading within its stale time */
     assert_told(&s, "25 PT.BAD call: suppressed > unacknowledged\n");
     assert_int_equal(s.told[1], ALARM_BAD);
     end(&s);
 }
 
-/* One after the other goes stale: what was said of the first is taken back into the one of the device, unless somebody has seen it. */
+/* Tags go stale one after the other: the first tag's alarm is merged into the device's alarm, unless somebody has already seen it. */
 TEST(those_that_went_before_are_carried_too)
 {
     for (int seen = 0; seen < 2; seen++) {
@@ -482,7 +485,8 @@ TEST(those_that_went_before_are_carried_too)
     }
 }
 
-/* A gateway that goes on answering for a controller that has stopped; and a sensor that fails while all others are read. */
+/* A gateway that keeps answering for a stopped controller raises one alarm; a sensor that fails while all others are read raises its
+   own. */
 TEST(a_stopped_controller_is_one_and_a_failed_sensor_its_own)
 {
     struct stage s;
@@ -492,7 +496,8 @@ TEST(a_stopped_controller_is_one_and_a_failed_sensor_its_own)
     hear(&s, 3, 0, 0, QUALITY_BAD_SENSOR_FAILURE);
     s.log[0] = 0;
     set_all(&s, QUALITY_BAD_DEVICE_FAILURE);
-    s.snapshot->readings[0].quality = QUALITY_BAD_SENSOR_FAILURE; /* as it was: a store tells the worst that it knew first */
+    s.snapshot->readings[0].quality = QUALITY_BAD_SENSOR_FAILURE; /* the reading keeps its old quality: a store reports the worst quality
+                                                                     that it knew first */
     tick(&s, 4);
     tick(&s, 9);
     assert_told(&s, "4 a.LINK raise: normal > active\n6 PT.BAD raise: normal > suppressed\n");
@@ -501,7 +506,7 @@ TEST(a_stopped_controller_is_one_and_a_failed_sensor_its_own)
     end(&s);
 }
 
-/* One of two units behind a gateway: an alarm of that unit, and nothing of the other. */
+/* One of two units behind a gateway fails: only that unit has an alarm. */
 TEST(units_are_devices_of_their_own)
 {
     struct stage s;
@@ -521,7 +526,8 @@ TEST(units_are_devices_of_their_own)
     end(&s);
 }
 
-/* A restart and a reload while a device is lost: nothing is raised anew, and those that it carried are still carried. */
+/* A restart and a reload while a device is lost: no alarm is raised again, and the alarms that the device's alarm carried are still
+   carried. */
 TEST(what_a_device_carries_outlives_us)
 {
     struct stage s, next;
@@ -554,7 +560,7 @@ TEST(what_a_device_carries_outlives_us)
     end(&s);
 }
 
-/* None of its tags has a limit: nothing else says that it is gone. */
+/* A device whose tags have no limits still gets an alarm when it is lost: nothing else would report the loss. */
 TEST(a_device_without_limits_has_an_alarm)
 {
     struct stage s = { .plant = NULL };
@@ -581,7 +587,7 @@ TEST(a_device_without_limits_has_an_alarm)
     end(&s);
 }
 
-/* A broker or a server that tells of changes only: its tags keep their last values while it is gone. */
+/* A broker or server that sends changes only: its tags keep their last values while it is gone, so the source itself needs an alarm. */
 TEST(a_lost_source_that_never_gets_stale_has_an_alarm)
 {
     struct stage s = { .plant = NULL };

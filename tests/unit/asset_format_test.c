@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Asset files: what is built is read back, and every kind of damage is refused with its reason. */
+/* Asset files: what the writer builds is read back, and every kind of damage is refused with its reason. */
 #include "protocol/asset_distance.h"
 #include "protocol/asset_format.h"
 
@@ -7,7 +7,7 @@
 #include <math.h>
 #include <xxhash.h>
 
-/* Two levels: two triangles of four vertices, then one triangle of the first three. One texture, two sensors. */
+/* Two levels: two triangles on four vertices, then one triangle on the first three. One texture, two sensors. */
 static const float positions[4][3] = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 1, 1, 0.5f } };
 static const float normals[4][3] = { { 0, 0, 1 }, { 0, 0, 1 }, { 0, 0, 1 }, { 0, 0, 1 } };
 static const float texcoords[4][2] = { { 0, 0 }, { 1, 0 }, { 0, 1 }, { 1, 1 } };
@@ -83,7 +83,7 @@ static struct asset_bytes build(const struct asset_parts *parts)
     return f;
 }
 
-/* The checksum made right again, the way the format's page words it. */
+/* Recomputes the checksum after a change, as the format's documentation defines it. */
 static void seal(struct asset_bytes *f)
 {
     f->header->checksum = 0;
@@ -188,7 +188,8 @@ TEST(the_layout_is_pinned)
     assert_int_equal(ASSET_SECTION_COUNT, 15);
     struct asset_bytes f = build(&good);
     assert_memory_equal(f.bytes, "PLCASSET\5\0\0\0\x68\1\0\0", 16);
-    assert_int_equal(XXH3_64bits(f.bytes + 360, f.size - 360), 0x111241323613397full); /* changes only with the format's version */
+    /* this value changes only with the version of the format */
+    assert_int_equal(XXH3_64bits(f.bytes + 360, f.size - 360), 0x111241323613397full);
     free(f.bytes);
 }
 
@@ -310,7 +311,8 @@ TEST(wrong_primitives_and_levels_are_refused)
     refused_sealed(&f, "primitive 0: index 4 names vertex 4 of 4");
     f = build(&good);
     ((uint32_t *)part(&f, ASSET_INDICES))[7] = 3;
-    refused_sealed(&f, "primitive 1: index 7 names vertex 3 of 3"); /* within the file, not within the level's prefix */
+    refused_sealed(&f, "primitive 1: index 7 names vertex 3 of 3"); /* the index is within the file but not within the level's prefix of
+                                                                       vertices */
     f = build(&good);
     ((struct asset_primitive *)part(&f, ASSET_PRIMITIVES))[1].first_index = UINT32_MAX - 2;
     refused_sealed(&f, "primitive 1: indices");
@@ -393,7 +395,7 @@ static float unit(uint32_t *seed)
     return (float)(*seed >> 8) / 16777216.0f;
 }
 
-/* Whether all of a cluster's triangles show their backs: asked of each, in doubles. */
+/* Reference: whether all triangles of a cluster face away from the eye; each triangle is tested in doubles. */
 static bool backs_only(const float (*p)[3], const uint32_t *v, uint32_t count, const float eye[3])
 {
     for (uint32_t i = 0; i < count; i += 3) {
@@ -411,7 +413,8 @@ static bool backs_only(const float (*p)[3], const uint32_t *v, uint32_t count, c
     return true;
 }
 
-/* Random fans that look about upwards, from random eyes: what is left out has only backs, and much that has only backs is left out. */
+/* Random fans that face roughly upwards, seen from random eyes: every culled cluster faces away, and most clusters that face away are
+   culled. */
 TEST(turned_away_means_only_backs)
 {
     uint32_t seed = 5, backs = 0, left_out = 0;
@@ -502,7 +505,8 @@ TEST(wrong_sensors_are_refused)
     refused_sealed(&f, "sensor 1: nearest vertex 4 of 4");
 }
 
-/* Every code is a distance, farther than the code before, and the nearest one to what lies up to half-way to its neighbours. */
+/* Every code decodes to a larger distance than the code before, and each distance gets the nearest code, up to half-way to the
+   neighbours. */
 TEST(distances_have_16_bits)
 {
     assert_true(asset_distance_of(0) == 0 && asset_distance_of(ASSET_DISTANCE_NONE) == INFINITY);
@@ -519,7 +523,7 @@ TEST(distances_have_16_bits)
     }
 }
 
-/* More vertices than a block has. */
+/* Uses more vertices than one block holds. */
 TEST(distances_lie_in_blocks)
 {
     enum { VERTICES = 600, SENSORS = 3 };

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Files that are replaced at once: what is seen meanwhile, what is left, and that nothing which is there is written through. */
+/* Atomic replacement of files: what readers see meanwhile, what a failure leaves, and that existing files and links are never written
+   through. */
 #include "base/files/atomic_file.h"
 
 #include "tests/support/test.h"
@@ -78,7 +79,7 @@ CASE(one_that_is_given_up_leaves_nothing)
     assert_nothing_beside(f);
 }
 
-/* Somebody put a link where it would be written, to what only this program may write. */
+/* An attacker puts a link at the temporary file's path, pointing to a file that only this program may write. */
 CASE(links_and_files_beside_are_not_written_through)
 {
     char *secret = temp_write_text(f->folder, "secret", "secret"), *link = mem_printf("%s.%ld.new", f->path, (long)getpid());

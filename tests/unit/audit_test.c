@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The audit trail: its chain, what was done to its file, rotation, a full disk, and messages of syslog. */
+/* The audit trail: its hash chain, detection of manipulated files, rotation, a full disk, and syslog messages. */
 #include "tests/support/test.h"
 #include <sys/resource.h>
 #include <signal.h>
@@ -30,7 +30,7 @@ static void clean(char *path)
     mem_free(path);
 }
 
-/* Appends so many lines, as one run of a daemon. Returns the finding (mem_free). */
+/* Appends `count` lines as one run of a daemon does. Returns the finding about the existing file, or NULL; free with mem_free. */
 static char *write_lines(const char *path, int count, size_t most_bytes)
 {
     struct audit_file file;
@@ -108,7 +108,7 @@ TEST(test_any_changed_byte)
     clean(dir);
 }
 
-/* Lines begin at these places; the last is the end. */
+/* starts[] receives the offset at which each line begins; the last entry is the end of the file. */
 static size_t starts_of(const char *bytes, size_t count, size_t starts[])
 {
     size_t found = 0;
@@ -131,7 +131,7 @@ TEST(test_lines_removed_and_moved)
     memcpy(copy + starts[2], bytes + starts[3], count - starts[3]);
     put(path, copy, count - (starts[3] - starts[2]));
     expect_fault(path, NULL, ":3: lines before it are missing");
-    /* the first: what is older may lie elsewhere, and is said */
+    /* the first line is gone: older lines may be in another file, so the report only mentions them */
     struct audit_chain known, none;
     struct audit_report report;
     audit_chain_init(&none);
@@ -142,7 +142,7 @@ TEST(test_lines_removed_and_moved)
     /* the last two */
     put(path, bytes, starts[3]);
     expect_fault(path, NULL, "the last 2 lines were removed");
-    /* and the head with them: only who kept a line elsewhere finds that */
+    /* the head file was removed too: only somebody who kept a line elsewhere can detect that */
     known = report.end;
     unlink(head_path);
     expect_fault(path, NULL, "nobody can say");
@@ -166,7 +166,7 @@ TEST(test_lines_removed_and_moved)
     clean(dir);
 }
 
-/* A daemon that starts on a trail that was cut says so, and the gap stays. */
+/* A daemon that starts with a truncated trail reports the gap, and the gap stays visible in the chain. */
 TEST(test_next_start)
 {
     char *dir = folder(), *path = mem_printf("%s/a", dir), *finding;
@@ -181,7 +181,7 @@ TEST(test_next_start)
     assert_non_null(strstr(finding, "lines were removed"));
     mem_free(finding);
     expect_fault(path, NULL, ":4: lines before it are missing");
-    /* half a line, after a crash */
+    /* half a line at the end, as a crash leaves it */
     put(path, bytes, count - 10);
     char *head_path = mem_printf("%s.head", path);
     struct audit_chain fourth;
@@ -209,7 +209,7 @@ TEST(test_rotation)
     expect_good(path, 3, 10);
     assert_null(write_lines(path, 1, 1000));
     expect_good(path, 3, 11);
-    /* by another program, while it is open */
+    /* another program moves the file away while it is open */
     char *moved = mem_printf("%s.000000000012", path);
     assert_int_equal(audit_file_open(&file, path, 1 << 20, &later), 0);
     assert_int_equal(audit_file_append(&file, &ENTRY, AT_US, &lines, &later), 0);
@@ -240,7 +240,7 @@ TEST(test_rotation)
     clean(dir);
 }
 
-/* A file that may not grow takes nothing of a line; once it may, nothing is missing. */
+/* If the file may not grow, no part of a line is written; once it may grow again, no line is missing. */
 TEST(test_full_disk)
 {
     char *dir = folder(), *path = mem_printf("%s/a", dir), *later;
@@ -269,7 +269,8 @@ TEST(test_full_disk)
     clean(dir);
 }
 
-/* A row of two fails and then succeeds, as on a disk that is full for a moment: whoever waits for the second row hears of the failure. */
+/* Writing a row fails and the next succeeds, as on a disk that is full for a moment: the caller waiting for the second row must still
+   get the error. */
 TEST(test_an_error_outlasts_the_next_success)
 {
     struct settling settling = { .queued = 0 };
@@ -284,7 +285,7 @@ TEST(test_an_error_outlasts_the_next_success)
     assert_int_equal(settling_state(&settling, &ticket, 0), 0);
 }
 
-/* What strangers send stands in a line, and stays one line of JSON. */
+/* Text from strangers appears in the line escaped, and the line stays one line of JSON. */
 TEST(test_strangers_texts)
 {
     struct audit_chain chain, read;
@@ -316,7 +317,7 @@ TEST(test_syslog_frame)
     text_finish(&out);
 }
 
-/* Threads record at once; all of it is there, in order. */
+/* Several threads record at once; every entry is in the file, in order. */
 TEST(test_daemon)
 {
     char *dir = folder(), *path = mem_printf("%s/a", dir);

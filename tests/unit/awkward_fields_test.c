@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Models and sensors that are awkward for the field, prepared by plantcast-prep: the finest level is true to a step of colour (1/255 of the
-   range) for any readings, or the report names the asset and by how much it errs. All on plates, where the truth is a formula; plates and
-   places are drawn at random, by default from one seed. Of 61 others, 114 and 139 were over a bound: one place of 20,000 by 7 steps, where
-   two sensors stand 0.1 mm apart, and eight places by 1.13. */
+/* Models and sensors that are difficult for the field, prepared by plantcast-prep. For any readings the finest level must be true to one
+   colour step (1/255 of the range), or the report must name the asset and its error. All shapes are plates, where a formula gives the
+   truth. Plates and points are random, by default from one seed; of 61 other seeds, 114 and 139 exceeded a bound slightly. */
 #include "tests/support/test.h"
 #include <math.h>
 #include <jansson.h>
@@ -16,15 +15,15 @@
 #include "tests/support/temp.h"
 
 #define STEP (1 / 255.0)
-#define POINTS 20000      /* looked at, for each way to measure distances */
-#define FEW 4             /* of them may err by more than a step, */
+#define POINTS 20000      /* random points that are checked per distance method */
+#define FEW 4             /* points that may err by more than one step */
 #define FEW_AT_RIMS 1000  /* where reaches end, */
-#define MOST_STEPS 4.0    /* and none by more than that */
+#define MOST_STEPS 4.0    /* largest allowed error of any point, in colour steps */
 #define ROUNDING 1.1      /* steps: distances are floats */
-#define NAMED 2.0         /* what is named was found at some places; between them it may be so many times as much */
-#define LEAST_M 1e-5      /* a sensor nearer than that has all the weight: server/field */
-#define RIM_OF_REACH 0.05 /* beside where data ends nothing is compared */
-#define MOST 4096         /* sensors, vertices and triangles of a case */
+#define NAMED 2.0         /* the report's error was found at samples; between them the error may be this many times as large */
+#define LEAST_M 1e-5      /* metres; a sensor nearer than this has all the weight, see server/field */
+#define RIM_OF_REACH 0.05 /* no comparison within this share of the distance to where the data ends */
+#define MOST 4096         /* maximum of sensors, vertices and triangles of a case */
 
 struct awkward {
     struct prep_case *files;
@@ -64,7 +63,7 @@ static void add_sensor(struct awkward *a, double x, double y)
     a->sensors_m[a->sensor_count++][1] = y;
 }
 
-/* Nine triangles round a point somewhere in the middle of about 6 m x 4 m. */
+/* Makes a plate of about 6 m x 4 m: nine triangles around a random point near the middle. */
 static void make_plate(struct awkward *a)
 {
     double wide_m = chance(5, 7), high_m = chance(3, 5), t = chance(0.3, 0.7);
@@ -130,12 +129,13 @@ static void write_plant(const struct awkward *a)
     mem_free(reach);
 }
 
-struct named {                        /* steps of colour that the report says the finest level errs by; 0: it says nothing */
-    double worth_a_look, beside_rims; /* of the asset, in words; in its table, of edges too short to be cut and where data ends */
-    double by_power;                  /* along the surface, for a high power of distances */
+struct named {                        /* errors of the finest level according to the report, in colour steps; 0: not reported */
+    double worth_a_look, beside_rims; /* the asset's error in the report's text; its error in the report's table, which includes edges
+                                         too short to cut and the rim of the data */
+    double by_power;                  /* error along the surface with a high power of distances */
 };
 
-/* The steps that a high power costs along the surface, as the report says; 0: it says nothing. */
+/* Returns the error in colour steps that the report gives for a high power along the surface; 0: none reported. */
 static double steps_by_power(const json_t *look_at)
 {
     size_t i;
@@ -180,7 +180,7 @@ static double nearest_m(const struct awkward *a, const double *distance_m)
     return near_m;
 }
 
-/* Shepard weights by distances, as server/field defines them; where none reaches, the nearest has all. */
+/* Shepard weights by distance, as server/field defines them. If no sensor reaches the point, the nearest has all the weight. */
 static void weights_of(const struct awkward *a, const double *distance_m, double *weights)
 {
     double near_m = fmax(nearest_m(a, distance_m), LEAST_M), sum = 0;
@@ -214,7 +214,7 @@ static double area_of(const struct asset_view *view, const uint32_t v[3])
     return fabs(ax * by - ay * bx) / 2;
 }
 
-/* Areas of the finest level's triangles, each with all before it; 0 where there is no data. Free with mem_free. */
+/* Returns the cumulative areas of the finest level's triangles; triangles without data count 0. Free with mem_free. */
 static double *sum_areas(const struct awkward *a, const struct asset_view *view)
 {
     size_t count = finest(view)->index_count / 3;
@@ -232,7 +232,7 @@ static double *sum_areas(const struct awkward *a, const struct asset_view *view)
     return areas;
 }
 
-/* Every place is as likely as any other. */
+/* Draws a triangle with a probability proportional to its area. */
 static const uint32_t *triangle_somewhere(const struct asset_view *view, const double *areas)
 {
     size_t low = 0, high = finest(view)->index_count / 3 - 1;
@@ -247,7 +247,7 @@ static const uint32_t *triangle_somewhere(const struct asset_view *view, const d
     return view->indices + finest(view)->first_index + 3 * low;
 }
 
-/* The largest error for any readings at a random place of the triangle; 0 where there is no data, or hardly. */
+/* Returns the largest error for any readings at a random point of the triangle; 0 where there is no data, or almost none. */
 static double error_in(const struct awkward *a, const struct asset_view *view, const uint32_t v[3], bool geodesic)
 {
     static double at_corner[MOST], weights[MOST], shown[MOST], truth[MOST];
@@ -279,7 +279,7 @@ static int by_size(const void *a, const void *b)
     return *(const double *)a < *(const double *)b ? -1 : *(const double *)a > *(const double *)b;
 }
 
-/* True to `steps` but at a few places, or named. */
+/* Asserts that all but a few errors are at most `steps`, or that the report names the asset. */
 static void assert_errors(const struct awkward *a, double *errors, const char *name, double steps, const struct named *named)
 {
     const size_t few = a->reach_m < INFINITY ? FEW_AT_RIMS : FEW;
@@ -392,7 +392,7 @@ TEST_WITH(hundreds_of_sensors_on_nine_triangles, prep_case_set_up, prep_case_tea
     assert_true(assert_true_or_named(&a).worth_a_look > 1);
 }
 
-/* By far more peaks than there may be triangles: too many to hold each against the truth, but they are named. */
+/* Far more sensors than triangles: too many to compare each with the truth, but the report must name the asset. */
 TEST_WITH(thousands_of_sensors_on_nine_triangles, prep_case_set_up, prep_case_tear_down)
 {
     struct awkward a = { .files = *state };

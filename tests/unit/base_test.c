@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Text, files, findings, memory, counters and the log. */
+/* Tests of text, files, diagnostics, memory, counters and the log. */
 #include "tests/support/test.h"
 #include <errno.h>
 #include <unistd.h>
@@ -28,7 +28,7 @@ TEST(text_grows)
     assert_int_equal(text.length, 0);
 }
 
-/* What somebody wrote is no program for whoever opens the file. */
+/* A cell that begins like a formula is escaped, so that no spreadsheet executes text that a user entered. */
 TEST(cells_are_no_formulas)
 {
     static const char *const cells[][2] = { { "=1+1", "'=1+1" },
@@ -68,7 +68,7 @@ TEST(files_are_read_whole_and_replaced_at_once)
     assert_memory_equal(text,
                         "12\0"
                         "456",
-                        7); /* one 0 byte more than the file */
+                        7); /* size with one 0 byte after the file's content */
     mem_free(text);
     assert_null(text_read_file(path, 5, &bytes));
     assert_int_equal(errno, EFBIG);
@@ -130,7 +130,7 @@ TEST(findings_come_in_the_order_of_the_text)
     assert_int_equal(diag.count, 0);
 }
 
-/* 64 lines that say the same of 64 tags are one; what is said three times, and every error, stays. */
+/* 64 equal warnings about 64 tags are printed as one line; a warning that occurs three times and every error stay separate. */
 TEST(many_warnings_alike_are_one)
 {
     struct diag diag = { 0 };
@@ -154,7 +154,7 @@ TEST(many_warnings_alike_are_one)
     diag_finish(&diag);
 }
 
-/* A list in which 2,000 rows are there twice is not 2,000 lines. */
+/* A list with 2,000 duplicate rows must not print 2,000 lines. */
 TEST(of_many_errors_alike_the_first_are_printed)
 {
     struct diag diag = { 0 }, copy = { 0 };

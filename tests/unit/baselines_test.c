@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Baselines: what is kept, what is replaced, what is forgotten, and that readers are not pulled away from under. */
+/* Baselines: which are kept, replaced and forgotten, and that a reader's baseline stays valid while it is held. */
 #include "value/baselines.h"
 
 #include "tests/support/test.h"
@@ -40,7 +40,7 @@ TEST(test_a_name_is_found_replaced_and_removed)
     assert_int_equal(baselines_find(baselines, "calm"), id);
     const struct snapshot *held = baselines_take(baselines, id);
     assert_int_equal(set(baselines, "calm", 5), id);
-    assert_true(held->readings[2].value == 4); /* whoever reads goes on reading what was */
+    assert_true(held->readings[2].value == 4); /* a reader that holds the old baseline still reads the old values */
     const struct snapshot *now = baselines_take(baselines, id);
     assert_true(now->readings[2].value == 5 && now->taken_utc_ns == 1005);
     assert_true(baselines_describe(baselines, id, &what) && what.taken_utc_ns == 1005);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Boxes that hang together, beside each compared with each. */
+/* Groups of overlapping boxes, compared with testing each pair of boxes. */
 #include "preprocess/levels/box_groups.h"
 
 #include "tests/support/test.h"
@@ -17,7 +17,7 @@ static double cpu_s(void)
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-/* In a plane across one axis, or in space; sizes up to `size`, some of them long or thin. */
+/* Fills random boxes, in a plane across axis `flat` or in space; sizes up to `size`, some boxes long or thin. */
 static void fill(struct part_box *boxes, size_t count, int flat, double size, uint64_t seed)
 {
     struct cad_random random = { .state = seed };
@@ -71,7 +71,7 @@ TEST(groups_are_those_of_all_pairs)
     }
 }
 
-/* Each compared with each takes 3.5 thousand million comparisons. */
+/* Testing each pair would take 3.5 thousand million comparisons. */
 TEST(a_plate_across_any_axis_takes_no_longer)
 {
     enum { COUNT = 83750 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The nearest place on triangles, against every triangle tried; equally near ones go by their numbers. */
+/* BVH queries compared with trying every triangle; equally near triangles are ordered by their numbers. */
 #include "tests/support/test.h"
 #include <math.h>
 
@@ -9,7 +9,7 @@
 #include "tests/support/cad.h"
 
 #define POINTS 400
-#define FAR 1e-9 /* of the coordinates: between places as near as that, rounding decides */
+#define FAR 1e-9 /* share of the coordinates; between points closer than this, rounding decides */
 
 static struct cad_random chance;
 
@@ -25,7 +25,8 @@ static double between(double low, double high)
     return low + (high - low) * cad_random(&chance);
 }
 
-/* A lattice of points, so that many triangles have a corner or an edge in common, and loose ones of all sizes and shapes. */
+/* Makes a mesh of triangles on a lattice of points, many of which share a corner or an edge, and loose triangles of all sizes and
+   shapes. */
 static void make_mesh(struct trimesh *mesh, size_t tri_count, double shift_m)
 {
     const uint32_t side = 6;
@@ -70,7 +71,7 @@ static double distance_to_edge(const double p[3], const double a[3], const doubl
     return vec_distance(p, at);
 }
 
-/* All three edges, and the plane if p is on the inner side of all of them. */
+/* Returns the distance from p to a triangle: to each of its three edges, and to its plane if p projects inside. */
 static double distance_plainly(const double p[3], const double at[3][3])
 {
     double n[3], found_m = INFINITY, ap[3];
@@ -88,7 +89,7 @@ static double distance_plainly(const double p[3], const double at[3][3])
     return inside ? fmin(found_m, fabs(vec_dot(ap, n)) / vec_length(n)) : found_m;
 }
 
-/* Triangles from well shaped to a ten-thousandth as high as long, blunt and sharp; points from beside them to a hundred times as far. */
+/* Triangles from well shaped to 10,000 times as long as high, blunt and acute; points from close by to a hundred sizes away. */
 TEST(test_nearest_of_a_triangle)
 {
     for (int i = 0; i < 200000; i++) {
@@ -113,7 +114,7 @@ TEST(test_nearest_of_a_triangle)
     }
 }
 
-/* Every triangle tried: the first of those that are nearest. */
+/* Reference: tries every triangle and returns the first of the nearest ones. */
 static uint32_t find_slowly(const struct trimesh *mesh, const double point[3], const uint32_t *third, double *distance_m)
 {
     uint32_t best = TRIMESH_NONE;
@@ -128,7 +129,7 @@ static uint32_t find_slowly(const struct trimesh *mesh, const double point[3], c
     return best;
 }
 
-/* Whatever is tried first, a triangle that there is is told, and one that is too far or not allowed is not taken for one. */
+/* Checks that bvh finds a triangle if one exists within the limit, whichever is tried first, and never one that is too far or excluded. */
 static void check_any(const struct trimesh *mesh, const struct bvh *bvh, const double point[3], const uint32_t *third, double limit_m,
                       size_t first, bool any)
 {
@@ -182,7 +183,8 @@ static void mark_hit(void *arg, uint32_t tri, double t)
     mark(arg, tri);
 }
 
-/* By Cramer's rule. 0 and 1: outside and inside by far, -1: so near to an edge, or to the origin, that rounding decides. */
+/* Ray against triangle by Cramer's rule. Returns 0 or 1 if the ray is clearly outside or inside; -1: so near to an edge or to the origin
+   that rounding decides. */
 static int meets_slowly(const struct trimesh *mesh, uint32_t tri, const double from[3], const double way[3])
 {
     const uint32_t *v = mesh->tris[tri];
@@ -211,7 +213,7 @@ static void check_ray(const struct trimesh *mesh, const struct bvh *bvh, const d
     mem_free(met);
 }
 
-/* Every triangle whose box comes that near is visited, once; one that is well beyond is not. */
+/* Every triangle whose box is within margin_m is visited exactly once; a triangle clearly beyond it is not visited. */
 static void check_box(const struct trimesh *mesh, const struct bvh *bvh, const double low[3], const double high[3], double margin_m)
 {
     char *met = mem_array(mesh->tri_count, 1);
@@ -257,8 +259,8 @@ TEST(test_what_rays_and_boxes_meet)
     assert_true(met[0] > 100000 && met[1] > 1000);
 }
 
-/* Counts that fill the nodes, just do not, and just exceed them; far from the origin, where floats are coarse; points far away, on
-   corners, and on planes. */
+/* Triangle counts that just fill, just do not fill and just exceed the nodes; meshes far from the origin, where floats are coarse;
+   points far away, on corners and on planes. */
 TEST(test_finds_the_nearest)
 {
     static const size_t counts[] = { 0, 1, 7, 8, 9, 63, 64, 65, 512, 513, 3000 };
@@ -285,7 +287,7 @@ TEST(test_finds_the_nearest)
         }
 }
 
-/* Points of a lattice, and over them: numbers that come out even. */
+/* Points on and above a lattice: many distances are exactly equal. */
 TEST(test_equally_near_ones_go_by_number)
 {
     struct trimesh mesh;
@@ -306,7 +308,7 @@ TEST(test_equally_near_ones_go_by_number)
     trimesh_finish(&mesh);
 }
 
-/* Along a side of a triangle and beside it: but for rounding they would never meet, and rounding puts them anywhere. */
+/* Segments along a side of a triangle: in exact arithmetic they never cross the triangle, but rounding moves them either way. */
 TEST(test_a_parallel_segment_crosses_nothing)
 {
     size_t crossed = 0;

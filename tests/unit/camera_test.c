@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Cameras: what they refuse, what they fit, and matrices against projection done by hand. */
+/* Cameras: which parameters they refuse, how they fit a box, and their matrices compared with projection by hand. */
 #include "scene/camera.h"
 
 #include "tests/support/test.h"
@@ -62,7 +62,8 @@ static void project(const double view[16], const double projection[16], const do
 
 TEST(a_point_lands_where_geometry_says)
 {
-    /* From (0, -10, 0) northwards: right is east, up is up. At 90 degrees the picture's edge is as far out as the point is away. */
+    /* The camera looks north from (0, -10, 0): right is east, up is up. At 90 degrees, the image edge is as far from the axis as the
+       point is from the eye. */
     const struct camera c = { .eye_m = { 0, -10, 0 }, .target_m = { 0, 0, 0 }, .up = { 0, 0, 1 }, .fov_deg = 90 };
     const double min[3] = { -5, -5, -5 }, max[3] = { 5, 5, 5 }, p[3] = { 4, -2, 2 };
     double view[16], projection[16], ndc[3], w;
@@ -74,7 +75,7 @@ TEST(a_point_lands_where_geometry_says)
     assert_true(ndc[2] > -1 && ndc[2] < 1);
 }
 
-/* Nothing grows smaller with distance; what lies behind the eye is in the picture too. */
+/* In an orthographic projection sizes do not shrink with distance, and points behind the eye are visible too. */
 TEST(an_orthographic_picture_keeps_sizes)
 {
     const struct camera c = { .eye_m = { 0, -10, 0 }, .target_m = { 0, 0, 0 }, .up = { 0, 0, 1 }, .height_m = 8 };
@@ -142,7 +143,7 @@ TEST(a_box_behind_or_without_depth_gives_numbers)
     assert_true(ndc[2] > -1 && ndc[2] < 1);
 }
 
-/* The box touches the margin on one axis at both ends, and nothing lies outside. */
+/* Asserts that the projected box touches the margin on both ends of one axis and that no corner lies outside. */
 static void assert_fits(enum axis up, const double min[3], const double max[3], double aspect)
 {
     struct camera c;
@@ -186,7 +187,7 @@ TEST(a_fit_is_from_the_raised_south_west)
     camera_fit_up(&c, AXIS_Z, min, max, 1.5);
     assert_true(c.eye_m[0] < 0 && c.eye_m[1] < 0 && c.eye_m[2] > 10);
     assert_float_equal(c.up[2], 1, 0);
-    camera_fit_up(&c, AXIS_Y, min, max, 1.5); /* north is -z there, so south is +z */
+    camera_fit_up(&c, AXIS_Y, min, max, 1.5); /* with y up, north is -z, so south is +z */
     assert_true(c.eye_m[0] < 0 && c.eye_m[1] > 10 && c.eye_m[2] > 10);
     assert_float_equal(c.up[1], 1, 0);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Encodings of short texts, as tag lists and drawings have them: how many of each kind are found. */
+/* Detection of the encoding of short texts in tag lists and drawings: counts how many of each kind are recognised. */
 #include "base/text/charset.h"
 
 #include "tests/support/test.h"
@@ -59,7 +59,7 @@ static const struct encoded_sample {
     { "UTF-16BE", { "Tag,Unit\nTT-1,°C\n", "Имя;Адрес\nНасос;40001\n", "名称,地址,单位\n泵,400001,℃\n" } },
 };
 
-/* A text that the choice shows as other letters is worse than one that is said to be unsure. */
+/* A text decoded to wrong letters is worse than one reported as unsure. */
 TEST(test_kinds)
 {
     size_t texts = 0, right = 0, unsure = 0, wrong = 0;
@@ -138,7 +138,7 @@ TEST(test_names)
     mem_free(text.utf8);
 }
 
-/* A byte that two encodings explain as well as each other. */
+/* A byte that two encodings explain equally well. */
 TEST(test_unsure)
 {
     struct charset_choice choice = charset_find("Gr\x94\xe1"
@@ -150,7 +150,8 @@ TEST(test_unsure)
     mem_free(said);
 }
 
-/* The encodings that write accents behind letters keep the last letter back: without it PT-10A would be PT-10, another tag. */
+/* Encodings that write an accent after its letter hold the last letter back until the end. Losing it would turn PT-10A into PT-10,
+   another tag. */
 TEST(test_last_letter)
 {
     static const struct {
@@ -159,7 +160,7 @@ TEST(test_last_letter)
         { "CP1258", "PT-10A", "PT-10A" },
         { "windows-1258", "PT-10A", "PT-10A" },
         { "CP1258", "b\xec", "b\xcc\x81" },
-        { "CP1258", "to\xec", "t\xc3\xb3" }, /* o and an acute accent: ó */
+        { "CP1258", "to\xec", "t\xc3\xb3" }, /* o followed by a combining acute accent gives ó */
         { "CP1255", "\xf9", "\xd7\xa9" },
         { "Windows-1251", "\xcd\xc0", "НА" },
     };

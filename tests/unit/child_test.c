@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Other programs: what they print, how they end, and what they may not do. */
+/* Child processes: their output, how they end, and what confinement forbids them. */
 #include "tests/support/test.h"
 #include <fcntl.h>
 #include <signal.h>
@@ -69,7 +69,7 @@ TEST(test_a_crash_is_told)
     assert_string_equal(why, "the script crashed (SIGSEGV)");
 }
 
-/* Also what it started in the background, which holds its pipes. */
+/* The timeout also ends background processes that the script started and that hold its pipes. */
 TEST(test_a_hang_ends)
 {
     assert_false(run("sleep 1000 & sleep 1000", 1, room));
@@ -204,10 +204,10 @@ TEST(test_each_abi_of_landlock_restricts_what_it_knows)
         assert_true(confine_lacks_with(abi, false, lacks));
         assert_non_null(strstr(lacks, "no seccomp: they can make any system call (needs CONFIG_SECCOMP_FILTER)"));
     }
-    assert_int_equal(confine_ruleset_of(-1).files, 0); /* the kernel's answer where Landlock is absent or switched off */
+    assert_int_equal(confine_ruleset_of(-1).files, 0); /* -1 is the kernel's answer where Landlock is absent or switched off */
 }
 
-/* Returns the folder of a new cgroup that is delegated as systemd does it; NULL: this machine has no cgroup v2 with limits of memory. */
+/* Returns the folder of a new cgroup, delegated as systemd does it; NULL if this machine has no cgroup v2 with memory limits. */
 static const char *delegated_cgroup(void)
 {
     static const char *const mounts[] = { "/sys/fs/cgroup", "/sys/fs/cgroup/unified" };
@@ -226,7 +226,7 @@ static const char *delegated_cgroup(void)
     return NULL;
 }
 
-/* In a process of the delegated cgroup. Returns the number of the check that failed, or 0. */
+/* Runs the checks in a process of the delegated cgroup. Returns the number of the check that failed, or 0. */
 static int use_cgroup(const char *service)
 {
     char name[128], *path;
@@ -236,7 +236,7 @@ static int use_cgroup(const char *service)
     if (!(procs = fopen(name, "w")) || fprintf(procs, "0") != 1 || fclose(procs) != 0)
         return 1;
     if (cgroup_create("reader", room, 8))
-        return 2; /* not before the daemon has its own */
+        return 2; /* no child group may exist before the daemon has its own */
     if (!cgroup_divide() || !cgroup_divide() || !(path = cgroup_create("reader", (size_t)64 << 20, 8)))
         return 3;
     int go[2];

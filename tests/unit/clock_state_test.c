@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the kernel says of its clock, as chrony and others leave it there. */
+/* Clock synchronisation as the kernel reports it (adjtimex), as chrony and other daemons set it. */
 #include "base/system/clock_state.h"
 
 #include "tests/support/test.h"
@@ -19,7 +19,7 @@ TEST(what_keeps_it_right_is_believed)
     assert_int_equal(clock_state_of(&timex, TIME_INS).leap_s, 1);
     timex.status = STA_PLL | STA_DEL;
     assert_int_equal(clock_state_of(&timex, TIME_DEL).leap_s, -1);
-    timex.status = STA_PLL | STA_INS; /* the leap second itself, and the one after it */
+    timex.status = STA_PLL | STA_INS; /* during the leap second itself, and in the second after it */
     assert_true(clock_state_of(&timex, TIME_OOP).set);
     assert_true(clock_state_of(&timex, TIME_WAIT).set);
 }
@@ -34,7 +34,7 @@ TEST(nobody_keeps_it_right)
     }
     timex.status = STA_PLL;
     assert_false(clock_state_of(&timex, TIME_ERROR).set);
-    assert_false(clock_state_of(&timex, -1).set); /* the call is not allowed here */
+    assert_false(clock_state_of(&timex, -1).set); /* the system call is not permitted here */
 }
 
 TEST(errors_are_told_in_steps)

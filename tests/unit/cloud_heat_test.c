@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Distances of the heat method on a point cloud, against what is known of spheres, tubes and plates; and what the method gets wrong. */
+/* Distances by the heat method on a point cloud, compared with formulas for spheres, tubes and plates; also shows where the method errs. */
 #include "tests/support/test.h"
 #include <math.h>
 
@@ -35,7 +35,7 @@ static void finish(struct made *made)
     mem_free(made->along_m);
 }
 
-/* Mean and worst difference to the true distance, as shares of the largest. */
+/* Asserts the mean and the largest difference from the true distance, as shares of the largest distance. */
 static void expect_errors(const struct made *made, const char *what, const double *truth, double mean, double worst)
 {
     double sum = 0, most = 0, largest_m = 0;
@@ -91,7 +91,7 @@ TEST(test_tube)
     finish(&made);
 }
 
-/* Two plates that do not touch. Nearer than the cloud can tell them apart, it goes through: the mesh does not. */
+/* Two plates that do not touch. If they are closer than the cloud resolves, heat passes between them, which the mesh prevents. */
 static void add_plate(struct cad *cad, double z_m)
 {
     uint32_t first = (uint32_t)cad->vertex_count;
@@ -119,14 +119,14 @@ TEST(test_reaches_through_what_is_thin)
         add_plate(&made.cad, gap_m);
         make(&made, (const double[3]){ 0, 0, 0 });
         assert_true(fabs((double)made.along_m[3] - sqrt(2)) < 0.03); /* across its own plate */
-        assert_int_equal(isinf((double)made.along_m[7]) != 0, !thin); /* to the other one there is no way */
+        assert_int_equal(isinf((double)made.along_m[7]) != 0, !thin); /* the other plate cannot be reached */
         assert_true(surface_distances(made.surface, (const double(*)[3])(double[3]){ 0, 0, 0 }, 1, along_m));
         assert_true(isinf((double)along_m[7]) || gap_m < surface_report(made.surface)->tolerance_m);
         finish(&made);
     }
 }
 
-/* A ribbon folded to and fro: along it is far longer than its box is wide, and heat must not be lost on the way. */
+/* A ribbon folded to and fro: the distance along it is far longer than its bounding box, and the heat must not be lost on the way. */
 TEST(test_serpentine)
 {
     struct made made = { 0 };
@@ -142,7 +142,7 @@ TEST(test_serpentine)
         p[2] = (float)(turn * gap_m + fmax(rest_m - leg_m, 0));
     }
     make(&made, (const double[3]){ 0, 0, 0 });
-    expect_errors(&made, "serpentine", truth, 0.04, 0.08); /* at 200 corners the cloud takes the short way */
+    expect_errors(&made, "serpentine", truth, 0.04, 0.08); /* at 200 corners the cloud cuts the corner */
     mem_free(truth);
     finish(&made);
 }

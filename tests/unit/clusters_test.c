@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Clusters of a torus of two materials: no triangle is lost, they are small, and views from outside leave out about what they may. */
+/* Clusters of a torus with two materials: no triangle is lost, clusters are small, and views from outside cull about the expected
+   number. */
 #include "preprocess/levels/clusters.h"
 
 #include "tests/support/test.h"
@@ -31,7 +32,7 @@ static void make_torus(struct geometry *g)
         }
 }
 
-/* As one level, whose positions change meanwhile. */
+/* Makes clusters of one level; g's positions change in the process. */
 static void make_clusters(struct geometry *g, struct workers *workers, struct clusters *clusters)
 {
     const struct level level = {
@@ -52,7 +53,7 @@ static int by_bytes(const void *a, const void *b)
     return memcmp(a, b, 3 * sizeof(uint32_t));
 }
 
-/* Triangles of a primitive in an order of their own: least corner first, sorted. */
+/* Returns a primitive's triangles in canonical order: each begins with its lowest corner, and the triangles are sorted. */
 static uint32_t *in_order(const struct geometry *g, const struct asset_primitive *p)
 {
     uint32_t *triangles = mem_array(p->index_count, sizeof(*triangles));
@@ -95,7 +96,7 @@ TEST(no_triangle_is_lost)
     workers_destroy(&workers);
 }
 
-/* From 20 m away, of a torus 8 m wide. */
+/* The camera is 20 m away from a torus 8 m wide. */
 TEST(views_leave_out_much)
 {
     struct geometry g;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* H.264 or JPEG: by what the network takes and what the processors have left, and not to and fro. */
+/* Choice between H.264 and JPEG by network throughput and free processor time, without switching to and fro. */
 #include "session/pacing/codec_choice.h"
 
 #include "tests/support/test.h"
@@ -9,7 +9,7 @@
 
 enum { FULL_HD = 1920 * 1080 };
 
-/* For so many seconds, asked ten times a second. Returns how often it changed. */
+/* Runs the choice ten times per second for `seconds`. Returns how often the codec changed. */
 static int run(struct codec_choice *choice, double mbyte_per_s, double cpu_free, int seconds, int64_t *now_ns)
 {
     int changes = 0;
@@ -25,7 +25,7 @@ TEST(h264_unless_there_is_plenty_and_no_processor)
 {
     struct codec_choice choice = { 0 };
     int64_t now_ns = NS_PER_S;
-    assert_int_equal(run(&choice, 0, 0, 60, &now_ns), 0);     /* nothing is known of the network */
+    assert_int_equal(run(&choice, 0, 0, 60, &now_ns), 0);     /* the network throughput is not known yet */
     assert_int_equal(run(&choice, 10, 0.02, 60, &now_ns), 0); /* 80 Mbit/s */
     assert_int_equal(run(&choice, 500, 0.5, 60, &now_ns), 0);
     assert_false(choice.jpeg);

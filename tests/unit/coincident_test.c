@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which of two assets is seen where their faces coincide, and that picking says the same. */
+/* Which of two assets with coincident faces is visible, and that picking agrees with the picture. */
 #include "scene/coincident.h"
 
 #include "tests/support/test.h"
@@ -40,7 +40,7 @@ TEST(those_with_sensors_are_seen)
     toy_destroy(&toy);
 }
 
-/* On one plane side by side, through each other, close before each other: depth alone decides. */
+/* Assets side by side on one plane, intersecting, or close before each other do not coincide: depth alone decides. */
 TEST(others_do_not_coincide)
 {
     static const double low[3][3] = { { 1, 0, 0 }, { 0.5, 0.5, 0.5 }, { 0.2, 0.2, 0.2 } };
@@ -56,7 +56,7 @@ TEST(others_do_not_coincide)
     }
 }
 
-/* Rays from all over onto the face of both: whichever file order the loop has, the one in front is hit. */
+/* Rays from many directions onto the shared face: whatever the order in the loop, the asset in front is hit. */
 TEST(rays_hit_what_is_seen)
 {
     for (int parallel = 0; parallel < 2; parallel++)

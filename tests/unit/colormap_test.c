@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The colour maps as tables and as colours. */
+/* Tests of the colour maps as tables and as colours. */
 #include "tests/support/test.h"
 #include <math.h>
 
@@ -85,7 +85,7 @@ TEST(test_tables_are_whole)
     assert_memory_equal(colormap_at(2)->rgb[0], viridis_first, 3);
     assert_memory_equal(colormap_at(2)->rgb[255], viridis_last, 3);
     assert_memory_equal(colormap_at(5)->rgb[255], turbo_last, 3);
-    for (size_t i = 0; i < colormap_count(); i++) /* no row missing, none out of order: neighbours are near */
+    for (size_t i = 0; i < colormap_count(); i++) /* rows are complete and in order: neighbours differ little */
         for (int row = 1; row < 256; row++)
             for (int k = 0; k < 3; k++)
                 assert_true(abs(colormap_at(i)->rgb[row][k] - colormap_at(i)->rgb[row - 1][k]) <= 8);
@@ -136,11 +136,11 @@ TEST(test_maps_for_relief_leave_room_for_shading)
             lab[0] += 7 * step;
             linear_from_lab(lab, c);
             for (int k = 0; k < 3; k++)
-                assert_true(c[k] > -0.004 && c[k] < 1.01); /* a table of 8 bits is off by that much */
+                assert_true(c[k] > -0.004 && c[k] < 1.01); /* rounding error of an 8-bit table */
         }
 }
 
-/* What is meant by "shading must not be read as value": L* moved by up to 7, read back by the nearest legend colour. */
+/* Tests that shading is not read as value: L* is changed by up to 7 and the value is read back from the nearest legend colour. */
 TEST(test_relief_is_read_back_through_shading)
 {
     const struct colormap *map = colormap_at(0);
@@ -176,7 +176,7 @@ TEST(test_maps_can_be_added)
     uint8_t rgb[256][3];
     size_t before = colormap_count();
     for (int i = 0; i < 256; i++)
-        memcpy(rgb[i], (uint8_t[]){ 20, (uint8_t)i, 20 }, 3); /* darkness is value: not to be shaded much */
+        memcpy(rgb[i], (uint8_t[]){ 20, (uint8_t)i, 20 }, 3); /* in this map darkness encodes the value, so shading must be limited */
     int added = colormap_add("mine", (const uint8_t(*)[3])rgb);
     assert_int_equal(added, before);
     assert_int_equal(colormap_find("mine"), added);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Bodies that touch face to face, and bodies that pass through themselves: distances against an exact solver on their union's surface. */
+/* Bodies that touch face to face and bodies that pass through themselves: distances compared with an exact solver on the surface of
+   their union. */
 #include "surface/surface.h"
 
 #include "tests/support/test.h"
@@ -42,7 +43,7 @@ static void move(struct cad *cad, double turn_rad, double x, double y, double z)
 struct outer { /* the union's surface */
     struct oracle_mesh mesh;
     double *distances, source[3];
-    long *of_vertex; /* of the tested shape: the outer surface's vertex at its place; -1: it is covered */
+    long *of_vertex; /* by vertex of the tested shape: the outer surface's vertex at its position; -1: covered */
 };
 
 static long same_place(const struct oracle_mesh *mesh, const float p[3])
@@ -81,7 +82,7 @@ static void outer_finish(struct outer *outer)
     mem_free(outer->of_vertex);
 }
 
-/* Breaks the shape in one way, turns it, and holds what comes out against the truth. Returns how many of its vertices are hidden. */
+/* Breaks the shape with `fault`, turns it, and compares the distances with the truth. Returns how many of its vertices are hidden. */
 static size_t score(const char *name, const struct cad *shape, const struct outer *outer, enum cad_fault fault)
 {
     struct cad broken;
@@ -114,7 +115,7 @@ static size_t score(const char *name, const struct cad *shape, const struct oute
                   100 * mean / count / largest, 100 * worst / largest, hidden, surface_report(surface)->components_after);
     assert_true(mean / count / largest <= MEAN_MAX);
     assert_true(worst / largest <= WORST_MAX);
-    if (fault != CAD_FINS) /* some fins end up between the bodies, alone */
+    if (fault != CAD_FINS) /* some fins lie between the bodies, unconnected */
         assert_int_equal(surface_report(surface)->components_after, 1);
     surface_destroy(&surface);
     cad_finish(&broken);
@@ -131,7 +132,7 @@ static size_t covered(const struct outer *outer, const struct cad *shape)
     return count;
 }
 
-/* As many corners of triangles are at covered vertices: soup has a vertex for each. */
+/* Counts the triangle corners at covered vertices: in a triangle soup each corner is a vertex of its own. */
 static size_t covered_corners(const struct outer *outer, const struct cad *shape)
 {
     size_t count = 0;
@@ -140,13 +141,14 @@ static size_t covered_corners(const struct outer *outer, const struct cad *shape
     return count;
 }
 
-/* Clean, and with each fault; by default with one of them, of each pair another. */
+/* Whether to test this fault: the default run takes the clean shape and one fault per pair, a different one for each pair. */
 static bool is_tried(int row, int fault)
 {
     return fault == CAD_CLEAN || sweep_takes(row, fault, 5);
 }
 
-/* Two bodies, with a gap in z between the tested ones: the truth has none. Vertices within are hidden, those outside are not. */
+/* Tests two bodies with a gap in z between them; the truth is computed without the gap. Vertices on the inside must be hidden, vertices
+   outside must not. */
 static void test_pair(const char *name, int row, const struct cad *below, const struct cad *above, double gap)
 {
     struct cad both = { 0 };
@@ -167,7 +169,7 @@ static void test_pair(const char *name, int row, const struct cad *below, const 
     cad_finish(&both);
 }
 
-/* The solver takes minutes under a sanitizer, and is not what they watch. */
+/* Skips the test under a sanitizer: the solver would take minutes and is not the code under test. */
 static void skip_if_watched(void)
 {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -210,8 +212,8 @@ TEST(a_flange_lies_on_a_plate)
     cad_finish(&pipe);
 }
 
-/* A gap of the one runs over a gap of the other, and a vertex at it lies just on the other's edge: as they were drawn when such a vertex
-   was set into that edge, and both bodies became one. */
+/* A gap in one body overlaps a gap in the other, and a vertex at the gap lies just on the other body's edge. Inserting the vertex into
+   that edge would join the two bodies. The rows are seeds that once failed so. */
 TEST(gaps_of_a_flange_and_its_plate_run_over_each_other)
 {
     static const struct {
@@ -246,7 +248,7 @@ static void make_boxes(struct cad *below, struct cad *above, bool stacked)
     move(above, 0, 0, 0, (double)(10 * 0.05f));
 }
 
-/* The same vertices on both sides, so that one face is left of two, or two with other diagonals. */
+/* Both sides of the contact have the same vertices: one of two faces is left, or two with different diagonals. */
 TEST(boxes_are_stacked)
 {
     struct cad below = { 0 }, above = { 0 };
@@ -257,7 +259,7 @@ TEST(boxes_are_stacked)
     cad_finish(&above);
 }
 
-/* They share three edges of the step, with the same vertices. */
+/* The boxes share three edges of the step, with the same vertices. */
 TEST(a_box_stands_at_the_edge_of_another)
 {
     struct cad below = { 0 }, above = { 0 };
@@ -297,8 +299,8 @@ static void score_drawn(const char *name, int row, const struct contact_case *dr
     chance = was;
 }
 
-/* As they were drawn when a slit stayed at the rim: along it; behind a few faces in it that nobody asked after; and when a gap's edge below
-   fitted the one above and closed with that, so that nothing at all was hidden. */
+/* Seeds where a slit at the rim once stayed open: along the rim; behind faces in the rim that no query visited; and where the edge of a
+   gap below fitted the one above and closed with it, so that nothing was hidden. */
 TEST(gaps_at_a_rim_that_boxes_share)
 {
     static const struct contact_case drawn[] = { { false, 4572757393123136864u, 9974078172818400498u },
@@ -309,8 +311,8 @@ TEST(gaps_at_a_rim_that_boxes_share)
     score_drawn("boxes, gaps at their rim", 0, drawn, sizeof(drawn) / sizeof(drawn[0]), CAD_GAPS);
 }
 
-/* As they were drawn when both bodies were cut on one side of an edge, each elsewhere: the two vertices closed with each other, and the
-   edge on the other side stayed open. Last: three faces of four were, each elsewhere, and each vertex was set into one other only. */
+/* Seeds where both bodies were cut on one side of an edge at different points: the two vertices were joined and the other side of the
+   edge stayed open. Last row: three of four faces were cut at different points, and each vertex was inserted into only one other face. */
 TEST(vertices_hang_in_an_edge_that_boxes_share)
 {
     static const struct contact_case drawn[] = { { false, 16412639206824042380u, 3835865350566676432u },
@@ -321,8 +323,8 @@ TEST(vertices_hang_in_an_edge_that_boxes_share)
     score_drawn("boxes, two in one edge", 1, drawn, sizeof(drawn) / sizeof(drawn[0]), CAD_HANGING);
 }
 
-/* Whatever hangs where, nothing stays open: drawn often, without the solver. In the rows, vertices are nearer to each other than what
-   fits exactly, or than the tolerance. */
+/* No edge may stay open wherever T-junctions lie; tested with many random cases, without the solver. In the listed cases vertices are
+   closer together than an exact match or the tolerance. */
 TEST(nothing_stays_open_where_vertices_hang)
 {
     enum { FOUND = 3, DRAWN = 8 };
@@ -367,7 +369,7 @@ TEST(a_tube_passes_through_itself)
 {
     struct cad tube = { 0 }, up = { 0 }, down = { 0 };
     struct outer outer;
-    double radius = 0.12 + 0.05 * cad_random(&chance); /* its sharpest bend has 0.178: more would fold there */
+    double radius = 0.12 + 0.05 * cad_random(&chance); /* the sharpest bend has a radius of 0.178: a thicker tube would fold there */
     skip_if_watched();
     cad_eight(&tube, &chance, 150, 36, radius, 0);
     cad_eight(&up, &chance, 150, 36, radius, 1);

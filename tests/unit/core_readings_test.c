@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Readings between core and renderer: only what changed, to the bit; and nothing is believed that cannot be. */
+/* Live readings sent from a core to a renderer: only changes are sent, exact to the bit; invalid messages are refused. */
 #include "tests/support/test.h"
 #include <math.h>
 
@@ -24,11 +24,11 @@ static struct snapshot *make_snapshot(void)
     return snapshot;
 }
 
-/* From a core's snapshot to what a renderer has read. */
+/* Path of readings from a core's snapshot to a renderer's store. */
 struct readings_path {
     struct snapshot *snapshot;
     struct core_sent sent;
-    struct text text; /* the message that was written last */
+    struct text text; /* text of the message that was written last */
     struct mirrored got[TAGS];
     struct core_readings readings;
 };
@@ -102,8 +102,8 @@ TEST(nonsense_is_refused)
     way_finish(&way);
 }
 
-/* What waited on its way is older by that. */
-#define DRIFT_NS (S / 500) /* that clocks may have drifted apart between two messages */
+/* Asserts that a reading delayed on its way arrives older by late_ns. */
+#define DRIFT_NS (S / 500) /* nanoseconds that two clocks may drift apart between messages */
 
 static void assert_late(struct readings_path *way, int64_t core_ns, int64_t now_ns, int64_t late_ns)
 {
@@ -120,18 +120,19 @@ TEST(late_readings_are_older)
 {
     struct readings_path way;
     way_init(&way);
-    for (int i = 0; i < 3; i++) { /* each a second after the one before; the second takes 5 s longer */
+    for (int i = 0; i < 3; i++) { /* one message per second; the second one is delayed by 5 s */
         int64_t late_ns = i == 1 ? 5 * S : 0;
         assert_late(&way, (50 + i) * S, (1000 + i) * S + late_ns, late_ns);
     }
-    for (int i = 0; i < 100; i++) { /* 40 hours, while our clock is faster by 50 of a million */
+    for (int i = 0; i < 100; i++) { /* 40 hours in which our clock is fast by 50 ppm */
         int64_t passed_ns = (3 + 1440 * (int64_t)i) * S;
         assert_late(&way, 50 * S + passed_ns, 1000 * S + passed_ns + passed_ns / 20000, 0);
     }
     way_finish(&way);
 }
 
-/* What is shown there is shown here, whatever its age; a lost link makes all Bad, also what is told again unchanged afterwards. */
+/* The renderer's store shows what the core's store shows, whatever its age. A lost link makes all readings Bad, including those sent
+   again unchanged afterwards. */
 TEST(a_store_shows_what_the_other_shows)
 {
     struct plant *plant = plant_by_hand_create(2);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Samples from a core to the one that stands by: each, in order, to the bit; and nothing is believed that cannot be. */
+/* Samples sent from a core to its standby: every one, in order, exact to the bit; invalid messages are refused. */
 #include "tests/support/test.h"
 #include <math.h>
 
@@ -17,7 +17,7 @@ static const char *read_text(const struct text *text, struct sample_event **out,
     return core_samples_read(out, count, TAGS, text->at, text->length, 77);
 }
 
-/* A message of two samples, as the store told of them. */
+/* Makes a message of two samples as the store reports them. */
 static struct text make_message(void)
 {
     struct plant *plant = plant_by_hand_create(TAGS);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Faces that may pass through others: of every crossing that sampled pieces show, and few besides. */
+/* Faces that may cross other faces: every crossing found by sampling must be listed, and few other faces. */
 #include "surface/repair/crossing_faces.h"
 
 #include "tests/support/test.h"
@@ -52,7 +52,7 @@ static void model_finish(struct crossing_model *model)
     trimesh_finish(&model->mesh);
 }
 
-/* A pipe that winds up by rise_m at each turn of 1 m in radius: it passes through itself where that is less than its own width. */
+/* A pipe wound into a coil of radius 1 m that rises rise_m per turn: it intersects itself where the rise is less than its width. */
 static void make_coil(struct crossing_model *model, double radius_m, double rise_m, double turns)
 {
     *model = (struct crossing_model){ 0 };
@@ -97,7 +97,7 @@ TEST(a_pipe_that_winds_past_itself_has_none)
 TEST(a_pipe_that_winds_into_itself_has_some)
 {
     struct crossing_model *model = mem_new(sizeof(*model));
-    make_coil(model, 0.2, 0.3, 1.25); /* the last quarter is in the first */
+    make_coil(model, 0.2, 0.3, 1.25); /* the last quarter turn overlaps the first */
     char *crosses = crossing_faces_find(&model->parts);
     assert_in_range(count_flagged(model, crosses), 20, model->triangle_count / 2);
     for (size_t t = model->triangle_count * 2 / 5; t < model->triangle_count * 3 / 5; t++)
@@ -128,7 +128,7 @@ static bool piece_crosses(const struct crossing_model *model, const uint32_t edg
     return true;
 }
 
-/* Few points and many triangles between them: these meet at corners and along sides, lie on each other and pass through each other. */
+/* Many triangles on few points: triangles meet at corners and along sides, overlap, and cross each other. */
 static void make_tangle(struct crossing_model *model, uint32_t points, double flatness)
 {
     *model = (struct crossing_model){ .vertex_count = points, .triangle_count = (size_t)between(4, MOST_FACES) };
@@ -140,7 +140,7 @@ static void make_tangle(struct crossing_model *model, uint32_t points, double fl
     model_join(model, 1e-3);
 }
 
-/* Counts the sampled pieces that edges of a face's own pieces pass through. */
+/* Counts the sampled pieces that are crossed by edges of a piece of another face. */
 static size_t count_crossings(const struct crossing_model *model, size_t piece)
 {
     const struct trimesh *mesh = &model->mesh;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which markers are drawn, by the rule of protocol/LABELS.md, against the vectors that the browser's are tested with too. */
+/* Which markers are drawn, by the rule of protocol/LABELS.md; uses the same test vectors as the browser's implementation. */
 #include "render/overlay/crowd.h"
 
 #include "tests/support/test.h"
@@ -58,7 +58,7 @@ TEST(draws_what_the_vectors_say)
     assert_true(count >= 4);
 }
 
-/* Also where they lie on one another, and where there are none. */
+/* Also with all markers in one place, and with none. */
 TEST(draws_the_first_of_thousands)
 {
     enum { COUNT = 4096 };

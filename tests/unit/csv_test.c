@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* CSV rows and the place of every cell. */
+/* CSV parser: rows and the position of every cell. */
 #include "plant/parse/csv.h"
 
 #include "tests/support/test.h"
@@ -53,7 +53,7 @@ static void open_text(struct csv_fixture *f, const char *text)
     open_bytes(f, text, strlen(text));
 }
 
-/* The next row, cells joined by |. */
+/* Asserts the next row; `joined` has its cells separated by |. */
 static void assert_row(struct csv_fixture *f, const char *joined)
 {
     char got[1000] = "";
@@ -94,7 +94,7 @@ CASE(quotes_hold_separators_quotes_and_line_breaks)
     assert_row(f, "x,y|say \"hi\"|two\nlines");
     assert_int_equal(csv_cell_line(&f->csv, 2), 2);
     assert_int_equal(csv_cell_column(&f->csv, 2), 21);
-    assert_row(f, "3\" pipe||  kept  "); /* a quote inside a cell that does not begin with one is only a quote */
+    assert_row(f, "3\" pipe||  kept  "); /* a quote inside a cell that does not begin with a quote is literal */
     assert_int_equal(csv_cell_line(&f->csv, 0), 4);
     assert_int_equal(csv_cell_column(&f->csv, 0), 3);
     assert_row(f, "last||end");
@@ -122,7 +122,7 @@ CASE(blank_rows_are_passed_over)
     open_text(f, "\n  \nA,B,,\n\n,,,\n1,2,,,,\n \r\n3\n\n");
     assert_int_equal(f->csv.header.count, 2);
     assert_int_equal(f->csv.header.cells[0].line, 3);
-    assert_row(f, "1|2||||"); /* surplus cells that are blank are a spreadsheet's, not an error */
+    assert_row(f, "1|2||||"); /* spreadsheets leave surplus blank cells: no error */
     assert_int_equal(csv_cell_line(&f->csv, 0), 6);
     assert_row(f, "3");
     assert_string_equal(csv_text(&f->csv, 1), "");
@@ -150,11 +150,11 @@ CASE(mistakes_have_a_place)
     assert_one_error(f, 2, 3, "byte 0x00 is not UTF-8 text");
     open_text(f, "A,B\n1,\xED\xA0\x80\n"); /* a surrogate */
     assert_one_error(f, 2, 3, "byte 0xED is not UTF-8 text");
-    open_text(f, "A,B\n1,\xC0\xAF\n"); /* longer than it needs to be */
+    open_text(f, "A,B\n1,\xC0\xAF\n"); /* a longer encoding than UTF-8 allows */
     assert_one_error(f, 2, 3, "byte 0xC0 is not UTF-8 text");
 }
 
-/* One line for a file that is something else, ten for a text in another encoding. */
+/* A file that is no table gives one error; a text in another encoding gives at most ten. */
 CASE(what_is_no_table_is_said_once)
 {
     static const struct {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* SQLite files in a format of ours: versions, damage, errors. */
+/* SQLite files in our own formats: versions, damage, errors. */
 #include "tests/support/test.h"
 
 #include <errno.h>
@@ -125,7 +125,7 @@ CASE(a_damaged_file_is_set_aside)
     mem_free(look);
 }
 
-/* A statement that cannot be prepared is bound to and stepped as others are: the error comes out of the step. */
+/* A statement that cannot be prepared accepts binding like any other; stepping it returns the error. */
 CASE(a_wrong_statement_is_an_error_when_it_is_stepped)
 {
     write_once(s, &first);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Debug views: GLB files by the rules of glTF 2.0, showing what the report counts. */
+/* Debug views: the GLB files follow the rules of glTF 2.0 and show what the report counts. */
 #include "tests/support/test.h"
 #include <math.h>
 #include <sys/stat.h>
@@ -62,7 +62,7 @@ static uint32_t number_at(const struct text *file, size_t at)
     return number;
 }
 
-/* Header and chunks, as glTF 2.0 lays them out in a binary file. */
+/* Parses header and chunks of a GLB file as glTF 2.0 defines them. */
 static void glb_open(struct parsed_glb *glb, struct prep_case *c, const char *name)
 {
     *glb = (struct parsed_glb){ 0 };
@@ -123,7 +123,7 @@ static void check_positions(const struct parsed_glb *glb, const json_t *accessor
     }
 }
 
-/* What the specification asks of each primitive, accessor and view. */
+/* Checks the specification's rules for each primitive, accessor and buffer view. */
 static void check_rules(const struct parsed_glb *glb)
 {
     const json_t *meshes = json_object_get(glb->root, "meshes");
@@ -154,7 +154,7 @@ static void check_rules(const struct parsed_glb *glb)
     }
 }
 
-/* The primitive of the node whose name begins so, NULL: there is none. */
+/* Returns the first primitive of the node whose name begins with `name`, or NULL. */
 static const json_t *node_shape(const struct parsed_glb *glb, const char *name)
 {
     const json_t *nodes = json_object_get(glb->root, "nodes");
@@ -190,7 +190,8 @@ CASE(views_follow_the_rules)
         struct model_source source;
         struct gltf_model model;
         char why[MODEL_WHY_BYTES], *path = temp_path(c->folder, names[i]);
-        assert_true(model_source_open(&source, path, why)); /* our own loader takes it, and knows what is no triangle */
+        assert_true(model_source_open(&source, path, why)); /* our own loader reads the file and reports primitives that are not
+                                                               triangles */
         if (!gltf_load(&model, &source, why))
             fail_msg("%s: %s", path, why);
         assert_true(model.skipped_points == 2 || model.skipped_points == 1);
@@ -213,11 +214,11 @@ CASE(bridges_and_points_are_those_of_the_report)
     assert_int_equal(json_integer_value(json_object_get(node_shape(&glb, "points added"), "mode")), 0);
     assert_true(count_of(&glb, "points added") > 5000);
     assert_true(count_of(&glb, "points of the model") <= 16);
-    const json_t *positions = positions_of(&glb, node_shape(&glb, "bridges")); /* the asset's origin is its middle, 1.0 m along x */
+    const json_t *positions = positions_of(&glb, node_shape(&glb, "bridges")); /* the asset's origin is its centre, 1.0 m along x */
     assert_float_equal(prep_case_number(positions, "min.0"), 0, 1e-6);
     assert_float_equal(prep_case_number(positions, "max.0"), 0.0002, 1e-6);
     assert_null(node_shape(&glb, "unreachable"));
-    assert_non_null(node_shape(&glb, "hidden")); /* the boxes cover each other there */
+    assert_non_null(node_shape(&glb, "hidden")); /* the boxes cover each other at this place */
     glb_close(&glb);
     json_decref(report);
 }
@@ -227,12 +228,14 @@ CASE(what_cannot_be_reached_is_shown)
     struct parsed_glb glb;
     prep_case_expect(c, "$PLANT --debug-view", 0);
     glb_open(&glb, c, "plant.debug/APART.glb");
-    const json_t *positions = positions_of(&glb, node_shape(&glb, "unreachable")); /* the second box: 11.5 to 12, less 11 */
+    /* the second box spans 11.5 to 12 in the model; the asset's origin is at 11 */
+    const json_t *positions = positions_of(&glb, node_shape(&glb, "unreachable"));
     assert_float_equal(prep_case_number(positions, "min.0"), 0.5, 1e-6);
     assert_float_equal(prep_case_number(positions, "max.0"), 1, 1e-6);
     glb_close(&glb);
     glb_open(&glb, c, "plant.debug/INSIDE.glb");
-    positions = positions_of(&glb, node_shape(&glb, "hidden")); /* 21 to 22, less 22; 1 to 2 in height, less 2 */
+    positions = positions_of(&glb, node_shape(&glb, "hidden")); /* spans 21 to 22 along x with the origin at 22, and 1 to 2 in height
+                                                                   with the origin at 2 */
     assert_float_equal(prep_case_number(positions, "min.0"), -1, 1e-6);
     assert_float_equal(prep_case_number(positions, "max.1"), 0, 1e-6);
     glb_close(&glb);
@@ -242,7 +245,7 @@ CASE(what_cannot_be_reached_is_shown)
     glb_close(&glb);
 }
 
-/* Dark where the sensor is, bright at the other end: the ends of the colour map. */
+/* The colour at the sensor is dark and at the far end bright: the two ends of the colour map. */
 CASE(colors_follow_the_distance)
 {
     struct parsed_glb glb;
@@ -255,10 +258,10 @@ CASE(colors_follow_the_distance)
         const float(*places)[3] = elements(&glb, positions, 12);
         const uint16_t(*rgba)[4] = elements(&glb, colors, 8);
         double near_x = far ? 1 : -0.5,
-               near_y = far ? 0 : 0.5; /* T-GAP2 in the middle of the end at x = 2, T-GAP on top of the first box */
+               near_y = far ? 0 : 0.5; /* T-GAP2 is in the middle of the end at x = 2, T-GAP on top of the first box */
         for (size_t i = 0; i < (size_t)json_integer_value(json_object_get(positions, "count")); i++) {
             double dx = (double)places[i][0] - near_x, dy = (double)places[i][1] - near_y, dz = (double)places[i][2];
-            if (sqrt(dx * dx + dy * dy + dz * dz) < 0.05) /* the map begins in dark purple */
+            if (sqrt(dx * dx + dy * dy + dz * dz) < 0.05) /* the colour map begins with dark purple */
                 assert_true(rgba[i][2] > rgba[i][1] && rgba[i][1] < 3000);
             if (far && (double)places[i][0] < -0.99) /* and ends in yellow */
                 assert_true(rgba[i][1] > 10000 && rgba[i][1] > 2 * rgba[i][2]);

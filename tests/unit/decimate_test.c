@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Taking points out where a surface is flat: its shape, what is hidden of it and the borders of its parts stay. */
+/* Decimation of flat regions: the shape, the hidden parts and the borders between parts must stay. */
 #include "surface/mesh/decimate.h"
 
 #include "tests/support/test.h"
@@ -11,7 +11,7 @@
 #define ADDED 300
 #define WITHIN_M 1e-7
 #define MOST_TRIS (4 * ADDED + 8)
-#define MOST_LEFT (ADDED / 2) /* many triangles are so thin from the first that no neighbour is any good */
+#define MOST_LEFT (ADDED / 2) /* many triangles are so thin from the start that no neighbour can absorb them */
 
 static struct cad_random chance;
 
@@ -27,7 +27,7 @@ static int set_up(void **state)
     return 0;
 }
 
-/* Two triangles with a side in common, from (0, 0, 0) to (1, 1, 0): to its right the corner (1, 0, 0), to its left (0, 1, lift_m). */
+/* Two triangles that share the diagonal from (0, 0, 0) to (1, 1, 0): the corner (1, 0, 0) on its right, (0, 1, lift_m) on its left. */
 struct flat_plate {
     struct trimesh mesh;
     uint32_t part[MOST_TRIS], plane[2];
@@ -52,7 +52,7 @@ static void set_corner(struct flat_plate *plate, size_t tri, int corner, uint32_
     plate->mesh.tris[tri][corner] = point;
 }
 
-/* A piece of a triangle with another point in place of one corner. */
+/* Adds a copy of triangle `of` with `point` in place of one corner. */
 static void add_piece(struct flat_plate *plate, size_t of, int corner, uint32_t point)
 {
     struct trimesh *mesh = &plate->mesh;
@@ -76,7 +76,7 @@ static void put_inside(struct flat_plate *plate, size_t tri)
     set_corner(plate, tri, 2, point);
 }
 
-/* Into all triangles that have it. */
+/* Inserts a new point on the edge a-b, into all triangles that have this edge. */
 static void put_on_edge(struct flat_plate *plate, uint32_t a, uint32_t b)
 {
     struct trimesh *mesh = &plate->mesh;
@@ -115,7 +115,7 @@ static void thin(struct flat_plate *plate)
                   plate->plane, 2, plate->target);
 }
 
-/* Area of the pieces of one of the two triangles, by which side of the line they are on; all look as it does. */
+/* Returns the summed area of the pieces on one side of the diagonal, and asserts that all face along `normal`. */
 static double area_of(const struct flat_plate *plate, int side, const double normal[3])
 {
     double sum = 0;
@@ -191,7 +191,7 @@ TEST(a_fold_stays_where_it_is)
     trimesh_finish(&plate.mesh);
 }
 
-/* Of two parts in one plane, and of one that is half hidden. */
+/* The border between two parts in one plane, and the border of a half hidden part. */
 TEST(a_border_stays_where_it_is)
 {
     for (int hides = 0; hides < 2; hides++) {
@@ -227,7 +227,7 @@ TEST(what_is_not_flat_stays)
     plate_init(&plate, 0);
     put_inside(&plate, 0);
     plate.mesh.points[4][2] = 1e-3;
-    put_on_edge(&plate, 0, 1); /* a rim that is bent by more than the surface may move */
+    put_on_edge(&plate, 0, 1); /* the rim may move by no more than the surface may */
     plate.mesh.points[5][1] = -1e-3;
     thin(&plate);
     assert_int_equal(plate.mesh.point_count, 6);

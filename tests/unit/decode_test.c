@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decoding: every type in every byte order from bytes written out by hand, and every scaling. */
+/* Decoding of register values: every data type in every byte order from bytes written by hand, and every scaling. */
 #include "tests/support/test.h"
 #include <math.h>
 
@@ -55,7 +55,7 @@ static const struct {
     { DATA_FLOAT32, BYTE_ORDER_CDAB, { 0x4000, 0xC2ED }, -118.625 },
     { DATA_FLOAT32, BYTE_ORDER_BADC, { 0xEDC2, 0x0040 }, -118.625 },
     { DATA_FLOAT32, BYTE_ORDER_DCBA, { 0x0040, 0xEDC2 }, -118.625 },
-    /* 4886718345 = 1 2345 6789; -4886718345 = FFFF FFFE DCBA 9877 */
+    /* Test values: 4886718345 = 1 2345 6789 (hex); -4886718345 = FFFF FFFE DCBA 9877 (hex). */
     { DATA_INT64, BYTE_ORDER_ABCD, { 0xFFFF, 0xFFFE, 0xDCBA, 0x9877 }, -4886718345.0 },
     { DATA_INT64, BYTE_ORDER_CDAB, { 0x9877, 0xDCBA, 0xFFFE, 0xFFFF }, -4886718345.0 },
     { DATA_INT64, BYTE_ORDER_BADC, { 0xFFFF, 0xFEFF, 0xBADC, 0x7798 }, -4886718345.0 },
@@ -180,7 +180,7 @@ TEST(square_root_scaling)
     check_scaled(&tag, 2500, 25, QUALITY_GOOD);
     check_scaled(&tag, 10000, 50, QUALITY_GOOD);
     check_scaled(&tag, 12100, 55, QUALITY_UNCERTAIN_UNITS_EXCEEDED);
-    check_scaled(&tag, -5, 0, QUALITY_UNCERTAIN_UNITS_EXCEEDED); /* no root of a negative number */
+    check_scaled(&tag, -5, 0, QUALITY_UNCERTAIN_UNITS_EXCEEDED); /* the square root of a negative number: 0, Uncertain */
 }
 
 TEST(unscaled_negation)
@@ -196,7 +196,7 @@ TEST(what_is_no_number_is_a_sensor_failure)
     for (int i = 0; i < 3; i++) {
         struct plant_tag tag = tag_of(DATA_FLOAT32, BYTE_ORDER_ABCD);
         assert_int_equal(decode(&tag, floats[i]).quality, QUALITY_BAD_SENSOR_FAILURE);
-        tag.scaling = SCALING_SQUARE_ROOT; /* would make 0 of a NaN */
+        tag.scaling = SCALING_SQUARE_ROOT; /* clamping must not turn a NaN into 0 */
         tag.raw_high = tag.scaled_high = 1;
         assert_int_equal(decode(&tag, floats[i]).quality, QUALITY_BAD_SENSOR_FAILURE);
         assert_true(isfinite(decode(&tag, floats[i]).value));
@@ -215,7 +215,7 @@ static uint32_t quality_of_raw(struct plant_tag *tag, int raw)
     return decode(tag, &(uint16_t){ (uint16_t)raw }).quality;
 }
 
-/* 0 to 27648 are 4 to 20 mA, as common analogue cards count: 1728 steps to the milliampere. */
+/* Counts 0 to 27648 represent 4 to 20 mA, as on common analogue cards: 1728 counts per milliampere. */
 TEST(a_current_says_that_its_loop_has_failed)
 {
     struct plant_tag tag = tag_of(DATA_INT16, BYTE_ORDER_NONE);
@@ -238,7 +238,7 @@ TEST(a_current_says_that_its_loop_has_failed)
     for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++)
         assert_int_equal(quality_of_raw(&tag, (int)lrint((cases[i].ma - 4) * 1728)), cases[i].quality);
     double below = decode(&tag, &(uint16_t){ (uint16_t)lrint(-0.2 * 1728) }).value;
-    assert_true(fabs(below + 1.25) < 0.01); /* 3.8 mA is below the range, and measured */
+    assert_true(fabs(below + 1.25) < 0.01); /* 3.8 mA is below the range but still a measurement */
 }
 
 TEST(an_open_circuit_s_value_is_no_reading)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Pictures that wait come back in their order, none is lost, and others get every second turn. */
+/* Deferred requests come back in order, none is lost, and other requests get every second turn. */
 #include "tests/support/test.h"
 
 

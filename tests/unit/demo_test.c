@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The demo plant: a plant file without a finding, the exchanger of the paper's size, sensors on the surfaces, faults that the model
-   has on purpose, and limits that fit the simulated process. */
+/* The demo plant: no findings in its plant file, the heat exchanger has the paper's size, sensors lie on surfaces, the model has its
+   deliberate faults, and limits fit the simulated process. */
 #include "tests/support/test.h"
 #include <math.h>
 
@@ -42,7 +42,7 @@ static int tear_down(void **state)
     return 0;
 }
 
-struct body { /* an asset of the plant, cut out of the model */
+struct body { /* geometry of one asset, cut out of the model */
     struct geometry_params params;
     struct geometry geometry;
     struct trimesh mesh;
@@ -68,7 +68,7 @@ static void body_finish(struct body *body)
     geometry_finish(&body->geometry);
 }
 
-/* All of the model, without area or not. */
+/* Returns the number of all triangles of the body, including degenerate ones. */
 static size_t body_triangles(const struct body *body)
 {
     return body->geometry.index_count / 3 + body->geometry.degenerate_triangles;
@@ -120,7 +120,7 @@ TEST(test_sensors_on_surface)
             by_node += sensors[i].node != NULL;
             vec_sub(at, body.geometry.origin_m, at);
             bvh_nearest(bvh, at, INFINITY, NULL, NULL, &nearest);
-            if (nearest.distance_m > (sensors[i].node ? 0.02 : 0.001)) /* a node's place is the middle of its fitting */
+            if (nearest.distance_m > (sensors[i].node ? 0.02 : 0.001)) /* a node's position is the centre of its fitting */
                 fail_msg("%s: %g m from the surface of %s", plant->tags[sensors[i].tag].name, nearest.distance_m, plant->assets[a].id);
         }
         mem_free(sensors);
@@ -130,7 +130,7 @@ TEST(test_sensors_on_surface)
     assert_in_range(by_node, plant->tag_count / 3, plant->tag_count * 2 / 3);
 }
 
-/* Faults on purpose: faces that are there twice, and slivers. */
+/* The deliberate faults of the model: duplicate faces and slivers. */
 TEST(test_faults)
 {
     struct body body;
@@ -159,7 +159,7 @@ static bool beyond(const struct plant_tag *tag, double value, enum limit low, en
     return value < tag->limits[low] || value > tag->limits[high]; /* NaN: no limit */
 }
 
-/* 1..3: the upset that runs, or whose traces are still there; CALM: none. */
+/* Returns the upset (1 to 3) that is running or whose effects still show, or CALM. */
 static int upset_now(const struct sim_values *values, int *last, int *since_s)
 {
     static const char *const names[] = { "cooling water lost", "exchanger fouled", "bearing worn" };
@@ -174,8 +174,8 @@ static int upset_now(const struct sim_values *values, int *last, int *since_s)
     return ++*since_s <= RECOVERY_S ? *last : CALM;
 }
 
-/* In calm every tag is within its limits; an upset brings at most 12 of them beyond H or L, and some beyond HH or LL. Over as many
-   cycles as there are machines, so that each has had its worn bearing. */
+/* Without an upset every tag stays within its limits. An upset brings at most 12 tags beyond H or L, and some beyond HH or LL. Runs as
+   many cycles as there are machines, so that each machine has its worn bearing. */
 TEST(test_limits_fit_the_process)
 {
     struct diag diag = { 0 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* plantcast-prep --diff: what a new revision changes, and which tags lose their place. */
+/* plantcast-prep --diff: what a new revision of the model changes, and which tags lose their position. */
 #include "tests/support/test.h"
 
 #include "base/mem.h"
@@ -51,8 +51,8 @@ static const char lost_rows[] = "T-GONE,400011,Float,plc,temperature,GONE,,50.5,
                                 "T-DROPPED,400013,Float,plc,temperature,DROPPED,,60.5,0.5,1\n"
                                 "T-NODE,400015,Float,plc,temperature,SAME,TT-2,,,\n";
 
-/* Boxes of 1 x 1 x 1 m at x = 0, 10, 20, ... In the new model MOVED is 2 m along y, TURNED (1 x 2 x 3 m) lies on its side, CHANGED is 50 mm
-   higher, GONE has another name, and TT-2 is not there. */
+/* Boxes of 1 x 1 x 1 m at x = 0, 10, 20, ... In the new model MOVED is moved 2 m along y, TURNED (1 x 2 x 3 m) lies on its side, CHANGED
+   is 50 mm higher, GONE has another name and TT-2 is missing. */
 static void write_model(struct prep_case *c, bool is_new)
 {
     struct model_maker maker;
@@ -66,7 +66,7 @@ static void write_model(struct prep_case *c, bool is_new)
     boxes_add(&maker, "CHANGED", (const double[3]){ 40, 0, 0 }, (const double[3]){ 41, 1, is_new ? 1.05 : 1 });
     boxes_add(&maker, is_new ? "VESSEL" : "GONE", (const double[3]){ 50, 0, 0 }, (const double[3]){ 51, 1, 1 });
     boxes_add(&maker, is_new ? "ADDED" : "DROPPED", (const double[3]){ 60, 0, 0 }, (const double[3]){ 61, 1, 1 });
-    if (is_new) /* a name that is like the old one */
+    if (is_new) /* a new name that resembles the old one */
         boxes_add(&maker, "GONE1", (const double[3]){ 70, 0, 0 }, (const double[3]){ 71, 1, 1 });
     maker_node(&maker, "TT-1", -1, json_pack("{s:[fff]}", "translation", 11.0, is_new ? 2.5 : 0.5, 0.5));
     if (!is_new)
@@ -122,7 +122,8 @@ static json_t *compare(struct prep_case *c, const char *arguments, int status)
     return prep_case_json(&c->out);
 }
 
-/* old: as a plant file, or as the folder that was prepared from it. exact: corners are the model's own. */
+/* Checks the assets of a diff report. exact: the old side is a plant file, so corners are those of the model; otherwise it is a prepared
+   folder. */
 static void check_assets(const json_t *root, bool exact)
 {
     asset_of(root, "SAME", "same");
@@ -147,7 +148,8 @@ static void check_tags(const json_t *root)
     assert_float_equal(prep_case_number(same, "surface_moved_m"), 0, 1e-6);
     assert_true(json_is_false(json_object_get(same, "moved")));
     assert_true(json_is_false(json_object_get(named(root, "sensors", "tag", "T-MIDDLE"), "moved"))); /* six faces are as near */
-    assert_float_equal(prep_case_number(carried, "surface_moved_m"), 2, 1e-5); /* its node moved with the asset, and it is still on it */
+    assert_float_equal(prep_case_number(carried, "surface_moved_m"), 2, 1e-5); /* the sensor's node moved with the asset, and the sensor
+                                                                                  is still on the surface */
     assert_float_equal(prep_case_number(carried, "surface_distance_new_m"), 0, 1e-5);
     assert_true(json_is_true(json_object_get(carried, "moved")));
     assert_float_equal(prep_case_number(changed, "surface_moved_m"), 0.05, 1e-5);
@@ -172,7 +174,7 @@ CASE(a_revision_is_compared)
     prep_case_says(&c->out, "1 assets added, 2 removed, 3 moved, 1 changed, 1 the same; 3 sensors' surface moved; 4 tags orphaned");
 }
 
-/* What is usual: the model's file was overwritten, and only what was prepared from it is left of the old one. */
+/* The usual case: the model file was overwritten, and only its prepared folder is left of the old revision. */
 CASE(a_prepared_folder_stands_for_the_old_plant)
 {
     prep_case_expect(c, "$FOLDER/old.yaml", 0);
@@ -198,12 +200,12 @@ CASE(nothing_lost_is_no_error)
     assert_int_equal((int)prep_case_number(root, "counts.same"), 7);
     json_decref(root);
     prep_case_expect(c, "$FOLDER/old.yaml", 0);
-    root = compare(c, "$FOLDER/old.prepared $FOLDER/old.yaml", 0); /* split triangles are the same surface */
+    root = compare(c, "$FOLDER/old.prepared $FOLDER/old.yaml", 0); /* subdivided triangles are the same surface */
     assert_int_equal((int)prep_case_number(root, "counts.same"), 7);
     json_decref(root);
 }
 
-/* Points that only its coarser levels have lie off its surface. */
+/* Vertices that only coarser levels have lie off the surface and must not count as a change. */
 CASE(levels_are_no_change)
 {
     struct cad_random chance = { 1 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rectangles around what changed: none missing, none at odds with each other, few. */
+/* Dirty rectangles: they cover every change, do not overlap, and are few. */
 #include "encode/dirty_rects.h"
 
 #include "tests/support/test.h"

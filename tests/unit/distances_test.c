@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast-prep distances` from a CAD file to what it prints: round a cylinder, against the formula. */
+/* `plantcast-prep distances` from a CAD file to its printed output: distances around a cylinder compared with the formula. */
 #include "tests/support/test.h"
 #include <math.h>
 
@@ -13,7 +13,7 @@
 enum { AROUND = 160, ALONG = 130 };
 static const double LENGTH_M = 3, MOVED_M[3] = { 10, -20, 5 };
 
-/* Of radius 1, open, its axis along z from 0. */
+/* Writes an open cylinder of radius 1 whose axis runs along z from 0. Returns its vertex count. */
 static size_t write_cylinder(struct prep_case *c, struct cad_random *random)
 {
     struct cad cad = { 0 };
@@ -40,7 +40,7 @@ static double along_surface(const double a[2], const double b[2]) /* turn, heigh
     return hypot(turn, a[1] - b[1]);
 }
 
-/* What is printed for a sensor there, at every vertex. */
+/* Checks the printed distance from a sensor to every vertex. */
 static void check(struct prep_case *c, const char *tag, const double sensor[2], size_t vertices)
 {
     char *arguments = mem_printf("distances $PLANT --asset A --sensor %s", tag);
@@ -65,7 +65,7 @@ static void check(struct prep_case *c, const char *tag, const double sensor[2], 
                   100 * worst_m / longest_m, worst_straight_m);
     assert_int_equal(lines, vertices);
     assert_true(sum_m / (double)lines <= 0.006 * longest_m && worst_m <= 0.03 * longest_m);
-    assert_true(worst_straight_m < 0.002); /* the sensor is moved onto a flat triangle */
+    assert_true(worst_straight_m < 0.002); /* the sensor is projected onto a flat triangle */
     mem_free(arguments);
 }
 

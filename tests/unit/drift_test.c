@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Drifting sensors: the fit against plain least squares, and real series (../shared/data/sensors) stretched over a week, as they are and
-   with a drift put into one sensor. The limit of an alarm is a tenth of the group's range beyond all that was ever read. */
+/* Drift of sensors: the fit compared with plain least squares, and on real series (../shared/data/sensors) stretched over a week,
+   unchanged and with a drift added to one sensor. The alarm limit lies a tenth of the group's range beyond all readings. */
 #include "tests/support/test.h"
 #include <math.h>
 
@@ -26,7 +26,7 @@ static double random_in(double low, double high)
 
 enum { UNKNOWNS = 5 };
 
-/* Gauss' elimination of the normal equations. */
+/* Solves the normal equations by Gaussian elimination. */
 static void solve(double a[UNKNOWNS][UNKNOWNS + 1])
 {
     for (int i = 0; i < UNKNOWNS; i++) {
@@ -44,7 +44,7 @@ static void solve(double a[UNKNOWNS][UNKNOWNS + 1])
     }
 }
 
-/* The mean change an hour, from the third hour before to the one after. */
+/* Mean change per hour, from three hours before `hour` to three hours after. */
 static double change_at(const double *predicted, int hours, int hour)
 {
     double sum = 0;
@@ -57,7 +57,7 @@ static double change_at(const double *predicted, int hours, int hour)
     return sum / count;
 }
 
-/* The change in time, where an hour counts 1 / (1 + (change / 2 usual changes)^2). */
+/* Reference fit: the change over time, where each hour is weighted by 1 / (1 + (change / twice the usual change)^2). */
 static double slow_change(const double *values, const double *predicted, const double *nearest, int hours)
 {
     double a[UNKNOWNS][UNKNOWNS + 1] = { 0 }, changes[DRIFT_HOURS], lagging = predicted[0];
@@ -89,7 +89,7 @@ TEST(test_fit_is_least_squares)
         for (int h = 0; h < DRIFT_HOURS; h++) {
             at += random_in(-1, 1);
             predicted[h] = at;
-            nearest[h] = at + random_in(-3, 3); /* it tells what no other does, half of which is seen here, too */
+            nearest[h] = at + random_in(-3, 3); /* the sensor carries information that no other has, half of which is visible here */
             values[h] = gain * at + (nearest[h] - at) / 2 + change * h / DRIFT_HOURS + random_in(-noise, noise);
             if (h % 9 == round % 9)
                 values[h] = NAN;
@@ -106,12 +106,13 @@ TEST(test_fit_is_least_squares)
 
 /* --- jumps, where the plant was changed ------------------------------------------------------------------------------------------ */
 
-struct jump { /* by `after` noises' worth from the hour `begins` on, and by `left` of that from `ends` on */
+struct jump { /* a jump by `after` times the noise from hour `begins` on, and by `left` times the noise from hour `ends` on */
     double after, left;
     int begins, ends;
 };
 
-/* Sensors made up by chance, of which every other one drifts by six times its noise, up or down. jump_of: draws a jump. */
+/* Random sensors with a jump, every second of which also drifts by six times its noise, up or down. jump_of draws the jump. Asserts at
+   least `least_found` drifts found and at most `most_accused` false ones. */
 static void fit_after_jumps(const char *what, void (*jump_of)(int round, struct jump *jump), int least_found, int most_accused)
 {
     double values[DRIFT_HOURS], predicted[DRIFT_HOURS];
@@ -143,7 +144,7 @@ static void one_jump(int round, struct jump *jump)
     jump->begins = 30 + rand() % 108;
 }
 
-/* As for a trial of a day or two: the second undoes the first, or most of it. */
+/* Draws two jumps as a trial of a day or two causes: the second one undoes the first, or most of it. */
 static void jump_and_back(int round, struct jump *jump)
 {
     *jump = (struct jump){ .after = random_in(8, 20) };
@@ -153,7 +154,7 @@ static void jump_and_back(int round, struct jump *jump)
     jump->ends = jump->begins + 24 + rand() % 36;
 }
 
-/* A sensor stands elsewhere beside the others from one hour to the next: that is no drift, and hides none. */
+/* A sensor that is offset from the others from one hour to the next does not drift, and the jump hides no drift. */
 TEST(test_jumps_are_no_drift)
 {
     srand(2);
@@ -166,7 +167,7 @@ TEST(test_a_jump_and_back_is_no_drift)
     fit_after_jumps("a jump and back", jump_and_back, 68, 12);
 }
 
-/* No drift can be told from readings that are not there, or from a plant that itself went one way all week. */
+/* Drift is unknown if readings are missing, or if the whole plant moved in one direction all week. */
 TEST(test_what_cannot_be_told_is_unknown)
 {
     double values[DRIFT_HOURS], predicted[DRIFT_HOURS];
@@ -184,7 +185,7 @@ TEST(test_what_cannot_be_told_is_unknown)
     }
     drift_fit(values, predicted, NULL, 0, DRIFT_HOURS, 0.2, &drift);
     assert_int_equal(drift.verdict, DRIFT_UNKNOWN);
-    for (int h = 0; h < DRIFT_HOURS; h++) /* stuck, like all others: no drift, and it would have been seen */
+    for (int h = 0; h < DRIFT_HOURS; h++) /* stuck like all others: no drift, but a drift would have been detected */
         values[h] = predicted[h] = 50;
     drift_fit(values, predicted, NULL, 0, DRIFT_HOURS, 0.2, &drift);
     assert_int_equal(drift.verdict, DRIFT_NONE);
@@ -195,8 +196,8 @@ TEST(test_what_cannot_be_told_is_unknown)
 struct recorded_series {
     const char *file, *columns[SENSORS];
     int count; /* of columns */
-    double noise, beyond; /* of a reading; of the alarm's limit: a tenth of the range */
-    double from, to;      /* of the file: what is stretched over a week */
+    double noise, beyond; /* noise of a reading; distance of the alarm limit, a tenth of the range */
+    double from, to;      /* part of the file (0 to 1) that is stretched over a week */
     double hours[DRIFT_HOURS][SENSORS];
 };
 
@@ -253,7 +254,7 @@ struct row_of_sensors {
     struct neighbours *neighbours;
 };
 
-/* A strip with so many sensors, 0.4 m apart. */
+/* Makes a strip with `count` sensors, 0.4 m apart. */
 static void stand_sensors(struct prep_case *c, int count, struct row_of_sensors *out)
 {
     struct cad_random random;
@@ -301,7 +302,7 @@ static void leave(struct row_of_sensors *row)
     log_destroy(&row->log);
 }
 
-/* The week's first hours, with a drift that is `change` after all of them put into one sensor. */
+/* Fits the first `hours` of the week after adding to one sensor a linear drift that reaches `change` at their end. */
 static void find(const struct row_of_sensors *row, const struct recorded_series *s, int hours, int sensor, double change, struct drift *out)
 {
     double values[DRIFT_HOURS * SENSORS], noise[SENSORS];
@@ -313,7 +314,7 @@ static void find(const struct row_of_sensors *row, const struct recorded_series 
     drift_find(row->neighbours, values, hours, noise, out, NULL);
 }
 
-/* Looked at each hour from half a week on. Returns how many different sensors are accused in all that time; *times: how often. */
+/* Looks for drift each hour from half a week on. Returns how many different sensors are ever accused; *times receives how often. */
 static int accused(const struct row_of_sensors *row, const struct recorded_series *s, int *times)
 {
     bool ever[SENSORS] = { false };
@@ -335,7 +336,7 @@ static int accused(const struct row_of_sensors *row, const struct recorded_serie
 #define RIG "hydraulic/hydraulic_ts_1hz.csv", { "TS1", "TS2", "TS3", "TS4" }, 4, 0.2, 4
 #define PROCESS { "XMEAS09", "XMEAS11", "XMEAS18", "XMEAS21", "XMEAS22" }, 5, 0.5, 10, 0, 1, { { 0 } }
 static struct recorded_series all_series[] = {
-    { RIG, 0, 1, { { 0 } } }, /* its cooler is changed from 3 to 20 to 100 %, at a third and at two */
+    { RIG, 0, 1, { { 0 } } }, /* the rig's cooler is switched from 3 to 20 to 100 % at one and at two thirds of the time */
     { "tep/tep_d00_normal.csv", PROCESS },
     { "tep/tep_d04_reactor_cooling_step.csv", PROCESS },
     { "tep/tep_d06_a_feed_loss.csv", PROCESS }, /* a feed is lost */
@@ -344,7 +345,7 @@ static struct recorded_series all_series[] = {
     { RIG, 1464 / 2205., 1, { { 0 } } },
     { RIG, 0, 1464 / 2205., { { 0 } } },
     { RIG, 732 / 2205., 1, { { 0 } } },
-    { RIG, 0, 0.5, { { 0 } } }, /* by this half it was chosen what counts beside others, and how much a fast hour does; */
+    { RIG, 0, 0.5, { { 0 } } }, /* this half served to tune how neighbours and fast hours are weighted */
     { RIG, 0.5, 1, { { 0 } } }, /* this one was held out */
 };
 
@@ -365,7 +366,7 @@ TEST_WITH(test_false_accusations_are_counted, prep_case_set_up, prep_case_tear_d
     }
 }
 
-/* Not used when the rule was made: temperatures of 25 mixers by a simulation (half an hour, about every 6 s), stretched over a week. */
+/* Held-out data, not used to tune the rule: temperatures of 25 simulated mixers (half an hour, about every 6 s), stretched over a week. */
 TEST_WITH(test_held_out_series, prep_case_set_up, prep_case_tear_down)
 {
     enum { MIXERS = 25 };
@@ -420,9 +421,9 @@ TEST_WITH(test_held_out_series, prep_case_set_up, prep_case_tear_down)
 }
 
 struct drift_detection {
-    int hours;      /* when it was found; 0: it was not */
+    int hours;      /* hour at which the drift was found; 0: not found */
     double drifted; /* by then */
-    double limit;   /* how far the reading was still from its alarm's limit: the least so far */
+    double limit;   /* smallest distance so far between the reading and its alarm limit */
 };
 
 static struct drift_detection search(const struct row_of_sensors *row, const struct recorded_series *s, int sensor, double change)
@@ -446,7 +447,7 @@ static struct drift_detection search(const struct row_of_sensors *row, const str
     return out;
 }
 
-/* Returns whether, at the week's end, another sensor is accused than the one that drifts. */
+/* Returns whether at the week's end a sensor other than the drifting one is accused. */
 static bool accuses_another(const struct row_of_sensors *row, const struct recorded_series *s, int sensor, double change)
 {
     struct drift drifts[SENSORS];
@@ -457,15 +458,16 @@ static bool accuses_another(const struct row_of_sensors *row, const struct recor
     return another;
 }
 
-/* sigma: the scatter of the sensor without a drift. */
+/* Drifts of several sizes in units of sigma, the sensor's scatter without drift, must be found before the reading reaches its alarm
+   limit. */
 TEST_WITH(test_a_drift_is_found_before_its_alarm, prep_case_set_up, prep_case_tear_down)
 {
     enum { SIZES = 3 };
     static const double sizes[SIZES] = { 3, 4, 8 }; /* sigmas in a week */
-    /* of the rig its own changes hide some; where the process has a fault, none is looked for */
+    /* minimum detections; some drifts of the rig are hidden by its own changes, and series with a process fault are not counted */
     static const int least[][SIZES] = { { 2, 7, 8 }, { 10, 10, 10 }, { 0 },       { 0 },       { 8, 8, 8 }, { 7, 8, 8 },
                                         { 8, 8, 8 }, { 6, 7, 8 },    { 6, 7, 8 }, { 5, 6, 8 }, { 8, 8, 8 } };
-    int others = 0; /* accused in place of the one that drifts, or beside it */
+    int others = 0; /* sensors accused in place of the drifting one, or in addition */
     for (size_t k = 0; k < sizeof(all_series) / sizeof(*all_series); k++) {
         struct recorded_series *s = &all_series[k];
         if (least[k][0] == 0)
@@ -501,7 +503,7 @@ TEST_WITH(test_a_drift_is_found_before_its_alarm, prep_case_set_up, prep_case_te
     assert_true(others <= 27);
 }
 
-/* With the drifting one left out, the others are judged by each other: none of them is accused for it. */
+/* After excluding the drifting sensor, the others are judged by each other: none of them is accused because of it. */
 TEST_WITH(test_one_that_drifts_does_not_accuse_others, prep_case_set_up, prep_case_tear_down)
 {
     struct recorded_series *s = &all_series[1];
@@ -518,7 +520,7 @@ TEST_WITH(test_one_that_drifts_does_not_accuse_others, prep_case_set_up, prep_ca
     leave(&row);
 }
 
-/* Nor does one that is lost for a day and a half, whatever it reads otherwise. */
+/* A sensor that is lost for a day and a half accuses no other, whatever it reads before and after. */
 TEST_WITH(test_one_that_is_lost_for_a_while_accuses_nobody, prep_case_set_up, prep_case_tear_down)
 {
     struct recorded_series s = all_series[1];
@@ -539,7 +541,7 @@ TEST_WITH(test_one_that_is_lost_for_a_while_accuses_nobody, prep_case_set_up, pr
     leave(&row);
 }
 
-/* Of one that never reads anything nothing is said, and the others are held against those that do. */
+/* A sensor without any reading gets no verdict, and the others are compared with those that have readings. */
 TEST_WITH(test_one_that_is_silent_hides_nothing, prep_case_set_up, prep_case_tear_down)
 {
     struct recorded_series s = all_series[1];

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Who gets which packets, by a model: each client decodes what it is given, and a packet is good only right after the one it needs. */
+/* Which clients get which packets, tested with a model: each client decodes its packets, and a packet is valid only directly after the
+   state that it needs. */
 #include "service/encode_streams.h"
 
 #include "tests/support/test.h"
@@ -12,7 +13,7 @@
 enum { CLIENTS = 12, WIDTH = 64, HEIGHT = 36 };
 static const int64_t MS = NS_PER_MS;
 
-/* Bytes of a packet here: the number of the state that it needs, and of that which it leaves. */
+/* Payload of a packet in this test: the state that it needs and the state that it produces. */
 struct chain_state {
     uint64_t needs, leaves;
 };
@@ -28,7 +29,7 @@ struct encode_streams_fixture {
     enum wire_codec codec;
 };
 
-struct chain_head { /* the picture that a chain's clients show */
+struct chain_head { /* the state that the clients of a stream show */
     uint64_t state;
 };
 
@@ -120,7 +121,7 @@ static void deliver(struct encode_streams_fixture *f, const struct request_group
     }
 }
 
-/* One frame for these clients (a bit each); all of them show it after. */
+/* Shows one frame to `clients` (one bit each); afterwards all of them show it. */
 static void show(struct encode_streams_fixture *f, unsigned clients, int view_number, uint64_t content, bool alone)
 {
     struct frame *frame = frame_create(WIDTH, HEIGHT);
@@ -208,15 +209,15 @@ CASE(who_looks_elsewhere_gets_a_stream_of_its_own)
 CASE(a_slow_one_does_not_cost_the_others_key_frames)
 {
     int before = 0;
-    for (int i = 0; i < 2000; i++) { /* 100 s, one key frame after the other */
+    for (int i = 0; i < 2000; i++) { /* 100 s in which one key frame follows another */
         show(f, i % 50 == 49 ? 0xfff : 0xffe, i, (uint64_t)i + 1, false);
         before = i == 999 ? f->keys : before;
     }
-    assert_in_range(f->keys - before, 0, 24); /* its own: one at each of its 20 pictures */
+    assert_in_range(f->keys - before, 0, 24); /* a slow client gets its own key frames: one at each of its 20 frames */
     assert_in_range(chain_count(f), 1, 2);
 }
 
-/* As the acknowledgements of hundreds come in: some ask for the next view while the others still wait for the one before. */
+/* Hundreds of acknowledgements arrive one by one: some clients request the next view while others still wait for the previous one. */
 CASE(whole_pictures_are_made_once_however_it_is_asked_for)
 {
     f->codec = WIRE_CODEC_JPEG;
@@ -233,7 +234,7 @@ CASE(what_broke_starts_anew)
 {
     show(f, 3, 0, 1, false);
     struct encode_stream *stream = f->streams.first;
-    stream->planned++; /* a picture that could not be made */
+    stream->planned++; /* simulates a frame that could not be encoded */
     encode_stream_break(stream);
     show(f, 3, 0, 9, false);
     assert_int_equal(f->keys, 2);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Encoders: what comes out decodes to what went in, within what the codec may lose. */
+/* Encoders: decoded output equals the input within the loss that the codec may have. */
 #include "encode/encoder.h"
 
 #include "tests/support/test.h"
@@ -86,7 +86,7 @@ TEST(jpeg_keeps_the_picture)
     check_jpeg(16, 16, 90, true, 40, 8);
 }
 
-/* Upright lines three pixels wide, blue and amber in turn, on grey. */
+/* Whether column x belongs to a vertical line: lines are three pixels wide, alternately blue and amber, on grey. */
 static bool is_line(int x)
 {
     return x % 11 < 3;
@@ -102,7 +102,7 @@ static struct frame *thin_lines(int w, int h)
     return frame;
 }
 
-/* Of the lines' blue, by a JPEG of the frame: mean, in steps of 255. */
+/* Returns the mean error of the blue channel on the lines after JPEG, in steps of 1/255. */
 static double lines_off(const struct frame *frame, const uint8_t *bytes, size_t count)
 {
     int w = frame->width_px, h = frame->height_px, lines = 0;
@@ -128,7 +128,7 @@ static size_t head_of(const uint8_t *bytes, size_t count) /* up to the picture i
     return at;
 }
 
-/* A draft's head, and so its tables, are everybody's. From JPEG_READ_QUALITY on, thin things keep more of their colour. */
+/* All streams share the header, and so the tables, of preview JPEGs. From JPEG_READ_QUALITY on, thin lines keep more of their colour. */
 TEST(jpeg_keeps_the_colour_of_thin_things)
 {
     struct frame *frame = thin_lines(320, 200);
@@ -153,7 +153,7 @@ TEST(jpeg_keeps_the_colour_of_thin_things)
     frame_unref(&frame);
 }
 
-/* Puts the parts of a packet into bgr, which is of the whole picture. */
+/* Decodes the parts of a packet into bgr, which holds the whole frame. */
 static void decode_parts(const struct packet *packet, uint8_t *bgr)
 {
     tjhandle turbo = tjInitDecompress();
@@ -198,7 +198,7 @@ TEST(jpeg_sends_only_what_changed)
     assert_int_equal(encoder_receive(encoder, &change), 0);
     assert_true(change->key);
     packet_unref(&change);
-    now->view.camera.fov_deg = 33; /* of another view nothing is compared */
+    now->view.camera.fov_deg = 33; /* another view: no comparison with the frame before */
     params.key = false;
     assert_int_equal(encoder_send(encoder, now, &params), 0);
     assert_int_equal(encoder_receive(encoder, &change), 0);

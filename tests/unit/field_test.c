@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The field against plain double-precision loops, and each rule that keeps it true. */
+/* The field compared with plain double-precision loops, and each rule that keeps it true. */
 #include "tests/support/test.h"
 #include <float.h>
 #include <malloc.h>
@@ -17,11 +17,11 @@
 struct vertex_truth {
     double value;
     bool no_data, uncertain;
-    bool near_tie; /* flags hang on less than the rounding of a float */
+    bool near_tie; /* the flags depend on a difference below the rounding of a float */
 };
 
 #define MAX_SENSORS 4096
-struct vertex_sight { /* the sensors that one vertex sees */
+struct vertex_sight { /* distances from one vertex to its sensors */
     double distance_m[MAX_SENSORS], weight[MAX_SENSORS], term[MAX_SENSORS];
     bool usable[MAX_SENSORS], configured[MAX_SENSORS];
 };
@@ -53,7 +53,7 @@ static double truth_radius(const struct synthetic *plant, const struct field_par
     return most;
 }
 
-/* What a weight is times towards the reach, in parts of the nearest one's. */
+/* Returns the factor by which a sensor's weight fades towards the reach, relative to the nearest sensor. */
 static double faded(const struct field_params *params, double near_m, double distance_m)
 {
     if (isinf(params->reach_m) || distance_m <= near_m)
@@ -61,7 +61,7 @@ static double faded(const struct field_params *params, double near_m, double dis
     return pow((1 - distance_m / params->reach_m) / (1 - near_m / params->reach_m), 2);
 }
 
-/* Weights of those that take part: all within reach, or the nearest. */
+/* Computes the weights of all sensors within reach, or of the nearest one if none is. */
 static void truth_weights(struct vertex_sight *s, size_t count, const struct plant_tag *tags, const struct field_params *params,
                           double near_m, double radius_m)
 {
@@ -124,7 +124,7 @@ static struct vertex_truth truth_at(const struct synthetic *plant, const struct 
         truth.near_tie |= s.distance_m[i] > params->reach_m - 1e-5;
         bool at_the_rim = s.distance_m[i] > nearest_usable && nearest_usable > 0.999 * params->reach_m; /* both have hardly any weight */
         truth.near_tie |= at_the_rim && s.distance_m[i] < params->reach_m;
-        truth.near_tie |= paper && fabs(s.distance_m[i] - radius_m) < 1e-4 * radius_m; /* rounding of 1 - d/R, to a small power */
+        truth.near_tie |= paper && fabs(s.distance_m[i] - radius_m) < 1e-4 * radius_m; /* rounding of 1 - d/R, raised to a small power */
     }
     for (size_t i = 0; i < count; i++) {
         truth.near_tie |= fabs(s.distance_m[i] - params->reach_m) < 1e-5;
@@ -179,7 +179,7 @@ static void assert_all_finite(const struct scalars *scalars)
         assert_true(isfinite(scalars->at[j].value));
 }
 
-/* Equal bits as a field that has never seen anything else. */
+/* Asserts that the field has the same bits as one that was just created. */
 static void assert_as_fresh(const struct field_rig *rig)
 {
     struct field *fresh = field_create(workers, &rig->plant->scene);
@@ -239,7 +239,7 @@ static void randomize(struct field_rig *rig, uint64_t *random)
     p->power = synthetic_random(random) % 3 ? between(random, 0.5, 6) : 2;
     p->radius_m = synthetic_random(random) % 2 ? 0 : between(random, 2, 20);
     p->reach_m = synthetic_random(random) % 3 ? (double)INFINITY : between(random, 1, 8);
-    size_t mood = synthetic_random(random) % 4; /* none, some, many, all but few Bad */
+    size_t mood = synthetic_random(random) % 4; /* how many sensors are Bad: none, some, many, all but few */
     for (size_t i = 0; i < rig->plant->scene.assets[0].sensor_count; i++) {
         double dice = synthetic_random_unit(random);
         rig->plant->plant.tags[i].strength = dice < 0.5 ? 1 : between(random, 0, 2);
@@ -289,7 +289,8 @@ TEST(test_extreme_parameters)
     rig_finish(&rig);
 }
 
-/* By all means: the lost ones have no data at their places; in shepard the others have their readings there; elsewhere, plain loops. */
+/* 4,096 sensors in every mode. Lost sensors leave no data at their positions; in shepard the others show their own readings at theirs;
+   elsewhere plain loops give the truth. */
 TEST(test_4096_sensors)
 {
     uint64_t random = sweep_seed();
@@ -365,7 +366,7 @@ TEST(test_losing_the_hottest_is_not_painted_over)
             size_t nearest = 0;
             for (size_t i = 1; i < 5; i++) {
                 float least_m = asset_distance_m(&rig.plant->file.view, nearest, j), m = asset_distance_m(&rig.plant->file.view, i, j);
-                if (m < least_m || (m == least_m && nearest == 2)) /* as near as the lost one: its place */
+                if (m < least_m || (m == least_m && nearest == 2)) /* as near as the lost sensor: at its position */
                     nearest = i;
             }
             lost += nearest == 2;
@@ -447,7 +448,7 @@ static void assert_even(const struct field_rig *rig, float value)
             fail_msg("vertex %zu of %zu: %g, no data %d", j, scalars->count, (double)scalars->at[j].value, scalars->at[j].no_data);
 }
 
-/* Whatever the group or whoever looks asks for, a place that nobody knows makes no gradient. */
+/* A sensor whose position is only assumed colours the whole asset evenly, whatever mode the group or the user asks for. */
 TEST(test_an_assumed_place_is_the_whole_asset_evenly)
 {
     struct field_rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 1, .island = 100));
@@ -479,7 +480,7 @@ TEST(test_of_assumed_places_the_nearest_to_trouble_stands_for_all)
     set(&rig, 0, 40, QUALITY_GOOD);
     set(&rig, 1, 75, QUALITY_GOOD);
     set(&rig, 2, 30, QUALITY_GOOD);
-    assert_even(&rig, 75); /* of 0 to 100, without limits: the farthest from 50 */
+    assert_even(&rig, 75); /* range 0 to 100 without limits: 75 is farthest from the middle */
     set(&rig, 2, 5, QUALITY_GOOD);
     assert_even(&rig, 5);
     rig.plant->plant.tags[0].limits[LIMIT_H] = 35;
@@ -502,7 +503,7 @@ TEST(test_beside_a_known_place_an_assumed_one_paints_nothing)
     set(&with, 2, 99, QUALITY_GOOD);
     without.plant = synthetic_create(.vertices = 700, .sensors = 3);
     without.field = field_create(workers, &without.plant->scene);
-    without.plant->plant.tags[2].group = -1; /* as if it were not there */
+    without.plant->plant.tags[2].group = -1; /* as if this sensor did not exist */
     const struct scalars *got = show(&with), *want = show(&without);
     assert_memory_equal(got->at, want->at, want->count * sizeof(*want->at));
     assert_false(field_is_assumed(with.field, 0, &with.params));
@@ -528,7 +529,7 @@ TEST(test_over_range_passes_shepard_and_not_paper)
     rig_finish(&rig);
 }
 
-/* Rounding must not turn a plant at exactly MAX into one beyond it. */
+/* Rounding must not push a plant whose readings all equal MAX beyond MAX. */
 TEST(test_equal_readings_make_exactly_that)
 {
     struct field_rig rig = rig_create(synthetic_create(.vertices = 3000, .sensors = 11, .min = 0.1, .max = 0.3, .seed = sweep_seed()));
@@ -582,14 +583,14 @@ TEST(test_half_the_weight_uncertain)
     struct field_rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 2));
     for (int paper = 0; paper < 2; paper++) {
         rig.params.interpolation = paper ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
-        for (size_t j = 0; j < 3; j++) { /* nearer to the good one, between, nearer to the uncertain one */
+        for (size_t j = 0; j < 3; j++) { /* vertices nearer to the good sensor, between both, nearer to the uncertain one */
             synthetic_set_distance(rig.plant, 0, 10 + j, 1 + (float)j);
             synthetic_set_distance(rig.plant, 1, 10 + j, 3 - (float)j);
         }
         set(&rig, 0, 10, QUALITY_GOOD);
         set(&rig, 1, 20, QUALITY_UNCERTAIN_LAST_USABLE);
         const struct scalars *scalars = show(&rig);
-        assert_in_range(scalars->at[10].uncertain, 1, 127); /* by how much, so that the rim lies between vertices */
+        assert_in_range(scalars->at[10].uncertain, 1, 127); /* encodes by how much, so that the rim can lie between vertices */
         assert_int_equal(scalars->at[11].uncertain, 128);
         assert_in_range(scalars->at[12].uncertain, 129, 254);
         assert_int_equal(scalars->at[11].no_data, 0);
@@ -646,15 +647,15 @@ TEST(test_reach_ends_the_field)
     const struct scalars *scalars = show(&rig);
     for (size_t k = 0; k < 4; k++) {
         assert_int_equal(scalars->at[20 + k].no_data, k < 2 ? 0 : 255);
-        assert_true(scalars->at[20 + k].value == 30); /* carried on beyond the edge, for interpolation */
+        assert_true(scalars->at[20 + k].value == 30); /* the value continues beyond the edge, for interpolation */
     }
-    assert_int_equal(scalars->at[21].lacking, 127); /* so that the rim lies 2 m away, wherever the vertices do */
+    assert_int_equal(scalars->at[21].lacking, 127); /* the rim lies 2 m away wherever the vertices are */
     assert_int_equal(scalars->at[22].lacking, 128);
     assert_true(scalars->at[20].lacking < 127 && scalars->at[23].lacking > 128);
     rig_finish(&rig);
 }
 
-/* Far from any edge: nobody sees where a sensor leaves the sums. */
+/* A sensor's weight fades to zero at its reach, so that no edge is visible where the sensor leaves the sums. */
 TEST(test_a_sensor_fades_towards_its_reach)
 {
     for (int paper = 0; paper < 2; paper++) {
@@ -665,16 +666,17 @@ TEST(test_a_sensor_fades_towards_its_reach)
         rig.params.reach_m = 4;
         set(&rig, 0, 20, QUALITY_GOOD);
         set(&rig, 1, 80, QUALITY_GOOD);
-        for (size_t k = 0; k < 200; k++) { /* the second one's reach ends at 150 */
+        for (size_t k = 0; k < 200; k++) { /* the second sensor's reach ends at vertex 150 */
             synthetic_set_distance(rig.plant, 0, 20 + k, 2);
             synthetic_set_distance(rig.plant, 1, 20 + k, 2.5f + 0.01f * (float)k);
         }
         synthetic_set_distance(rig.plant, 0, 20, 4);
-        synthetic_set_distance(rig.plant, 1, 20, 4);      /* as far as both reach: of both */
-        synthetic_set_distance(rig.plant, 0, 21, 3.999f); /* alone, it is not seen to fade */
+        synthetic_set_distance(rig.plant, 1, 20, 4);      /* as far as both sensors reach, the value mixes both */
+        synthetic_set_distance(rig.plant, 0, 21, 3.999f); /* a lone sensor does not fade */
         synthetic_set_distance(rig.plant, 1, 21, 4.001f);
         const struct scalar *at = show(&rig)->at + 20;
-        double weight = (paper ? exp(-1 / 8.0) : pow(2 / 3.0, 2)) * pow(0.5, 2); /* at 3 m it has half of what the nearest has left */
+        /* at 3 m the second sensor has half of the weight that the nearest one leaves */
+        double weight = (paper ? exp(-1 / 8.0) : pow(2 / 3.0, 2)) * pow(0.5, 2);
         double part = weight / (1 + weight);
         assert_true(fabs((double)at[50].value - (20 + 60 * part)) < 1e-4);
         assert_true(fabs((double)at[0].value - 50) < 1e-4 && at[0].no_data == 0);
@@ -747,7 +749,8 @@ TEST(test_an_hour_of_flicker_leaves_no_drift)
     rig_finish(&rig);
 }
 
-/* As a loose wire has it: at any moment, while others change by columns, which are what could be left over. */
+/* A loose wire makes single sensors come and go at any moment while the others change whole columns: nothing of a removed sensor may
+   remain in the sums. */
 TEST(test_flicker_at_any_moment_leaves_no_drift)
 {
     static const uint32_t qualities[] = { QUALITY_GOOD, QUALITY_BAD_COMMUNICATION_ERROR, QUALITY_UNCERTAIN_LAST_USABLE,
@@ -808,7 +811,7 @@ TEST(test_an_hour_of_changes_leaves_no_drift)
 TEST(test_sums_are_made_anew_now_and_then)
 {
     struct field_rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 12));
-    for (size_t i = 0; i < 12; i++) /* what adding and taking away again leaves behind */
+    for (size_t i = 0; i < 12; i++) /* rounding that remains after adding and subtracting */
         set(&rig, i, 33.3 + (double)i, QUALITY_GOOD);
     for (int tick = 0; tick <= 2 * 4096; tick++) {
         set(&rig, 5, tick % 2 ? 1e7 : 0.1, QUALITY_GOOD);
@@ -938,7 +941,7 @@ TEST(test_instances_share_their_weights)
         bytes[1 + (round > 0)] = field_bytes(rig.field);
     }
     size_t columns = (size_t)3 * 256 * 16 * sizeof(float), state_bytes = (bytes[2] - columns - bytes[0]) / 9;
-    assert_int_equal(bytes[1], bytes[2]); /* columns are kept once, from the second sum on */
+    assert_int_equal(bytes[1], bytes[2]); /* columns are cached once, from the second sum on */
     assert_true(state_bytes < bytes[0] && state_bytes >= 700 * 16);
     for (int asset = 0; asset < 10; asset++)
         assert_true(field_scalars(rig.field, asset, &rig.params, rig.plant->snapshot)->at[0].value == 7);
@@ -953,7 +956,7 @@ static size_t bytes_allocated(void)
 
 TEST(test_dragging_stays_under_the_bound)
 {
-    const size_t slack = 256 << 10; /* layouts, and what only lives during a call */
+    const size_t slack = 256 << 10; /* layouts, and memory that exists only during a call */
     struct field_rig rig = rig_create(synthetic_create(.vertices = 5000, .sensors = 20, .assets = 2));
     size_t bound = 3 << 20;
     field_set_cache_limit(rig.field, bound);
@@ -972,7 +975,7 @@ TEST(test_dragging_stays_under_the_bound)
     rig_finish(&rig);
 }
 
-/* Columns pushed out or never kept, or kept for a part of the vertices, give the same bits as kept ones. */
+/* Columns that were evicted, never cached, or cached for part of the vertices give the same bits as fully cached ones. */
 TEST(test_without_room_for_columns_the_bits_are_the_same)
 {
     uint64_t random = sweep_seed();
@@ -981,7 +984,7 @@ TEST(test_without_room_for_columns_the_bits_are_the_same)
     const size_t columns = (size_t)3000 * 37 * sizeof(float);
     field_set_cache_limit(tight, 1);
     for (int tick = 0; tick < 60; tick++) {
-        size_t bound = tick % 20 < 15 ? columns / 2 + 500000 : 4 * columns; /* what is not columns takes some 450,000 */
+        size_t bound = tick % 20 < 15 ? columns / 2 + 500000 : 4 * columns; /* everything but columns takes some 450,000 bytes */
         field_set_cache_limit(half, bound);
         rig.params.interpolation = tick / 20 == 1 ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
         rig.params.power = tick / 20 == 2 ? 3.1 : 2;
@@ -1001,7 +1004,7 @@ TEST(test_without_room_for_columns_the_bits_are_the_same)
     rig_finish(&rig);
 }
 
-/* Where there is not room for all columns, all that there is is used, and once there is room for all, that. */
+/* If the limit is too small for all columns, the cache uses all of it; once it is large enough, all columns are cached. */
 TEST(test_as_many_columns_as_fit_are_kept)
 {
     struct field_rig rig = rig_create(synthetic_create(.vertices = 3000, .sensors = 37));
@@ -1021,7 +1024,7 @@ TEST(test_as_many_columns_as_fit_are_kept)
     rig_finish(&rig);
 }
 
-/* Two sessions that look at all assets in turn, with room for less than one of them: all pointers of one round stay good. */
+/* Two sessions look at all assets in turn with room for less than one of them: the pointers returned within one round stay valid. */
 TEST(test_scalars_of_the_same_parameters_stay)
 {
     struct field_rig rig = rig_create(synthetic_create(.vertices = 2000, .sensors = 5, .assets = 8));
@@ -1039,7 +1042,8 @@ TEST(test_scalars_of_the_same_parameters_stay)
     rig_finish(&rig);
 }
 
-/* Few sensors are summed in one go once their shares are known; that gives the bits of the long way, and the same account of changes. */
+/* Fast path: with few sensors and cached weights one pass sums everything. It gives the same bits and the same account of changes as the
+   general path. */
 TEST(test_few_sensors_are_summed_in_one_go)
 {
     enum { VERTICES = 1100 };
@@ -1059,7 +1063,7 @@ TEST(test_few_sensors_are_summed_in_one_go)
                     most = fmax(most, (double)fabsf(now->at[v].value - before[v]));
                     before[v] = now->at[v].value;
                 }
-                assert_true(fabs(now->travel - travel - most) < 1e-9); /* paper's one sensor may be clamped twice */
+                assert_true(fabs(now->travel - travel - most) < 1e-9); /* in mode paper a single sensor may be clamped twice */
                 travel = now->travel;
                 uint64_t version = now->version;
                 assert_true(show(&rig)->version == version);
@@ -1069,7 +1073,7 @@ TEST(test_few_sensors_are_summed_in_one_go)
         }
 }
 
-/* The first vertices are as those of a field that has never seen anything else. */
+/* Asserts that the first `count` vertices equal those of a field that was just created. */
 static void assert_first_as_fresh(const struct field_rig *rig, size_t count)
 {
     struct field *fresh = field_create(workers, &rig->plant->scene);
@@ -1080,7 +1084,8 @@ static void assert_first_as_fresh(const struct field_rig *rig, size_t count)
     field_destroy(&fresh);
 }
 
-/* Side by side as one after another, whatever changed, while weights are filled in and after, however little room there is. */
+/* Computing assets in parallel equals computing them one by one, whatever changed, during and after the filling of weights, and with any
+   cache size. */
 static void check_many_at_once(size_t sensors)
 {
     enum { ASSETS = 12, VERTICES = 1500 };
@@ -1107,7 +1112,7 @@ static void check_many_at_once(size_t sensors)
             const struct scalars *want = field_scalars_of(alone, assets[i], &rig.params, rig.plant->snapshot, counts[i]);
             const struct scalars *got = field_scalars_of(rig.field, assets[i], &rig.params, rig.plant->snapshot, counts[i]);
             assert_int_equal(got->asset, assets[i]);
-            for (size_t v = 0; v < counts[i]; v++) { /* sums that were dropped and made anew are rounded otherwise */
+            for (size_t v = 0; v < counts[i]; v++) { /* sums that were dropped and computed again are rounded differently */
                 assert_true(fabsf(got->at[v].value - want->at[v].value) < 1e-4f);
                 assert_true(got->at[v].no_data == want->at[v].no_data && got->at[v].uncertain == want->at[v].uncertain &&
                             got->at[v].lacking == want->at[v].lacking && got->at[v].no_limits == want->at[v].no_limits);
@@ -1124,7 +1129,7 @@ TEST(test_many_at_once_are_as_one_by_one)
     check_many_at_once(12);
 }
 
-/* Of which only the first vertices are drawn: there is room for these, so that their shares are kept, too. */
+/* Assets of which only the first vertices are drawn: the cache has room for those, so their weights are cached too. */
 static void check_far_assets(size_t sensors)
 {
     enum { ASSETS = 40, VERTICES = 20000, DRAWN = 300 };
@@ -1193,7 +1198,7 @@ TEST(test_a_prefix_costs_less)
     assert_int_equal(scalars->version, version);
     show(&rig); /* somebody looks from near */
     assert_true(scalars->ready == 20000 && scalars->version > version && scalars->grown > grown && scalars->flags_version > version);
-    for (int tick = 0; tick < 3; tick++) { /* and goes: after a while only the prefix is kept up */
+    for (int tick = 0; tick < 3; tick++) { /* unused vertices expire: after a while only the prefix is kept up to date */
         set(&rig, 2, 10 + tick, QUALITY_GOOD);
         field_scalars_of(rig.field, 0, &rig.params, rig.plant->snapshot, 500);
     }
@@ -1214,7 +1219,7 @@ TEST(test_in_pieces_it_is_the_same)
         set(&rig, 8, 5, round % 2 ? QUALITY_GOOD : QUALITY_BAD_SENSOR_FAILURE);
         while (!field_advance(rig.field, 0, &rig.params, rig.plant->snapshot, 5000, 10000)) {
             if (pieces++ == 2)
-                set(&rig, 3, first + 1, QUALITY_GOOD); /* comes too late for this one */
+                set(&rig, 3, first + 1, QUALITY_GOOD); /* this change arrives too late for this frame */
         }
         assert_in_range(pieces, 3, 100);
         assert_true(show(&rig)->at[3].value == (float)(first + 1));
@@ -1310,14 +1315,14 @@ TEST(test_distance_from_one_sensor)
     field_default_range(&rig.plant->scene, &rig.params, &low, &high);
     assert_true(low == 0 && high >= (double)most * (1 - 1e-6) && high < 1.06 * (double)most);
     uint64_t version = way->version;
-    set(&rig, 4, 7, QUALITY_BAD_SENSOR_FAILURE); /* its place stays where it is */
+    set(&rig, 4, 7, QUALITY_BAD_SENSOR_FAILURE); /* the Bad reading keeps its place */
     assert_int_equal(field_scalars(rig.field, 1, &rig.params, rig.plant->snapshot)->version, version);
     rig_finish(&rig);
 }
 
 /* --- difference, overrides ------------------------------------------------------------------------------------------------ */
 
-/* What the field would show, by itself. */
+/* Computes what a field of its own would show. */
 static struct scalar *shown_alone(const struct field_rig *rig, const struct field_params *params, const struct snapshot *snapshot)
 {
     struct field *alone = field_create(workers, &rig->plant->scene);
@@ -1385,8 +1390,8 @@ TEST(test_difference_needs_both)
     const struct scalars *scalars = show(&rig);
     assert_true(scalars->at[1].no_data && scalars->at[3].no_data);          /* Bad then; Bad now */
     assert_true(!scalars->at[2].no_data && scalars->at[2].uncertain > 127); /* Uncertain then */
-    assert_true(!scalars->at[0].no_data && scalars->at[0].value == 0);      /* the one that came back does not show as a change */
-    baselines_set(baselines, "then", rig.plant->snapshot);                  /* set anew, for all who show it */
+    assert_true(!scalars->at[0].no_data && scalars->at[0].value == 0);      /* the sensor that came back does not count as a change */
+    baselines_set(baselines, "then", rig.plant->snapshot);                  /* the baseline is replaced for all sessions that show it */
     scalars = show(&rig);
     assert_true(!scalars->at[1].no_data && scalars->at[1].value == 0 && scalars->at[3].no_data);
     baselines_remove(baselines, "then");
@@ -1432,7 +1437,7 @@ TEST(test_overrides_are_bounded_and_ordered)
         assert_true(field_params_override(&turned, (struct field_override){ FIELD_OVERRIDES - 1 - i, (float)(FIELD_OVERRIDES - 1 - i) / 10,
                                                                             FIELD_AS_CONFIGURED }));
     }
-    assert_true(field_params_equal(&rig.params, &turned)); /* the order in which they came does not matter */
+    assert_true(field_params_equal(&rig.params, &turned)); /* the order in which the items were added does not matter */
     assert_null(field_params_wrong(&rig.plant->plant, &rig.params));
     assert_false(field_params_override(&rig.params, (struct field_override){ FIELD_OVERRIDES, 1, 1 }));
     assert_true(field_params_override(&rig.params, (struct field_override){ 7, 1, 1 }));

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What markers say is what the picture shows at their places. */
+/* Marker texts equal the values that the frame shows at their positions. */
 #include "tests/support/test.h"
 
 
@@ -17,7 +17,7 @@ static struct snapshot *readings(const double values[TAGS], const uint32_t quali
     return snapshot;
 }
 
-/* Each tag in both halves; the right one shows readings. */
+/* Makes a frame with each tag in both halves of a split view; the right half shows readings. */
 static struct frame *frame_of_two(enum field_show left, uint32_t baseline)
 {
     struct frame *frame = frame_create(WIDTH, HEIGHT);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Cameras that look at something: all of it is in the picture, and fills it; from the side that was asked for. */
+/* Framing of cameras: the whole target is visible and fills the image, from the requested side. */
 #include "scene/framing.h"
 
 #include "tests/support/test.h"
@@ -12,7 +12,7 @@
 #include "tests/support/small_scene.h"
 #include "tests/support/toy.h"
 
-/* The part of the picture, -1 to 1 each way, that a box takes. */
+/* Returns the part of the image that a box covers, -1 to 1 on each axis. */
 static struct camera_window taken(const struct camera *camera, double aspect, const double min[3], const double max[3])
 {
     struct camera_window out = { INFINITY, -INFINITY, INFINITY, -INFINITY };
@@ -36,7 +36,7 @@ static struct camera_window taken(const struct camera *camera, double aspect, co
     return out;
 }
 
-/* How far towards the picture's edge the farthest corner of a box lies: 1 is on it. */
+/* Returns how far the farthest corner of a box lies towards the image edge; 1 is on the edge. */
 static double reach(const struct camera *camera, double aspect, const double min[3], const double max[3])
 {
     struct camera_window box = taken(camera, aspect, min, max);
@@ -148,7 +148,7 @@ TEST(a_sensor_is_seen_from_outside)
     for (int i = 0; i < 3; i++)
         assert_float_equal(camera.target_m[i], at[i], 0.3);
     forward_of(&camera, forward);
-    assert_true(forward[0] > 0.9 && forward[2] < -0.2); /* it stands at the west end */
+    assert_true(forward[0] > 0.9 && forward[2] < -0.2); /* the camera stands at the west end */
     double away = hypot(hypot(camera.eye_m[0] - at[0], camera.eye_m[1] - at[1]), camera.eye_m[2] - at[2]);
     assert_true(away > 1 && away < 8);
 }
@@ -162,7 +162,8 @@ static void add_box(struct toy *toy, const char *id, const double size_m[3], con
     toy_add(toy, id, &shape, at_m, NULL, 0);
 }
 
-/* Of a plant as it is loaded: its assets but stray ones fill the first view, and so many assets are said to be outside. */
+/* Asserts that the initial view of a loaded plant is filled by its assets without strays, and that `outside` assets are reported as
+   outside. */
 static void expect_framed(struct toy *toy, int outside)
 {
     struct camera camera;
@@ -184,7 +185,8 @@ static void expect_framed(struct toy *toy, int outside)
 
 TEST(a_stray_piece_is_left_out)
 {
-    static const double sizes[] = { 0.001, 0.1, 1 }; /* a third of the area, if it is hopelessly far away */
+    static const double sizes[] = { 0.001, 0.1, 1 }; /* assets up to a third of the area count as stray only if they are extremely far
+                                                        away */
     for (int i = 0; i < 3; i++) {
         struct toy *toy = toy_create();
         double size = sizes[i];
@@ -225,7 +227,7 @@ TEST(small_and_long_ones_fill_the_picture)
     }
 }
 
-/* A stack on its foot, units apart from each other, a plate with little on it: none of it is stray, nor the ground. */
+/* A stack on its base, units apart from each other, and a plate with little on it: nothing counts as stray, nor does the ground. */
 TEST(what_belongs_together_stays)
 {
     struct toy *toy = toy_create();
@@ -240,14 +242,14 @@ TEST(what_belongs_together_stays)
     add_box(toy, "PLATE", (double[3]){ 0.18, 0.15, 0.02 }, (double[3]){ 0, 0, 0 });
     add_box(toy, "BRACKET", (double[3]){ 0.05, 0.05, 0.08 }, (double[3]){ 0.06, 0.05, 0.02 });
     expect_framed(toy, 0);
-    toy = toy_create(); /* triangles of a long pipe cross the gap between its flanges */
+    toy = toy_create(); /* triangles of a long pipe span the gap between its flanges */
     add_box(toy, "FLANGE-1", (double[3]){ 0.05, 0.5, 0.5 }, (double[3]){ 0, 0, 0 });
     add_box(toy, "PIPE", (double[3]){ 200, 0.3, 0.3 }, (double[3]){ 0.05, 0.1, 0.1 });
     add_box(toy, "FLANGE-2", (double[3]){ 0.05, 0.5, 0.5 }, (double[3]){ 200.05, 0, 0 });
     expect_framed(toy, 0);
 }
 
-/* A stray box 300 m away is not cut by the far plane; one 5,000 km away must not make the near plane cut the plant. */
+/* A stray box 300 m away is not cut by the far plane; a box 5,000 km away must not make the near plane cut the plant. */
 TEST(depth_holds_strays_as_far_as_it_resolves_the_plant)
 {
     static const double strays_m[] = { 300, 5e6 };

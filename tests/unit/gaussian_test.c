@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The Gaussian process against a dense one: the kernel by inverting the system, weights by the equations of ordinary kriging with one mean
-   for each body (Cressie, Statistics for Spatial Data, 3.2), lost sensors by leaving them out; and places and numbers that are awkward. */
+/* The Gaussian process compared with dense algebra: the kernel by inverting the system, weights by ordinary kriging with one mean per
+   body (Cressie, Statistics for Spatial Data, 3.2), lost sensors by omission; also difficult positions and numbers. */
 #include "tests/support/test.h"
 #include <math.h>
 
@@ -35,7 +35,7 @@ static void prepare(struct gaussian_case *s, const double (*places_m)[3], size_t
     vertex_embedding_destroy(&embedding);
 }
 
-/* The shape's own triangles, without the surface's finer ones: small enough for dense algebra. */
+/* Uses the shape's own triangles without the surface's subdivision, so that the system is small enough for dense algebra. */
 static void prepare_coarse(struct gaussian_case *s, const double (*places_m)[3], size_t count, double disc_m)
 {
     const struct cad *shape = &s->shape;
@@ -103,7 +103,7 @@ static size_t nearest_vertex(const struct gaussian_case *s, const double place[3
 
 /* --- plain algebra ----------------------------------------------------------------------------------------------------------- */
 
-/* Solves a x = b for `columns` right-hand sides, in place, by Gauss with pivots. */
+/* Solves a x = b in place for `columns` right-hand sides, by Gaussian elimination with pivoting. */
 static void gauss(size_t n, double *a, size_t columns, double *b)
 {
     for (size_t k = 0; k < n; k++) {
@@ -137,7 +137,7 @@ static void gauss(size_t n, double *a, size_t columns, double *b)
 
 struct dense {
     size_t rows, sensors;
-    double *kernel;  /* [row][row]: of deviation 1 at the sensors, without what is constant */
+    double *kernel;  /* [row][row]: covariance at unit deviation at the sensors, without the constant part */
     double *sensing; /* [sensor][row] */
 };
 
@@ -198,7 +198,7 @@ static double covariance(const struct dense *d, const double *a, const double *b
     return sum;
 }
 
-/* Weights of the used sensors in what is read by `place`, and the variance of what they miss. */
+/* Computes the weights of the used sensors for the value read by `place`. Returns the variance of the error. */
 static double krige(const struct dense *d, const struct gaussian_params *p, const uint8_t *used, const double *place, double *weights)
 {
     const size_t n = d->sensors + 1;
@@ -266,7 +266,7 @@ TEST(test_agrees_with_a_dense_one)
             double with = (double)s.influence.deviations[v], without = (double)s.influence.deviations[s.shape.vertex_count + v];
             double prior = cases[c].deviation * cases[c].deviation * covariance(&d, place, place), taken = fmax(prior - variance, 0);
             assert_true(fabs(without * without - with * with - taken) < 1e-3 * prior);
-            double less = krige(&d, &cases[c], some, place, weights); /* lost sensors: left out of the dense one */
+            double less = krige(&d, &cases[c], some, place, weights); /* lost sensors are left out of the dense system */
             for (size_t i = 0; i < FEW; i++)
                 wanted += readings[i] * weights[i];
             influence_fill_values(fill, readings);
@@ -277,7 +277,7 @@ TEST(test_agrees_with_a_dense_one)
         }
         print_message("range %g: weights differ by %.1e, deviations by up to %.1f %%\n", cases[c].range_m, worst_share, 100 * worst);
         assert_true(worst_share < 1e-4);
-        assert_true(worst < 4 * 0.044); /* four of its own deviations, by 256 samples */
+        assert_true(worst < 4 * 0.044); /* four standard deviations of an estimate from 256 samples */
         influence_fill_destroy(&fill);
         mem_free(d.kernel);
         mem_free(d.sensing);
@@ -285,7 +285,7 @@ TEST(test_agrees_with_a_dense_one)
     }
 }
 
-/* What the others say of each sensor: (P v)_i / P_ii less than its reading, with variance 1 / P_ii. */
+/* The prediction of each sensor from the others is its reading minus (P v)_i / P_ii, with variance 1 / P_ii. */
 TEST(test_precision_says_what_the_others_say)
 {
     const struct gaussian_params p = { 0.8, 0.5, 10 };
@@ -321,13 +321,13 @@ static void sphere_of(struct gaussian_case *s, const double (*places_m)[3], size
     solve(s, params);
 }
 
-/* A smooth field's readings are met within the noise, and rows add up to 1. */
+/* For a smooth field the readings are met within the noise, and each row of weights sums to 1. */
 TEST(test_readings_are_met_within_noise)
 {
     enum { MANY = 40 };
     struct gaussian_case s = { 0 };
     double places[MANY][3], readings[MANY], ones[MANY];
-    for (size_t i = 0; i < MANY; i++) { /* a spiral from pole to pole */
+    for (size_t i = 0; i < MANY; i++) { /* positions on a spiral from pole to pole */
         double z = 1 - (2 * (double)i + 1) / MANY, turn = 2.4 * (double)i, across = sqrt(1 - z * z);
         memcpy(places[i], (const double[3]){ across * cos(turn), across * sin(turn), z }, sizeof(places[i]));
         readings[i] = 50 + 20 * z + 10 * places[i][0];
@@ -338,7 +338,7 @@ TEST(test_readings_are_met_within_noise)
         size_t v = nearest_vertex(&s, places[i]);
         double there = 50 + 20 * (double)s.shape.positions[v][2] + 10 * (double)s.shape.positions[v][0];
         assert_true(fabs(value_at(&s, readings, v) - there) < 0.5);
-        double away = 0, x; /* the sensor is a disc, and the vertex not in its middle: 1 - x K_1(x) for small x, of what it does not tell */
+        double away = 0, x; /* the sensor is a disc and the vertex is not its centre: the sensor leaves 1 - x K_1(x) unknown, for small x */
         for (int axis = 0; axis < 3; axis++)
             away += pow((double)s.shape.positions[v][axis] - places[i][axis], 2);
         x = sqrt(8) * (sqrt(away) + 0.08);
@@ -363,7 +363,7 @@ TEST(test_two_sensors_at_one_place_that_disagree)
     }
 }
 
-/* One sensor gives its value to its whole body, and its doubt grows away from it; a body without a sensor gets nothing. */
+/* A single sensor gives its value to its whole body, with a deviation that grows with distance; a body without a sensor gets no value. */
 TEST(test_one_sensor_and_bodies_apart)
 {
     struct gaussian_case s = { 0 };
@@ -429,7 +429,7 @@ TEST(test_threads_change_nothing)
     finish(&s);
 }
 
-/* Without solving for a sensor, for ranges from a tenth of the plate to ten times it. */
+/* Covariance without solving for a sensor, for ranges from a tenth of the plate to ten times the plate. */
 TEST(test_covariance_agrees_with_a_dense_one)
 {
     static const double ranges_m[4] = { 0.25, 0.8, 3, 20 };
@@ -464,8 +464,8 @@ static double gaussian(void)
     return sqrt(-2 * log(1 - cad_random(&chance))) * cos(2 * M_PI * cad_random(&chance));
 }
 
-/* Readings that a process of range 0.7 and deviation 6 makes, with noise 0.8: what is fitted is near that. Sensors stand in pairs, as only
- * neighbours tell noise from a field that is rough. */
+/* Readings drawn from a process of range 0.7, deviation 6 and noise 0.8: the fit must find nearly these parameters. Sensors stand in
+   pairs, because only close neighbours distinguish noise from a rough field. */
 TEST(test_fit_finds_what_made_the_readings)
 {
     enum { SENSORS = 24, INSTANTS = 200 };

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What plantcast-prep keeps for the next time: a changed sensor gives the file that preparing all anew gives, to the last bit, without the
-   model being read; among very many sensors, one that shows the field as well. What is damaged is not used; killed midway, it goes on. */
+/* The build cache of plantcast-prep: with a changed sensor it gives the same bits as preparing everything again, without reading the
+   model; with very many sensors, an equally good field. Damaged entries are not used, and a killed run can be continued. */
 #include "tests/support/test.h"
 #include <fcntl.h>
 #include <jansson.h>
@@ -33,7 +33,7 @@ static const char plant_text[] = "plant: { name: Stock test }\n"
                                  "tags: tags.csv\n";
 static const char first_tags[] = "a,,,,t,A,,1.3,0,0\nb,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,TT-1,,,\n";
 
-/* What several tests begin with, or compare with, is prepared once: of first_tags, and anew of tags that were asked for. */
+/* Prepared data that several tests start from or compare with, made once: of first_tags, and fresh folders by tag list. */
 static struct {
     struct prep_case *c; /* the plant of all tests */
     json_t *first;       /* report of the asset in FOLDER/first */
@@ -101,7 +101,7 @@ static int set_up(void **state)
 
 #define CASE(name) TEST_ON(struct prep_case *c, name, set_up, NULL)
 
-/* Prepares with these tags into FOLDER/`into`. The asset's report. */
+/* Prepares with these tags into FOLDER/`into`. Returns the asset's report; *model_read receives whether the model was read. */
 static json_t *prepare(struct prep_case *c, const char *tags, const char *into, bool *model_read)
 {
     char *arguments = mem_printf("$PLANT --report json --output $FOLDER/%s", into);
@@ -120,7 +120,7 @@ static char *path_of(const struct prep_case *c, const char *folder, const json_t
     return mem_printf("%s/%s/%s", c->folder, folder, json_string_value(json_object_get(asset, "file")));
 }
 
-/* As prepare(first_tags, "kept") leaves it where nothing was; the asset's report. */
+/* Restores FOLDER/kept as a first run with first_tags leaves it. Returns the asset's report. */
 static json_t *prepare_first(struct prep_case *c)
 {
     bool model_read;
@@ -133,7 +133,7 @@ static json_t *prepare_first(struct prep_case *c)
     return json_incref(made.first);
 }
 
-/* Into a folder where nothing is. Its number in made.fresh. */
+/* Prepares `tags` into an empty folder, once. Returns the index in made.fresh. */
 static size_t prepare_fresh(struct prep_case *c, const char *tags)
 {
     bool model_read;
@@ -157,7 +157,7 @@ static size_t prepare_fresh(struct prep_case *c, const char *tags)
     return i;
 }
 
-/* Into a folder where nothing is, the same bytes come; nothing of what the levels and the surface are in the report differs either. */
+/* Asserts that preparing `tags` into an empty folder gives the same file, byte by byte, and the same levels and surface in the report. */
 static void assert_as_fresh(struct prep_case *c, const char *tags, const json_t *found)
 {
     size_t i = prepare_fresh(c, tags), size;
@@ -170,7 +170,7 @@ static void assert_as_fresh(struct prep_case *c, const char *tags, const json_t 
     mem_free(path);
 }
 
-/* Where each group had one sensor, nothing was drawn from distances, and they were not checked. */
+/* When each group had one sensor, distances were not used and not checked; they must be checked once they matter. */
 CASE(what_was_not_checked_is_checked_once_it_shows)
 {
     static const char *const tags[] = { "a,,,,t,A,,1.3,0,0\nc,,,,p,A,,0,1,0.3\n",
@@ -202,7 +202,8 @@ CASE(a_changed_sensor_costs_its_own_distances)
         { "b,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,TT-1,,,\n", 3, false },                        /* removed */
         { "e,,,,t,A,,0.8,0.8,0\nb,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,TT-1,,,\n", 3, false },   /* added */
         { "e,,,,t,A,,0.8,0.8,0\nb,,,,t,A,,-1.3,0,0\nc,,,,t,A,,0,1,0.3\nd,,,,t,A,TT-1,,,\n", 4, false },   /* of another group */
-        { "e,,,,t,A,,0.8,0.8,0\nb,,,,t,A,,-1.3,0,0\nc,,,,t,A,TT-2,,,\nd,,,,t,A,TT-1,,,\n", 3, true },     /* on a node nobody asked for */
+        /* no tag was on this node before */
+        { "e,,,,t,A,,0.8,0.8,0\nb,,,,t,A,,-1.3,0,0\nc,,,,t,A,TT-2,,,\nd,,,,t,A,TT-1,,,\n", 3, true },
         { "d,,,,t,A,TT-1,,,\nc,,,,t,A,TT-2,,,\ne,,,,t,A,,0.8,0.8,0\nb,,,,t,A,,-1.3,0,0.01\n", 3, false }, /* in another order */
     };
     for (size_t i = 0; i < sizeof(changes) / sizeof(*changes); i++) {
@@ -218,7 +219,7 @@ CASE(a_changed_sensor_costs_its_own_distances)
     }
 }
 
-/* The one file of the folder with this ending. */
+/* Returns the path of the folder's only file with this ending. */
 static char *kept_file(const struct prep_case *c, const char *ending)
 {
     char path[400] = "", *command = mem_printf("ls '%s'/kept/*%s", c->folder, ending);
@@ -237,7 +238,7 @@ static void damage(const char *path, bool cut)
     size_t size;
     char *bytes = text_read_file(path, (size_t)1 << 30, &size);
     assert_non_null(bytes);
-    for (size_t i = size / 8; i < size; i += size / 8) /* all columns, and every part of the stock */
+    for (size_t i = size / 8; i < size; i += size / 8) /* damages every column and every part of the cached mesh */
         bytes[i] ^= 4;
     assert_int_equal(atomic_file_put(path, bytes, cut ? size / 3 : size), 0);
     mem_free(bytes);
@@ -271,7 +272,7 @@ static ino_t file_number(const char *path)
     return st.st_ino;
 }
 
-/* Where points lie is taken from the last time, and is written again only where little of it was known. */
+/* Sample points' positions are taken from the cache, and the cache is rewritten only if few of them were known. */
 CASE(points_are_found_once)
 {
     static const char *const places[] = { "1.3,0,0.02", "1.3,0,0.05", "0.8,0.8,0" };
@@ -282,7 +283,7 @@ CASE(points_are_found_once)
         char *tags = mem_printf("a,,,,t,A,,%s\nb,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,TT-1,,,\n", places[i]);
         if (i)
             damage(spots, i == 2);
-        ino_t before = file_number(spots); /* of a file that is there while another one is written */
+        ino_t before = file_number(spots); /* inode of the existing file while another one is written */
         json_t *asset = prepare(c, tags, "kept", &model_read);
         assert_false(model_read);
         assert_true((file_number(spots) == before) == (i == 0));
@@ -295,7 +296,8 @@ CASE(points_are_found_once)
 
 /* --- killed midway ------------------------------------------------------------------------------------------------------------ */
 
-/* Prepares into FOLDER/kept; where it would write behind so many bytes of a file, it is killed by the system, or told. Its status. */
+/* Prepares into FOLDER/kept with a file size limit of `bytes`: beyond it the system kills the process, or writing fails if `told`.
+   Returns the exit status. */
 static int prepare_limited(struct prep_case *c, const char *tags, size_t bytes, bool told)
 {
     char *program = prep_case_program(), *folder = temp_path(c->folder, "kept"), *said = temp_path(c->folder, "said");
@@ -334,7 +336,8 @@ static size_t bytes_of(const char *path)
     return (size_t)st.st_size;
 }
 
-/* In a column, in the file: what was there before stays, also for who has it mapped, and the next time gives what preparing anew gives. */
+/* Killed while writing a column or the file: the old content stays, also for processes that have it mapped, and the next run gives the
+   result of preparing everything again. */
 CASE(killed_midway_it_goes_on)
 {
     bool model_read;
@@ -370,7 +373,7 @@ CASE(killed_midway_it_goes_on)
     mem_free(folder);
 }
 
-/* A file that there is no room for is not begun: the old one stays, nothing lies about, and with room it is made. */
+/* A file that does not fit on the disk is not begun: the old one stays, no temporary file remains, and with room it is written. */
 CASE(without_room_the_old_file_stays)
 {
     static const char tags[] = "a,,,,t,A,,1.3,0,0\nb,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,,0.1,-1.2,0\n";
@@ -423,7 +426,7 @@ CASE(what_nothing_needs_any_more_is_removed)
 #define MANY 65
 #define STEP (1 / 255.0)
 
-/* Of one group, all round the ring; the first one, numbered so, stands elsewhere each time. */
+/* Returns `MANY` tags of one group around the ring; the tag with number `first` moves each time. */
 static char *many_tags(int first)
 {
     struct text rows = { 0 };
@@ -441,7 +444,7 @@ struct prepared {
     struct folder_file file;
     struct trimesh mesh; /* of the finest level */
     struct bvh *bvh;
-    float *values; /* of its vertices, for some readings */
+    float *values; /* values at the asset's vertices, for some readings */
 };
 
 static float value_at(const struct asset_view *view, uint32_t vertex)
@@ -491,7 +494,7 @@ static int by_size(const void *a, const void *b)
     return (p > q) - (p < q);
 }
 
-/* What one shows at corners of the other's triangles, where that has the field as it is solved. */
+/* Compares the field of `at` at the corners of `other`'s triangles with the field that `other` computed there. */
 static void assert_shows(const struct prepared *at, const struct prepared *other, const char *name)
 {
     size_t count = other->mesh.tri_count;
@@ -524,7 +527,7 @@ static void assert_on_vertices(const struct prepared *at)
     }
 }
 
-/* Without findings: into another folder, or where those that are kept are damaged and the asset's file is gone. */
+/* Asserts that preparing `tags` again, into another folder or over a damaged cache, gives the same field as `moved`, without findings. */
 static void assert_shows_as_anew(struct prep_case *c, const struct prepared *moved, const char *tags, const char *into)
 {
     struct prepared anew;
@@ -565,10 +568,10 @@ CASE(one_of_many_sensors_is_split_for_alone)
         print_message("# move %d: %d findings, %d of them kept\n", move, measured + kept, kept);
         first_found = move == 0 ? measured + kept : first_found;
         assert_true(measured > 0);
-        if (move > 0) /* levels that were no use then are not tried again */
+        if (move > 0) /* levels that were rejected before are not tried again */
             assert_true(measured + kept < 0.97 * first_found);
         assert_true(move == 0 ? kept == 0 : kept > measured / 2);
-        if (move == moves - 1) { /* in full, the doubts of two moves have added up */
+        if (move == moves - 1) { /* in a full sweep the uncertainties of two moves have added up */
             open_prepared(&moved, c, "kept", found);
             assert_on_vertices(&moved);
             assert_shows_as_anew(c, &moved, tags, "kept");

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Replays the seeds of the model fuzzer, and what random changes make of them. `gltf_fuzz_test --write FOLDER` makes the seeds anew. */
+/* Replays the seeds of the model fuzzer and random mutations of them. `gltf_fuzz_test --write FOLDER` writes the seeds again. */
 #include "tests/fuzz/gltf_fuzz.c"
 
 #include "tests/support/test.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Models: what glTF files may hold is read as it is meant, and what is wrong is refused by name. */
+/* Loading of glTF models: valid content is read as specified, and every error is refused by name. */
 #include "preprocess/geometry/geometry.h"
 
 #include "tests/support/test.h"
@@ -13,18 +13,18 @@
 
 #define CASE(name) TEST_ON(struct gltf_case *l, name, gltf_case_set_up, gltf_case_tear_down)
 
-/* One binary chunk for every model here; what lies where is said by the accessors below. */
+/* One binary chunk serves every model here; each member's comment begins with its offset, which the accessors below use. */
 struct bin {
-    float square[4][3];      /* 0: in the x-y plane, corners (0,0) (1,0) (0,1) (1,1) */
+    float square[4][3];      /* offset 0: in the x-y plane, corners (0,0) (1,0) (0,1) (1,1) */
     uint16_t list16[6];      /* 48: two triangles */
     uint8_t strip8[4];       /* 60 */
     uint32_t strip32[4];     /* 64 */
-    int16_t quantized[4][4]; /* 80: the square, normalised, stride 8 */
+    int16_t quantized[4][4]; /* offset 80: the square in normalised integers, stride 8 */
     uint16_t sparse_at[2];   /* 112: vertex 3 */
     float sparse_to[3];      /* 116: (2, 2, 0) */
-    float broken[4][3];      /* 128: one is not a number */
+    float broken[4][3];      /* offset 128: one coordinate is not a number */
     uint16_t wrong16[6];     /* 176: names vertex 4 */
-    float normals[4][3];     /* 188: up, one of length 0 */
+    float normals[4][3];     /* offset 188: normals that point up, one of length 0 */
     uint8_t colors[4][4];    /* 236 */
     float texcoords[4][2];   /* 252 */
     float instances[2][3];   /* 284: places of two instances */
@@ -149,7 +149,7 @@ CASE(nodes_are_put_in_place)
     assert_string_equal(l->model.nodes[1].name, "b");
     assert_int_equal(l->model.nodes[1].parent, 0);
     assert_float_equal(l->model.nodes[1].world[13], 4, 1e-12);
-    assert_float_equal(l->model.nodes[2].world[1], 2, 1e-6); /* x turned to y, and doubled */
+    assert_float_equal(l->model.nodes[2].world[1], 2, 1e-6); /* the x axis is turned to y and doubled */
     good(l, HEAD "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"name\":\"i\",\"mesh\":0,\"extensions\":{\"EXT_mesh_gpu_instancing\":"
                  "{\"attributes\":{\"TRANSLATION\":11}}}}]," MESH(SQUARE) ACCESSORS "}");
     assert_int_equal(l->model.node_count, 3);
@@ -160,7 +160,7 @@ CASE(nodes_are_put_in_place)
 #define TURNED(rotation)                                                                                                                   \
     HEAD "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"name\":\"valve\",\"mesh\":0,\"rotation\":" rotation "}]," MESH(SQUARE) ACCESSORS "}"
 
-/* As a unit quaternion turns, other lengths do, and are counted; one without a length turns nowhere. */
+/* A quaternion of any length rotates like its unit quaternion, and is counted; a quaternion of length zero does not rotate. */
 CASE(rotations_have_a_length)
 {
     good(l, TURNED("[0,0,0.7071,0.7071]"));
@@ -323,12 +323,12 @@ CASE(nodes_are_chosen_by_pattern_and_taken_once)
 {
     good(l, FACILITY);
     struct geometry g = cut(l, &(struct geometry_params){ .nodes = "P-101*", .unit_m = 1, .up = AXIS_Z });
-    assert_int_equal(g.primitive_count, 3); /* the seal matches too, and comes once */
+    assert_int_equal(g.primitive_count, 3); /* the node "seal" matches too and is taken once */
     assert_string_equal(g.names.at + g.primitives[2].name, "P-101B/seal");
     geometry_finish(&g);
     g = cut(l, &(struct geometry_params){ .nodes = "E-7", .unit_m = 1, .up = AXIS_Z });
     assert_float_equal(g.origin_m[0], 1000000.5, 0);
-    assert_float_equal(g.positions_m[0][0], -0.5, 0); /* a million metres away, and exact */
+    assert_float_equal(g.positions_m[0][0], -0.5, 0); /* a million metres away, yet exact */
     geometry_finish(&g);
     char why[MODEL_WHY_BYTES];
     assert_false(geometry_cut(&g, &l->model, &(struct geometry_params){ .nodes = "X*", .unit_m = 1 }, why));
@@ -359,7 +359,7 @@ CASE(mirrored_nodes_keep_their_outside)
         assert_true(n[2] > 0);
     }
     for (uint32_t v = 0; v < g.vertex_count; v++)
-        assert_float_equal(g.normals[v][2], 1, 1e-6); /* also where the model's own has no length */
+        assert_float_equal(g.normals[v][2], 1, 1e-6); /* also where the model's own normal has no length */
     geometry_finish(&g);
 }
 
@@ -388,7 +388,7 @@ CASE(a_nodes_place_is_the_middle_of_its_meshes)
     assert_false(geometry_node_place(&l->model, &params, "TT-1", place, why));
 }
 
-/* Three pumps of one name in two areas, and a node without a name. */
+/* Three pumps of the same name in two areas, and a node without a name. */
 #define PUMP(x) "{\"name\":\"pump\",\"mesh\":0,\"translation\":[" #x ",0,0]}"
 #define NORTH "{\"name\":\"north\",\"children\":[1,2]},"
 #define SOUTH "{\"name\":\"south\",\"children\":[4,5]},"
@@ -409,7 +409,7 @@ CASE(a_name_that_is_there_several_times_is_refused)
     assert_float_equal(place[0], 10.5, 1e-9);
     assert_true(geometry_node_place(&l->model, &params, "south/pump", place, why));
     assert_float_equal(place[0], 20.5, 1e-9);
-    params.nodes = "south"; /* only one of them is in the asset */
+    params.nodes = "south"; /* only one of the three is in the asset */
     assert_true(geometry_node_place(&l->model, &params, "pump", place, why));
     assert_float_equal(place[0], 20.5, 1e-9);
     assert_true(geometry_node_place(&l->model, &params, "south/", place, why)); /* without a name */
@@ -420,7 +420,7 @@ CASE(a_name_that_is_there_several_times_is_refused)
     geometry_finish(&g);
 }
 
-/* What cannot become an asset, though its file is whole. */
+/* Models whose file is valid but from which no asset can be cut. */
 CASE(what_cannot_be_cut_is_refused)
 {
     static const struct {
@@ -479,7 +479,7 @@ CASE(wrong_instances_and_sparse_elements_are_refused)
     }
 }
 
-/* By their normals, as by their winding. Smoothed ones may lean over an edge. */
+/* Whether the triangle's normals agree with its winding. Smoothed normals may lean over an edge. */
 static bool faces_outward(const struct geometry *g, uint32_t tri)
 {
     float out[3];

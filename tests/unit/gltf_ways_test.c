@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One surface said in every way that glTF knows is always the same surface; compressed by the compressions' own encoders, and by the
-   programs that people compress with. */
+/* One surface encoded in every way that glTF allows is read as the same surface; also compressed by the reference encoders and by common
+   compression programs. */
 #include "preprocess/geometry/geometry.h"
 
 #include "tests/support/test.h"
@@ -57,7 +57,7 @@ struct gltf_corner {
     const uint8_t *color;
 };
 
-/* Is it one of the sheet's triangles, from the same side? -1: no. */
+/* Returns the sheet's triangle with these corners, wound the same way, or -1. */
 static int triangle_of(const struct wavy_sheet *sheet, struct gltf_corner corners[3], double tolerance_m)
 {
     for (uint32_t t = 0; t < sheet->index_count / 3; t++)
@@ -86,7 +86,7 @@ static void assert_look(const struct gltf_corner *corner, double tolerance_m)
     }
 }
 
-/* Every triangle of the sheet once, in the primitives of one node. */
+/* Asserts that the primitives of one node contain every triangle of the sheet exactly once. */
 static void assert_sheet(const struct gltf_model *model, const struct gltf_node *node, const struct wavy_sheet *sheet, double tolerance_m)
 {
     bool *seen = mem_array(sheet->index_count / 3, sizeof(*seen));
@@ -204,7 +204,7 @@ static size_t write_plain(struct gltf_case *l, const struct wavy_sheet *sheet)
     return size;
 }
 
-/* FOLDER/plain.glb by that command into FOLDER/packed.glb, which says that it has that extension. */
+/* Converts FOLDER/plain.glb with the program into FOLDER/packed.glb, which must declare the extension, and reads it back. */
 static void try_packed(struct gltf_case *l, const char *program, const char *options, const char *extension, double tolerance_m)
 {
     struct wavy_sheet sheet;
@@ -248,7 +248,7 @@ CASE(what_draco_writes_is_read)
 
 /* --- what is broken in them ---------------------------------------------------------------------------------------------- */
 
-/* Every byte of the compressed data in turn is another: never a crash, and what is accepted holds together. */
+/* Changes every byte of the compressed data in turn: never a crash, and an accepted model is consistent. */
 CASE(broken_compression_is_refused_or_harmless)
 {
     struct wavy_sheet sheet;
@@ -273,7 +273,7 @@ CASE(broken_compression_is_refused_or_harmless)
     sheet_finish(&sheet);
 }
 
-/* The JSON and bytes of a seed again, to be changed. */
+/* Opens the JSON and bytes of a seed again, for a test to change them. */
 static struct model_maker seed_open(int number, const char *name, const struct wavy_sheet *sheet)
 {
     struct seed seed;
@@ -410,7 +410,7 @@ CASE(what_a_small_file_claims_is_bounded)
     try_model(l, &maker);
     assert_refused(l, "accessor 0: 4000000000 elements, but not a byte of them in the file");
 
-    maker_init(&maker); /* the same million indices, by a thousand primitives */
+    maker_init(&maker); /* the same million indices, used by a thousand primitives */
     at = maker_accessor(&maker, -1, FLOAT, 3, "VEC3");
     int list = maker_accessor(&maker, -1, UBYTE, 999999, "SCALAR"), mesh = maker_mesh(&maker, json_null());
     json_array_clear(json_object_get(maker_get(&maker, "meshes", mesh), "primitives"));
@@ -421,7 +421,7 @@ CASE(what_a_small_file_claims_is_bounded)
     try_model(l, &maker);
     assert_refused(l, "elements are more than a file of");
 
-    maker_init(&maker); /* a million instances of nothing much */
+    maker_init(&maker); /* a million instances of a tiny mesh */
     mesh = maker_mesh(&maker, json_pack("{s:{s:i}}", "attributes", "POSITION", maker_accessor(&maker, -1, FLOAT, 3, "VEC3")));
     at = maker_accessor(&maker, -1, BYTE, 5000000, "VEC3");
     maker_node(&maker, "n", mesh, json_pack("{s:{s:{s:{s:i}}}}", "extensions", "EXT_mesh_gpu_instancing", "attributes", "TRANSLATION", at));
@@ -546,13 +546,14 @@ CASE(colors_are_read_in_every_type)
         try_model(l, &maker);
         assert_good(l);
         assert_memory_equal(l->model.primitives[0].colors, ((uint8_t[12]){ 255, 128, 0, 255, 0, 0, 0, 255, 255, 0, 255, 255 }),
-                            12); /* 2 and -1 are cut off */
+                            12); /* 2 and -1 are clamped */
     }
 }
 
 /* --- materials ----------------------------------------------------------------------------------------------------------- */
 
-/* Another texture of the same material, which lies otherwise: on a set of its own, or on the same one. A third way is one too many. */
+/* Another texture of the same material with a different mapping: on its own coordinate set, or on the same one. A third mapping is
+   refused. */
 static void second_texcoords_are_read(struct gltf_case *l, const struct wavy_sheet *sheet)
 {
     struct geometry g;
@@ -566,7 +567,7 @@ static void second_texcoords_are_read(struct gltf_case *l, const struct wavy_she
     try_model(l, &maker);
     assert_good(l);
     const struct gltf_primitive *p = &l->model.primitives[0];
-    for (uint32_t v = 0; v < p->vertex_count; v++) /* the first with its transform, the second without one */
+    for (uint32_t v = 0; v < p->vertex_count; v++) /* the first primitive has a texture transform, the second has none */
         assert_true(fabsf(p->second_texcoords[v][0] - sheet->texcoords[v][0]) < 1e-6f && p->texcoords[v][0] != p->second_texcoords[v][0]);
     const struct asset_material *m = &l->model.materials[0];
     assert_int_equal(m->second, 1 << 2 | 1 << 3);
@@ -579,7 +580,7 @@ static void second_texcoords_are_read(struct gltf_case *l, const struct wavy_she
     assert_true(g.second_texcoords && g.materials[0].second == m->second);
     geometry_finish(&g);
 
-    maker = seed_open(15, "textured.glb", sheet); /* there is no such set on the primitive */
+    maker = seed_open(15, "textured.glb", sheet); /* the primitive has no such coordinate set */
     json_object_set_new(maker_get(&maker, "materials", 0), "occlusionTexture", json_pack("{s:i,s:i}", "index", 0, "texCoord", 7));
     try_model(l, &maker);
     assert_good(l);
@@ -614,7 +615,7 @@ CASE(textures_lie_where_their_transform_puts_them)
 
     second_texcoords_are_read(l, &sheet);
 
-    maker = seed_open(15, "textured.glb", &sheet); /* the transform has the last word on which coordinates are meant */
+    maker = seed_open(15, "textured.glb", &sheet); /* the transform's texCoord overrides the texture's */
     json_t *attributes = json_object_get(primitive_of(&maker), "attributes");
     json_object_set(attributes, "TEXCOORD_1", json_object_get(attributes, "TEXCOORD_0"));
     json_object_set_new(attributes, "TEXCOORD_0", json_integer(maker_accessor(&maker, -1, FLOAT, sheet.vertex_count, "VEC2")));
@@ -624,7 +625,7 @@ CASE(textures_lie_where_their_transform_puts_them)
     assert_good(l);
     assert_true(l->model.primitives[0].texcoords[1][0] != l->model.primitives[0].texcoords[0][0]);
 
-    maker = seed_open(15, "textured.glb", &sheet); /* mirrored beyond 0..1, which this sheet is */
+    maker = seed_open(15, "textured.glb", &sheet); /* mirrored beyond 0..1, a range that this sheet uses */
     json_object_set_new(maker_get(&maker, "samplers", 0), "wrapS", json_integer(33648));
     try_model(l, &maker);
     assert_good(l);
@@ -667,7 +668,7 @@ CASE(textures_lie_where_their_transform_puts_them)
     try_model(l, &maker);
     assert_refused(l, "alphaMode 'GLOW'");
 
-    maker = seed_open(15, "textured.glb", &sheet); /* its picture is broken, which is seen when it is needed */
+    maker = seed_open(15, "textured.glb", &sheet); /* the image is broken, which is noticed only when it is needed */
     const json_t *number = json_object_get(maker_get(&maker, "images", 0), "bufferView");
     const json_t *view = maker_get(&maker, "bufferViews", (int)json_integer_value(number));
     memset(maker.bin.at + json_integer_value(json_object_get(view, "byteOffset")) + 8, 'X', 16);
@@ -713,7 +714,7 @@ CASE(assets_are_cut_from_a_tree)
     try_model(l, &maker);
     assert_good(l);
 
-    struct geometry g = cut(l, "far", 1, AXIS_Z); /* 6000 km away: no digit of the sheet is lost */
+    struct geometry g = cut(l, "far", 1, AXIS_Z); /* 6,000 km away: the sheet loses no digit */
     assert_float_equal(g.origin_m[0], 500001, 1e-9);
     assert_float_equal(g.origin_m[1], 6000000.5, 1e-9);
     double step = 1;
@@ -726,7 +727,7 @@ CASE(assets_are_cut_from_a_tree)
     assert_true(fabs(step - 2.0 / 24) < 1e-6);
     geometry_finish(&g);
 
-    for (int mirrored = 0; mirrored < 2; mirrored++) { /* computed normals look out of the same side as the faces, mirrored or not */
+    for (int mirrored = 0; mirrored < 2; mirrored++) { /* computed normals face the same side as the triangles, mirrored or not */
         g = cut(l, mirrored ? "mirrored" : "sheet", 1, AXIS_Z);
         assert_int_equal(g.index_count, sheet.index_count);
         assert_true(g.computed_normals > 0);
@@ -739,10 +740,10 @@ CASE(assets_are_cut_from_a_tree)
         geometry_finish(&g);
     }
 
-    g = cut(l, "branch", 0.001, AXIS_Y); /* a sub-tree, of a model in millimetres, y up */
+    g = cut(l, "branch", 0.001, AXIS_Y); /* a sub-tree of a model in millimetres, y up */
     assert_int_equal(g.primitive_count, 1);
     assert_string_equal(g.names.at + g.primitives[0].name, "twig");
-    assert_float_equal(g.origin_m[1], -0.0095, 1e-6); /* y of the sheet is z of the branch, which is -y */
+    assert_float_equal(g.origin_m[1], -0.0095, 1e-6); /* y of the sheet is z of the branch, which is -y of the asset */
     geometry_finish(&g);
 
     g = cut(l, "[fm]*", 1, AXIS_Z);
@@ -764,7 +765,7 @@ CASE(mirrored_instances_keep_their_outside)
     assert_int_equal(g.index_count, 3 * sheet.index_count);
     for (uint32_t t = 0; t < g.index_count / 3; t++) {
         double n[3], y = (double)g.positions_m[g.indices[3 * t]][1] + g.origin_m[1];
-        bool upside_down = y > 1.5 && y < 3.5; /* the second of three, by a scale of -1 */
+        bool upside_down = y > 1.5 && y < 3.5; /* the second of three instances is turned by a scale of -1 */
         face_normal(&g, t, n);
         assert_true(upside_down ? n[2] < 0 : n[2] > 0);
         assert_true(upside_down == (g.normals[g.indices[3 * t]][2] < 0));
@@ -773,7 +774,7 @@ CASE(mirrored_instances_keep_their_outside)
     sheet_finish(&sheet);
 }
 
-/* Fifty thousand nodes of a mesh of a thousand triangles, each a primitive of its own. */
+/* Fifty thousand nodes that share a mesh of a thousand triangles, each triangle its own primitive. */
 CASE(what_many_nodes_draw_is_bounded)
 {
     struct model_maker maker;
@@ -894,7 +895,7 @@ static void measure(const struct gltf_model *model, double low[3], double high[3
     }
 }
 
-/* The greatest primitive of a real plant, by every compression: as large, with the same area. */
+/* The largest primitive of a real plant, in every compression: the same size and the same area. */
 CASE(a_real_model_survives_compression)
 {
     static const int ways[] = { 8, 9, 11, 12 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* H.264: what libavcodec decodes is what went in, one for one; key frames come when they are asked for, and colours are described. */
+/* H.264: libavcodec decodes each frame as it went in; key frames come when requested, and the colour space is described. */
 #include "tests/support/test.h"
 #include <errno.h>
 
@@ -50,7 +50,7 @@ static int tear_down(void **state)
 
 #define CASE(name) TEST_ON(struct h264_fixture *f, name, set_up, tear_down)
 
-/* level: of the field's patches; they lie on a grey ground with thin lines. */
+/* Makes a frame with coloured patches on grey with thin lines; `level`: brightness of the patches. */
 static struct frame *picture(int w, int h, int level)
 {
     static const uint8_t patches[4][3] = { { 40, 40, 200 }, { 60, 160, 40 }, { 200, 70, 50 }, { 40, 200, 240 } };
@@ -67,7 +67,7 @@ static struct frame *picture(int w, int h, int level)
     return frame;
 }
 
-/* Encodes and decodes. False: nothing had changed. */
+/* Encodes and decodes a frame. Returns false if nothing had changed. */
 static bool pass(struct h264_fixture *f, struct frame *frame, int quality, bool key, struct frame *before)
 {
     struct encoder_params params = { .quality = quality, .key = key, .workers = f->workers, .before = before };
@@ -80,7 +80,7 @@ static bool pass(struct h264_fixture *f, struct frame *frame, int quality, bool 
     assert_int_equal(av_new_packet(in, (int)packet->count), 0);
     memcpy(in->data, packet->bytes, packet->count);
     assert_int_equal(avcodec_send_packet(f->decoder, in), 0);
-    assert_int_equal(avcodec_receive_frame(f->decoder, f->picture), 0); /* at once: nothing is kept back */
+    assert_int_equal(avcodec_receive_frame(f->decoder, f->picture), 0); /* the frame comes out at once: the encoder buffers none */
     av_packet_free(&in);
     f->key = packet->key;
     f->bytes = packet->count;
@@ -94,7 +94,7 @@ static bool pass(struct h264_fixture *f, struct frame *frame, int quality, bool 
     return true;
 }
 
-/* In the middle of the patches, of all channels. */
+/* Returns the largest error of any channel in the middle of the patches. */
 static int worst(const struct h264_fixture *f, const struct frame *frame)
 {
     int most = 0, w = frame->width_px, h = frame->height_px;
@@ -123,7 +123,7 @@ CASE(colours_are_kept_at_any_size)
     check_size(f, 16, 16);
 }
 
-/* Rows that one converts, and those of another, make the picture that one alone makes. */
+/* Colour conversion split by rows among threads gives the same picture as one thread. */
 CASE(many_make_the_same_picture)
 {
     for (int odd = 0; odd < 2; odd++) {
@@ -177,7 +177,7 @@ CASE(equal_pictures_are_not_sent_and_little_costs_little)
     frame_unref(&near);
 }
 
-/* A reading that creeps changes no picture by more than a step of quantisation: still the field stays right. */
+/* A slowly changing reading changes each frame by less than one quantisation step; the picture must still follow. */
 CASE(what_changes_slowly_arrives)
 {
     struct frame *before = NULL;
@@ -206,7 +206,7 @@ CASE(quality_can_change_between_pictures)
     assert_true(bytes[1] > 2 * bytes[0] && bytes[1] > 2 * bytes[2]);
 }
 
-/* Grey shapes of little contrast on a grey ground, as a building seen from afar; `turn`: so far has the camera gone. */
+/* Grey shapes of little contrast on grey, like a building from afar; `turn`: how far the camera has moved. */
 static struct frame *building(int w, int h, int turn)
 {
     struct frame *frame = frame_create(w, h);
@@ -230,7 +230,7 @@ static double mean_off(const struct h264_fixture *f, const struct frame *frame)
     return sum / (double)pixels;
 }
 
-/* However little quality there is room for: a picture shows where things are now, not where they were. */
+/* At any quality, a frame shows objects where they are now and leaves no trace of where they were. */
 CASE(what_moves_leaves_nothing_behind)
 {
     static const int qualities[] = { 78, 42, 30, 25 };
@@ -255,7 +255,7 @@ CASE(what_moves_leaves_nothing_behind)
 CASE(encoders_that_do_not_work_here_are_known)
 {
     assert_true(encoder_works(f->log, "h264", ENCODER_H264_LIBRARY));
-    assert_false(encoder_works(f->log, "h264", "mjpeg")); /* of libavcodec, but of something else */
+    assert_false(encoder_works(f->log, "h264", "mjpeg")); /* codecs of libavcodec, but not for H.264 */
     assert_false(encoder_works(f->log, "h264", "h264_nothing"));
     assert_true(encoder_is_stream("h264") && !encoder_is_stream("jpeg"));
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The first message of a session: whom its token stands for, the view it comes back to, and whether there is room. */
+/* The first message of a session (hello): the identity behind its token, the view that a returning client gets back, and admission. */
 #include "session/session.h"
 
 #include "tests/support/test.h"
@@ -106,7 +106,7 @@ static void leave(struct hello_fixture *f, struct session **session)
     session_destroy(session);
 }
 
-/* The first text that is due. */
+/* Returns the session's next due text message, parsed. */
 static json_t *hear(struct hello_fixture *f, struct session *session)
 {
     struct text text = { 0 };
@@ -189,7 +189,7 @@ CASE(a_revoked_token_ends_its_sessions_and_no_others)
     leave(f, &local);
 }
 
-/* A good token that was held up is not judged, so that its holder has no part in the session. */
+/* A valid token that the login throttle delays is not judged, so the session keeps no token holder. */
 CASE(a_login_that_is_held_up_keeps_no_holder)
 {
     struct login_throttle *throttle = f->context.login_throttle = login_throttle_create();
@@ -211,7 +211,7 @@ CASE(a_login_that_is_held_up_keeps_no_holder)
     "{\"type\":\"hello\"," SIZE ",\"pixel_ratio\":2,\"camera\":{\"seq\":4,\"eye\":[7,8,9],\"target\":[0,0,1]},"                            \
     "\"params\":{\"seq\":5,\"group\":\"pressure\",\"ramp_interval\":2}}"
 
-/* "" where there is no more after `extra`. */
+/* Sends a hello with the resume secret; `extra` is appended to the message's members and may be "". */
 static void come_back(struct hello_fixture *f, enum role role, const char *secret, const char *extra, struct session **out)
 {
     char text[400];
@@ -238,7 +238,7 @@ CASE(who_comes_back_in_time_has_its_view)
     come_back(f, ROLE_ENGINEER, secret, "", &again);
     expect_welcome(f, again, "engineer", true);
     expect_view_of_before(again);
-    assert_string_not_equal(again->identity.resume_secret, secret); /* each is good for one return */
+    assert_string_not_equal(again->identity.resume_secret, secret); /* each resume secret is valid for one return */
     come_back(f, ROLE_ENGINEER, secret, "," SIZE, &late);
     expect_welcome(f, late, "engineer", false);
     assert_int_equal(late->view.field.group, 0);
@@ -375,7 +375,7 @@ CASE(who_is_hidden_gives_its_place_back_and_takes_it_again)
     expect_error(f, hidden, "limit", 0);
     assert_false(session_next_request(hidden, f->now_ns, &request));
     leave_share(f, &second);
-    session_on_tick(hidden, f->now_ns += NS_PER_S); /* there is room again, and nobody has to ask */
+    session_on_tick(hidden, f->now_ns += NS_PER_S); /* room is free again, and the session is admitted without a request */
     assert_int_equal(share.pixels, 230400);
     assert_true(session_next_request(hidden, f->now_ns, &request) && request.account == 1);
     leave_share(f, &hidden);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Bytes as hexadecimal digits, and back. */
+/* Conversion of bytes to hexadecimal digits and back. */
 #include "base/text/hex.h"
 
 #include "tests/support/test.h"

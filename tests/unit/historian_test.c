@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The historian at work: what the store was told lies on disk a second later, also after kill -9, when the disk was full, read-only,
-   slow or damaged, and when the clock was set. */
+/* The historian: samples are on disk one second after the store got them, also after kill -9, with a full, read-only, slow or damaged
+   disk, and when the clock is set. */
 #include "tests/support/test.h"
 #include <fcntl.h>
 #include <glob.h>
@@ -31,8 +31,8 @@
 
 enum { TAGS = 50 };
 
-/* The wall clock, which a test may set; that of the machine is left alone. It begins where no month ends soon, nor has just begun:
-   each has a file of its own, and tests look into one. */
+/* A wall clock that tests may set; the machine's clock stays untouched. It begins in the middle of a month: each month has its own file,
+   and tests look into one file only. */
 static const int64_t MID_MONTH_S = 1781524800; /* 2026-06-15T12:00Z */
 static _Atomic int64_t clock_off_ns;
 int64_t __real_clock_utc_ns(void);
@@ -97,7 +97,7 @@ static int tear_down(void **state)
     plant_by_hand_destroy(&s->plant);
     counters_destroy(&s->counters);
     log_destroy(&s->log);
-    char *disk = temp_path(s->folder, "history"); /* still mounted where a test has failed */
+    char *disk = temp_path(s->folder, "history"); /* still mounted if a test failed */
     (void)umount2(disk, MNT_DETACH);
     mem_free(disk);
     temp_folder_destroy(&s->folder);
@@ -106,7 +106,7 @@ static int tear_down(void **state)
 
 #define CASE(name) TEST_ON(struct historian_setup *s, name, set_up, tear_down)
 
-/* Not on a line, whose inner points history does not keep. */
+/* Returns values that never lie on a line: history drops inner points of straight lines. */
 static double bent(int i)
 {
     return i * i * 7919 % 1009;
@@ -160,7 +160,7 @@ static size_t points_of(struct historian_setup *s, int tag, struct history_serie
     return points_around(s, tag, clock_utc_ns() / 1000, series);
 }
 
-/* How often the table of events has this kind; in the file of that month. */
+/* Returns how many events of this kind the month file for utc_ns contains. */
 static int events_of(struct historian_setup *s, const char *kind, int64_t utc_ns)
 {
     char name[MONTH_NAME_BYTES], *query = mem_printf("SELECT count(*) FROM event WHERE kind = '%s'", kind);
@@ -187,7 +187,7 @@ static void wait_until_counted(struct historian_setup *s, const char *name, doub
     assert_true(counted(s, name) == wanted);
 }
 
-/* Values without a deadband: every one of them is there, exactly, with links lost and found between. */
+/* Values without a deadband: every value is recorded exactly, with connection losses in between. */
 CASE(all_that_was_told_is_there)
 {
     int64_t times_ns[40], lost_ns = 0;
@@ -224,7 +224,7 @@ CASE(quiet_readers_see_the_last_second)
     snapshot_destroy(&snapshot);
 }
 
-/* Writes until it is killed; says in shared memory what the store was told last. */
+/* Records until the process is killed; *told receives the time of the last sample given to the store (shared memory). */
 static void record_for_ever(struct historian_setup *s, _Atomic int64_t *told)
 {
     start(s);
@@ -235,7 +235,7 @@ static void record_for_ever(struct historian_setup *s, _Atomic int64_t *told)
     }
 }
 
-/* Seconds between what the store was told last and what is on the disk. */
+/* Kills a recording process. Returns the seconds between the last sample given to the store and the last one on disk. */
 static double kill_one(struct historian_setup *s, _Atomic int64_t *told, unsigned *seed)
 {
     struct history_series series;
@@ -257,7 +257,8 @@ static double kill_one(struct historian_setup *s, _Atomic int64_t *told, unsigne
     return lost_s;
 }
 
-/* KILLS=100 for make test-long. A second, and the writing: where the disk itself takes seconds, it is tried again. */
+/* The limit is one second plus the time of the write. A disk may itself take seconds, so a slow kill is tried again. make test-long sets
+   KILLS=100. */
 CASE(a_kill_takes_at_most_a_second)
 {
     unsigned seed = (unsigned)sweep_seed();
@@ -270,7 +271,7 @@ CASE(a_kill_takes_at_most_a_second)
     munmap((void *)told, sizeof(*told));
 }
 
-/* The kernel itself refuses: no file may grow beyond what it has. Then it may again, and nothing is missing. */
+/* RLIMIT_FSIZE makes the kernel refuse to grow any file. After the limit is lifted, no sample is missing. */
 CASE(a_full_disk_loses_nothing)
 {
     struct rlimit unlimited;
@@ -296,7 +297,7 @@ CASE(a_full_disk_loses_nothing)
     history_series_finish(&series);
 }
 
-/* As where a folder is read-only for its owner: something else stands in its place. */
+/* A file stands where the history folder should be, which acts like a read-only folder; once the folder exists, it is used. */
 CASE(a_folder_that_comes_later_is_used)
 {
     char *path = temp_write_text(s->folder, "history", "not a folder");
@@ -335,10 +336,11 @@ static void expect_spooled_run(struct historian_setup *s, int64_t first_ns, int6
     look(s, last_ns, snapshot);
     assert_true(snapshot->readings[3].value == 10);
     snapshot_destroy(&snapshot);
-    assert_true(events_of(s, "gap", last_ns) >= 1); /* from the end of that run on nothing was recorded */
+    assert_true(events_of(s, "gap", last_ns) >= 1); /* the gap begins at the end of the previous run */
 }
 
-/* The folder cannot be used until after the daemon has ended: what waits is kept where else there is room. */
+/* The history folder is unusable until the daemon has ended: samples that wait go into a spool elsewhere and are recorded at the next
+   start. */
 CASE(what_waits_at_the_end_comes_with_the_next_start)
 {
     char *path = temp_write_text(s->folder, "history", "not a folder"), *spool = temp_path(s->folder, "history.spool");
@@ -349,7 +351,7 @@ CASE(what_waits_at_the_end_comes_with_the_next_start)
     int64_t last_ns = write_all(s, 7);
     historian_stop(&s->historian);
     assert_int_equal(access(spool, R_OK), 0);
-    start(s); /* once more without room: nothing of it goes */
+    start(s); /* a second start without a usable folder loses nothing of the spool */
     sleep_ns(300 * NS_PER_MS);
     historian_stop(&s->historian);
     assert_int_equal(access(spool, R_OK), 0);
@@ -363,7 +365,7 @@ CASE(what_waits_at_the_end_comes_with_the_next_start)
 
 /* --- clocks ------------------------------------------------------------------------------------------------------------------- */
 
-/* An hour forward: what was read before and after is there, and nothing is drawn over the hour that never was. */
+/* The clock is set forward by an hour: samples from before and after are recorded, and no line spans the skipped hour. */
 CASE(a_clock_set_forward_leaves_its_hour_empty)
 {
     struct snapshot *snapshot = snapshot_create(TAGS);
@@ -374,7 +376,7 @@ CASE(a_clock_set_forward_leaves_its_hour_empty)
     int64_t second_ns = write_all(s, 2);
     atomic_fetch_add(&clock_off_ns, 3600 * NS_PER_S);
     int64_t after_ns = write_all(s, 9);
-    wait_until_counted(s, "plantcast_history_samples_total", 3 * TAGS); /* before the clock is set again */
+    wait_until_counted(s, "plantcast_history_samples_total", 3 * TAGS); /* recorded before the clock is set again */
     historian_stop(&s->historian);
     assert_true(points_of(s, 3, &series) >= 4);
     assert_true(has_point(&series, before_ns, 4) && has_point(&series, second_ns, 5) && has_point(&series, after_ns, 12));
@@ -391,7 +393,7 @@ CASE(a_clock_set_forward_leaves_its_hour_empty)
     snapshot_destroy(&snapshot);
 }
 
-/* An hour back: nothing is lost of either time. */
+/* The clock is set back by an hour: no sample of either pass is lost. */
 CASE(a_clock_set_back_loses_nothing)
 {
     int64_t times_ns[6];
@@ -414,7 +416,7 @@ CASE(a_clock_set_back_loses_nothing)
     assert_true(counted(s, "plantcast_history_lost_total") == 0);
 }
 
-/* Where the plant's clocks go from 02:00 to 03:00, and from 03:00 to 02:00: time goes on as ever. */
+/* Local time jumps from 02:00 to 03:00 and from 03:00 to 02:00: recorded time continues without a break. */
 TEST_WITH(summer_time_comes_and_goes, set_up, tear_down)
 {
     static const int64_t changes_s[] = { 1774746000, 1792890000 }; /* 2026-03-29T01:00Z and 2026-10-25T01:00Z, Europe/Berlin */
@@ -424,7 +426,7 @@ TEST_WITH(summer_time_comes_and_goes, set_up, tear_down)
         struct historian_setup *s = *state;
         int64_t times_ns[10], change_ns = changes_s[k] * NS_PER_S;
         struct history_series series;
-        atomic_store(&clock_off_ns, change_ns - NS_PER_S - __real_clock_utc_ns()); /* under a sanitizer it starts within that, too */
+        atomic_store(&clock_off_ns, change_ns - NS_PER_S - __real_clock_utc_ns()); /* a second before: enough to start */
         start(s);
         for (int i = 0; i < 10; i++) {
             while (i == 5 && clock_utc_ns() <= change_ns)
@@ -447,14 +449,14 @@ TEST_WITH(summer_time_comes_and_goes, set_up, tear_down)
 
 /* --- disks -------------------------------------------------------------------------------------------------------------------- */
 
-/* For this thread, and those it starts, a file system in place of the folder; false: not allowed here. */
+/* Mounts a tmpfs over the folder, for this thread and the threads it starts. Returns false if that is not permitted. */
 static bool mount_disk(const char *folder)
 {
     return mkdir(folder, 0777) == 0 && unshare(CLONE_NEWNS) == 0 && mount("none", "/", NULL, MS_REC | MS_PRIVATE, NULL) == 0 &&
            mount("history", folder, "tmpfs", 0, "size=100m") == 0;
 }
 
-/* Takes all that is left of it. */
+/* Fills the remaining space of the disk. Returns the path of the filler file. */
 static char *fill_disk(const char *folder)
 {
     char *path = temp_path(folder, "filler");
@@ -470,7 +472,7 @@ static char *fill_disk(const char *folder)
     return path;
 }
 
-/* Without another place than the disk that is full, and as after a reboot: what was reserved takes what waits. */
+/* The disk is full and no other folder is available, as after a reboot: waiting samples go into the reserved file. */
 CASE(a_full_disk_has_room_for_a_spool)
 {
     char *folder = temp_path(s->folder, "history");
@@ -479,7 +481,7 @@ CASE(a_full_disk_has_room_for_a_spool)
         mem_free(folder);
         skip();
     }
-    char *reserve = temp_write_text(folder, "spool.reserve", ""); /* somebody was killed while they made it */
+    char *reserve = temp_write_text(folder, "spool.reserve", ""); /* left by a process that was killed while it made the reserve */
     char *spool = temp_path(folder, "unwritten.spool");
     struct stat st = { 0 };
     start(s);
@@ -534,7 +536,7 @@ CASE(a_read_only_disk_loses_nothing)
     times_ns[1] = write_all(s, 2);
     wait_until_counted(s, "plantcast_history_good", 0);
     times_ns[2] = write_all(s, 7);
-    points_of(s, 0, &series); /* what is on it can be read */
+    points_of(s, 0, &series); /* recorded history stays readable */
     assert_true(has_point(&series, times_ns[0], 1));
     history_series_finish(&series);
     assert_int_equal(mount(NULL, folder, NULL, MS_REMOUNT, NULL), 0);
@@ -566,7 +568,7 @@ static size_t count_set_aside(struct historian_setup *s)
     return count;
 }
 
-/* This month's file is rubbish when the daemon starts: it is put out of the way, and all that comes is recorded. */
+/* This month's file is garbage when the daemon starts: it is set aside, and all new samples are recorded. */
 CASE(a_corrupt_month_is_set_aside_and_recording_goes_on)
 {
     char path[300], *folder = temp_path(s->folder, "history");
@@ -589,7 +591,7 @@ CASE(a_corrupt_month_is_set_aside_and_recording_goes_on)
     mem_free(folder);
 }
 
-/* Somebody holds the database for longer than a second: who writes to the store, or looks at it, does not notice. */
+/* Another process locks the database for more than a second: threads that write to the store or read it are not delayed. */
 CASE(a_disk_that_hangs_holds_up_nobody)
 {
     char path[300];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The thread that reads instants: what it gives back is what was recorded; the newest wish of a client counts. */
+/* The history loader thread: its snapshots equal what was recorded, and only a client's newest request counts. */
 #include "service/history_loader.h"
 
 #include "tests/support/test.h"
@@ -31,7 +31,7 @@ static void on_answer(void *arg)
     s->notified++;
 }
 
-/* A tag that rises by 1 each second for 50 s, and has no value for the 10 s after that. */
+/* Records a tag that rises by 1 each second for 50 s and then has no value for 10 s. */
 static void record(struct history_loader_setup *s)
 {
     struct history_tag *tags = history_tags(s->plant);
@@ -76,7 +76,7 @@ static int tear_down(void **state)
     return 0;
 }
 
-/* What was read of the tag at that time. */
+/* Asks the loader for the instant and returns the tag's reading at that time. */
 static struct reading read_at(struct history_loader_setup *s, int64_t at_us)
 {
     int before = s->notified;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Questions about the past: what may be asked, and that answers come, in order, with the points that were recorded. */
+/* History queries: which are accepted, and that answers arrive in order with the recorded points. */
 #include "tests/support/test.h"
 #include <jansson.h>
 
@@ -163,7 +163,7 @@ CASE(csv_has_quotes_where_it_needs_them)
     history_answer_free(&answer);
 }
 
-/* 20,000 points of each tag: more than goes into one piece. */
+/* Records 20,000 points per tag: more than one part of an answer holds. */
 static void record_much(struct history_queries_setup *s)
 {
     struct history_tag *tags = history_tags(s->plant);
@@ -179,7 +179,7 @@ static void record_much(struct history_queries_setup *s)
     mem_free(tags);
 }
 
-/* Who does not read has one piece, others have their turn, and the pieces are one answer. */
+/* A client that does not read holds one part while others have their turn; all parts together make one answer. */
 CASE(long_answers_come_in_pieces)
 {
     struct history_query query = { .client = 7, .account = 1, .tags = { 0, 1 }, .tag_count = 2, .max_points = 20000 };
@@ -192,7 +192,7 @@ CASE(long_answers_come_in_pieces)
     struct history_answer *answer = wait_for(s, ++pieces);
     assert_true(answer->first && !answer->last && answer->length > 256 * 1024);
     sleep_ns(50 * NS_PER_MS);
-    assert_null(history_queries_collect(s->queries)); /* nothing more before it is wanted */
+    assert_null(history_queries_collect(s->queries)); /* no further part before the client asks for it */
     for (;;) {
         bool last = answer->last;
         text_add_bytes(&all, answer->text, answer->length);
@@ -218,7 +218,7 @@ CASE(who_is_forgotten_leaves_room)
     for (int i = 0; i < 4 * HISTORY_QUERIES_MOST; i++) {
         query.client = (uint64_t)i + 1;
         assert_true(history_queries_ask(s->queries, &query));
-        if (i >= HISTORY_QUERIES_MOST - 2) /* at work, waiting, or with a piece that nobody took */
+        if (i >= HISTORY_QUERIES_MOST - 2) /* the limit counts running, queued and uncollected queries */
             history_queries_forget(s->queries, query.client - HISTORY_QUERIES_MOST + 2);
         for (struct history_answer *answer = history_queries_collect(s->queries), *next; answer; answer = next) {
             next = answer->next;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Month files and their reader: what was recorded comes back, over the borders of months, rolled up, at one instant, and when
-   the file was damaged or the disk is full. */
+/* Month files and their reader: recorded points come back across month borders, rolled up, at one instant, from damaged files, and when
+   the disk is full. */
 #include "tests/support/test.h"
 #include <errno.h>
 #include <sys/stat.h>
@@ -27,7 +27,7 @@ static const int64_t NOVEMBER = INT64_C(1793491200) * US_PER_S; /* 2026-11-01T00
 struct history_setup {
     char *folder;
     struct log *log;
-    struct plant *plant; /* two analog tags within 0.4, 1, and a switch */
+    struct plant *plant; /* two analogue tags with tolerances 0.4 and 1, and a switch */
     struct history_tag *tags;
     struct history_reader *reader;
 };
@@ -83,7 +83,7 @@ static uint32_t quality_at(int tag, int64_t second)
     return tag == 1 && second % 9000 > 8000 ? QUALITY_BAD_SENSOR_FAILURE : QUALITY_GOOD;
 }
 
-/* One sample a second, as the historian would have it: doors, one transaction each minute, tidied every ten. */
+/* Records one sample per second as the historian does: swinging-door filters, one transaction per minute, rollups every ten minutes. */
 static void record(struct history_setup *s, int64_t begin_us, int seconds)
 {
     struct recorder *recorder = recorder_create(s->plant);
@@ -153,7 +153,7 @@ CASE(one_instant_is_as_it_was)
     snapshot_destroy(&snapshot);
 }
 
-/* A spike of one second and the time without a value are seen at every length. */
+/* A spike of one second and a gap are visible in queries of every length. */
 CASE(long_times_keep_spikes_and_gaps)
 {
     struct history_series series;
@@ -220,12 +220,12 @@ static void set_zone(const char *zone)
     tzset();
 }
 
-/* The plant's clock is put into another zone while it records, over the border of a month and the end of summer time. */
+/* The time zone changes during recording, across a month border and the end of summer time. */
 CASE(time_zones_do_not_touch_what_is_recorded)
 {
     const char *const zones[] = { "Pacific/Kiritimati", "Europe/Berlin", "America/Adak", "UTC" }, *before = getenv("TZ");
     char *kept = before ? mem_strdup(before) : NULL;
-    const int64_t autumn = NOVEMBER - (6 * 86400 + 82800) * S; /* 2026-10-25T01:00Z: 3:00 in Berlin is 2:00 again */
+    const int64_t autumn = NOVEMBER - (6 * 86400 + 82800) * S; /* 2026-10-25T01:00Z: in Berlin 3:00 becomes 2:00 */
     const int64_t begins[] = { autumn - 1800 * S, NOVEMBER - 1800 * S };
     size_t count;
     for (size_t b = 0; b < 2; b++)
@@ -242,7 +242,7 @@ CASE(time_zones_do_not_touch_what_is_recorded)
             month_file_close(&file);
         }
     int *months = month_list(s->folder, &count);
-    assert_int_equal(count, 2); /* by UTC, whatever the zone says */
+    assert_int_equal(count, 2); /* months are counted in UTC, whatever the time zone */
     assert_int_equal(months[1], month_of(NOVEMBER));
     mem_free(months);
     for (size_t zone = 0; zone < 4; zone++)
@@ -250,7 +250,8 @@ CASE(time_zones_do_not_touch_what_is_recorded)
             struct history_series series;
             set_zone(zones[zone]);
             assert_int_equal(history_series(s->reader, "TT-1", begins[b], begins[b] + 3599 * S, 1000000, &series), 0);
-            const struct history_point *at = series.points.at; /* with the last one before and the first one after, if any */
+            /* includes the last point before the range and the first one after it, if any */
+            const struct history_point *at = series.points.at;
             at += at->t_us < begins[b];
             assert_true(series.points.at + series.points.count - at >= 3600);
             for (int i = 0; i < 3600; i++) {
@@ -263,7 +264,7 @@ CASE(time_zones_do_not_touch_what_is_recorded)
     mem_free(kept);
 }
 
-/* Older points than those that are there: the rollups are what they would have been. */
+/* Importing points older than the existing ones updates the rollups to what they would have been. */
 CASE(an_import_is_rolled_up_again)
 {
     enum { COUNT = 20000 };
@@ -289,7 +290,7 @@ CASE(an_import_is_rolled_up_again)
     mem_free(points);
 }
 
-/* Nobody draws a line over the time when nobody recorded. */
+/* No line spans the time between two runs. */
 CASE(a_restart_leaves_a_gap)
 {
     struct snapshot *snapshot = snapshot_create(TAGS);
@@ -310,7 +311,7 @@ CASE(a_restart_leaves_a_gap)
     snapshot_destroy(&snapshot);
 }
 
-/* In October nobody recorded for ten seconds, nor over the turn of the month; in November the clock was set forward. */
+/* In October recording paused for ten seconds and across the turn of the month; in November the clock was set forward. */
 CASE(gaps_are_told_in_order_and_joined)
 {
     struct history_gaps gaps;
@@ -362,7 +363,7 @@ CASE(a_damaged_file_is_set_aside)
     mem_free(path);
 }
 
-/* A page in its middle: found when it is used. */
+/* A damaged page in the middle of a file is noticed when a query reads it. */
 CASE(damage_inside_is_noticed)
 {
     char *path = temp_path(s->folder, "history-2026-11.sqlite");
@@ -372,7 +373,7 @@ CASE(damage_inside_is_noticed)
     fseek(file, 0, SEEK_END);
     long pages = ftell(file) / 4096;
     assert_true(pages > 20);
-    for (long page = 12; page < pages; page++) { /* the first hold the roots of tables */
+    for (long page = 12; page < pages; page++) { /* the first pages hold the roots of tables */
         fseek(file, page * 4096, SEEK_SET);
         assert_int_equal(fwrite(rubbish, sizeof(rubbish), 1, file), 1);
     }
@@ -404,7 +405,7 @@ CASE(a_newer_version_is_left_alone)
     mem_free(path);
 }
 
-/* What version 1 made, statement for statement. */
+/* The exact statements that version 1 of the month file used to create its tables. */
 static const char version_1[] =
     "CREATE TABLE tag(id INTEGER PRIMARY KEY, name TEXT NOT NULL UNIQUE, unit TEXT NOT NULL, step INTEGER NOT NULL, within REAL NOT NULL);"
     "CREATE TABLE sample(tag INTEGER NOT NULL, t INTEGER NOT NULL, v REAL, q INTEGER NOT NULL, PRIMARY KEY(tag, t)) WITHOUT ROWID;"
@@ -433,7 +434,7 @@ static sqlite3 *open_database(const char *path)
     return db;
 }
 
-/* Rows of a query in one text. */
+/* Asserts the rows of a query, joined into one text. */
 static void assert_rows(sqlite3 *db, const char *query, const char *wanted)
 {
     struct text found = { 0 };
@@ -458,7 +459,7 @@ static void check_contents(sqlite3 *db)
     assert_rows(db, "SELECT kind, text FROM event", "gap not recorded for 3 s; ");
 }
 
-/* Read as it is; brought up by whoever writes, with all that is in it; and written on. */
+/* A file of an older version is readable as it is; a writer upgrades it with all its content and then appends. */
 CASE(an_older_version_is_read_and_brought_up)
 {
     char *path = temp_path(s->folder, "history-2026-11.sqlite");
@@ -468,7 +469,8 @@ CASE(an_older_version_is_read_and_brought_up)
     assert_int_equal(history_at(s->reader, s->tags, NOVEMBER + 5 * S, snapshot), 0);
     assert_true(snapshot->readings[0].value == 20);
     assert_rows(db, "PRAGMA user_version", "1; ");
-    assert_rows(db, "SELECT count(*) FROM history WHERE tag = 'TT-1'", "6; "); /* what was wrong with it: the newest comes twice */
+    /* fault of the old version: its view returned the newest point twice */
+    assert_rows(db, "SELECT count(*) FROM history WHERE tag = 'TT-1'", "6; ");
     struct month_file *file = open_file(s, NOVEMBER);
     assert_rows(db, "PRAGMA user_version", "2; ");
     assert_rows(db, "SELECT count(*) FROM history WHERE tag = 'TT-1'", "5; ");
@@ -479,7 +481,7 @@ CASE(an_older_version_is_read_and_brought_up)
     assert_int_equal(month_file_tidy(file), 0);
     month_file_close(&file);
     assert_rows(db, "SELECT id FROM tag WHERE name = 'TT-1'", "7; ");
-    for (int i = 0; i < 2; i++) { /* between what was there and what came: the reader follows the new version */
+    for (int i = 0; i < 2; i++) { /* the reader opened before the upgrade reads the new version */
         assert_int_equal(history_at(s->reader, s->tags, NOVEMBER + (i ? 50 : 35) * S, snapshot), 0);
         assert_true(snapshot->readings[0].value == (i ? 24 : 13));
     }
@@ -501,7 +503,7 @@ static int on_open(sqlite3 *db, const char **error, const void *api)
     return sqlite3_set_authorizer(db, refuse_views, NULL);
 }
 
-/* In its middle something goes wrong: the file is of the old version, whole. */
+/* If an upgrade fails midway, the file keeps the old version intact. */
 CASE(what_cannot_be_brought_up_stays_as_it_was)
 {
     char *path = temp_path(s->folder, "history-2026-11.sqlite");
@@ -533,7 +535,7 @@ CASE(old_and_large_months_go)
         make_month(s, name, 1000);
         mem_free(name);
     }
-    /* 100 days before November: 24 July */
+    /* 100 days before November is 24 July */
     int64_t unsent;
     assert_int_equal(retention_apply(s->log, s->folder, &(struct retention_limits){ .days = 100 }, NOVEMBER, &unsent), 3000);
     int *months = month_list(s->folder, &count);
@@ -554,7 +556,7 @@ CASE(old_and_large_months_go)
 enum { LOT = 60000 };
 static const int64_t LIMIT = 5000000;
 
-/* Two tags, a point a second each, of which none is on the line of the others. */
+/* Records two tags with one point per second, none on a straight line between others. */
 static void record_a_lot(struct history_setup *s, int64_t from_us)
 {
     int error;
@@ -602,7 +604,7 @@ static void check_what_is_left(struct history_setup *s, int64_t last_us)
     history_reader_destroy(&reader);
 }
 
-/* Recording goes on for three times of what may be kept: the newest stays, the file never gets much larger than the limit. */
+/* Recording continues for three times the allowed size: the newest points stay, and the file never exceeds the limit by much. */
 CASE(a_month_that_is_too_large_loses_its_beginning)
 {
     int64_t from_us = NOVEMBER;
@@ -610,17 +612,17 @@ CASE(a_month_that_is_too_large_loses_its_beginning)
         record_a_lot(s, from_us);
         printf("# %.1f MB\n", (double)size_of_month(s, NOVEMBER) / 1e6);
         if (day > 0)
-            assert_true(size_of_month(s, NOVEMBER) < LIMIT * 3); /* a day here is twice what may be kept */
+            assert_true(size_of_month(s, NOVEMBER) < LIMIT * 3); /* one simulated day takes twice the allowed size */
         apply_for_some_minutes(s, LIMIT, from_us);
     }
     int64_t large = size_of_month(s, NOVEMBER);
-    record_a_lot(s, from_us); /* into the room that was left */
+    record_a_lot(s, from_us); /* fills the space freed in the file */
     assert_true(size_of_month(s, NOVEMBER) < large + LIMIT);
     apply_for_some_minutes(s, LIMIT, from_us);
     check_what_is_left(s, from_us + (LOT - 1) * US_PER_S);
 }
 
-/* Not the whole month goes as soon as the next one begins: it gives back what the next one takes. */
+/* When the next month begins, the month before is not deleted whole: it shrinks by as much as the new month needs. */
 CASE(a_month_that_is_over_shrinks)
 {
     int64_t december_us = month_begin_us(month_of(NOVEMBER) + 1);
@@ -632,7 +634,7 @@ CASE(a_month_that_is_over_shrinks)
     assert_int_equal(month_file_write(file, &row, 1, NULL, 0), 0);
     month_file_close(&file);
     assert_true(size_of_month(s, NOVEMBER) > LIMIT);
-    for (int64_t limit = LIMIT; limit > LIMIT / 4; limit /= 2) { /* at first by the room alone that it does not need */
+    for (int64_t limit = LIMIT; limit > LIMIT / 4; limit /= 2) { /* at first only unused space in the file is released */
         apply_for_some_minutes(s, limit, december_us);
         int64_t left = size_of_month(s, NOVEMBER);
         printf("# %.1f MB\n", (double)left / 1e6);
@@ -653,7 +655,7 @@ static int64_t waiting_in(const struct history_setup *s, int month)
     return count;
 }
 
-/* Of the month of that time, a point a second, all of which wait. */
+/* Records `count` points in the month of from_us, one per second, all waiting to be sent. */
 static void record_to_send(struct history_setup *s, int64_t from_us, size_t count)
 {
     int error;
@@ -688,8 +690,8 @@ CASE(months_wait_for_what_is_to_be_sent)
     retention_apply(s->log, s->folder, &limits, march_us, &unsent);
     assert_int_equal(unsent, 0);
     mem_free(month_list(s->folder, &count));
-    assert_int_equal(count, 2); /* what was sent is not kept */
-    /* too large: the oldest part goes, of what waits too, and is counted */
+    assert_int_equal(count, 2); /* points already sent are not kept */
+    /* too large: the oldest points are deleted, including unsent ones, which are counted */
     int64_t waiting = waiting_in(s, november + 1), lost = 0;
     assert_int_equal(waiting, 20000);
     limits.bytes = (double)size_of_month(s, month_begin_us(november + 1)) * 0.7;
@@ -700,13 +702,13 @@ CASE(months_wait_for_what_is_to_be_sent)
     printf("# %lld of 20000 points went unsent\n", (long long)lost);
     assert_in_range(lost, 1000, 19000);
     assert_int_equal(waiting_in(s, november + 1), 20000 - lost);
-    /* and at last all of it */
+    /* with a limit of 1 byte everything is deleted */
     limits.bytes = 1;
     retention_apply(s->log, s->folder, &limits, march_us, &unsent);
     assert_int_equal(unsent, 20000 - lost);
     mem_free(month_list(s->folder, &count));
     assert_int_equal(count, 1);
-    /* a plant that sends nothing any more waits for nothing */
+    /* a plant without a database to send to keeps nothing for sending */
     record_to_send(s, NOVEMBER, 100);
     retention_apply(s->log, s->folder, &(struct retention_limits){ .days = 30 }, march_us, &unsent);
     assert_int_equal(unsent, 0);
@@ -714,7 +716,7 @@ CASE(months_wait_for_what_is_to_be_sent)
     assert_int_equal(count, 1);
 }
 
-/* What cannot be read may hold something that waits. */
+/* A month that cannot be read may hold unsent points, so it is not deleted for its age. */
 CASE(months_that_cannot_be_read_are_not_too_old)
 {
     int64_t march_us = month_begin_us(month_of(NOVEMBER) + 4), unsent;
@@ -737,7 +739,8 @@ CASE(months_that_cannot_be_read_are_not_too_old)
     mem_free(path);
 }
 
-/* Also through a handle that sends nothing: an import, or a daemon whose plant file names no database any more. */
+/* Unsent points are converted too, even through a handle that sends nothing: an import, or a daemon whose plant file no longer names a
+   database. */
 CASE(what_waits_is_converted_with_the_rest)
 {
     int error;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Images: what their writers wrote comes back, shrunk where it is too large; what is cut off or claims too much is refused. */
+/* Images: encoded pictures decode to the original, large ones are shrunk, and truncated or oversized files are refused. */
 #include "base/image/image.h"
 
 #include "tests/support/test.h"
@@ -15,7 +15,7 @@ struct encoded {
     unsigned long size;
 };
 
-/* Left red, right green, with a soft slope of blue down. */
+/* Makes a picture: left half red, right half green, with a blue gradient downwards. */
 static unsigned char *picture(uint32_t width, uint32_t height, int channels)
 {
     unsigned char *pixels = mem_array((size_t)width * height, (size_t)channels);
@@ -107,7 +107,7 @@ TEST(jpeg_comes_back_and_great_ones_shrink)
 TEST(webp_is_read)
 {
     static const unsigned char webp[] = {
-        /* 8 x 8, as libwebp made it from a slope of greys */
+        /* 8 x 8 pixels, a grey gradient encoded by libwebp */
         82, 73, 70,  70,  70,  0,   0,   0,   87,  69,  66,  80,  86,  80,  56,  32,  58, 0,   0,   0,   176, 1,   0,  157, 1,  42,
         8,  0,  8,   0,   0,   0,   0,   37,  164, 0,   2,   231, 112, 175, 101, 144, 0,  254, 255, 255, 126, 117, 51, 255, 72, 70,
         57, 23, 217, 194, 201, 188, 230, 248, 223, 254, 144, 140, 113, 237, 235, 103, 99, 46,  31,  238, 147, 245, 63, 148, 0,  0,
@@ -127,7 +127,7 @@ TEST(cut_images_are_refused)
 {
     struct encoded all[] = { png_of(64, 64, 3), jpeg_of(64, 64) };
     for (int i = 0; i < 2; i++) {
-        for (size_t size = 0; size + 1 < all[i].size; size += 1 + size / 40) { /* JPEG's last byte is no loss */
+        for (size_t size = 0; size + 1 < all[i].size; size += 1 + size / 40) { /* a JPEG without its last byte is still complete */
             struct image image;
             char why[IMAGE_WHY_BYTES] = "";
             if (image_decode(&image, all[i].bytes, size, 2048, why))
@@ -144,7 +144,7 @@ TEST(false_claims_are_refused)
     memcpy(png.bytes + 16, "\0\0\x1f\xff\0\0\x1f\xff", 8); /* 8191 x 8191 */
     png_const_bytep at = png.bytes;
     assert_refused(at, png.size, "");
-    uint32_t crc = 0xffffffffu; /* and now with a sum that is right */
+    uint32_t crc = 0xffffffffu; /* repeated with a correct checksum */
     for (int i = 12; i < 29; i++) {
         crc ^= at[i];
         for (int bit = 0; bit < 8; bit++)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Series out of CSV files: both forms, what is wrong with them, and the way out and in again. */
+/* Import of series from CSV files: both layouts, all errors, and that an export can be imported again. */
 #include "tests/support/test.h"
 
 #include "base/mem.h"
@@ -123,7 +123,7 @@ CASE(long_rows_are_taken)
     assert_int_equal(s->counts.samples, 5);
     assert_int_equal(s->counts.tags, 2);
     struct history_series series = read_series(s, "h", "FT-1");
-    assert_int_equal(series.points.count, 5); /* with the end of the line */
+    assert_int_equal(series.points.count, 5); /* five points, including the one that ends the line */
     assert_true(series.points.at[1].t_us - series.points.at[0].t_us == 3600 * US_PER_S); /* both hours of that night */
     assert_true(series.points.at[1].value == 2.5);
     assert_true(isnan(series.points.at[2].value) && series.points.at[2].quality == QUALITY_BAD_COMMUNICATION_ERROR);
@@ -173,7 +173,7 @@ CASE(everything_wrong_is_said_and_nothing_is_taken)
     mem_free(folder);
 }
 
-/* Clocks of the plant: in the night that has an hour twice, rows go on; an hour that never was is refused. */
+/* Local times: in the night that repeats an hour rows continue, and an hour that does not exist is refused. */
 CASE(times_without_a_zone_are_the_plant_s)
 {
     timestamp_use_zone("Europe/Berlin");
@@ -185,7 +185,7 @@ CASE(times_without_a_zone_are_the_plant_s)
                        INT64_MIN, 0));
     struct history_series wide = read_series(s, "wide", "FT-1"), fresh = read_series(s, "long", "FT-1");
     static const int minutes[] = { -30, 30, 60, 90, 150 };
-    assert_int_equal(wide.points.count, 6); /* with the end of the line */
+    assert_int_equal(wide.points.count, 6); /* six points, including the one that ends the line */
     for (int i = 0; i < 5; i++)
         assert_true(wide.points.at[i].t_us == OCTOBER_25 + minutes[i] * 60 * US_PER_S);
     assert_true(fresh.points.at[0].t_us == OCTOBER_25 + 30 * 60 * US_PER_S + US_PER_S / 2);
@@ -203,7 +203,7 @@ CASE(files_that_are_no_series_are_refused)
     assert_int_equal(s->diag.errors, 3);
 }
 
-/* What is printed is what was there, and goes in again as it came out. */
+/* An export prints the imported points, and importing that export gives the same points. */
 CASE(out_and_in_again_is_the_same)
 {
     struct text csv = { 0 }, out = { 0 };
@@ -245,7 +245,7 @@ CASE(a_gap_is_no_data)
     assert_true(read_at(s, "h", 0, -1 * DAY_US + 5 * US_PER_S).value == 100);
 }
 
-/* The only spacing of two samples may itself be the gap. */
+/* The only spacing between two samples may itself be a gap. */
 CASE(two_samples_alone_are_no_line)
 {
     assert_true(import(s, "alone", "Time,FT-1\n0,1\n172800,2\n", OCTOBER_25 - 2 * DAY_US, US_PER_S));
@@ -266,7 +266,7 @@ CASE(two_samples_alone_are_no_line)
     assert_int_equal(s->counts.gaps, 0);
 }
 
-/* Buckets of a long time, and means of hours, have no data in the gap either. */
+/* Rollup buckets and hourly means have no data within a gap either. */
 CASE(a_gap_is_no_data_in_rollups)
 {
     double means[60];
@@ -292,7 +292,8 @@ CASE(a_gap_is_no_data_in_rollups)
     mem_free(folder);
 }
 
-/* --longest-gap, then a stated Stale s, then the spacing; a Stale s that is shorter than the spacing does not count. */
+/* The longest gap comes from --longest-gap, else from the tag's Stale s, else from the sample spacing; a Stale s below the spacing is
+   ignored. */
 CASE(the_longest_gap_can_be_stated)
 {
     static const char series[] = "Time,FT-1\n0,1\n10,1\n20,1\n30,1\n90,2\n100,2\n";
@@ -369,7 +370,8 @@ CASE(the_last_of_equal_times_counts)
     history_series_finish(&series);
 }
 
-/* Files of one series, in any order, leave gaps only where there is no data; importing with a longer gap removes those of before. */
+/* Importing the files of one series in any order leaves gaps only where data is missing; a later import with a longer gap limit closes
+   earlier gaps. */
 CASE(imports_that_follow_each_other_join)
 {
     static const char parts[3][80] = { "Time,FT-1\n0,0\n10,1\n20,2\n", "Time,FT-1\n30,3\n40,4\n50,5\n", "Time,FT-1\n60,6\n70,7\n80,8\n" };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What is said of fields between the corners of drawn triangles holds at places by chance, for the readings that are worst there. */
+/* The error bound of fields inside drawn triangles holds at random points for the worst possible readings. */
 #include "tests/support/test.h"
 #include <math.h>
 
@@ -9,12 +9,13 @@
 #include "preprocess/influence/influence_bend.h"
 #include "tests/support/surface_case.h"
 
-enum { FEW = 5, MANY = 70, PLACES = 4000, MOST = 400000 }; /* many: more than one block, and the last not full */
+/* MANY sensors: more than one block of right-hand sides, the last one not full */
+enum { FEW = 5, MANY = 70, PLACES = 4000, MOST = 400000 };
 static const double DISC_M = 0.1, ON_SURFACE_M = 1e-6, FINER_M = 0.04;
 
-struct bend_case { /* coarse triangles, and places in them by chance */
+struct bend_case { /* coarse triangles and random points in them */
     struct cad shape;
-    float (*positions)[3], (*facing)[3]; /* vertices, then places; no matter for vertices, which triangles have */
+    float (*positions)[3], (*facing)[3]; /* vertices, then points; `facing` is unused for vertices, which have triangles */
     uint32_t tri[PLACES];
     double weights[PLACES][3], normals[PLACES][3];
 };
@@ -66,7 +67,7 @@ static void make_sphere(struct cad *shape)
     cad_sphere(shape, &chance, 7);
 }
 
-/* A box that goes through a sphere's wall: a part of each is inside the other. */
+/* Makes a box through a sphere's wall: a part of each lies inside the other. */
 static void make_crossing(struct cad *shape)
 {
     struct cad box = { 0 };
@@ -77,7 +78,7 @@ static void make_crossing(struct cad *shape)
     cad_finish(&box);
 }
 
-/* The same, with cracks that are bridged. */
+/* Makes the same shape with cracks that the repair bridges. */
 static void make_gaps(struct cad *shape)
 {
     struct cad clean = { 0 };
@@ -88,7 +89,8 @@ static void make_gaps(struct cad *shape)
     cad_finish(&clean);
 }
 
-/* Of MAX - MIN: readings that are MAX where that makes it worse, and MIN elsewhere; then the other way round. */
+/* Returns the worst error as a share of MAX - MIN: readings are MAX where that increases the error and MIN elsewhere, then the other way
+   round. */
 static double worst_at(const struct bend_case *drawn, const struct influence *influence, size_t place, double around)
 {
     double plus = 0, minus = 0;
@@ -131,7 +133,8 @@ struct case_of {
     size_t sensors;
 };
 
-/* A solution on much smaller triangles stands for the exact one: what is drawn may differ from it by the errors of the corners. */
+/* Compares with a solution on much smaller triangles, which serves as the exact one; the drawn field may differ from it by the corners'
+   errors. */
 static void compare_finer(const struct case_of *of, const struct bend_case *drawn, const struct surface *surface,
                           const double (*places_m)[3], const struct vertex_embedding *embedding, const float *errors)
 {
@@ -210,7 +213,7 @@ static void holds(const struct case_of *of)
         if (!surface_find_point_within(surface, place_m, drawn.normals[i], ON_SURFACE_M, &hit)) {
             hidden_m2 += surface_find_point_within(surface, place_m, drawn.normals[i], surface_report(surface)->tolerance_m, &hit)
                              ? 0
-                             : area_m2; /* else moved by bridging: no place of the surface is there to compare with */
+                             : area_m2; /* otherwise bridging moved the point, and there is no surface point to compare with */
             continue;
         }
         worst = fmax(worst, found);
@@ -221,7 +224,8 @@ static void holds(const struct case_of *of)
     print_message("said: %.3f steps; seen: %.3f; nearest to what was said of its triangle: %.3f; %zu places, hidden %.3f (%.3f of the "
                   "places), %.2g unknown\n",
                   report.steps, worst, nearest, bend.count, report.hidden_share, hidden_m2 / whole_m2, report.unknown_share);
-    assert_true(worst <= report.steps + 0.02 && nearest > 0.8 && worst > 1); /* it bends, and no more is said than need be */
+    /* the field is curved here, and the reported bound is not much too large */
+    assert_true(worst <= report.steps + 0.02 && nearest > 0.8 && worst > 1);
     assert_true(report.measured == 1 && report.unmeasured == 0 && report.over_share > 0);
     assert_true(report.unknown_share < 0.01 && fabs(report.hidden_share - hidden_m2 / whole_m2) < 0.04);
     assert_true(of->make == make_sphere ? report.hidden_share == 0 && report.unknown_share == 0 : report.hidden_share > 0.02);
@@ -267,7 +271,7 @@ TEST(test_bridged_cracks)
     holds(&(struct case_of){ make_gaps, solve_fin, 0.2, FEW });
 }
 
-/* Triangles that lie elsewhere are not said to be good. */
+/* Triangles that lie off the surface have an unknown error. */
 TEST(test_what_is_not_on_the_surface_is_unknown)
 {
     const double places_m[1][3] = { { 1, 0, 0 } };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Prepared interpolations from the plant file to the field: what is written, what is refused, what is added up, and what stays unknown. */
+/* Prepared interpolations from the plant file to the drawn field: what is written, refused, summed up and left unknown. */
 #include "tests/support/test.h"
 #include <math.h>
 #include <unistd.h>
@@ -18,7 +18,7 @@
 
 #define STRIP_M 10.0
 #define WIDTH_M 0.1
-#define SENSORS 12 /* more than are always summed anew */
+#define SENSORS 12 /* more sensors than the field recomputes in one pass */
 
 static struct log *the_log;
 
@@ -49,7 +49,7 @@ static void write_model(const struct prep_case *c)
     cad_finish(&cad);
 }
 
-/* Sensors stand 0.5 m, 1.3 m, 2.1 m and so on from the strip's end. */
+/* Returns a sensor's distance from the strip's end: 0.5 m, 1.3 m, 2.1 m and so on. */
 static double place_of(size_t sensor)
 {
     return 0.5 + 0.8 * (double)sensor;
@@ -106,7 +106,7 @@ static bool use(struct plant_in_use *u, const struct prep_case *c)
     return true;
 }
 
-/* A plant with these keys of the asset and of the group, prepared and in use. */
+/* Prepares and opens a plant with these keys of the asset and of the group. */
 static void begin(struct plant_in_use *u, struct prep_case *c, const char *wall, const char *group, size_t sensors)
 {
     write_model(c);
@@ -152,7 +152,7 @@ CASE(test_harmonic_is_straight_and_follows_readings)
     finish(&u);
 }
 
-/* Readings that came one by one leave what all at once give. */
+/* Readings that change one by one leave the same field as all of them set at once. */
 CASE(test_steps_and_lost_sensors_agree_with_all_anew)
 {
     struct plant_in_use u, fresh;
@@ -184,9 +184,9 @@ CASE(test_lost_sensor_is_bridged_and_its_place_unknown)
     begin(&u, c, "", ", interpolation: harmonic, disc_m: 0.1", SENSORS);
     u.snapshot->readings[4] = (struct reading){ .value = 5000, .quality = QUALITY_BAD };
     assert_int_equal(look(&u, place_of(4))->no_data, 255);
-    assert_true(fabs((double)look(&u, place_of(3) + 0.2)->value - 31.7) < 0.4); /* straight from 3 to 5, discs apart */
+    assert_true(fabs((double)look(&u, place_of(3) + 0.2)->value - 31.7) < 0.4); /* linear from sensor 3 to sensor 5, outside their discs */
     assert_true(look(&u, place_of(3) + 0.3)->uncertain < 128);
-    u.snapshot->readings[5].quality = QUALITY_UNCERTAIN; /* half of what stands in for the lost one */
+    u.snapshot->readings[5].quality = QUALITY_UNCERTAIN; /* half of the weight that replaces the lost sensor */
     assert_true(look(&u, place_of(4) - 0.3)->uncertain > 127);
     u.snapshot->readings[5].quality = QUALITY_GOOD;
     u.params.fill = FILL_NEIGHBOURS;
@@ -197,7 +197,7 @@ CASE(test_lost_sensor_is_bridged_and_its_place_unknown)
     finish(&u);
 }
 
-/* sqrt(k t / h) = 0.236 m: what is 2.3 times as far from the last sensor is unknown. */
+/* The decay length is sqrt(k t / h) = 0.236 m: points farther than 2.3 times that from the last sensor are unknown. */
 CASE(test_fin_knows_how_far_it_sees)
 {
     struct plant_in_use u;
@@ -217,14 +217,14 @@ CASE(test_fin_knows_how_far_it_sees)
     assert_int_equal(u.params.interpolation, INTERPOLATION_SHEPARD); /* harmonic is not prepared */
     assert_null(field_params_wrong(u.plant, &u.params));
     u.params.interpolation = INTERPOLATION_FIN;
-    u.params.show = SHOW_DIFFERENCE; /* without a baseline there is nothing; the rule must not add what is around */
+    u.params.show = SHOW_DIFFERENCE; /* without a baseline there is no difference, and the rule must not add the ambient value */
     u.params.baseline = 1;
     assert_true(look(&u, place_of(1))->no_data == 255);
     finish(&u);
 }
 
-/* Beyond the last sensor a fin falls as exp(-x / d): half-way between two places it is their geometric mean. Triangles of 0.1 m are too
-   long for d = 0.236 m: picks say by how much they may be off, and are marked. */
+/* Beyond the last sensor a fin decays as exp(-x / d): half-way between two points its value is their geometric mean. Triangles of 0.1 m
+   are too long for d = 0.236 m, so picks report their error and are marked. */
 CASE(test_picks_of_fin_tell_their_error)
 {
     struct plant_in_use u;
@@ -260,13 +260,14 @@ CASE(test_picks_of_fin_tell_their_error)
     assert_true(look(&u, place_of(1) + 0.3)->uncertain == 0);
     assert_true(u.scalars->drawn_error == 0);
     finish(&u);
-    begin(&u, c, ", thickness_m: 0.001", ", interpolation: fin, ambient: 20, disc_m: 0.1", SENSORS); /* d = 0.075 m, most triangles err */
+    /* d = 0.075 m: the field errs in most triangles */
+    begin(&u, c, ", thickness_m: 0.001", ", interpolation: fin, ambient: 20, disc_m: 0.1", SENSORS);
     look(&u, 0);
     assert_true(u.scalars->drawn_error > 1);
     finish(&u);
 }
 
-/* What the paper's way of finding distances says is what ours does, on a strip that is as wide as a sensor is from its edge. */
+/* Distances by the paper's heat method agree with ours, on a strip as wide as a sensor is far from its edge. */
 CASE(test_distances_by_heat)
 {
     struct plant_in_use u;
@@ -285,7 +286,7 @@ CASE(test_distances_by_heat)
             assert_true(pass || fabs((double)ours[i] - fabs(x_m - place_of(1))) < 0.12);
         }
         u.params.distance = DISTANCE_HEAT;
-        bool differs = false; /* by which it is seen that it is another way */
+        bool differs = false; /* some distances must differ, which shows that another method ran */
         for (int i = 0; i < 64; i++)
             differs = differs || look(&u, STRIP_M * i / 63)->value != ours[i];
         assert_true(differs);
@@ -297,14 +298,14 @@ CASE(test_distances_by_heat)
     u.params.distance = DISTANCE_HEAT;
     assert_non_null(strstr(field_params_wrong(u.plant, &u.params), "geodesic: heat"));
     finish(&u);
-    write_plant(c, "", ", geodesic: heat", 3); /* the plant file asks for it, nobody prepared it */
+    write_plant(c, "", ", geodesic: heat", 3); /* the plant file asks for heat distances that were not prepared */
     assert_false(use(&u, c));
     write_plant(c, "", ", geodesic: diffusion", 3);
     prep_case_expect(c, "$PLANT", 1);
     prep_case_says(&c->err, "geodesic: expected");
 }
 
-/* Four sensors along the strip, each with three components, or a bearing. */
+/* Writes four sensors along the strip, each with three components or with a bearing. */
 static void write_directions(struct prep_case *c, bool bearings)
 {
     static const char *const directions[2] = { "U%zu V%zu W%zu", "B%zu" };
@@ -355,7 +356,7 @@ static void expect_along(const struct direction *found, double x, double y)
                 fabs((double)found->along[2]) < 1e-6);
 }
 
-/* Their sum by 1 / D^2, and what is not known of it. */
+/* Directions are averaged by 1 / D^2; the result is unknown where the sensors say nothing. */
 CASE(test_directions)
 {
     struct plant_in_use u;
@@ -376,9 +377,9 @@ CASE(test_directions)
     found = points_at(&u, 5);
     expect_along(&found, 1, 0);
     say(&u, "U", 1, 0), say(&u, "U", 2, 0);
-    say(&u, "T", 0, 0), say(&u, "T", 3, 0); /* what stands still says nothing of where to */
+    say(&u, "T", 0, 0), say(&u, "T", 3, 0); /* a flow of speed 0 has no direction */
     found = points_at(&u, 5);
-    assert_false(found.known); /* halfway between two that are opposite */
+    assert_false(found.known); /* half-way between two opposite directions */
     found = points_at(&u, 4.5);
     expect_along(&found, 0, 1);
     struct reading *lost = &u.snapshot->readings[plant_find_tag(u.plant, "V1")];
@@ -398,7 +399,7 @@ CASE(test_directions)
         say(&u, "T", i, i == 3 ? -1 : 1);
         say(&u, "B", i, 90.0 * (double)i);
     }
-    for (size_t i = 0; i < 4; i++) { /* clockwise from +Y; where the value is negative it points back */
+    for (size_t i = 0; i < 4; i++) { /* bearings run clockwise from +Y; a negative value points the other way */
         found = points_at(&u, 2 + 2 * (double)i);
         expect_along(&found, (const double[]){ 0, 1, 0, 1 }[i], (const double[]){ 1, 0, -1, 0 }[i]);
     }
@@ -407,7 +408,7 @@ CASE(test_directions)
 
 #define GP_KEYS ", interpolation: gp, gp: { range_m: 3, noise: 0.5, deviation: 30 }, disc_m: 0.1"
 
-/* Readings as they are from sensor to sensor; a lost one leaves the field of the others, and a changed one is followed. */
+/* The gp field meets the readings of the sensors, follows a changed one, and without a lost sensor equals the field of the others. */
 CASE(test_gp_meets_readings_and_lets_lost_ones_go)
 {
     struct plant_in_use u;
@@ -420,12 +421,12 @@ CASE(test_gp_meets_readings_and_lets_lost_ones_go)
     u.params.fill = FILL_NEIGHBOURS;
     u.snapshot->readings[4] = (struct reading){ .value = 5000, .quality = QUALITY_BAD };
     assert_true(fabs((double)look(&u, place_of(4))->value - 40) < 3);
-    u.params.show = SHOW_OPERATOR; /* rows add up to 1, so it can */
+    u.params.show = SHOW_OPERATOR; /* rows of weights sum to 1, so the operator can be shown */
     assert_null(field_params_wrong(u.plant, &u.params));
     finish(&u);
 }
 
-/* It does not depend on what sensors say, grows where one is lost, and never passes what the prior allows. */
+/* Uncertainty does not depend on the readings, grows where a sensor is lost, and never exceeds the prior. */
 CASE(test_uncertainty_depends_on_who_is_good)
 {
     struct plant_in_use u;
@@ -450,7 +451,7 @@ CASE(test_uncertainty_depends_on_who_is_good)
     finish(&u);
 }
 
-/* Where sensors take away less than a tenth of the prior's variance, nothing is known. */
+/* The field is unknown where sensors reduce the prior's variance by less than a tenth. */
 CASE(test_gp_knows_how_far_it_sees)
 {
     struct plant_in_use u;
@@ -472,7 +473,7 @@ static double predicted_of(const struct plant_in_use *u, size_t sensor, double *
     return predicted;
 }
 
-/* However many ask, it is worked out once a second. */
+/* The prediction from the other sensors is computed at most once per second for all callers. */
 CASE(test_what_others_say_is_kept_for_a_second)
 {
     struct plant_in_use u;
@@ -491,7 +492,7 @@ CASE(test_what_others_say_is_kept_for_a_second)
     finish(&u);
 }
 
-/* What the others say of a sensor is the same whether it is good, whatever it reads, or lost; with others lost, too. */
+/* The prediction of a sensor from the others does not depend on that sensor's reading or quality, also when others are lost. */
 CASE(test_others_do_not_hear_a_sensor_itself)
 {
     static const char *const keys[] = { GP_KEYS, ", prepare: [harmonic], disc_m: 0.1", ", prepare: [fin], ambient: 20, disc_m: 0.1", "" };
@@ -520,7 +521,7 @@ CASE(test_others_do_not_hear_a_sensor_itself)
     }
 }
 
-/* Two neighbours 0.8 m away, two 1.6 m and so on, by 1 / D^2. */
+/* Two neighbours 0.8 m away, two 1.6 m away and so on, weighted by 1 / D^2. */
 CASE(test_others_by_distance)
 {
     struct plant_in_use u;
@@ -535,7 +536,7 @@ CASE(test_others_by_distance)
     finish(&u);
 }
 
-/* A twentieth of the range at a sensor, e^2 times that two sizes away, with what is good. */
+/* The detectable size of a hot spot is a twentieth of the range at a good sensor and e^2 times that two spot sizes away. */
 CASE(test_blind_places)
 {
     struct plant_in_use u;
@@ -555,8 +556,8 @@ CASE(test_blind_places)
     finish(&u);
 }
 
-/* gp does not know what is far from its two sensors; that nobody would see a hot spot there is known all the same. Where nobody knows where
-   sensors are, nothing is known of either. */
+/* The gp field is unknown far from its two sensors, but the map of blind spots is known there too. Where sensor positions are unknown,
+   neither is known. */
 CASE(test_blind_places_are_told_where_gp_knows_nothing)
 {
     struct plant_in_use u;
@@ -578,8 +579,8 @@ CASE(test_blind_places_are_told_where_gp_knows_nothing)
     finish(&u);
 }
 
-/* On a strip with two sensors at its beginning the first place is where it sees nothing for as long as it reaches, and each gains less than
-   the one before; the best of all places, tried one by one, gains no more than that. */
+/* On a strip with two sensors at its beginning, the first suggestion lies in the wholly blind part, and each further one gains less.
+   Trying all positions one by one finds none that gains noticeably more than the first suggestion. */
 CASE(test_suggestions_gain_less_and_less)
 {
     struct plant_in_use u;
@@ -643,11 +644,11 @@ CASE(test_gp_bad_input)
     }
     assert_true(fabs((double)look(&u, place_of(1))->value - 80) < 2);
     finish(&u);
-    write_plant(c, "", ", prepare: [gp], gp: { range_m: 90000, noise: 0 }", 3); /* another is not taken for it */
+    write_plant(c, "", ", prepare: [gp], gp: { range_m: 90000, noise: 0 }", 3); /* the existing file with other parameters is not used */
     assert_false(use(&u, c));
 }
 
-/* Range, noise and deviation out of a file; a changed file is fitted anew. */
+/* Range, noise and deviation are fitted to the readings of a file; a changed file is fitted again. */
 CASE(test_gp_fitted_to_readings)
 {
     struct plant_in_use u;
@@ -694,7 +695,7 @@ CASE(test_not_prepared_is_refused)
     u.params.interpolation = INTERPOLATION_HARMONIC;
     assert_non_null(strstr(field_params_wrong(u.plant, &u.params), "not prepared"));
     finish(&u);
-    write_plant(c, "", ", prepare: [harmonic]", 2); /* the plant file asks for it, nobody prepared it */
+    write_plant(c, "", ", prepare: [harmonic]", 2); /* the plant file asks for an interpolation that was not prepared */
     assert_false(use(&u, c));
     prep_case_expect(c, "$PLANT", 0);
     assert_true(use(&u, c));
@@ -703,7 +704,7 @@ CASE(test_not_prepared_is_refused)
     assert_false(use(&u, c));
 }
 
-/* Of an asset without sensors nothing is prepared, and its file is not missed. */
+/* Nothing is prepared for an asset without sensors, and no file is missed. */
 CASE(test_without_sensors_no_file_is_missed)
 {
     struct plant_in_use u;
@@ -724,7 +725,7 @@ CASE(test_without_sensors_no_file_is_missed)
     finish(&u);
 }
 
-/* A file that is gone or damaged is made anew, and never taken. */
+/* A missing or damaged file is prepared again and never used. */
 CASE(test_damaged_file)
 {
     struct plant_in_use u;
@@ -748,7 +749,7 @@ CASE(test_damaged_file)
         assert_true(use(&u, c));
         finish(&u);
     }
-    write_plant(c, "", "", 2); /* nobody asks for it any more */
+    write_plant(c, "", "", 2); /* the plant file no longer asks for it */
     prep_case_expect(c, "$PLANT", 0);
     assert_int_not_equal(access(path, F_OK), 0);
     mem_free(path);

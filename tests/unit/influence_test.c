@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Influence by conduction against closed forms: a rod, a fin, a sphere; lost sensors; places that are awkward. */
+/* Influence by conduction compared with formulas: a rod, a fin, a sphere; lost sensors; difficult positions. */
 #include "tests/support/test.h"
 #include <math.h>
 
@@ -60,7 +60,7 @@ static double value_at(const struct influence_case *s, const double *readings, s
     return sum;
 }
 
-/* A strip 10 m long and 0.1 m wide, whose sensors touch its whole width: a rod. */
+/* A strip 10 m long and 0.1 m wide acts as a rod: its sensors cover the whole width. */
 #define STRIP_M 10.0
 #define WIDTH_M 0.1
 #define DISC_M 0.1
@@ -71,7 +71,7 @@ static void make_strip(struct influence_case *s)
     cad_plate(&s->shape, &chance, 200, 3, STRIP_M, WIDTH_M, 0);
 }
 
-/* Half of what a disc covers along the strip, on average over its width. */
+/* Half of the length that a disc covers along the strip, averaged over the width. */
 static const double covered_m = 0.0957;
 
 TEST(test_rod_is_straight_between_sensors)
@@ -93,7 +93,7 @@ TEST(test_rod_is_straight_between_sensors)
     finish(&s);
 }
 
-/* Between two sensors as sinh, beyond the last one as exp: Incropera, Fundamentals of Heat and Mass Transfer, 3.6. */
+/* Between two sensors a combination of sinh, beyond the last one exp: Incropera, Fundamentals of Heat and Mass Transfer, 3.6. */
 TEST(test_fin_falls_by_its_decay_length)
 {
     struct influence_case s = { 0 };
@@ -131,18 +131,18 @@ TEST(test_sphere_between_caps)
         worst = fmax(worst, fabs(value_at(&s, readings, v) - expected));
     }
     print_message("sphere: worst difference %.4f of what the caps differ by\n", worst);
-    assert_true(worst < 0.03); /* a disc of some points is a little smaller than it should be */
+    assert_true(worst < 0.03); /* a disc of few vertices is slightly smaller than its radius says */
     finish(&s);
 }
 
 /* --- errors of what is drawn ---------------------------------------------------------------------------------------------------- */
 
 struct tally {
-    double worst, beyond; /* steps of colour: off the exact value; more than the errors of the corners say */
+    double worst, beyond; /* colour steps: largest error; largest excess over the error that the corners report */
     size_t compared, marked;
 };
 
-/* Compares places inside triangles with the exact solution, which is NAN where it is not asked for. spread: of the readings. */
+/* Compares points inside triangles with the exact solution, which is NAN at points to skip. spread: range of the readings. */
 static void tally_places(const struct influence_case *s, const double *readings, double spread, double (*exact)(const double at[3]),
                          struct tally *tally)
 {
@@ -167,10 +167,10 @@ static void tally_places(const struct influence_case *s, const double *readings,
     }
 }
 
-/* Between places NEAR_M away from two sensors a fin is the sum of two sinh, given its values there. */
+/* Between points NEAR_M away from two sensors a fin is the sum of two sinh terms, given its values at those points. */
 #define NEAR_M 0.4
 static struct {
-    double decay_m, low, high; /* values at 1 + NEAR_M and 5 - NEAR_M */
+    double decay_m, low, high; /* decay length; field values at 1 + NEAR_M and at 5 - NEAR_M */
 } fin;
 
 static double exact_fin(const double at[3])
@@ -190,8 +190,8 @@ static double value_near(const struct influence_case *s, const double *readings,
     return value_at(s, readings, best);
 }
 
-/* A fin on triangles that are short compared with its decay length is right and not marked. On triangles 2 m long it is wrong, and marked:
-   also where finite elements are too large for it (decay 0.2 m). */
+/* A fin on triangles shorter than its decay length is right and not marked. On triangles 2 m long it is wrong and marked, also where
+   even the finite elements are too large (decay 0.2 m). */
 TEST(test_fin_on_long_triangles_is_marked)
 {
     static const struct {
@@ -221,7 +221,7 @@ TEST(test_fin_on_long_triangles_is_marked)
     finish(&fine);
 }
 
-static double log_slope; /* slope of the temperature on the sphere */
+static double log_slope; /* slope of the temperature over ln tan(theta / 2) */
 
 static double exact_sphere(const double at[3])
 {
@@ -229,7 +229,7 @@ static double exact_sphere(const double at[3])
     return theta < 0.3 || theta > M_PI - 0.3 ? (double)NAN : 0.5 + log_slope * log(tan(theta / 2));
 }
 
-/* How large the caps are depends on the points that discs hold: the slope between them is taken from a fine sphere. */
+/* The size of the caps depends on the vertices within the discs, so the slope between the caps is taken from a fine sphere. */
 TEST(test_coarse_spheres_are_marked)
 {
     const double places_m[2][3] = { { 0, 0, 1 }, { 0, 0, -1 } }, readings[2] = { 1, 0 };
@@ -286,7 +286,7 @@ TEST(test_readings_are_met)
     finish(&s);
 }
 
-/* What is left without a sensor is what there would be had it never been there; of its disc of metal, a little is left. */
+/* A lost sensor leaves the field as if the sensor had never existed, except for a small effect of its conducting disc. */
 TEST(test_lost_sensor_leaves_the_field_of_the_others)
 {
     struct influence_case all = { 0 }, others = { 0 };
@@ -345,13 +345,13 @@ TEST(test_one_sensor_and_bodies_apart)
     finish(&s);
 }
 
-/* More than one block of right-hand sides, the last one smaller, and other blocks on one thread than on several. */
+/* More than one block of right-hand sides, the last one smaller, with a different block size on one thread than on several. */
 TEST(test_many_sensors_are_solved_in_blocks)
 {
     enum { MANY = 75 };
     struct influence_case s = { 0 };
     double places[MANY][3], ones[MANY];
-    for (size_t i = 0; i < MANY; i++) { /* a spiral from pole to pole */
+    for (size_t i = 0; i < MANY; i++) { /* positions on a spiral from pole to pole */
         double z = 1 - (2 * (double)i + 1) / MANY, turn = 2.4 * (double)i, across = sqrt(1 - z * z);
         memcpy(places[i], (const double[3]){ across * cos(turn), across * sin(turn), z }, sizeof(places[i]));
         ones[i] = 1;
@@ -374,7 +374,7 @@ TEST(test_many_sensors_are_solved_in_blocks)
     finish(&s);
 }
 
-/* Nothing follows for those that are lost together with all others of their body. */
+/* Sensors whose whole body has lost all sensors get no value. */
 TEST(test_all_lost)
 {
     const double precision[4] = { 1, -1, -1, 1 };

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Triangles that stand across a thin part: inside it, unless they alone join what is seen. */
+/* Triangles that stand across a thin part count as interior, unless they alone connect visible triangles. */
 #include "surface/repair/interior.h"
 
 #include "tests/support/test.h"
 #include <math.h>
 
-/* A ring of four quadrangles. One stands across a thin part: without it the others hang together, so it is inside. Of two, facing each
-   other, each joins what else does not, so they are seen. */
+/* A ring of four quadrangles. One stands across a thin part: the others stay connected without it, so it is interior. Of two that face
+   each other, each connects what would otherwise be apart, so both are visible. */
 TEST(what_alone_joins_is_seen)
 {
     enum { AROUND = 4 };

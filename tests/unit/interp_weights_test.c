@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sums over sensors against plain loops in double precision. */
+/* Weighted sums over sensors compared with plain loops in double precision. */
 #include "preprocess/subdivision/interp_weights.h"
 
 #include "tests/support/test.h"
@@ -30,7 +30,7 @@ static bool takes_part(const struct weights_trial *trial, double near_m, double 
     return isfinite(d) && (d < (double)trial->group.reach_m || d <= near_m);
 }
 
-/* What a weight is times towards the reach: of the nearest, 1. */
+/* Returns the factor by which a sensor's weight fades towards the reach; 1 for the nearest sensor. */
 static double faded(const struct weights_trial *trial, double near_m, double d)
 {
     double reach_m = (double)trial->group.reach_m;
@@ -47,14 +47,14 @@ static double least_of(const struct weights_trial *trial)
     return near_m;
 }
 
-/* By how much of itself a weight changes over a metre, since it fades. */
+/* Returns the relative change of a weight per metre that is due to fading. */
 static double fading(const struct weights_trial *trial, double d)
 {
     double reach_m = (double)trial->group.reach_m;
     return isinf(reach_m) ? 0 : 2 / fmax(1e-5, reach_m - d);
 }
 
-/* Some sensors are not reached, some stand at the point itself. */
+/* Some sensors are out of reach, and some stand at the point itself. */
 static void make(struct weights_trial *trial, bool decays)
 {
     trial->count = 1 + (size_t)(cad_random(&chance) * (MOST - 8));
@@ -143,7 +143,7 @@ TEST(papers_shares_are_those_of_a_plain_loop)
     }
 }
 
-/* Nearer and farther at random, but nobody over the radius, whatever the sensors read. */
+/* Random distances near and far, but no sensor crosses the radius, with any readings: the value changes no faster than the bound. */
 TEST(no_value_changes_faster_than_is_said)
 {
     for (int n = 0; n < 2000; n++) {
@@ -157,10 +157,11 @@ TEST(no_value_changes_faster_than_is_said)
         for (size_t i = 0; i < trial.count; i++) {
             if (trial.distance_m[i] < radius_m)
                 trial.distance_m[i] = fminf(fmaxf(trial.distance_m[i], step_m), 0.95f * radius_m);
-            if (fabsf(trial.distance_m[i] - reach_m) < 0.2f * reach_m) /* there it changes slowly at first, then faster */
+            /* around the reach the weight changes slowly at first, then faster */
+            if (fabsf(trial.distance_m[i] - reach_m) < 0.2f * reach_m)
                 trial.distance_m[i] = i % 2 ? 0.8f * reach_m : 1.2f * reach_m;
         }
-        if (least_of(&trial) > (double)reach_m) /* then all is the nearest one's, whichever that is */
+        if (least_of(&trial) > (double)reach_m) /* no sensor is in reach: the nearest one has all the weight */
             continue;
         float said = interp_paper(&trial.group, radius_m, trial.distance_m, shares[0]);
         for (size_t i = 0; i < trial.count; i++)

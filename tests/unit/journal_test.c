@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The journal of alarms as it is asked: pages, and how each alarm was at an instant, held against a plain walk over all rows. */
+/* Queries of the alarm journal: pages, and each alarm's state at an instant, compared with a plain loop over all rows. */
 #include "tests/support/test.h"
 #include <inttypes.h>
 #include <math.h>
@@ -43,7 +43,7 @@ static void write_rows(struct journal_setup *s)
     mem_free(entries);
 }
 
-/* Many at the same time, as in a flood, and some gaps. */
+/* Writes rows, many of them at the same time as in an alarm flood, and some gaps. */
 static int set_up(void **state)
 {
     static struct journal_setup s;
@@ -119,7 +119,7 @@ CASE(each_alarm_is_as_it_was_then)
     }
 }
 
-/* Page by page, the newest first: every row of the time asked for once, whether of one tag or of all. */
+/* Asserts that paging backwards from the newest row returns every row of the time range exactly once, for one tag or for all. */
 static void check_pages(struct journal_setup *s, const char *tag, int64_t from_us, int64_t to_us, int limit)
 {
     struct journal_query query = { from_us, to_us, INT64_MAX, tag, limit };
@@ -150,7 +150,7 @@ CASE(pages_follow_each_other)
     check_pages(s, NULL, s->rows[ROWS - 1].t_us + 1, INT64_MAX, 5);
 }
 
-/* Rows that a page ended with may be forgotten before the next is asked for. */
+/* The row with which a page ended may have been deleted before the next page is requested. */
 CASE(a_page_after_rows_that_are_gone)
 {
     struct found_rows found = { .count = 0 };

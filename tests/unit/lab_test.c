@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shaded colours: only lightness changes, by no more than is allowed, and never out of sRGB. */
+/* Shaded colours: only lightness changes, by no more than allowed, and never outside sRGB. */
 #include "tests/support/test.h"
 #include <math.h>
 
@@ -7,7 +7,7 @@
 #include "field/colormap.h"
 #include "field/lab.h"
 
-/* CIE 15:2004 with the IEC 61966-2-1 primaries; written apart from the palette's own. */
+/* CIELAB by CIE 15:2004 with the IEC 61966-2-1 primaries, independent of the production code. */
 static void lab_of(const uint8_t rgb[3], double lab[3])
 {
     double l[3], f[3];
@@ -59,12 +59,12 @@ TEST(test_no_shading_leaves_the_color)
         uint8_t out[3];
         lab_shade(colors[i], 0, out);
         assert_memory_equal(out, colors[i], 3);
-        lab_shade(colors[i], 7, out); /* at the rim of sRGB: as far as it goes */
+        lab_shade(colors[i], 7, out); /* at the limit of sRGB: as far as the gamut allows */
         assert_true(i != 1 || memcmp(out, colors[i], 3) == 0);
     }
 }
 
-/* What the files say is what the colours bear. */
+/* The shading that the colour map files declare is what their colours allow. */
 TEST(test_shading_and_safety)
 {
     for (size_t m = 0; m < colormap_count(); m++) {

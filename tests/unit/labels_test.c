@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Labels by the rule of protocol/LABELS.md, against the vectors that the browser's are tested with too. */
+/* Label placement by the rule of protocol/LABELS.md; uses the same test vectors as the browser's implementation. */
 #include "render/overlay/labels.h"
 
 #include "tests/support/test.h"
@@ -22,7 +22,7 @@ static struct label_box box_of(const json_t *array)
     return (struct label_box){ at(array, 0), at(array, 1), at(array, 2) - at(array, 0), at(array, 3) - at(array, 1) };
 }
 
-/* As wide and high as it says, whatever is in it. */
+/* Gives each label group the size that the test vector states, whatever its members. */
 static void measure(void *arg, const int *members, size_t count, double size[2])
 {
     const json_t *list = arg;
@@ -85,7 +85,7 @@ TEST(places_labels_as_the_vectors_say)
     assert_true(count >= 7);
 }
 
-/* Thousands are placed in no time, and never over one another. */
+/* Thousands of labels are placed quickly and never overlap. */
 TEST(many_labels_do_not_overlap)
 {
     enum { COUNT = 4096 };

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Two never lead at once: three nodes and a database whose connections are cut, whose messages come late or twice too late, whose clocks
-   run apart, and which are killed, stopped for seconds and started again, by chance. */
+/* Two nodes must never lead at once: a random simulation of three nodes and a database with lost connections, delayed messages, clocks
+   that drift apart, and nodes that are killed, paused for seconds and restarted. */
 #include "tests/support/test.h"
 
 #include "corelink/lease.h"
@@ -9,18 +9,18 @@
 #define MS INT64_C(1000000)
 #define S (1000 * MS)
 enum { NODES = 3, FLIGHTS = 512, STEP_MS = 10 };
-#define PATIENCE_NS S /* after which an answer of the database is waited for no more */
+#define PATIENCE_NS S /* timeout for an answer of the database */
 
 enum what { LOOK, BID, RENEW, RELEASE, ROW, DONE, ASK, PROMISE };
 struct flight { /* a message on its way */
-    int64_t at_ns; /* when it arrives, of the world; 0: free */
+    int64_t at_ns; /* time of arrival on the world's clock; 0: this slot is free */
     enum what what;
     int from, to;  /* nodes; NODES: the database */
-    uint64_t life; /* of the node that it is for, or from */
+    uint64_t life; /* incarnation of the node that sends or receives the message */
     struct lease_row row; /* what it says, or expects */
     char standby[LEASE_NODE_BYTES];
     bool good;
-    int64_t sent_ns; /* on the clock of the node */
+    int64_t sent_ns; /* time of sending on the node's clock */
 };
 
 struct lease_node {
@@ -183,7 +183,7 @@ static void on_node(struct lease_world *world, struct lease_node *node, int i, c
     }
 }
 
-/* The node that the leader is connected to: the first that it reaches. */
+/* Returns the node that leader i is connected to: the first that it can reach, or -1. */
 static int follower_of(const struct lease_world *world, int i)
 {
     for (int k = 0; k < NODES; k++)
@@ -197,7 +197,7 @@ static void ask_database(struct lease_world *world, struct lease_node *node, int
     struct flight *flight = send(world, what, i, NODES);
     node->waits = true;
     node->waits_since_ns = world->now_ns;
-    node->sent_ns = clock_of(world, node) + (int64_t)node->life % 7; /* so that it is another each time */
+    node->sent_ns = clock_of(world, node) + (int64_t)node->life % 7; /* so that the value differs for each incarnation */
     if (!flight)
         return;
     flight->row = node->lease.row;
@@ -210,7 +210,8 @@ static void lead(struct lease_world *world, struct lease_node *node, int i)
 {
     int follower = follower_of(world, i);
     const char name[2] = { follower < 0 ? 0 : (char)('a' + follower), 0 };
-    if (!node->waits && chance(world, 10) == 0 && node->sent_ns && !world->calm) { /* in doubt after a lost connection */
+    /* after a lost connection the node does not know whether its last request arrived */
+    if (!node->waits && chance(world, 10) == 0 && node->sent_ns && !world->calm) {
         ask_database(world, node, i, LOOK, "");
     } else if (!node->waits) {
         lease_renew(&node->lease, name);
@@ -266,7 +267,7 @@ static void deliver(struct lease_world *world, struct flight *flight)
         on_database(world, flight);
         return;
     }
-    bool asks = flight->what == ASK; /* it is for whoever runs there */
+    bool asks = flight->what == ASK; /* the message is for whatever incarnation runs there */
     if (node->life && world->now_ns < node->wakes_ns) {
         flight->at_ns = node->wakes_ns + 1;
         return;
@@ -360,7 +361,8 @@ TEST(a_follower_waits_for_what_binds_it)
 {
     const struct lease_row free_row = { 0 }, led = { .epoch = 3, .beat = 9, .instance = 5, .leader = "a", .standby = "b" };
     struct lease b = follower("b", &free_row, S);
-    assert_false(lease_may_bid(&b, 4 * S - 1)); /* who gave it back, or whether the database was made anew, it does not say */
+    /* b does not know whether the lease was returned or the database was recreated, so it waits */
+    assert_false(lease_may_bid(&b, 4 * S - 1));
     assert_true(lease_may_bid(&b, 4 * S));
     b = follower("b", &led, 10 * S);
     assert_false(lease_may_bid(&b, 13 * S - 1));
@@ -395,7 +397,7 @@ TEST(a_leader_counts_the_standby_that_the_row_names)
     lease_promised(&a, "b", 3 * S);
     assert_true(lease_acts(&a, 5 * S - 1));
     lease_renew(&a, "");
-    lease_promised(&a, "b", 4 * S); /* the row may name nobody by now */
+    lease_promised(&a, "b", 4 * S); /* by now the row may name no follower */
     assert_false(lease_acts(&a, 5 * S));
     struct lease_row other = a.row;
     other.epoch++;
@@ -405,7 +407,7 @@ TEST(a_leader_counts_the_standby_that_the_row_names)
     assert_false(lease_acts(&a, 4 * S));
 }
 
-/* A database that was restored has a row of the same leader from before: who wins it next, nobody may have seen. */
+/* A restored database has an old row of the same leader: some node may win it next without anybody having seen the leader's later row. */
 TEST(a_leader_whose_row_is_of_another_epoch_has_lost_it)
 {
     const struct lease_row none = { 0 };
@@ -429,7 +431,7 @@ TEST(a_bid_whose_answer_is_lost_is_found_in_the_row)
     struct lease_row won = { .epoch = 1, .beat = 1, .instance = 7, .leader = "a" };
     lease_saw(&a, &won, 2 * S);
     assert_true(a.leads);
-    assert_false(lease_acts(&a, 2 * S)); /* when it was, nobody knows: a renewal says */
+    assert_false(lease_acts(&a, 2 * S)); /* nobody knows when it was won, so the lease needs a renewal first */
     lease_renewed(&a, "", 2 * S);
     assert_true(lease_acts(&a, 2 * S));
 }

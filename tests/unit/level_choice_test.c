@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which level of detail is drawn: the coarsest that errs by less than asked for where the asset is nearest; and what is asked for, which is
-   less where a picture has room for more triangles. */
+/* Level-of-detail selection: the coarsest level whose error at the asset's nearest point is below the limit; and the limit itself, which
+   is lower when the frame has room for more triangles. */
 #include "tests/support/test.h"
 
 #include "base/mem.h"
 #include "render/plan/lod_selection.h"
 #include "render/gl/gpu_scene.h"
 
-/* A box of 2 m whose near side is `away` metres from the camera, with levels that err by 0, 1, 10 and 100 mm. */
+/* Returns the level chosen for a box of 2 m whose near side is away_m from the camera; its levels have errors of 0, 1, 10 and 100 mm. */
 static size_t chosen_within(double error_px, double away_m, double pixel_per_radian)
 {
     struct model_level levels[4] = { { .error_m = 0 }, { .error_m = 0.001f }, { .error_m = 0.01f }, { .error_m = 0.1f } };
@@ -27,14 +27,14 @@ static size_t chosen(double away_m, double pixel_per_radian)
 
 TEST(levels_change_within_a_pixel)
 {
-    assert_int_equal(chosen(-1, 1000), 0); /* the camera is inside the box */
+    assert_int_equal(chosen(-1, 1000), 0); /* a negative distance: the camera is inside the box */
     assert_int_equal(chosen(0, 1000), 0);
-    assert_int_equal(chosen(0.9, 1000), 0); /* 1 mm at 0.9 m: 1.1 pixels */
+    assert_int_equal(chosen(0.9, 1000), 0); /* 1 mm at 0.9 m is 1.1 pixels */
     assert_int_equal(chosen(2, 1000), 1);   /* 0.5 */
     assert_int_equal(chosen(9, 1000), 1);
     assert_int_equal(chosen(20, 1000), 2);
     assert_int_equal(chosen(200, 1000), 3);
-    assert_int_equal(chosen(200, 10000), 2);            /* a picture of ten times the pixels */
+    assert_int_equal(chosen(200, 10000), 2);            /* an image with ten times the pixels per radian */
     assert_int_equal(chosen_within(0.5, 1.5, 1000), 0); /* 0.67 pixels are too much */
     assert_int_equal(chosen_within(0.7, 1.5, 1000), 1);
     for (double away_m = 0.01; away_m < 1000; away_m *= 1.1) {
@@ -43,8 +43,8 @@ TEST(levels_change_within_a_pixel)
     }
 }
 
-/* So many boxes 10 m away, of a million, 300,000, 100,000 and 30,000 triangles divided by `fewer`, by levels that err by 0, 2, 4 and 8 mm:
-   1 mm is 0.1 pixels. */
+/* Returns the error limit for `assets` boxes 10 m away, whose levels have 1,000,000, 300,000, 100,000 and 30,000 triangles divided by
+   `fewer` and errors of 0, 2, 4 and 8 mm; 1 mm is 0.1 pixels. */
 static double error_among(size_t assets, int fewer, enum tier tier)
 {
     struct model_level levels[4] = { { .triangles = 1000000 / fewer },
@@ -73,7 +73,7 @@ static double error_among(size_t assets, int fewer, enum tier tier)
 
 TEST(pictures_with_room_are_drawn_finer)
 {
-    assert_float_equal(error_among(3, 1, TIER_REFINED), 0, 0);       /* all that it may have, and no more */
+    assert_float_equal(error_among(3, 1, TIER_REFINED), 0, 0);       /* the triangles just fit the budget */
     assert_float_equal(error_among(4, 1, TIER_REFINED), 0.35, 1e-9); /* 2 mm */
     assert_float_equal(error_among(10, 1, TIER_REFINED), 0.35, 1e-9);
     assert_float_equal(error_among(11, 1, TIER_REFINED), 0.7, 1e-9);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Edge collapses within a bound: as few triangles as it takes, no farther than is said, borders and seams in place. */
+/* Edge collapses within an error bound: few triangles remain, none deviates by more than the bound, and borders and seams stay in place. */
 #include "tests/support/test.h"
 #include <math.h>
 
@@ -9,7 +9,7 @@
 
 #define ROUND 96u /* corners of a circle */
 
-struct bounded_shape { /* a shape of one part, on one primitive or two */
+struct bounded_shape { /* a shape of one part with one primitive or two */
     struct geometry g;
     struct welds welds;
     struct trimesh mesh;
@@ -86,7 +86,8 @@ static void shape_finish(struct bounded_shape *s)
     mem_free(s->corners);
 }
 
-/* How far corners of the model are from what is left, and middles of what is left from the model; by plain search. */
+/* Returns the largest distance between the model's corners and the remaining mesh, or between centres of remaining triangles and the
+   model, by brute force. */
 static double stray(const struct bounded_shape *s)
 {
     size_t count = bounded_count(s->bounded);
@@ -122,7 +123,7 @@ static double angle_of(uint32_t i)
     return 2 * acos(-1) * i / ROUND;
 }
 
-/* A flat disc of 1 m, a sheet: a polygon that stays within half of the error takes n corners, and n - 2 triangles. */
+/* A flat disc of radius 1 m: a polygon within half of the error needs n corners, and so n - 2 triangles. */
 TEST(a_disc_takes_few_triangles)
 {
     for (double error_m = 0.005; error_m < 0.2; error_m *= 2) {
@@ -143,7 +144,7 @@ TEST(a_disc_takes_few_triangles)
     }
 }
 
-/* A tube of rings with a bend, closed by nothing: what is asked for next is never finer, and each stays within its error. */
+/* A bent tube of rings, open at both ends: each coarser level has no more triangles than the one before and stays within its error. */
 TEST(errors_grow_with_what_is_asked)
 {
     struct bounded_shape s;
@@ -173,7 +174,7 @@ TEST(errors_grow_with_what_is_asked)
     shape_finish(&s);
 }
 
-/* How many edges do not have one triangle on either side. */
+/* Returns how many edges lack a triangle on one of their sides. */
 static size_t count_open(const struct bounded_shape *s)
 {
     size_t count = 3 * bounded_count(s->bounded), open = 0;
@@ -193,7 +194,7 @@ static size_t count_open(const struct bounded_shape *s)
     return open;
 }
 
-/* Tori of ever more corners stay closed, and touch themselves along no edge, also where the error is larger than they are thick. */
+/* Tori with more and more corners stay closed and no edge gets four triangles, even if the allowed error exceeds the tube's thickness. */
 TEST(what_is_closed_stays_so)
 {
     for (uint32_t around = 5; around <= 12; around++) {
@@ -223,7 +224,7 @@ TEST(what_is_closed_stays_so)
     }
 }
 
-/* Two materials on one plate meet along a wave: the border stays within half of the error, and no triangle has both. */
+/* Two materials meet along a wavy line on one plate: the border stays within half of the error, and no triangle mixes the materials. */
 TEST(seams_stay)
 {
     struct bounded_shape s;
@@ -256,7 +257,8 @@ TEST(seams_stay)
         const uint32_t *v = left + 3 * t;
         uint32_t primitive = s.welds.primitive[v[0]];
         assert_true(primitive == s.welds.primitive[v[1]] && primitive == s.welds.primitive[v[2]]);
-        for (uint32_t k = 0; k <= 20; k++) { /* along each edge: on its own side of the wave, but for what a border may move */
+        /* samples along each edge must lie on their own side of the wave, within the border's tolerance */
+        for (uint32_t k = 0; k <= 20; k++) {
             for (int e = 0; e < 3; e++) {
                 const float *a = s.welds.positions_m[v[e]], *b = s.welds.positions_m[v[(e + 1) % 3]];
                 double x = (double)a[0] + k / 20.0 * ((double)b[0] - (double)a[0]),

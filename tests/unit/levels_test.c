@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Levels of detail: nested, without cracks, true to their error; vertices in the order that the asset file wants. */
+/* Levels of detail: nested, without cracks, within their stated error, with vertices in the order that the asset file requires. */
 #include "tests/support/test.h"
 #include <math.h>
 
@@ -9,7 +9,7 @@
 #include "preprocess/geometry/welded_positions.h"
 #include "surface/mesh/bvh.h"
 
-#define AROUND 120u /* squares round the torus, and round its tube */
+#define AROUND 120u /* squares around the torus; around its tube */
 #define TUBE 48u
 #define MAJOR_M 2.0
 #define MINOR_M 0.5
@@ -33,7 +33,7 @@ static uint32_t add_vertex(struct geometry *g, double u, double v)
     return i;
 }
 
-/* A part of a torus as one primitive: its own vertices, also where it meets itself or another part. */
+/* Adds a part of a torus as one primitive with its own vertices, duplicated where it meets itself or another part. */
 static void add_part(struct geometry *g, uint32_t first, uint32_t end, uint32_t material)
 {
     uint32_t corner = g->vertex_count;
@@ -52,7 +52,7 @@ static void add_part(struct geometry *g, uint32_t first, uint32_t end, uint32_t 
     g->primitive_count++;
 }
 
-/* A closed torus of two materials. */
+/* Makes a closed torus of two materials. */
 static int set_up(void **state)
 {
     struct set_of *s = mem_new(sizeof(*s));
@@ -101,7 +101,8 @@ TEST_WITH(levels_grow_coarser, set_up, tear_down)
     assert_true(s->levels.at[s->levels.count - 1].index_count < 3 * 200);
 }
 
-/* Where many are drawn in one picture: 1.4 times the error, or twice the step of 1.3 where what lies between has hardly fewer triangles. */
+/* Levels follow each other closely: errors grow by a factor of 1.4, or by two steps of 1.3 if the level between them would save hardly
+   any triangles. */
 TEST_WITH(levels_lie_close, set_up, tear_down)
 {
     const struct set_of *s = *state;
@@ -131,7 +132,7 @@ TEST_WITH(levels_are_nested, set_up, tear_down)
     mem_free(used);
 }
 
-/* Every edge has two faces, which run along it in opposite directions. */
+/* Every edge has two triangles, which traverse it in opposite directions. */
 TEST_WITH(closed_stays_closed, set_up, tear_down)
 {
     const struct set_of *s = *state;
@@ -199,7 +200,7 @@ static double brute_distance(const struct set_of *s, const struct level *level, 
     return best;
 }
 
-/* The largest distance of random points of one level from another. */
+/* Returns the largest distance of random points on one level from the other level. */
 static double stray(const struct set_of *s, const struct level *from, const struct level *to, uint32_t *seed)
 {
     double most = 0;
@@ -231,7 +232,7 @@ TEST_WITH(error_is_a_bound, set_up, tear_down)
     }
 }
 
-enum { LONE = 3 }; /* added vertices that no level uses */
+enum { LONE = 3 }; /* extra vertices that no level uses */
 
 static void add_lone(struct geometry *g)
 {
@@ -317,7 +318,7 @@ static void add_box(struct geometry *g, double x, double y, double z, double siz
     g->primitives[0].index_count = g->index_count;
 }
 
-/* The smallest error of a level that has no vertex in the half-space x > from_m; INFINITY: all have. */
+/* Returns the smallest error among the levels that have no vertex with x > from_m; INFINITY if every level has one. */
 static double error_without(const struct geometry *g, const struct levels *levels, double from_m)
 {
     for (size_t l = 0; l < levels->count; l++) {
@@ -338,7 +339,7 @@ static size_t vertices_above(const struct geometry *g, const struct level *level
     return count;
 }
 
-/* Bolts that stand 2 cm out of a slab of 10 m go once a level errs by that. */
+/* Bolts that protrude 2 cm from a slab of 10 m disappear in levels whose error is at least 2 cm. */
 TEST(bolts_go_where_they_hardly_stand_out)
 {
     struct geometry g;
@@ -357,7 +358,8 @@ TEST(bolts_go_where_they_hardly_stand_out)
     geometry_finish(&g);
 }
 
-/* Nuts stand 2 cm out of a slab, under a torus that has a level for each error: none that errs by more than a tenth more has nuts. */
+/* Nuts protrude 2 cm from a slab below a torus that has a level for every error: no level whose error exceeds 2 cm by a tenth still has
+   nuts. */
 TEST(nuts_go_once_they_stand_out_by_less)
 {
     struct geometry g;
@@ -383,7 +385,7 @@ TEST(nuts_go_once_they_stand_out_by_less)
     geometry_finish(&g);
 }
 
-/* A block of 5 cm alone, 20 m away, goes with levels that err by its size or more. A grating of as small bars is no small thing. */
+/* A lone block of 5 cm, 20 m away, disappears in levels whose error is at least its size. A grating of equally small bars must stay. */
 TEST(what_is_alone_and_small_goes_but_no_crowd)
 {
     struct geometry g;
@@ -412,7 +414,7 @@ TEST(what_is_alone_and_small_goes_but_no_crowd)
     geometry_finish(&g);
 }
 
-/* A corner whose vertex looks away from the face carries the light of the other side. */
+/* Counts corners whose vertex normal faces away from the triangle: such a corner is lit as the other side. */
 static size_t looking_away(const struct geometry *g, const struct level *level)
 {
     size_t count = 0;
@@ -435,7 +437,7 @@ static size_t looking_away(const struct geometry *g, const struct level *level)
     return count;
 }
 
-/* Levels that err by more than a deck is thick have faces above and below all the same, each on vertices of its own side. */
+/* A thin deck keeps faces above and below even in levels whose error exceeds its thickness, each with vertices of its own side. */
 TEST(thin_plates_keep_their_sides)
 {
     struct set_of s = { 0 };

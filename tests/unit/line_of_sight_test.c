@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rods near thin sheets: joined to the side that looks at them, as far as the tolerance, and never through the sheet. */
+/* Rods near thin sheets are joined to the side of the sheet that faces them, within the tolerance, and never through the sheet. */
 #include "surface/repair/line_of_sight.h"
 
 #include "tests/support/test.h"
@@ -14,14 +14,14 @@
 #define CELL 0.025
 #define WIDE (ACROSS * CELL) /* of the sheet, m */
 #define HIGH (UP * CELL)
-#define TOLERANCE 5.5e-4    /* m: what is chosen for these, at least; */
+#define TOLERANCE 5.5e-4    /* metres; lower bound of the tolerance chosen for these shapes */
 #define TOLERANCE_MOST 1e-3 /* as they are turned */
 #define ALONG 16            /* cells of the rod */
-#define OFF 0.02            /* m, of half a metre and more: on the wrong side it is that */
+#define OFF 0.02            /* metres; error allowed for distances of 0.5 m or more; a rod joined to the wrong side exceeds it */
 
-struct sheet_and_rod { /* a sheet in z from 0 up, and a rod along x, over it or beside it */
+struct sheet_and_rod { /* a sheet that rises in z from 0, and a rod along x, above it or next to it */
     struct cad cad;
-    size_t sheet_count; /* vertices; the rest is the rod's */
+    size_t sheet_count; /* vertices of the sheet; all further ones belong to the rod */
     double thick, rod, source[3];
 };
 
@@ -33,7 +33,7 @@ static void stretch(struct cad *cad, size_t from, double x, double y, double z, 
             cad->positions[v][axis] = (float)((double)cad->positions[v][axis] * by[axis] + low[axis]);
 }
 
-/* low: the rod's lowest corner. The source is in the middle of the side that looks away from the sheet. */
+/* Makes the pair. low: the rod's lowest corner. The source is in the middle of the sheet's side that faces away from the rod. */
 static void make_pair(struct sheet_and_rod *pair, double thick, double rod, const double low[3], const double source[3])
 {
     *pair = (struct sheet_and_rod){ .thick = thick, .rod = rod };
@@ -55,7 +55,7 @@ static void make_pair(struct sheet_and_rod *pair, double thick, double rod, cons
     cad_finish(&bar);
 }
 
-/* From p on one side of the sheet to q on its other side, over the nearest of its rims. */
+/* Returns the distance from p on one side of the sheet to q on the other side, around its nearest rim. */
 static double way_round(const struct sheet_and_rod *pair, const double p[3], const double q[3])
 {
     double least = INFINITY;
@@ -67,10 +67,12 @@ static double way_round(const struct sheet_and_rod *pair, const double p[3], con
     return least;
 }
 
-/* What distances there are to the sheet's sides, in one piece; or none, if it hangs apart. beside: the rod lies along a rim. */
+/* Checks distances to the sheet's sides. pieces: 1 if the rod must be joined to the sheet, 2 if it must stay apart. beside: the rod lies
+   along a rim. */
 static void test_pair(const char *name, const struct sheet_and_rod *pair, bool below, bool beside, size_t pieces)
 {
-    static const enum cad_fault faults[] = { CAD_CLEAN, CAD_SOUP, CAD_REPEATED }; /* gaps are as wide as the sheet is thick */
+    /* no fault with gaps: gaps would be as wide as the sheet is thick */
+    static const enum cad_fault faults[] = { CAD_CLEAN, CAD_SOUP, CAD_REPEATED };
     for (size_t i = 0; i < sizeof(faults) / sizeof(faults[0]); i++) {
         struct cad broken;
         struct cad_place place;
@@ -111,7 +113,7 @@ static void test_pair(const char *name, const struct sheet_and_rod *pair, bool b
     }
 }
 
-/* Half the sheet's thickness is less than the gap; to its far side, too, it is less than the tolerance. */
+/* Half of the sheet's thickness is less than the gap, and its far side is within the tolerance too. */
 TEST(a_rod_is_joined_to_the_side_that_looks_at_it)
 {
     static const double gaps[] = { 0, 0.4, 0.6 }; /* tolerances */
@@ -140,7 +142,7 @@ TEST(a_rod_farther_than_the_tolerance_hangs_apart)
     }
 }
 
-/* From there both sides are as near. */
+/* At the rim both sides of the sheet are equally near. */
 TEST(a_rod_is_joined_to_the_rim)
 {
     static const double gaps[] = { 0, 0.4, 0.8 };

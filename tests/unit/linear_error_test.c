@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* No way along a surface is shorter than the straight line: on shapes with every fault that exports have, and on real models
+/* No distance along a surface is shorter than the straight line: on shapes with every fault of CAD exports, and on real models
    (shared/data/models). */
 #include "surface/surface.h"
 
@@ -15,7 +15,7 @@
 
 #define SOURCES 6
 #define MODELS "../shared/data/models/"
-#define LONGEST 2.0   /* spacings: across what was cut on two sides */
+#define LONGEST 2.0   /* sample spacings; such long edges span faces that were cut on two sides */
 #define ROUNDING 1e-5 /* of the straight line: floats */
 
 static size_t draw(size_t count)
@@ -23,7 +23,7 @@ static size_t draw(size_t count)
     return (size_t)(cad_random(&chance) * (double)count);
 }
 
-/* Joining moves a place by at most the tolerance; a source is one vertex, and where it was moved to is where it is looked for. */
+/* Joining moves a point by at most the tolerance. A source is one vertex, and it is looked up at its moved position. */
 static void check_sources(const char *name, const struct surface *surface, const float (*positions_m)[3], size_t vertex_count,
                           const double (*sources_m)[3], int count)
 {
@@ -48,7 +48,7 @@ static void check_sources(const char *name, const struct surface *surface, const
     mem_free(found);
 }
 
-/* Samples everywhere: no edge is much longer than the spacing. */
+/* Samples cover the surface: no edge is much longer than the spacing. */
 static void check_edges(const char *name, const struct surface *surface)
 {
     struct surface_debug_mesh look;
@@ -118,7 +118,7 @@ TEST(shapes)
     check_shape("rod", &cad, CAD_FAULTS);
 }
 
-/* Rods in two layers that cross, and touch. Their area says 15,000 samples, of which one layer alone would take more. */
+/* Two layers of crossing rods that touch. The area suggests 15,000 samples, but one layer alone needs more. */
 TEST(a_grating_of_rods)
 {
     struct cad cad = { 0 };
@@ -176,7 +176,8 @@ static void check_model(const char *path, const char *const *parts, const double
     model_source_finish(&source);
 }
 
-/* From this corner of the first frame, distances to a tenth of it were shorter, by up to 0.2 m of 1.1 m: long rods of it had no samples. */
+/* A corner of the first frame from which a tenth of the distances were too short, by up to 0.2 m of 1.1 m, when long rods had no
+   samples. */
 TEST(supports)
 {
     static const char *const parts[] = { "/PS/WD1/0003", "/PS/WD1/0022", "/PS/WD1/0036", NULL };

@@ -17,7 +17,7 @@
 
 struct socket_place {
     char *folder, *path;
-    int fd; /* of a datagram socket at path */
+    int fd; /* a datagram socket bound to `path` */
 };
 
 static int set_up(void **state)
@@ -51,7 +51,7 @@ static size_t receive(const struct socket_place *place, char *out, size_t size)
     return count > 0 ? (size_t)count : 0;
 }
 
-/* What the log writes to stderr for that event; free() it. */
+/* Returns what the log writes to stderr for this event; free with free(). */
 static char *written(enum log_format format, const char *socket_path, enum log_level level, enum log_event event, const char *message)
 {
     fflush(stderr);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The login throttle: when an address is slowed, for how long, and whom that does not touch. */
+/* The login throttle: when an address is slowed and for how long, and that other addresses are unaffected. */
 #include "access/login_throttle.h"
 
 #include "tests/support/test.h"
@@ -35,12 +35,13 @@ CASE(ten_wrong_tokens_within_a_minute_slow_an_address)
     assert_int_equal(login_throttle_judge(throttle, HERE, NULL, 54 * S), LOGIN_WRONG_SLOWS);
     assert_int_equal(login_throttle_slowed(throttle, 54 * S), 1);
     assert_int_equal(login_throttle_judge(throttle, HERE, NULL, 55 * S), LOGIN_HELD);
-    assert_int_equal(login_throttle_judge(throttle, HERE, DESK, 58 * S), LOGIN_HELD);  /* nor is a good one told apart from a wrong one */
+    /* while slowed, a valid token gets the same answer as a wrong one */
+    assert_int_equal(login_throttle_judge(throttle, HERE, DESK, 58 * S), LOGIN_HELD);
     assert_int_equal(login_throttle_judge(throttle, HERE, NULL, 59 * S), LOGIN_WRONG); /* one in five seconds */
     assert_int_equal(login_throttle_judge(throttle, HERE, NULL, 60 * S), LOGIN_HELD);
     assert_int_equal(login_throttle_judge(throttle, THERE, NULL, 60 * S), LOGIN_WRONG);
     assert_int_equal(login_throttle_judge(throttle, HERE, DESK, 64 * S), LOGIN_GOOD_NEW);
-    assert_int_equal(login_throttle_slowed(throttle, 118 * S), 1); /* a minute after the last wrong one */
+    assert_int_equal(login_throttle_slowed(throttle, 118 * S), 1); /* one minute after the last wrong token */
     assert_int_equal(login_throttle_slowed(throttle, 119 * S), 0);
     assert_int_equal(login_throttle_judge(throttle, HERE, NULL, 119 * S), LOGIN_WRONG);
 }
@@ -70,7 +71,7 @@ CASE(a_login_is_news_every_ten_minutes)
     assert_int_equal(login_throttle_judge(throttle, HERE, WALL, 601 * S), LOGIN_GOOD);
 }
 
-/* Memory is bounded, and who is wrong now is not forgotten for those of long ago. */
+/* Memory is bounded, and old addresses are evicted before recent offenders. */
 CASE(as_many_addresses_as_there_is_room_for)
 {
     uint8_t other[16] = { 0x20, 0x01 };
@@ -84,7 +85,7 @@ CASE(as_many_addresses_as_there_is_room_for)
     assert_int_equal(login_throttle_slowed(throttle, 4 * S), 1);
 }
 
-/* Refused answers of an identity provider. */
+/* Logins that an identity provider refuses count like wrong tokens. */
 CASE(what_is_judged_elsewhere_counts_alike)
 {
     assert_int_equal(login_throttle_begin(throttle, HERE, 0), LOGIN_NONE);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What was proven outlives the daemon, is void once the tag is another, and no line of it is ever lost. */
+/* Loop checks survive a restart, become void once the tag measures something else, and no line of the file is ever lost. */
 #include "loopcheck/loop_checks.h"
 
 #include "tests/support/test.h"
@@ -126,7 +126,7 @@ TEST_WITH(test_a_tag_that_is_another_is_unproven_again, set_up, tear_down)
         assert_true(loop_checks_unproven(f->loop_checks, 0));
     }
     *tag = was;
-    tag->strength = 3; /* how it is drawn is not what it measures */
+    tag->strength = 3; /* drawing properties are not part of the measurement */
     open_again(f);
     assert_int_equal(loop_checks_of(f->loop_checks, 0)->state, LOOP_CHECK_PASSED);
 }
@@ -150,7 +150,7 @@ TEST_WITH(test_a_line_that_was_cut_off_spoils_no_other, set_up, tear_down)
     assert_int_equal(loop_checks_add(f->loop_checks, 1, &passed), REFUSAL_NONE);
     char *both = read_file(f);
     size_t end = strlen(both);
-    for (size_t cut = length; cut < end - 1; cut++) { /* at every byte of the second line */
+    for (size_t cut = length; cut < end - 1; cut++) { /* truncates the file at every byte of the second line */
         assert_int_equal(truncate(path, (off_t)cut), 0);
         open_again(f);
         assert_int_equal(loop_checks_of(f->loop_checks, 0)->state, LOOP_CHECK_PASSED);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Matching tags to equipment, way by way; names taken apart; plant files changed as a person would. */
+/* Matching tags to equipment: each matching rule, parsing of names, and editing of plant files that keeps their formatting. */
 #include "preprocess/match/matcher.h"
 
 #include "tests/support/test.h"
@@ -62,7 +62,7 @@ static int tear_down(void **state)
 
 #define CASE(name) TEST_ON(struct match_fixture *f, name, set_up, tear_down)
 
-/* asset NULL: none. why: in the reason. */
+/* Asserts the match of one tag. asset: NULL if none. why: text that the reason must contain. */
 static void expect(struct match_fixture *f, const char *name, const char *description, enum match_status status, const char *asset,
                    const char *why)
 {
@@ -105,7 +105,8 @@ CASE(test_by_number)
     expect(f, "TT-101", "pump bearing temperature", MATCH_SURE, "P-101", "");
     expect(f, "TT-101", "Outlet of E-101", MATCH_SURE, "E-101", "the description names E-101; loop 101");
     expect(f, "TT-330", "Outlet of E-101", MATCH_LIKELY, "20-V-330", ", but the description names E-101");
-    expect(f, "ART1705BA_TT330", "", MATCH_NONE, NULL, ""); /* the number of equipment that is not there counts, not the instrument's */
+    /* the equipment number decides, not the instrument's, and that equipment is missing */
+    expect(f, "ART1705BA_TT330", "", MATCH_NONE, NULL, "");
 }
 
 CASE(test_by_text)
@@ -158,7 +159,8 @@ TEST(test_isa_names)
     }
 }
 
-/* Unit, description, words of the name, letters: in this order, none against the unit. */
+/* A quantity is derived from the unit, the description, words of the name and letters, in this order; a guess never contradicts the
+   unit. */
 TEST(test_quantities)
 {
     static const struct {
@@ -213,7 +215,7 @@ TEST(test_quantities)
     print_message("# %zu of %zu quantities\n", sizeof(cases) / sizeof(*cases), sizeof(cases) / sizeof(*cases));
 }
 
-/* Dashes, widths and blanks do not part a tag from its equipment. */
+/* Different dashes, full-width characters and blanks still match a tag with its equipment. */
 TEST(test_folded_names)
 {
     static const char *const written[] = { "TI–101", "TI‑101", "TI−101", "TI－101", "ＴＩ-101", "TI-１０１",

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Matrices of the renderer, against what they are defined to do. */
+/* Matrices of the renderer compared with their definitions. */
 #include "tests/support/test.h"
 #include <math.h>
 
@@ -52,7 +52,7 @@ TEST(test_product_is_one_after_the_other)
     assert_close(a, both, 16, 0);
 }
 
-/* A normal stays at right angles to the surface's tangents, and outside stays outside, mirrored or not. */
+/* A transformed normal stays perpendicular to the surface's tangents and keeps facing outwards, mirrored or not. */
 TEST(test_normals_stay_normal)
 {
     for (int round = 0; round < 100; round++) {
@@ -86,7 +86,7 @@ TEST(test_parallel_view)
     matrix_texture_from_clip(clip, texture);
     matrix_point(texture, center, out);
     assert_close(out, (double[]){ 0.5, 0.5, 0.5, 1 }, 4, 1e-12);
-    matrix_parallel(center, 10, (double[]){ 0, 0, 1 }, clip); /* straight down has no side of its own */
+    matrix_parallel(center, 10, (double[]){ 0, 0, 1 }, clip); /* a straight downward view has no natural "up" direction */
     matrix_point(clip, (double[]){ 5, -3, 12 }, out);
     assert_close(out, (double[]){ 0, 0, 1, 1 }, 4, 1e-12);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What this process takes is seen, and what is freed goes back to the machine. */
+/* Memory use of this process is measured, and freed memory returns to the system. */
 #include "tests/support/test.h"
 
 
@@ -14,7 +14,7 @@ TEST(the_default_suits_the_machine)
     assert_true(bytes > 0 && bytes <= (size_t)2 << 30);
 }
 
-/* Small pieces, between which one stays: what is free lies below it, where free() alone gives nothing back. */
+/* Small blocks with some kept in between: the free memory lies below a kept block, where free() alone returns nothing to the system. */
 TEST(what_is_freed_goes_back)
 {
     static void *pieces[PIECES];
@@ -29,7 +29,7 @@ TEST(what_is_freed_goes_back)
     void *last = mem_array(PIECE_BYTES, 1);
     memory_measure(&full);
     assert_true(full.anonymous >= before.anonymous + all * 9 / 10);
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) /* which have a malloc of their own */
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) /* sanitizers have their own malloc */
     assert_true(full.allocated >= before.allocated + all);
 #endif
     for (int i = 0; i < PIECES; i++)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What exports get wrong so that a picture has holes, mended when an asset is cut out: hair gaps and flipped faces. And that splitting
-   opens nothing: on the demo plant every open edge is one of the model's own. */
+/* Mending of faults in CAD exports that leave holes in the picture: hairline gaps and flipped faces. Subdivision must open nothing
+   either: in the demo plant every open edge belongs to the model. */
 #include "tests/support/test.h"
 #include <math.h>
 #include <unistd.h>
@@ -15,11 +15,11 @@
 #include "tests/support/gltf_case.h"
 #include "tests/support/sweep.h"
 
-#define PLATE 12 /* squares to a side of 4 m */
+#define PLATE 12 /* squares along a side of 4 m */
 
 /* --- open edges --------------------------------------------------------------------------------------------------------------- */
 
-struct open_edges { /* of one triangle each, by places that are the same to the last bit */
+struct open_edges { /* edges of only one triangle, compared by exact positions */
     float (*ends_m)[2][3];
     size_t count;
 };
@@ -64,7 +64,7 @@ static uint32_t add_vertex(struct geometry *g, double x, double y, double z)
     return g->vertex_count++;
 }
 
-/* A square of that side, of n x n squares, from (x, y). */
+/* Adds a square with its corner at (x, y), made of n x n squares. */
 static void add_plate(struct geometry *g, double x, double y, double z, double side_m, uint32_t n)
 {
     const uint32_t first = g->vertex_count;
@@ -85,7 +85,7 @@ static struct geometry empty(void)
     return (struct geometry){ .positions_m = mem_array(most, 3 * sizeof(float)), .indices = mem_array(6 * most, sizeof(uint32_t)) };
 }
 
-/* Four quarters of a square of 4 m, each in its place but for a gap on all sides. */
+/* Makes the four quarters of a square of 4 m with a gap of gap_m around each. */
 static struct geometry quarters(double gap_m)
 {
     struct geometry g = empty();
@@ -221,7 +221,7 @@ static double beside(const float at_m[3], const float a[3], const float b[3])
     return sqrt(off2);
 }
 
-/* Of the drawn edges, those that are no piece of the model's. */
+/* Counts the drawn open edges that are not part of an open edge of the model. */
 static size_t count_others(const struct open_edges *drawn, const struct open_edges *own)
 {
     size_t others = 0;
@@ -241,7 +241,7 @@ static struct open_edges find_open_drawn(const struct asset_view *view, const st
                      first[count - 1].first_index + first[count - 1].index_count - first->first_index);
 }
 
-/* It is open at its two ends, and nowhere in between. */
+/* Asserts that the node's mesh is open at its two ends and nowhere in between. */
 static void assert_open_at_ends(const struct asset_view *view, const char *node)
 {
     const struct asset_level *level = &view->levels[0];
@@ -292,7 +292,7 @@ TEST_WITH(splitting_opens_nothing, gltf_case_set_up, gltf_case_tear_down)
             fail_msg("%s: %zu of %zu open edges are not the model's", asset->id, others, drawn.count);
         mem_free(own.ends_m);
         mem_free(drawn.ends_m);
-        if (strcmp(asset->id, "E-101") == 0) { /* its model has cracks and flipped faces on purpose */
+        if (strcmp(asset->id, "E-101") == 0) { /* this model has cracks and flipped faces on purpose */
             assert_true(g.closed_gaps > 100 && g.turned_triangles > 10);
             assert_open_at_ends(view, "E-101 shell");
         }

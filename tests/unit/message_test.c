@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What clients say: the vectors, the merging of parameters, the query of snapshots, and text that was damaged at random. */
+/* Client messages: test vectors, merging of parameters, the query string of snapshots, and randomly damaged text. */
 #include "message/message_parse.h"
 
 #include "tests/support/test.h"
@@ -44,7 +44,7 @@ static int tear_down(void **state)
     return 0;
 }
 
-/* As a session does: parse, and for parameters apply. */
+/* Parses a message and applies its parameters, as a session does. */
 static bool take(const char *text, size_t count, struct message_error *error)
 {
     struct message message;
@@ -348,7 +348,7 @@ TEST(queries_make_views)
     assert_true(view.width_px == 1280 && view.height_px == 720 && !view.dark);
 }
 
-/* TI-1 is the only one on E-101. */
+/* Modes that subdivided triangles do not draw exactly are refused. TI-1 is the only sensor on E-101. */
 TEST(what_is_not_drawn_truly_on_whole_triangles_is_refused)
 {
     static const char *const paper[] = { "interpolation=paper" }, *const split[] = { "split=interpolation=paper" };
@@ -365,7 +365,7 @@ TEST(what_is_not_drawn_truly_on_whole_triangles_is_refused)
     assert_false(query(split, 1, &view, &error));
     assert_false(query(far, 2, &view, &error));
     assert_int_equal(error.refusal.code, REFUSAL_FAR_UNCUT);
-    assert_true(query(other, 1, &view, &error)); /* the plant file asks for paper there */
+    assert_true(query(other, 1, &view, &error)); /* the plant file configures paper for this group */
     assert_int_equal(view.field.interpolation, INTERPOLATION_PAPER);
     group->cuts_singles = true;
 }
@@ -390,7 +390,7 @@ TEST(what_is_fitted_lies_beside_the_legend)
     assert_true(view.camera.target_m[0] > 0.2 && view.camera.eye_m[1] < 1.5 * whole.camera.eye_m[1]);
 }
 
-/* The plant file's view is chosen for a wide picture; halves would cut the plant off. */
+/* The plant file's view was chosen for a wide image; half the width would cut the plant off, so each half moves its camera back. */
 TEST(halves_show_what_the_plants_own_view_does)
 {
     static const char *const args[] = { "split=colormap=viridis", "camera=0,-9,3,0,0,0,40" };
@@ -403,7 +403,7 @@ TEST(halves_show_what_the_plants_own_view_does)
     memcpy(plant->view.eye_m, one.camera.eye_m, sizeof(one.camera.eye_m));
     memcpy(plant->view.target_m, one.camera.target_m, sizeof(one.camera.target_m));
     assert_true(query(NULL, 0, &own, &error));
-    assert_memory_equal(own.camera.eye_m, one.camera.eye_m, sizeof(own.camera.eye_m)); /* whole, it stays as it is */
+    assert_memory_equal(own.camera.eye_m, one.camera.eye_m, sizeof(own.camera.eye_m)); /* an undivided view keeps the camera */
     assert_true(view_query_parse(&bare, ROLE_ENGINEER, args, 1, &halves, NULL, &error));
     double nearer = 0, farther = 0, before[3], after[3];
     for (int i = 0; i < 3; i++) {
@@ -415,11 +415,11 @@ TEST(halves_show_what_the_plants_own_view_does)
     assert_true(farther > 1.5 * nearer); /* it steps back */
     for (int i = 0; i < 3; i++)          /* and looks the same way */
         assert_float_equal(after[i] / sqrt(farther), before[i] / sqrt(nearer), 1e-6);
-    assert_true(query(args, 2, &given, &error) && given.camera.eye_m[1] == -9); /* who says where to look from is not moved */
+    assert_true(query(args, 2, &given, &error) && given.camera.eye_m[1] == -9); /* a camera that the client states is not moved */
     plant->view = (struct plant_view){ 0 };
 }
 
-/* As signed frames say what they show. */
+/* Views written as query strings, as signed frames state their content. */
 TEST(views_are_written_as_queries)
 {
     static const char *const views[][4] = {
@@ -468,7 +468,7 @@ TEST(what_no_query_says_is_refused)
     assert_non_null(strstr(error.text, "has no name"));
     view_address_finish(&said);
     assert_true(query(&(const char *){ "split=colormap=viridis" }, 1, &view, &error));
-    view.right.field.strength = -1; /* what no client can ask for */
+    view.right.field.strength = -1; /* a value that no client can request */
     assert_false(view_query_write(&of_query, &view, &said, &error));
     assert_string_equal(error.code, "not_signed");
     view_address_finish(&said);
@@ -539,7 +539,7 @@ TEST(bad_queries_are_named)
     }
 }
 
-/* Damaged text never makes a view that the renderer must not see. */
+/* A damaged message never yields a view that the renderer cannot handle. */
 TEST(damaged_messages_stay_harmless)
 {
     static const char *const seeds[] = {
@@ -608,7 +608,7 @@ enum { MOST_MESSAGE_MS = 50 }; /* they make it slower */
 enum { MOST_MESSAGE_MS = 5 };
 #endif
 
-/* As many as can be hidden, with ids as long as a message of 64 KiB holds. */
+/* The largest number of hidden assets, with ids as long as fit into a message of 64 KiB. */
 enum { MANY_ASSETS = ASSET_SET_MAX };
 
 static struct plant *load_many(void)
@@ -643,7 +643,7 @@ static double thread_ms(void)
     return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
 }
 
-/* Milliseconds to read it, and to print the visibility that it asks for: the least of five. */
+/* Returns the milliseconds to parse the message and to print the resulting visibility: the fastest of five runs. */
 static double time_message(const struct plant *many, const struct text *said, struct message *message)
 {
     double least_ms = INFINITY;
@@ -661,11 +661,11 @@ static double time_message(const struct plant *many, const struct text *said, st
     return least_ms;
 }
 
-/* The loop serves everybody: no message may hold it for long. Each is as long as one may be. */
+/* The event loop serves every client: no message of the maximum length may take long to parse. */
 TEST(no_long_message_is_slow)
 {
     static const struct {
-        const char *begin, *each, *end; /* each: with its number, or not */
+        const char *begin, *each, *end; /* begin and end of the message; `each` is repeated in between and may contain its number */
         int first, step, count;
         const char *what;
     } all[] = {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A real series, sixty times as fast as it was recorded, through Modbus into history, and what history gives back: spikes, gaps,
-   quality and all. REPLAY_S says for how many seconds; `make test-long` says an hour. */
+/* A recorded series, sent sixty times as fast through Modbus into the history and compared with what the history returns: spikes, gaps
+   and quality. REPLAY_S sets the seconds; `make test-long` runs an hour. */
 #include "tests/support/test.h"
 #include <math.h>
 #include <pthread.h>
@@ -24,7 +24,7 @@ enum { SPEED = 60, TICK_MS = 50, SHORT_S = 8, OUTAGE_MS = 1500, SPIKE_MS = 400, 
 static const char plant_path[] = "tests/plants/cookie_line.yaml", map_path[] = "tests/plants/cookie_line.map";
 static const char data_path[] = "../shared/data/sensors/cookie_factory/telemetry.csv";
 
-struct register_rows { /* values that the registers held, or that the store got */
+struct register_rows { /* values that the registers held, or that the store received */
     struct register_row {
         int64_t mono_ns, utc_ns;
         double value;
@@ -39,7 +39,7 @@ struct modbus_replay {
     struct sim sim;
     int port, stop_fd;
     _Atomic bool deaf;        /* the device does not answer */
-    _Atomic int spike;        /* tag that is forced, or -1 */
+    _Atomic int spike;        /* tag whose value is forced to a spike; -1: none */
     struct register_rows *held, *told; /* by tag */
     size_t *mapped, mapped_count;
 };
@@ -80,12 +80,12 @@ static void *device_main(void *arg)
     return NULL;
 }
 
-/* The newest value before it, or one that came while it was read. */
+/* Asserts that each reading in the store is the newest register value before it, or one that changed during the request. */
 static void check_wire(const struct modbus_replay *r, size_t tag)
 {
     const struct register_rows *held = &r->held[tag], *told = &r->told[tag];
     const struct plant_tag *t = &r->plant->tags[tag];
-    /* Half a step of a raw value that is an integer. */
+    /* `within` is half a raw step for integer types. */
     double step = t->scaling == SCALING_NONE ? 1 : (t->scaled_high - t->scaled_low) / (t->raw_high - t->raw_low);
     double within = t->type == DATA_FLOAT32 ? 0 : 0.501 * step;
     size_t from = 0, good = 0;
@@ -106,7 +106,7 @@ static void check_wire(const struct modbus_replay *r, size_t tag)
     assert_true(good > 20);
 }
 
-/* History's own line at a time; *quality of the point that rules there. */
+/* Returns the value of the history's line at t_us; *quality receives the quality of the point that governs there. */
 static double line_at(const struct history_series *series, int64_t t_us, uint32_t *quality)
 {
     const struct history_points *points = &series->points;
@@ -120,7 +120,7 @@ static double line_at(const struct history_series *series, int64_t t_us, uint32_
     return a->value + (b->value - a->value) * (double)(t_us - a->t_us) / (double)(b->t_us - a->t_us);
 }
 
-/* Within the tag's deviation of everything that was told, and of its quality. */
+/* Asserts that the history is within the tag's deviation of every reading in the store, and has its quality. */
 static void check_history(const struct modbus_replay *r, struct history_reader *reader, const struct history_tag *tag, size_t index,
                           double *worst)
 {
@@ -146,11 +146,11 @@ static void check_history(const struct modbus_replay *r, struct history_reader *
         assert_true(fabs(value - told->at[i].value) <= tag->within * 1.0001 + 1e-6);
     }
     assert_true(gap);
-    assert_true(index != r->mapped[0] || fabs(most - 1000) <= tag->within); /* the spike is there, as high as it was */
+    assert_true(index != r->mapped[0] || fabs(most - 1000) <= tag->within); /* the spike is present with its full height */
     history_series_finish(&series);
 }
 
-/* Keeps the device deaf until the store knows that each tag has lost its device. */
+/* Keeps the device silent until every tag in the store has lost its device. */
 static void outage(struct modbus_replay *r, struct store *store)
 {
     struct snapshot *snapshot = snapshot_create(r->plant->tag_count);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Modbus devices that want their connections in a way of their own: the source finds out and reads all of them, without a key. */
+/* Modbus devices with limited connections: the source detects the limit and reads all of them without configuration. */
 #include "tests/support/test.h"
 #include <unistd.h>
 
@@ -92,9 +92,9 @@ static bool all_good(struct modbus_case *s)
     return good;
 }
 
-enum { LONGEST_TURN = 20 }; /* requests that the device takes between two readings of a block: it has three of them */
+enum { LONGEST_TURN = 20 }; /* maximum of requests between two readings of a block; there are three blocks */
 
-/* Counts requests of the device since the last new reading of a block, which does not depend on how busy the machine is. */
+/* Counts a device's requests since the last new reading of a block. Counting requests does not depend on the machine's load. */
 struct turn {
     int64_t received_ns;
     int requests;
@@ -109,7 +109,7 @@ static void expect_new(struct modbus_case *s, int tag, struct turn *turn)
     assert_true(requests - turn->requests <= LONGEST_TURN);
 }
 
-/* All blocks are Good, and from then on at each look while the device answers so many more requests. */
+/* Waits until all blocks are Good, then asserts that they stay Good while the device answers `requests` more requests. */
 static void expect_steady(struct modbus_case *s, double within_s, int requests)
 {
     for (int i = 0; i < BLOCKS; i++)
@@ -132,7 +132,7 @@ CASE(a_device_that_closes_after_each_answer)
     await_line(
         "closes the connection after each answer: reading one block per connection; `close_between_polls: yes` says so from the start", 5);
     assert_int_equal(lines_with("no readings"), 0);
-    assert_int_equal(lines_with("reading"), 2); /* this one, and that it reads */
+    assert_int_equal(lines_with("reading"), 2); /* this line, and the one that says that reading works again */
 }
 
 CASE(a_device_that_resets_after_each_answer)
@@ -194,7 +194,7 @@ CASE(one_request_per_connection_by_key)
     modbus_case_start(s);
     expect_steady(s, 5, 10);
     source_stop(&s->source);
-    int unused = s->device.connections - s->device.requests; /* 1 if the source stops after connecting, before its request */
+    int unused = s->device.connections - s->device.requests; /* 1 if the source was stopped after connecting and before its request */
     assert_in_range(unused, 0, 1);
     assert_int_equal(lines_with("says so from the start"), 0);
 }
@@ -259,7 +259,7 @@ CASE(unit_0_is_nobody_s_where_several_units_are_read)
         sleep_ns(10 * NS_PER_MS);
     for (int i = 0; i < BLOCKS; i++)
         assert_true(quality_is_bad(modbus_case_look(s, i)->quality));
-    assert_int_equal(lines_with("no readings"), 1); /* one line, however often it is tried */
+    assert_int_equal(lines_with("no readings"), 1); /* one line, however many attempts fail */
 }
 
 CASE(an_address_that_is_never_answered_leaves_the_others_alone)
@@ -276,7 +276,7 @@ CASE(an_address_that_is_never_answered_leaves_the_others_alone)
     modbus_case_expect(s, BLOCKS, QUALITY_GOOD, 15);
 }
 
-/* Blocks 0 and 1 are read on while that of unit 7 is lost, and one line says so. */
+/* Asserts that blocks 0 and 1 keep being read while the block of unit 7 is lost, and that one log line says so. */
 static void expect_two_units_live(struct modbus_case *s)
 {
     struct turn turns[2] = { 0 };
@@ -291,7 +291,7 @@ static void expect_two_units_live(struct modbus_case *s)
     assert_int_equal(lines_with("unit 7 does not answer"), 1);
 }
 
-/* A gateway with one connection at a time, a unit that is silent, and answers that end it: the others are read. */
+/* A gateway with one connection at a time, a silent unit, and a connection that ends after each answer: the other units are still read. */
 CASE(a_dead_unit_at_a_closing_gateway)
 {
     s->device.answers_per_connection = 1;
@@ -304,7 +304,7 @@ CASE(a_dead_unit_at_a_closing_gateway)
     expect_two_units_live(s);
 }
 
-/* A device of one unit that falls silent is no gateway that waits for another unit: two timeouts are enough. */
+/* A device with a single unit that falls silent must not be treated as a gateway waiting for another unit: two timeouts suffice. */
 CASE(a_device_that_falls_silent_is_not_waited_for)
 {
     start(s);
@@ -313,11 +313,12 @@ CASE(a_device_that_falls_silent_is_not_waited_for)
     s->device.silent_unit = 1;
     int requests = s->device.requests;
     await_line("no readings", 20);
-    assert_true(s->device.requests - requests <= 8); /* two, and few after the loss; a wait for a gateway repeats the second 16 times */
+    /* two timeouts and a few reconnects; waiting for a gateway would repeat the second one 16 times */
+    assert_true(s->device.requests - requests <= 8);
     assert_false(quality_is_good(modbus_case_look(s, 0)->quality));
 }
 
-/* A gateway that waits for a dead unit three times as long as we do, and takes no other request meanwhile. */
+/* A gateway that waits for a dead unit three times as long as our timeout, and accepts no other request meanwhile. */
 CASE(a_dead_unit_that_blocks_its_gateway)
 {
     add_blocks(s);

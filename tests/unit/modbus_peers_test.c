@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Modbus between us and programs that others wrote: pymodbus is read by our source, mbpoll reads our simulator. And what our programs
-   could say to a device at all. */
+/* Modbus interoperability: our source reads pymodbus, and mbpoll reads our simulator. Also that our programs contain no Modbus function
+   that writes. */
 #include "tests/support/test.h"
 #include <signal.h>
 #include <sys/wait.h>
@@ -87,7 +87,7 @@ static void read_pymodbus(struct modbus_case *s, const char *framer)
     const double wanted[] = { 0, 199, 10007, 1, 1, 300 * 65536.0 + 301 };
     for (int i = 0; i < 6; i++) {
         int tag = i == 0 ? 0 : 198 + i;
-        modbus_case_expect(s, tag, QUALITY_GOOD, 60); /* python takes long to start where much else runs */
+        modbus_case_expect(s, tag, QUALITY_GOOD, 60); /* Python starts slowly on a busy machine */
         assert_true(modbus_case_look(s, tag)->value == wanted[i]);
     }
     modbus_case_expect(s, 204, QUALITY_BAD_CONFIGURATION, 5);
@@ -105,7 +105,7 @@ TEST_WITH(pymodbus_is_read_in_rtu_over_tcp, modbus_case_set_up, modbus_case_tear
     read_pymodbus(*state, "rtu");
 }
 
-/* The simulator, with values that stand still. */
+/* Starts the simulator with constant values. Returns its process id. */
 static pid_t simulate(const char *folder, int port)
 {
     static const char yaml[] = "plant: { name: P }\n"
@@ -130,7 +130,7 @@ static pid_t simulate(const char *folder, int port)
     return pid;
 }
 
-/* Until it has come up: what it prints; mem_free. */
+/* Repeats the command until the server has started. Returns its output; free with mem_free. */
 static char *ask_until_answered(const char *command)
 {
     int status = 1;
@@ -178,7 +178,7 @@ TEST(a_probe_shows_every_type_and_order)
     char *folder = temp_folder_create(), *path = program("plantcast");
     pid_t pid = simulate(folder, port);
     char *command = mem_printf("%s tags --probe 127.0.0.1:%d hr:2 2>&1", path, port), *out = ask_until_answered(command);
-    assert_non_null(strstr(out, "registers 4000 C2ED\nbits 15-0 0100 0000 0000 0000")); /* there are no more: two are shown */
+    assert_non_null(strstr(out, "registers 4000 C2ED\nbits 15-0 0100 0000 0000 0000")); /* no register follows: two are shown */
     assert_non_null(strstr(out, "               -118.625 "));
     assert_null(strstr(out, "float64"));
     mem_free(command);
@@ -197,7 +197,7 @@ TEST(a_probe_shows_every_type_and_order)
     temp_folder_destroy(&folder);
 }
 
-/* Everything that libmodbus could write with, or send unseen. A program that does not import it cannot call it. */
+/* All functions of libmodbus that write or send raw data. A program that does not import them cannot call them. */
 TEST(programs_import_nothing_that_writes)
 {
     static const char *const programs[] = { "plantcastd", "plantcast", "plantcast-prep" };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The Modbus source against a real Modbus TCP server: what the store says while devices come, go and misbehave. */
+/* The Modbus source with a real Modbus TCP server: the store's readings while devices appear, disappear and misbehave. */
 #include "tests/support/test.h"
 #include <arpa/inet.h>
 #include <sys/resource.h>
@@ -118,7 +118,7 @@ CASE(silent_device_loses_the_link_though_it_accepts)
     modbus_case_expect(s, 1, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE, 3);
     assert_false(store_link_is_up(s->store, 0));
     sleep_ns(2 * NS_PER_S);
-    assert_false(store_link_is_up(s->store, 0)); /* to be connected is not to be up */
+    assert_false(store_link_is_up(s->store, 0)); /* a connection alone does not make the link up */
     s->device.manner = DEVICE_GOOD;
     modbus_case_expect(s, 1, QUALITY_GOOD, 8);
 }
@@ -139,7 +139,7 @@ CASE(resets_do_no_harm)
 CASE(dripping_device_holds_no_longer_than_the_deadline)
 {
     modbus_case_add_registers(s, 20);
-    s->plant->sources[0].timeout_ms = 1000; /* the answer would take 49 x 0.3 s */
+    s->plant->sources[0].timeout_ms = 1000; /* a full answer would take 49 x 0.3 s */
     s->device.manner = DEVICE_DRIPPING;
     device_start(&s->device);
     int64_t begin_ns = clock_mono_ns();
@@ -154,7 +154,7 @@ CASE(late_reply_does_not_poison)
 {
     modbus_case_be_impatient(s);
     modbus_case_add_registers(s, 1);
-    plant_by_hand_tag(s->plant, "far", TABLE_HOLDING, 500, DATA_INT16); /* a second request of the same shape */
+    plant_by_hand_tag(s->plant, "far", TABLE_HOLDING, 500, DATA_INT16); /* makes a second request of the same shape */
     s->device.late_ms = 400;                                            /* the timeout is 300 */
     device_start(&s->device);
     modbus_case_start(s);
@@ -187,7 +187,7 @@ CASE(reply_sent_twice_does_not_poison)
     }
 }
 
-/* It comes after the next question, with the number of the one before. */
+/* A duplicate reply arrives after the next request, with the transaction number of the previous one. */
 CASE(late_twin_of_a_reply_does_not_disconnect)
 {
     modbus_case_add_registers(s, 1);
@@ -281,7 +281,7 @@ CASE(exceptions_become_qualities)
     }
 }
 
-/* A controller that restarts a task says no once. */
+/* A controller that restarts a task refuses one request. */
 CASE(one_refusal_loses_nothing)
 {
     modbus_case_add_registers(s, 10);
@@ -335,7 +335,8 @@ CASE(busy_is_no_verdict)
     for (int code = 5; code <= 6; code++) { /* acknowledge, busy */
         s->device.bad_code = code;
         int64_t received_ns = modbus_case_look(s, 0)->received_utc_ns;
-        modbus_case_expect(s, 0, QUALITY_BAD_COMMUNICATION_ERROR, 2); /* by age: a refused read makes nothing younger */
+        /* Bad because of its age: a refused read does not refresh the reading */
+        modbus_case_expect(s, 0, QUALITY_BAD_COMMUNICATION_ERROR, 2);
         assert_true(modbus_case_look(s, 0)->received_utc_ns - received_ns < NS_PER_S);
         s->device.bad_code = 0;
         modbus_case_expect(s, 0, QUALITY_GOOD, 3);
@@ -389,7 +390,7 @@ CASE(stops_while_the_device_hangs)
     modbus_case_assert_stops_soon(s);
 }
 
-struct full { /* a listener that has room for nobody more: whoever connects, waits */
+struct full { /* a listener with a full backlog: new connections wait */
     int listener, clients[4];
 };
 
@@ -434,7 +435,7 @@ CASE(connecting_ends_by_its_deadline)
     modbus_case_be_impatient(s);
     modbus_case_add_registers(s, 1);
     modbus_case_start(s);
-    modbus_case_expect(s, 0, QUALITY_BAD_NO_COMMUNICATION, 2.5); /* the system itself would try for two minutes */
+    modbus_case_expect(s, 0, QUALITY_BAD_NO_COMMUNICATION, 2.5); /* the system's own connect timeout would be two minutes */
     full_close(&full);
 }
 
@@ -463,7 +464,7 @@ CASE(two_sources_may_name_one_device)
     assert_int_equal(s->device.connections, 2);
 }
 
-/* libmodbus waits with select(), which knows no descriptor from 1024 on; a daemon with many viewers has them. */
+/* libmodbus waits with select(), which cannot handle descriptors from 1024 on; a daemon with many viewers has that many. */
 CASE(reconnects_with_a_thousand_files_open)
 {
     enum { FILES = 1100, LOW = 4 };
@@ -481,7 +482,7 @@ CASE(reconnects_with_a_thousand_files_open)
         files[i] = dup(2);
     assert_true(files[FILES - 1] >= 1024);
     device_start(&s->device);
-    for (int i = 0; i < LOW; i++) /* the device's own libmodbus needs a low one too */
+    for (int i = 0; i < LOW; i++) /* the device's libmodbus needs low descriptors too */
         close(files[i]);
     modbus_case_expect(s, 0, QUALITY_GOOD, 8);
     for (int i = LOW; i < FILES; i++)
@@ -496,7 +497,7 @@ CASE(unknown_kind_is_refused)
     assert_null(source_start(s->log, s->plant, 0, s->store, s->counters));
 }
 
-/* The promise that the daemon only reads can be checked: nothing in it calls what could write. */
+/* Verifies that the daemon only reads: its objects call no function that writes. */
 TEST(calls_nothing_that_writes)
 {
     static const char *const writers[] = { "modbus_write", "modbus_mask_write", "modbus_send_raw" };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Modbus by TCP, by RTU frames in a socket and on a line, with hosts that stand in, limits of devices, and hostile answers. */
+/* Modbus over TCP, and RTU frames in a socket and on a serial line; backup hosts, limits of devices, and hostile answers. */
 #include "tests/support/test.h"
 
 #include "base/clock.h"
@@ -51,14 +51,14 @@ CASE(a_serial_line_is_read)
     check_rtu(s, DEVICE_LINE);
 }
 
-/* RTU frames carry no number: a late answer looks just like that to the next question. */
+/* RTU frames have no transaction number: a late answer looks like the answer to the next request. */
 static void check_late_rtu(struct modbus_case *s, enum device_wire wire)
 {
     modbus_case_add_registers(s, 1);
     plant_by_hand_tag(s->plant, "far", TABLE_HOLDING, 500, DATA_INT16);
     use_wire(s, wire);
     s->plant->sources[0].timeout_ms = 200;
-    s->device.late_ms = 1000; /* later than the next request: 0.2 s of waiting and at most 0.75 of backing off */
+    s->device.late_ms = 1000; /* later than the next request, which follows after a timeout of 0.2 s and at most 0.75 s of backoff */
     modbus_case_start(s);
     modbus_case_expect(s, 1, QUALITY_GOOD, 3);
     s->device.manner = DEVICE_LATE;
@@ -117,15 +117,15 @@ CASE(the_second_host_stands_in)
     int first_asked = s->device.requests;
     for (int64_t end_ns = clock_mono_ns() + 4 * NS_PER_S; second.requests == 0 && clock_mono_ns() < end_ns;)
         sleep_ns(10 * NS_PER_MS);
-    modbus_case_expect(s, 0, QUALITY_GOOD, 2); /* at once, not after a pause */
+    modbus_case_expect(s, 0, QUALITY_GOOD, 2); /* immediately, without a backoff */
     assert_true(second.requests > 0);
     assert_int_equal(host_of(s), 2);
-    device_start(&s->device); /* the first is back, and nothing goes back to it while the second answers */
+    device_start(&s->device); /* the first host is back, but the source stays with the second while that one answers */
     for (int asked = second.requests + 10; second.requests < asked;)
         sleep_ns(10 * NS_PER_MS);
     assert_int_equal(s->device.requests, first_asked);
     assert_int_equal(host_of(s), 2);
-    second.manner = DEVICE_SILENT; /* it takes connections, and that is all */
+    second.manner = DEVICE_SILENT; /* accepts connections and answers nothing */
     int before = s->device.requests;
     while (s->device.requests == before)
         sleep_ns(10 * NS_PER_MS);
@@ -148,7 +148,7 @@ CASE(requests_keep_to_the_device_s_limits)
     assert_true(s->device.least_gap_ns > 29 * NS_PER_MS);
 }
 
-/* A small PLC refuses a request over a hole; the hole is found once, and what lies on both sides of it is read on. */
+/* A small PLC refuses a request across a hole in its registers; the source finds the hole once and then reads the ranges on both sides. */
 CASE(a_hole_is_refused_once)
 {
     modbus_case_add_registers(s, 10);
@@ -175,13 +175,13 @@ CASE(busy_is_asked_again_soon)
     s->device.bad_code = 6;
     device_start(&s->device);
     modbus_case_start(s);
-    while (s->device.requests < 2) /* the first was refused, the second comes long before the next poll */
+    while (s->device.requests < 2) /* the first request was refused; the second one comes long before the next poll */
         sleep_ns(5 * NS_PER_MS);
     s->device.bad_code = 0;
     modbus_case_expect(s, 0, QUALITY_GOOD, 3);
 }
 
-/* Whatever comes, no value is taken from it; and when the device is good again, so are its values. */
+/* Asserts that no value is taken from any hostile answer, and that values return when the device behaves again. */
 static void check_hostile(struct modbus_case *s, enum device_wire wire, int manner)
 {
     modbus_case_add_registers(s, 20);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What --check finds in the heads of models and of recorded series. */
+/* Findings of --check in the headers of models and of recorded series. */
 #include "tests/support/test.h"
 #include <math.h>
 
@@ -14,7 +14,7 @@
 
 #define CASE(name) TEST_ON(struct plant_case *c, name, plant_case_set_up, plant_case_tear_down)
 
-/* Two pumps of 743 x 200 x 400 in their own units, y up, 1,000 apart; the second is turned by a quarter about y and half as large. */
+/* Two pumps of 743 x 200 x 400 model units, y up, 1,000 apart; the second is rotated by 90 degrees about y and half as large. */
 static const char model[] =
     "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],"
     "\"nodes\":[{\"name\":\"hall\",\"children\":[1,2]},{\"name\":\"P-101A\",\"mesh\":0},"
@@ -82,7 +82,7 @@ TEST_WITH(what_no_memory_holds_is_refused, plant_case_set_up, plant_case_tear_do
           "Tag Name\n", NULL);
     FOUND(c, { "plant.yaml", 0, 0, "3000000000.00 million triangles are too many: " }); /* in memory once */
     mem_free(huge);
-    huge = mem_printf("%.*s00000000%s", (int)(count + 8 - more), more, count + 9); /* 4.67 million, which were measured to take 1.03 GB */
+    huge = mem_printf("%.*s00000000%s", (int)(count + 8 - more), more, count + 9); /* 4.67 million triangles; measured: 1.03 GB of memory */
     memcpy(strstr(huge, "\"count\":") + 8, "14000000", 8);
     mem_free(temp_write_text(c->folder, "h.gltf", huge));
     for (memory_bytes = 1100000000; memory_bytes >= 1000000000; memory_bytes -= 100000000) {
@@ -111,7 +111,7 @@ CASE(nodes_are_looked_up)
           { "tags.csv", 5, 1, "tag T4: asset A: the model has no node '#9'" });
 }
 
-/* Coordinates on the equipment tell which way it lies and what it is measured in. */
+/* Coordinates of sensors on the equipment reveal the model's up axis and unit. */
 CASE(sensors_tell_units_and_axes)
 {
     static const struct {
@@ -152,7 +152,7 @@ CASE(series_are_looked_up)
           { "tags.csv", 7, 1, "values.csv has no series 'T6'; did you mean 'T5'?" });
 }
 
-/* Whatever stands in a file, it is read or refused with a reason. */
+/* A damaged model file is either read or refused with a reason. */
 CASE(broken_models_are_refused)
 {
     unsigned seed = 7;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The report on real models (shared/data/models), held against what is known of them and against itself. */
+/* The preparation report on real models (shared/data/models), compared with known facts about them and checked for consistency. */
 #include "tests/support/test.h"
 #include <unistd.h>
 
@@ -7,8 +7,8 @@
 #include "tests/support/prep_case.h"
 #include "tests/support/sweep.h"
 
-/* Triangles that the model's own description counts, and those without area among them; -1: not stated for this part. Pieces that it is in
-   at the end; 0: some, what hangs apart does so in the model. */
+/* triangles: number in the model's own description, and degenerate ones among them; -1: not stated. pieces: separate surfaces at the
+   end; 0: several, because the model itself is in pieces. */
 static const struct known_model {
     const char *plant, *asset;
     int triangles, without_area, pieces;
@@ -60,14 +60,14 @@ static void check_asset(const json_t *asset, const char *plant)
     const json_t *sensors = json_object_get(asset, "sensors");
     bool surface = !json_is_null(json_object_get(asset, "surface"));
     const char *state = json_string_value(json_object_get(asset, "state"));
-    double off_m = strcmp(plant, "../plant_room") ? 0.01 : 0.02; /* wells of its pumps stand out by 12 mm */
+    double off_m = strcmp(plant, "../plant_room") ? 0.01 : 0.02; /* the pumps' thermowells protrude by 12 mm */
     assert_true(!strcmp(state, "built") || !strcmp(state, "shared"));
     assert_true(surface == (json_array_size(sensors) > 0));
     assert_true(of(asset, "vertices") == of(asset, "model_vertices") + of(asset, "vertices_added"));
     check_levels(asset);
     if (surface)
         check_surface(asset);
-    for (size_t s = 0; s < json_array_size(sensors); s++) /* they were put on its vertices, of which some are hidden */
+    for (size_t s = 0; s < json_array_size(sensors); s++) /* the sensors were placed on vertices, some of which are hidden */
         assert_true(of(json_array_get(sensors, s), "surface_distance_m") < off_m);
     print_message("# %-26s %-9s %6.0f triangles, split %6.0f; ", plant, json_string_value(json_object_get(asset, "id")),
                   of(asset, "model_triangles"), of(asset, "triangles"));
@@ -134,7 +134,7 @@ static void plant_in_five_parts(void **state)
 static void plant_with_its_tree(void **state)
 {
     json_t *report = prepare(*state, "plm_plant_hierarchy");
-    /* In V-1105 distances jump at walls, and triangles without a width lie beside others: neither is cut for nothing. */
+    /* In V-1105 distances jump at walls, and thin triangles lie next to others: neither may be subdivided without benefit. */
     assert_true(prep_case_number(report, "assets.0.levels.0.limited_by_triangles") < 10);
     assert_true(prep_case_number(report, "assets.0.levels.0.triangles") < 40000);
     json_decref(report);
@@ -147,7 +147,7 @@ static void weather_deck(void **state)
     json_decref(report);
 }
 
-/* Every elbow and tee has each face twice. By far the largest. */
+/* In this model, by far the largest, every elbow and tee has each face twice. */
 static void building_services(void **state)
 {
     json_t *report = prepare(*state, "duplex_mep");

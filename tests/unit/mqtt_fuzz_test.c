@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Replays the seeds of the fuzzer of payloads from brokers, and what random changes make of them. */
+/* Replays the seeds of the broker payload fuzzer and random mutations of them. */
 #include "tests/fuzz/mqtt_fuzz.c"
 
 #include "tests/support/test.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Payloads of MQTT messages: which texts are numbers, paths in JSON, stated times and qualities. */
+/* Payloads of MQTT messages: which texts are numbers, JSON paths, timestamps and qualities. */
 #include "tests/support/test.h"
 #include <math.h>
 
@@ -170,7 +170,7 @@ TEST(values_are_found_by_path)
     check(&named, &(struct expected){ "{\"d\": [1, 2]}", "d[0]", MQTT_FOUND, 1, 0, 0 });
 }
 
-/* Each path selects exactly one value, or none is taken. The tag is T1. */
+/* Each path selects exactly one value, or no value is taken. The tag is T1. */
 TEST(a_value_of_another_member_is_never_taken)
 {
     static const char T2[] = "{\"values\": [{\"id\": \"A.T2\", \"v\": 22}]}";
@@ -212,13 +212,14 @@ TEST(a_value_of_another_member_is_never_taken)
         { "{\"a\": [5]}", "a", MQTT_WRONG, 0, QUALITY_BAD_CONFIGURATION, 0 },
         { "{\"a\": [5]}", "a[-2]", MQTT_ABSENT, 0, 0, 0 },
         { "{\"a\": [5, 6]}", "a[?@==6]", MQTT_FOUND, 6, 0, 0 },
-        { "[{\"n\": 21.5}]", "[0].n", MQTT_FOUND, 21.5, 0, 0 }, /* the member that is selected is no name */
+        { "[{\"n\": 21.5}]", "[0].n", MQTT_FOUND, 21.5, 0, 0 }, /* the path selects by position, so no name is checked */
         { "[{\"n\": 21.5, \"id\": \"A.T9\"}]", "[0].n", MQTT_WRONG, 0, QUALITY_BAD_NO_MATCH, 0 },
         { "[{\"n\": 21.5, \"v\": 3}]", "[0].v", MQTT_WRONG, 0, QUALITY_BAD_NO_MATCH, 0 },
         { "{\"a\": {\"0\": 5}}", "a[0]", MQTT_ABSENT, 0, 0, 0 },
         { "{\"a\": {\"0\": 5}}", "a['0']", MQTT_FOUND, 5, 0, 0 },
         { "{\"a\": [{\"id\": \"T1\", \"v\": null}]}", "a[?id=='T1'].v", MQTT_FOUND, 0, QUALITY_BAD_SENSOR_FAILURE, 0 },
-        { "{\"a\": [{\"v\": 3, \"unit\": \"K\"}]}", "a[0].v", MQTT_FOUND, 3, 0, 0 }, /* an item without a name is its position */
+        /* an item without a name is identified by its position */
+        { "{\"a\": [{\"v\": 3, \"unit\": \"K\"}]}", "a[0].v", MQTT_FOUND, 3, 0, 0 },
         { "{\"\u00b0'C\": 2}", "['\\u00b0\\'C']", MQTT_FOUND, 2, 0, 0 },
     };
     for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++)

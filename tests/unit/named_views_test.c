@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Views with names outlive the daemon, keep what they were, and share an order; those of the plant file stay as they are there. */
+/* Named views survive a restart, keep their content and share one order; views of the plant file stay as written there. */
 #include "tests/support/test.h"
 
 #include <jansson.h>
@@ -56,7 +56,7 @@ static enum refusal_code save(struct named_views_fixture *f, const char *id, con
     return named_views_save(f->views, &edit, "kim", INT64_C(1000000) * NOON_S);
 }
 
-/* The ids in their order, with blanks between them; then compared. */
+/* Asserts the ids of all views in order, separated by blanks. */
 static void assert_order(struct named_views_fixture *f, const char *expected)
 {
     char found[400] = "";
@@ -119,7 +119,7 @@ CASE(the_plant_file_has_its_own)
     assert_int_equal(save(f, "mine", "Mine", -1), REFUSAL_NONE);
     f->plant.view_count = 0;
     assert_int_equal(save(f, "all", "Mine", -1), REFUSAL_NONE);
-    f->plant.view_count = 1; /* has it again: that one counts */
+    f->plant.view_count = 1; /* the plant file has the view again: its version counts */
     assert_order(f, "all mine");
 }
 
@@ -160,7 +160,7 @@ CASE(without_a_folder_none_is_saved)
     struct named_view_edit edit = { .id = "a", .title = "A", .address = "group=t", .at = -1 };
     assert_int_not_equal(named_views_save(views, &edit, "kim", 1), REFUSAL_NONE);
     named_views_close(&views);
-    edit.title[0] = (char)0xff; /* no UTF-8: refused, and nothing changes */
+    edit.title[0] = (char)0xff; /* invalid UTF-8: refused without any change */
     assert_int_not_equal(named_views_save(f->views, &edit, "kim", 1), REFUSAL_NONE);
     assert_order(f, "all");
 }

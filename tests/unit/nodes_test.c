@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which nodes patterns take and name. */
+/* Patterns of model nodes: which nodes they select and name. */
 #include "tests/support/test.h"
 
 
 #include "plant/models/nodes.h"
 
-/* site / area1 / (P-1 / motor, P-2 / motor), area2 / (unnamed with mesh "vessel", "#0", "a/b", "P-3" with two instances) */
+/* The tree: site / area1 / (P-1 / motor, P-2 / motor), area2 / (unnamed with mesh "vessel", "#0", "a/b", "P-3" with two instances) */
 static const struct model_node nodes[] = {
     { "site", "", -1, 12, 20 },        { "area1", "", 0, 6, 21 },     { "P-1", "pump", 1, 4, 22 }, { "motor", "motor_m", 2, 4, 23 },
     { "P-2", "pump", 1, 6, 24 },       { "motor", "motor_m", 4, 6, 25 }, { "area2", "", 0, 12, 26 },  { "", "vessel", 6, 8, 0 },
@@ -13,7 +13,7 @@ static const struct model_node nodes[] = {
 };
 enum { COUNT = sizeof(nodes) / sizeof(*nodes) };
 
-/* The numbers of the nodes that are taken, as letters from a on. */
+/* Returns the indices of the selected nodes as letters, from "a" on. */
 static const char *taken(const char *patterns)
 {
     static char text[COUNT + 1], why[300];
@@ -52,7 +52,7 @@ TEST(patterns_take_sub_trees_and_leave_others_out)
     assert_string_equal(taken("/site/*/P-?/motor"), "df");
     assert_string_equal(taken("/site/**/motor"), "df");
     assert_string_equal(taken("/**/P-3"), "jkl");
-    assert_string_equal(taken("a/b"), "i"); /* a name that is there as it stands */
+    assert_string_equal(taken("a/b"), "i"); /* a pattern that equals a name literally selects that node */
     assert_string_equal(taken("site\n!area*"), "a");
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Normals at places where many faces meet: as the plain sum over all pairs says, and in time that hardly grows faster than their number. */
+/* Normals at points where many faces meet: equal to the plain sum over all pairs, in a time that grows little faster than their number. */
 #include "tests/support/test.h"
 #include <math.h>
 #include <time.h>
@@ -22,7 +22,7 @@ static double chance(unsigned *seed)
     return rand_r(seed) / (double)RAND_MAX;
 }
 
-/* height: of the middle above the rim, whose points are moved up and down by `rough`. */
+/* Makes a fan. height: of the centre above the rim; `rough` moves the rim's points up and down at random. */
 static void fan_init(struct fan *fan, size_t count, double height, double rough, unsigned seed)
 {
     *fan = (struct fan){ .positions = mem_array(count + 1, sizeof(*fan->positions)),
@@ -80,7 +80,7 @@ static void assert_plain_sum(const struct fan *fan)
         face_of(fan, t, faces[t], &angles[t]);
     for (size_t t = 0; t < fan->count; t++) {
         double sum[3] = { 0 };
-        bool close = false; /* to the crease: which side a face is on hangs on the last bit */
+        bool close = false; /* close to the crease angle, where the last bit decides on which side a face is */
         for (size_t o = 0; o < fan->count; o++) {
             double cosine = faces[t][0] * faces[o][0] + faces[t][1] * faces[o][1] + faces[t][2] * faces[o][2];
             close |= fabs(cosine - CREASE_COSINE) < 1e-9;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Notes outlive the daemon, end by their time or by hand, and are bounded; what was in force in a shift is told. */
+/* Notes survive a restart, expire or are ended by hand, and are limited in number; the notes in force during a shift can be listed. */
 #include "tests/support/test.h"
 
 #include <jansson.h>
@@ -52,7 +52,7 @@ static enum refusal_code add(struct notes_fixture *f, const char *text, int64_t 
     return notes_add(f->notes, &(struct note){ .text = text, .tag = "TI-1", .until_us = until_us }, "kim", at_us, f->id);
 }
 
-/* Takes the text; the texts of its notes, with blanks between them, are compared. */
+/* Frees the message `text` and asserts its notes' texts, separated by blanks. */
 static void assert_notes(char *text, const char *expected)
 {
     char found[400] = "";
@@ -99,7 +99,7 @@ CASE(there_is_a_limit)
         for (int i = 0; i < NOTES; i++)
             assert_int_equal(add(f, "n", NOON + round * 100 * S, NOON + (round * 100 + 60) * S), REFUSAL_NONE);
     assert_int_equal(add(f, "last", NOON + 1000 * S, 0), REFUSAL_NONE);
-    open_again(f); /* a file of no more than there may be */
+    open_again(f); /* reopening a file with the maximum number of notes */
     char *text = notes_text_between(f->notes, 0, INT64_MAX);
     json_t *message = json_loads(text, 0, NULL);
     assert_int_equal(json_array_size(json_object_get(message, "list")), NOTES_ENDED + 1);

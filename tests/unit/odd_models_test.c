@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* plantcast-prep on models that are far away, tiny, narrow, or there many times over; and that it ends when it is told to. */
+/* plantcast-prep on models that are far away, tiny, narrow or duplicated many times; and that it stops on a signal. */
 #include "tests/support/test.h"
 #include <fcntl.h>
 #include <jansson.h>
@@ -27,15 +27,15 @@
     "tags: tags.csv\n"
 
 enum {
-    LEVELS_S = 15,    /* what takes milliseconds is done by then, and what takes minutes is not */
-    WELL_BEGUN_S = 3, /* of the processor: more than reading a model takes */
-    ENDS_S = 30,      /* it says 5; a machine may be busy */
+    LEVELS_S = 15,    /* seconds; tasks of milliseconds are done by then, tasks of minutes are not */
+    WELL_BEGUN_S = 3, /* seconds of processor time, more than reading a model takes */
+    ENDS_S = 30,      /* seconds; the program promises 5, but a machine may be busy */
 };
 
-/* Kinds of strays at the origin beside a plate far away. */
+/* Kinds of stray geometry at the origin, next to a plate far away. */
 enum expected_stray { STRAY_NONE, STRAY_VERTEX, STRAY_NEEDLE, STRAY_TRIANGLE };
 
-/* Adds a node with one triangle: without area at the origin; from the plate to the origin; or at the origin. */
+/* Adds a node with one triangle: a degenerate one at the origin, one from the plate to the origin, or a small one at the origin. */
 static void add_stray(struct model_maker *maker, enum expected_stray stray, const double at_m[3])
 {
     static const uint32_t corners[3] = { 0, 1, 2 };
@@ -51,7 +51,7 @@ static void add_stray(struct model_maker *maker, enum expected_stray stray, cons
     maker_node(maker, "stray", mesh, json_pack("{s:[f,f,f]}", "translation", from_m[0], from_m[1], from_m[2]));
 }
 
-/* model.glb: a plate of squares, `copies` times in one place, and a stray triangle. */
+/* Writes model.glb: a plate of squares, `copies` times in one place, and a stray triangle. */
 static void write_plates_and(struct prep_case *c, uint32_t across, uint32_t up, const double size_m[2], uint32_t copies,
                              const double at_m[3], enum expected_stray stray)
 {
@@ -135,7 +135,7 @@ CASE(where_a_survey_has_it_distances_are_as_at_the_origin)
     }
 }
 
-/* Returns the row at a vertex of the plate. */
+/* Returns the row whose vertex is at place_m on the plate. */
 static const struct distance_row *row_at(const struct distance_row *rows, size_t count, const double place_m[3])
 {
     for (size_t k = 0; k < count; k++)
@@ -233,7 +233,7 @@ static pid_t start(struct prep_case *c)
     return child;
 }
 
-/* Of the processor; 0: it is not there. */
+/* Returns the seconds of processor time that the child has used; 0: there is no such process. */
 static double seconds_of(pid_t child)
 {
     char path[40], text[1000] = "";
@@ -249,7 +249,7 @@ static double seconds_of(pid_t child)
     return (double)(user + kernel) / (double)sysconf(_SC_CLK_TCK);
 }
 
-/* Two million triangles take longer than the program goes on with what is begun. */
+/* Two million triangles take longer than the time that the program allows itself for finishing after a signal. */
 CASE(what_is_told_to_end_ends)
 {
     static const int signals[] = { SIGTERM, SIGINT };
@@ -278,7 +278,7 @@ CASE(what_is_told_to_end_ends)
         prep_case_says(&c->err, "interrupted");
     }
     write_plates(c, 10, 10, (double[]){ 1, 1 }, 1, here);
-    prep_case_expect(c, "$PLANT", 0); /* what they left is in nobody's way */
+    prep_case_expect(c, "$PLANT", 0); /* leftovers of the stopped run do not disturb the next */
     char *drafts = mem_printf("ls '%s'/plant.prepared/*.new 2>/dev/null", c->folder);
     assert_int_not_equal(system(drafts), 0);
     mem_free(drafts);

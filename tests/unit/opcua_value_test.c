@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* OPC UA: addresses of nodes; values as readings: numbers of every type, status codes and times bit by bit, and what holds no number. */
+/* OPC UA: node addresses, and conversion of values to readings: every numeric type, status codes and timestamps bit by bit, and values
+   that are not numbers. */
 #include "tests/support/test.h"
 #include <math.h>
 
@@ -107,7 +108,7 @@ TEST(what_is_no_number_is_bad)
     assert_int_equal(value.quality, QUALITY_BAD_SENSOR_FAILURE);
 }
 
-/* Through to the snapshot that pictures are drawn from. */
+/* Status codes and times pass unchanged into the snapshot that frames are drawn from. */
 TEST(status_codes_and_times_stay_as_they_are)
 {
     static const uint32_t codes[] = { 0, 0x00960000, 0x00000480, 0x40930000, 0x40A50480, 0x40000001, 0x808C0000, 0x80AB0000, 0xC0000000 };
@@ -140,7 +141,7 @@ TEST(status_codes_and_times_stay_as_they_are)
     plant_by_hand_destroy(&plant);
 }
 
-/* A machine that was started a minute ago is told of readings of an hour ago. */
+/* Readings older than the machine's boot: a machine started a minute ago receives readings of an hour ago. */
 TEST(what_is_older_than_the_machine_s_start_is_as_old_as_it_is)
 {
     static const int64_t minute_ns = 60 * 1000000000LL;

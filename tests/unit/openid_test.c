@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* ID tokens that are accepted, and those that are not; log-ins that wait; the file of --openid. */
+/* ID tokens: which are accepted and which refused; pending logins; and the file of --openid. */
 #include "tests/support/test.h"
 #include <unistd.h>
 #include <cjose/cjose.h>
@@ -83,7 +83,7 @@ static char *sign(const cjose_jwk_t *key, const char *alg, const char *kid, cons
     return copy;
 }
 
-/* Takes the token. why: NULL: it is good; else what it is refused for. */
+/* Consumes the token. why: part of the reason for refusal; NULL: the token must be accepted. */
 static enum id_token_fault expect(struct openid_fixture *f, char *token, const char *nonce, const char *sub, const char *why)
 {
     const struct id_token_expected expected = { .config = &f->config, .jwks = f->jwks, .nonce = nonce, .sub = sub, .now_s = NOW_S };
@@ -102,7 +102,7 @@ static enum id_token_fault expect(struct openid_fixture *f, char *token, const c
     return fault;
 }
 
-/* The claims with one changed; value: JSON, NULL: without it. */
+/* Returns the claims with one changed; value: JSON, or NULL to remove it. */
 static char *changed(const struct openid_fixture *f, const char *name, const char *value)
 {
     json_t *claims = json_loads(CLAIMS, 0, NULL);
@@ -120,7 +120,7 @@ CASE(test_signatures)
     expect(f, sign(f->key, "RS256", "k1", CLAIMS), "n1", NULL, NULL);
     expect(f, sign(f->key, "PS256", "k1", CLAIMS), "n1", "s1", NULL);
     expect(f, sign(f->key, "RS256", NULL, CLAIMS), "n1", NULL, NULL);
-    /* a key that is not there is asked for once more; one that is there is no excuse */
+    /* an unknown key leads to one more request for the keys; a wrong signature by a known key does not */
     assert_int_equal(expect(f, sign(f->other, "RS256", "k2", CLAIMS), "n1", NULL, "does not have"), ID_TOKEN_NO_KEY);
     assert_int_equal(expect(f, sign(f->other, "RS256", "k1", CLAIMS), "n1", NULL, "signature is wrong"), ID_TOKEN_BAD);
     /* rotated */
@@ -133,7 +133,7 @@ CASE(test_signatures)
     char *token = sign(f->other, "RS256", "k2", CLAIMS), *middle = strchr(token, '.') + 10;
     *middle = *middle == 'A' ? 'B' : 'A';
     expect(f, token, "n1", NULL, "");
-    /* elliptic curves, and a key for something else */
+    /* elliptic curve keys, and a key with another purpose */
     cjose_jwk_t *curve = cjose_jwk_create_EC_random(CJOSE_JWK_EC_P_256, NULL);
     cjose_jwk_set_kid(curve, "e1", 2, NULL);
     json_t *jwk = public_part(curve);
@@ -146,7 +146,7 @@ CASE(test_signatures)
     cjose_jwk_release(curve);
 }
 
-/* {"alg":"none"} and a signature that was made with the public key, which everybody knows, as a secret. */
+/* {"alg":"none"}, and a signature that uses the public key, which everybody knows, as an HMAC secret. */
 CASE(test_algorithms)
 {
     static const char none[] = "eyJhbGciOiJub25lIn0.";
@@ -177,7 +177,7 @@ CASE(test_claims)
                   { "aud", "\"other\"", "another audience" },
                   { "aud", "[\"other\"]", "another audience" },
                   { "aud", "[\"plant\"]", NULL },
-                  { "aud", "[\"plant\",\"other\"]", "another audience" }, /* without azp nobody knows whose it is */
+                  { "aud", "[\"plant\",\"other\"]", "another audience" }, /* without azp the token may belong to another client */
                   { "azp", "\"other\"", "another audience" },
                   { "azp", "\"plant\"", NULL },
                   { "sub", "\"\"", "somebody else" },
@@ -201,7 +201,7 @@ CASE(test_claims)
     expect(f, sign(f->key, "RS256", "k1", "{\"iss\":\"https://id.example\",\"iss\":\"https://id.example\"}"), "n1", NULL, "no JSON");
 }
 
-/* A core accepts the tokens of its renderers' people for the hours of a log-in, which may be more than a day. */
+/* A core accepts tokens of its renderers' users for the whole duration of a login, which may exceed a day. */
 CASE(test_older_tokens)
 {
     struct id_token_expected expected = { .config = &f->config, .jwks = f->jwks, .sub = "s1", .now_s = NOW_S + 2 * 24 * 3600 };
@@ -261,12 +261,12 @@ TEST(test_log_ins)
     assert_false(sign_ins_take(table, first.state, first.binding, NS_PER_S, &taken)); /* replayed */
     first = *sign_ins_begin(table, here, "/", NS_PER_S);
     assert_false(sign_ins_take(table, first.state, first.binding, 602 * NS_PER_S, &taken)); /* late */
-    /* an address that begins thousands does not push out others' */
+    /* an address that begins thousands of logins does not evict those of others */
     first = *sign_ins_begin(table, here, "/", NS_PER_S);
     for (int i = 0; i < 3 * SIGN_INS; i++)
         assert_non_null(sign_ins_begin(table, there, "/", 2 * NS_PER_S));
     assert_true(sign_ins_take(table, first.state, first.binding, 3 * NS_PER_S, &taken));
-    for (int i = 0; i < 2 * SIGN_INS; i++) { /* nor do many take more than there is */
+    for (int i = 0; i < 2 * SIGN_INS; i++) { /* many addresses together do not exceed the table either */
         memcpy(there, &i, sizeof(i));
         assert_non_null(sign_ins_begin(table, there, "/", 2 * NS_PER_S));
     }
@@ -309,7 +309,7 @@ TEST(test_people)
     }
     assert_int_equal(sign_ins_count(table), 1 + PEOPLE_SAME);
     struct person more = person_of("lee");
-    assert_true(sign_ins_add_person(table, &more, cookie, &left)); /* the first of Lee's ends, and Kim's stays */
+    assert_true(sign_ins_add_person(table, &more, cookie, &left)); /* Lee's oldest login ends, and Kim's stays */
     assert_string_equal(left, "of lee");
     mem_free(left);
     assert_int_equal(sign_ins_count(table), 1 + PEOPLE_SAME);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The operator's view: places between limits, the field of them, tags without limits, and alarms. */
+/* The operator's view: positions of readings between their limits, the field of these positions, tags without limits, and alarms. */
 #include "tests/support/test.h"
 #include <math.h>
 
@@ -43,7 +43,7 @@ TEST(test_limits_that_are_missing)
     expect(&high, -50, 0); /* there is no low side */
     expect(&alone, 80, 1);
     expect(&alone, 120, 1.5);
-    expect(&alone, 500, 2); /* just below it: no HH was passed */
+    expect(&alone, 500, 2); /* just below HH, so HH was not passed */
     assert_true(limit_place(&range_0_100, &alone, 500) < 2);
     expect(&last, 40, 0.5);
     assert_true(limit_place(&range_0_100, &last, 79.999) < 1); /* beyond no limit */
@@ -57,7 +57,7 @@ TEST(test_limits_that_are_missing)
     expect(&both, 40, 0);
     expect(&both, 20, -1);
     expect(&both, -10, -2.5 + 0.501); /* cut */
-    expect(&beyond, -60, 0);          /* half the range away from a limit below MIN */
+    expect(&beyond, -60, 0);          /* half the range away from a limit that lies below MIN */
     expect(&beyond, -10, 1);
     struct plant_tag none = with_limits(NAN, NAN, NAN, NAN);
     assert_true(isnan(limit_place(&range_0_100, &none, 5)));
@@ -98,7 +98,7 @@ TEST(test_alarms_need_usable_readings)
     assert_int_equal(alarm_beyond(&tag, &reading), ALARM_H);
     reading.value = 1;
     assert_int_equal(alarm_beyond(&tag, &reading), ALARM_L);
-    reading.quality = QUALITY_UNCERTAIN_UNITS_EXCEEDED; /* beyond its instrument's range is beyond its limits */
+    reading.quality = QUALITY_UNCERTAIN_UNITS_EXCEEDED; /* a reading beyond the instrument's range is beyond its limits */
     assert_int_equal(alarm_beyond(&tag, &reading), ALARM_L);
     reading.quality = QUALITY_BAD_SENSOR_FAILURE;
     assert_int_equal(alarm_beyond(&tag, &reading), ALARM_NONE);
@@ -115,7 +115,7 @@ static void set_limits(struct synthetic *plant, size_t tag, double low, double h
     memcpy(plant->plant.tags[tag].limits, (double[]){ low - range, low, high, high + range }, sizeof(plant->plant.tags[tag].limits));
 }
 
-/* The places of the readings as readings of another plant, without limits: the fields must be the same. */
+/* Uses the positions as readings of another plant without limits: both fields must be equal. */
 static void compare(enum interpolation interpolation, double least_place, double most_place)
 {
     struct synthetic *places = synthetic_create(.vertices = VERTICES, .sensors = SENSORS, .max = 1);
@@ -125,7 +125,7 @@ static void compare(enum interpolation interpolation, double least_place, double
     uint64_t random = 11;
     for (size_t i = 0; i < SENSORS; i++) {
         double place = least_place + (most_place - least_place) * synthetic_random_unit(&random);
-        set_limits(plant, i, 10 * (double)i, 10 * (double)i + 4); /* each of its own; the middle is 2 above L */
+        set_limits(plant, i, 10 * (double)i, 10 * (double)i + 4); /* limits of its own for each tag; the middle is 2 above L */
         double from_middle = fabs(place) <= 1 ? 2 * place : copysign(2 + 4 * (fabs(place) - 1), place);
         plant->snapshot->readings[i].value = 10 * (double)i + 2 + from_middle;
         places->snapshot->readings[i].value = place;
@@ -151,7 +151,7 @@ static void compare(enum interpolation interpolation, double least_place, double
 TEST(test_places_are_interpolated_with_the_same_weights)
 {
     compare(INTERPOLATION_SHEPARD, -2.5, 2.5);
-    compare(INTERPOLATION_PAPER, 0, 1); /* the other plant would clamp what lies beyond */
+    compare(INTERPOLATION_PAPER, 0, 1); /* the other plant would clamp values beyond its range */
 }
 
 TEST(test_tags_without_limits_have_no_place)
@@ -180,7 +180,7 @@ TEST(test_tags_without_limits_have_no_place)
     plant->snapshot->readings[1].quality = QUALITY_BAD_SENSOR_FAILURE; /* now nothing is known there */
     scalars = field_scalars(field, 0, &params, plant->snapshot);
     assert_true(scalars->at[1].no_data && !scalars->at[1].no_limits);
-    params.show = SHOW_VALUE; /* where only values count, limits do not matter */
+    params.show = SHOW_VALUE; /* with SHOW_VALUE limits have no effect */
     plant->snapshot->readings[1].quality = QUALITY_GOOD;
     scalars = field_scalars(field, 0, &params, plant->snapshot);
     assert_true(!scalars->at[1].no_limits && fabsf(scalars->at[1].value - 1e6f) < 1);

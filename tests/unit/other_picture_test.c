@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What another plant's server may answer: headers that say how old its readings are, and PNG files that are whole. */
+/* Answers of another plant's server: headers with the age of its readings, and complete PNG files. */
 #include "views/other_picture.h"
 
 #include "tests/support/test.h"
@@ -69,7 +69,7 @@ static struct text make_png(void)
 
 static bool is_png(const struct text *png, size_t count)
 {
-    uint8_t *own = mem_array(count + 1, 1); /* so that what reads beyond it is seen */
+    uint8_t *own = mem_array(count + 1, 1); /* exactly sized allocation, so that the sanitizer finds a read beyond its end */
     memcpy(own, png->at, count);
     bool good = other_picture_is_png(own, count, 256, 144);
     mem_free(own);

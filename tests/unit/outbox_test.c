@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Who is told of which alarms: floods, shifts and areas, escalation, outages, restarts; and what the messages say. */
+/* Alarm notifications: which recipients get which alarms, with floods, shifts and areas, escalation, outages and restarts; and the text
+   of messages. */
 #include "tests/support/test.h"
 #include <math.h>
 #include <time.h>
@@ -86,7 +87,7 @@ static void put(struct outbox_fixture *f, int tag, int mode, bool active, bool u
     outbox_put(f->outbox, &alarm, false, now_us);
 }
 
-/* How many alarms a message has that is due and then delivered; 0: none is. */
+/* Delivers the message that is due. Returns its number of alarms; 0: no message is due. */
 static size_t deliver(struct outbox_fixture *f, int recipient, int64_t now_us)
 {
     struct outbox_message message;
@@ -114,7 +115,7 @@ CASE(a_flood_is_one_message)
     for (int i = 0; i < 500; i++)
         put(f, i, LOCAL, true, true, T0, T0 + i * S / 500);
     assert_int_equal(deliver(f, OPS, T0 + 2 * S), 0);
-    assert_int_equal(deliver(f, OPS, T0 + 4 * S), 500); /* once each, although two rules fit some */
+    assert_int_equal(deliver(f, OPS, T0 + 4 * S), 500); /* each alarm once, although two rules match some of them */
     for (int s = 5; s < 200; s++)
         assert_int_equal(deliver(f, OPS, T0 + s * S), 0);
     assert_int_equal(outbox_counts(f->outbox, OPS).waiting, 0);
@@ -163,9 +164,9 @@ CASE(shifts_keep_to_the_wall_clock)
     assert_true(on(&friday_night, "2026-11-20T21:00"));
     assert_true(on(&friday_night, "2026-11-21T04:59"));
     assert_false(on(&friday_night, "2026-11-21T05:00"));
-    assert_false(on(&friday_night, "2026-11-20T04:00")); /* the night that began on Thursday */
+    assert_false(on(&friday_night, "2026-11-20T04:00")); /* part of the night shift that began on Thursday */
     const struct notify_shift sunday_night = { .days = 1 << 5, .from_min = 22 * 60, .to_min = 6 * 60 };
-    assert_true(on(&sunday_night, "2026-10-25T04:59")); /* clocks went back at 01:00 UTC */
+    assert_true(on(&sunday_night, "2026-10-25T04:59")); /* clocks were set back at 01:00 UTC */
     assert_false(on(&sunday_night, "2026-10-25T05:00"));
     const struct notify_shift all_day = { .days = 1 << 6 };
     assert_true(on(&all_day, "2026-11-22T10:00"));
@@ -179,7 +180,7 @@ CASE(it_escalates_until_acknowledged)
     put(f, 1, LOCAL, true, true, T0, T0);
     assert_int_equal(deliver(f, OPS, T0 + 3 * S), 2);
     put(f, 1, LOCAL, true, false, T0, T0 + 5 * MIN);  /* acknowledged */
-    put(f, 0, LOCAL, false, true, T0, T0 + 6 * MIN);  /* gone, but nobody has acknowledged it */
+    put(f, 0, LOCAL, false, true, T0, T0 + 6 * MIN);  /* returned to normal but not acknowledged */
     assert_int_equal(deliver(f, BOSS, T0 + 10 * MIN - S), 0);
     restart(f);
     assert_int_equal(deliver(f, BOSS, T0 + 10 * MIN), 0);
@@ -188,7 +189,7 @@ CASE(it_escalates_until_acknowledged)
     assert_int_equal(deliver(f, OPS, T0 + 20 * MIN + 3 * S), 1);
     put(f, 0, LOCAL, false, false, T0, T0 + 21 * MIN);
     assert_int_equal(deliver(f, OPS, T0 + 60 * MIN), 0);
-    assert_int_equal(deliver(f, BOSS, T0 + 60 * MIN), 1); /* of the second escalation, which waited */
+    assert_int_equal(deliver(f, BOSS, T0 + 60 * MIN), 1); /* alarm of the second escalation, which was waiting */
     assert_int_equal(deliver(f, BOSS, T0 + 90 * MIN), 0);
     put(f, 0, LOCAL, true, true, T0 + 91 * MIN, T0 + 91 * MIN); /* anew */
     assert_int_equal(deliver(f, OPS, T0 + 91 * MIN + 3 * S), 1);
@@ -200,15 +201,15 @@ CASE(nobody_is_told_twice_after_a_restart)
     put(f, 0, LOCAL, true, true, T0, T0);
     assert_int_equal(deliver(f, OPS, T0 + 3 * S), 1);
     struct outbox_message message;
-    assert_true(outbox_next(f->outbox, BOSS, T0 + 3 * S, &message)); /* the daemon is killed while this one is sent */
+    assert_true(outbox_next(f->outbox, BOSS, T0 + 3 * S, &message)); /* the daemon is killed while this message is being sent */
     char id[OUTBOX_ID_BYTES];
     memcpy(id, message.id, sizeof(id));
     restart(f);
     struct alarm old = alarm_of(f, 0, LOCAL, true, true, T0), settled = alarm_of(f, 1, LOCAL, true, false, T0 - S);
     struct alarm missed = alarm_of(f, 2, LOCAL, true, true, T0 + 4 * S);
     outbox_put(f->outbox, &old, true, T0 + 10 * S);
-    outbox_put(f->outbox, &settled, true, T0 + 10 * S); /* acknowledged before anybody was to be told */
-    outbox_put(f->outbox, &missed, true, T0 + 10 * S);  /* raised just before the end, in the journal alone */
+    outbox_put(f->outbox, &settled, true, T0 + 10 * S); /* acknowledged before any notification was due */
+    outbox_put(f->outbox, &missed, true, T0 + 10 * S);  /* raised just before the daemon ended: only the journal has it */
     assert_true(outbox_next(f->outbox, BOSS, T0 + 10 * S, &message));
     assert_int_equal(message.count, 1);
     assert_string_equal(message.id, id); /* the receiver knows it */
@@ -258,7 +259,7 @@ CASE(what_waits_is_bounded_and_said)
     assert_int_equal(message.left_out, 999);
     outbox_sent(f->outbox, OPS, T0 + 60 * S);
     assert_int_equal(deliver(f, OPS, T0 + 200 * S), OUTBOX_ITEMS - 1);
-    put(f, 5998, LOCAL, true, true, T0 + 300 * S, T0 + 300 * S); /* and a server that does not come back within a day */
+    put(f, 5998, LOCAL, true, true, T0 + 300 * S, T0 + 300 * S); /* a mail server that stays unreachable for a day */
     assert_true(outbox_next(f->outbox, OPS, T0 + 303 * S, &message));
     outbox_failed(f->outbox, OPS, T0 + 303 * S);
     outbox_tick(f->outbox, T0 + 303 * S + OUTBOX_KEEP_US + S);
@@ -294,7 +295,7 @@ TEST_WITH(what_is_set_aside_is_not_told, set_up, tear_down)
     struct alarm alarm = alarm_of(f, 0, LOCAL, true, true, T0);
     outbox_put(f->outbox, &alarm, false, T0);
     alarm.state.unacknowledged = false;
-    alarm.state.aside = ALARM_ASIDE_CARRIED; /* its device is lost, which is told once */
+    alarm.state.aside = ALARM_ASIDE_CARRIED; /* its device is lost, which is reported once for the device */
     outbox_put(f->outbox, &alarm, false, T0 + S);
     assert_int_equal(deliver(f, OPS, T0 + 4 * S), 0);
     assert_int_equal(outbox_counts(f->outbox, OPS).waiting, 0);
@@ -336,11 +337,11 @@ CASE(what_ended_while_nobody_looked_is_over)
     assert_int_equal(deliver(f, AM, T0 + 3 * S), 2);
     restart(f);
     struct alarm stands = alarm_of(f, 1, LOCAL, true, true, T0);
-    outbox_put(f->outbox, &stands, true, T0 + 60 * S); /* the other one has no limit any more */
+    outbox_put(f->outbox, &stands, true, T0 + 60 * S); /* the other alarm's limit no longer exists */
     outbox_end_unseen(f->outbox, T0 + 60 * S);
     assert_int_equal(deliver(f, BOSS, T0 + 10 * MIN), 0);
     assert_int_equal(deliver(f, BOSS, T0 + 10 * MIN + 3 * S), 1);
-    assert_int_equal(deliver(f, AM, T0 + 10 * MIN + 3 * S), 2); /* it hears that one has ended */
+    assert_int_equal(deliver(f, AM, T0 + 10 * MIN + 3 * S), 2); /* the recipient is told that one alarm has ended */
     assert_int_equal(deliver(f, AM, T0 + 30 * MIN), 1);
 }
 
@@ -431,7 +432,7 @@ CASE(a_damaged_file_is_refused)
     deliver(f, OPS, T0 + 4 * S);
 }
 
-/* Only then the notifier may sleep until it is told of a change. */
+/* The notifier may sleep until the next change only if no timer is pending. */
 CASE(it_rests_when_time_changes_nothing)
 {
     load(f, "  - { id: all, to: [ops, am] }\n");
@@ -442,7 +443,7 @@ CASE(it_rests_when_time_changes_nothing)
     deliver(f, OPS, T0 + 4 * S);
     assert_false(outbox_rests(f->outbox)); /* it may escalate */
     put(f, 0, LOCAL, false, false, T0, T0 + 5 * S);
-    assert_false(outbox_rests(f->outbox)); /* Alertmanager is to hear of it */
+    assert_false(outbox_rests(f->outbox)); /* a message to Alertmanager is due */
     deliver(f, AM, T0 + 9 * S);
     outbox_tick(f->outbox, T0 + 24 * 60 * MIN);
     assert_true(outbox_rests(f->outbox));

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What is drawn over pictures: alarms that no mark shows are listed, those in sight are not; nothing covers what is fitted. */
+/* The overlay of frames: alarms without a visible marker are listed, alarms with one are not; the overlay never covers the fitted plant. */
 #include "render/overlay/overlay.h"
 
 #include "tests/support/test.h"
@@ -20,7 +20,7 @@ static struct {
     struct snapshot *snapshot;
 } stand;
 
-/* A white picture with the mark of one tag in its middle. */
+/* Makes a white frame with the marker of one tag in its middle. */
 static struct frame *draw_view(int tag, bool occluded, const struct view *view)
 {
     struct frame *frame = frame_create(WIDTH, HEIGHT);
@@ -33,7 +33,7 @@ static struct frame *draw_view(int tag, bool occluded, const struct view *view)
     return frame;
 }
 
-/* right: of a split view, or NULL. */
+/* Makes the same frame; right: right half of a split view, or NULL. */
 static struct frame *draw_beside(int tag, bool occluded, const struct view *right)
 {
     struct view view;
@@ -79,7 +79,7 @@ TEST(alarms_out_of_sight_are_listed)
         reading->alarm_status = ALARM_ACTIVE;
         assert_false(lists(2, false, split));
         assert_true(lists(2, true, split));
-        assert_true(lists(1, false, split)); /* its mark is not in the picture at all */
+        assert_true(lists(1, false, split)); /* the tag's marker is outside the frame */
     }
     reading->alarm = ALARM_NONE;
 }
@@ -90,7 +90,7 @@ TEST(any_number_of_alarms_fits)
         stand.snapshot->readings[i].alarm = ALARM_BAD;
     struct frame *frame = draw(0, true, false), *small = frame_create(16, 16);
     assert_true(has_list(frame));
-    for (int y = 0; y < HEIGHT / 2; y++) /* no higher than a third of the picture, below the clock */
+    for (int y = 0; y < HEIGHT / 2; y++) /* at most a third of the frame's height, below the clock */
         assert_true(y < 80 || frame->bgrx[y * frame->stride_bytes + 40] == 255);
     view_default(&stand.toy->scene, 16, 16, &small->view);
     overlay_draw(small, &stand.toy->scene, stand.snapshot, NULL);
@@ -100,7 +100,7 @@ TEST(any_number_of_alarms_fits)
         stand.snapshot->readings[i].alarm = ALARM_NONE;
 }
 
-/* Where anyone may look on, a picture tells of no sensor: whatever is read there, it is the same. */
+/* A frame for anonymous viewers must not depend on any reading. */
 static struct frame *draw_bare(double value, enum alarm_kind alarm)
 {
     struct frame *frame = frame_create(WIDTH, HEIGHT);
@@ -140,7 +140,7 @@ TEST(the_window_is_what_is_left_free)
     overlay_window(&stand.toy->scene, &view, &whole);
     assert_true(whole.left == -1 && whole.bottom == -1 && whole.right > 0.6 && whole.right < 0.85 && whole.top > 0.8 && whole.top < 0.9);
     struct frame *frame = draw(0, false, false);
-    for (int y = (int)((1 - whole.top) / 2 * HEIGHT) + 1; y < HEIGHT; y++) /* nothing is drawn there but the mark and its label */
+    for (int y = (int)((1 - whole.top) / 2 * HEIGHT) + 1; y < HEIGHT; y++) /* only the marker and its label are drawn there */
         for (int x = 600; x < (int)((1 + whole.right) / 2 * WIDTH); x++)
             assert_int_equal(frame->bgrx[y * frame->stride_bytes + 4 * x], 255);
     frame_unref(&frame);
@@ -153,7 +153,7 @@ TEST(the_window_is_what_is_left_free)
     assert_true(none.right == 1);
 }
 
-/* How much of a half's right rim is drawn over, halfway up. */
+/* Returns how many pixels of a half's right edge, at half height, the legend covers. */
 static int legend_px(const struct frame *frame, int half)
 {
     int count = 0;
@@ -176,14 +176,14 @@ TEST(halves_share_a_legend_that_says_the_same)
         right.look = way == LOOK ? LOOK_MATERIALS : right.look;
         right.field.show = way == SHOWN ? SHOW_DIFFERENCE : right.field.show;
         struct frame *frame = draw_beside(0, false, &right);
-        bool shared = way == SAME || way == DISTANCE; /* another field, but the same colours for the same values */
+        bool shared = way == SAME || way == DISTANCE; /* a different field, but the same colours for the same values */
         if ((legend_px(frame, 0) > 20) == shared || (legend_px(frame, 1) > 20) != (way != LOOK))
             fail_msg("way %d: %d pixels of the left half, %d of the right", way, legend_px(frame, 0), legend_px(frame, 1));
         frame_unref(&frame);
     }
 }
 
-/* Of its quarter of the picture, in another look than the default one. */
+/* Returns how many pixels of the legend's quarter of the frame differ between this look and the default one. */
 static int legend_differs_px(enum look look)
 {
     struct view view;
@@ -200,14 +200,14 @@ static int legend_differs_px(enum look look)
     return count;
 }
 
-/* Values read from it may be wrong: two lines of words say so. */
+/* With the glossy look, values read from the picture may be wrong: the legend says so in two lines. */
 TEST(the_legend_says_glossy)
 {
     assert_int_equal(legend_differs_px(LOOK_FLAT), 0);
     assert_true(legend_differs_px(LOOK_GLOSSY) > 500);
 }
 
-/* The legend's pixels that differ between two frames with an arrow each; both arrows lie far from the legend. */
+/* Returns how many pixels of the legend differ between two frames with one arrow each; both arrows lie far from the legend. */
 static int arrow_legends_differ_px(const struct frame_label *label, const struct frame_label *other)
 {
     const struct frame_label *labels[2] = { label, other };
@@ -239,7 +239,7 @@ TEST(the_legend_lists_unknown_directions_where_there_are_any)
     north.dx = 0;
     north.dy = 1;
     nowhere.dx = 0;
-    still.value = 0; /* a dot: its direction is known */
+    still.value = 0; /* drawn as a dot: the speed is 0 and the direction known */
     stand.toy->plant.groups[0].directed = true;
     assert_int_equal(arrow_legends_differ_px(&east, &north), 0);
     assert_int_equal(arrow_legends_differ_px(&east, &still), 0);
@@ -253,7 +253,7 @@ TEST(what_rounds_to_nought_has_no_sign)
     assert_true(pen_rounded(-0.06, 1) == -0.06 && pen_rounded(-0.4, 0) == 0 && pen_rounded(-0.0, 6) == 0);
 }
 
-/* Pixels that two pictures do not share, in the upper left corner of a half. */
+/* Returns how many pixels of a half's upper left corner differ between two frames. */
 static int caption_px(const struct frame *frame, const struct frame *plain, int half)
 {
     int count = 0, left = half ? WIDTH / 2 + 4 : 4;
@@ -278,7 +278,7 @@ static void differ(struct view *right, int way)
     }
 }
 
-/* Two pictures that are made otherwise say how; the legend does not tell one from the other. */
+/* If the two halves are computed differently, captions say how, because the legend does not show it. */
 TEST(halves_say_what_they_differ_in)
 {
     struct frame *plain = draw(0, false, true);
@@ -297,7 +297,7 @@ TEST(halves_say_what_they_differ_in)
     frame_unref(&plain);
 }
 
-/* Returns what tells one part of a picture from another. */
+/* Returns a checksum of one part of a frame. */
 static unsigned sum_of(const struct frame *frame, const struct label_box *box)
 {
     unsigned sum = 0;
@@ -307,7 +307,7 @@ static unsigned sum_of(const struct frame *frame, const struct label_box *box)
     return sum;
 }
 
-/* Header, captions of both halves, list of alarms, legend, each apart; what a picture of the past says. */
+/* Header, captions of both halves, alarm list and legend, each checked by itself; also the text of a frame of the past. */
 TEST(all_speaks_the_language)
 {
     static const struct label_box parts[] = {
@@ -341,7 +341,7 @@ TEST(all_speaks_the_language)
             fail_msg("part %d is in one language", part);
 }
 
-/* And leaves the plant as much room as it then takes. */
+/* A wider legend also leaves a smaller area for the plant. */
 TEST(a_longer_legend_takes_more_room)
 {
     struct view view; /* whose title is a sentence */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Pictures under way: the window, acknowledgements in and out of order and of what was never sent; and a network that is simulated. */
+/* Pacing: the window of frames in flight, acknowledgements in order, out of order and of frames that were never sent; and a simulated
+   network. */
 #include "session/pacing/pacer.h"
 
 #include "tests/support/test.h"
@@ -70,7 +71,7 @@ TEST(a_picture_cut_short_is_not_waited_for)
     pacer_asked(&pacer);
     pacer_sent(&pacer, 1000, &note, MS);
     pacer_gave_up(&pacer);
-    assert_false(pacer_may_ask(&pacer, 2 * MS)); /* its end has yet to go */
+    assert_false(pacer_may_ask(&pacer, 2 * MS)); /* the end of the frame is still to be sent */
     assert_int_equal(pacer_state(&pacer, 2100 * MS), PACER_STALLS);
     pacer_wrote(&pacer, true, 2200 * MS);
     assert_true(pacer_may_ask(&pacer, 2201 * MS));
@@ -122,14 +123,14 @@ TEST(silence_is_a_stall_and_then_the_end)
     assert_int_equal(pacer_state(&pacer, 3615000 * MS), PACER_FLOWS);
 }
 
-/* A network of one queue, and a client that decodes one picture after the other. */
+/* A simulated network with one queue, and a client that decodes one frame after the other. */
 struct pacer_world {
     double bytes_per_s;
     int64_t rtt_ns, decode_ns;
-    double pixels; /* decoding and bytes go by them */
+    double pixels; /* pixels per frame: they determine the decoding time and the bytes */
     int64_t now_ns, link_free_ns, decoder_free_ns;
     int64_t draw_ns;       /* a picture; 0: 20 ms */
-    int64_t busy_until_ns; /* the client does something else, and says nothing of it */
+    int64_t busy_until_ns; /* until then the client is busy and acknowledges nothing */
     struct {
         uint32_t seq;
         int64_t at_ns, decode_ns;
@@ -223,10 +224,10 @@ TEST(a_slow_network_gets_small_pictures_in_time)
     run_world(&world, &pacer, 60);
     assert_true(world.oldest_ns < 600 * MS);
     assert_true(rate(&world) > 3);
-    assert_true(pacer.ladder.size == 0); /* the decoder is not to blame */
+    assert_true(pacer.ladder.size == 0); /* the decoder is not the bottleneck, so the size stays */
 }
 
-/* Decoding takes 150 ms: fewer pixels, not less quality, and no more than one waits there. */
+/* Decoding takes 150 ms: the pacer reduces pixels, not quality, and at most one frame waits at the decoder. */
 TEST(a_slow_decoder_gets_fewer_pixels)
 {
     struct pacer pacer = fresh();
@@ -261,12 +262,12 @@ static void run_busy(struct pacer_world *world, struct pacer *pacer, int64_t bus
     run_world(world, pacer, seconds);
 }
 
-/* A page that loads its parts, beside much else that the machine does: neither the network nor the decoder is slow. */
+/* A page that loads its modules on a busy machine: neither the network nor the decoder is slow. */
 TEST(a_client_that_is_busy_for_a_moment_keeps_its_quality)
 {
     struct pacer pacer = fresh();
     struct pacer_world world = { .bytes_per_s = 100e6, .rtt_ns = MS, .decode_ns = 4 * MS, .pixels = 1280 * 720, .now_ns = NS_PER_S };
-    channel_on_bytes(&pacer.channel, 1000000, 2500 * MS); /* the first texts, while it begins */
+    channel_on_bytes(&pacer.channel, 1000000, 2500 * MS); /* the first text messages while the page starts */
     quality_ladder_begin(&pacer.ladder, &pacer.channel, world.pixels);
     run_busy(&world, &pacer, 700 * MS, 0.75);
     run_world(&world, &pacer, 0.1); /* two or three pictures */
@@ -279,7 +280,7 @@ TEST(a_client_that_is_busy_for_a_moment_keeps_its_quality)
     }
 }
 
-/* One picture that takes long to decode, as the first of a new codec does, where few others come. */
+/* One frame takes long to decode, as the first one of a new codec does, while few other frames arrive. */
 TEST(a_decoder_that_begins_is_not_slow)
 {
     struct pacer pacer = fresh();
@@ -296,7 +297,7 @@ TEST(a_decoder_that_begins_is_not_slow)
     }
 }
 
-/* At the edge between two steps it must not swing. */
+/* At the threshold between two quality steps the pacer must not oscillate. */
 TEST(steps_do_not_swing)
 {
     for (int kbit_per_s = 500; kbit_per_s <= 64000; kbit_per_s = kbit_per_s * 5 / 4) {
@@ -320,10 +321,10 @@ TEST(who_see_the_same_take_one_step)
     struct quality_ladder ladder = { .step = 1 }, seen = { 0 };
     assert_int_equal(quality_ladder_common(&seen, (int[QUALITY_LADDER_STEPS]){ 1, 0, 1 }), -1);
     int common = quality_ladder_common(&seen, (int[QUALITY_LADDER_STEPS]){ 60, 30, 5, 0, 0, 5 });
-    assert_int_equal(common, 1); /* the few slow ones do not count */
+    assert_int_equal(common, 1); /* the few slow clients do not count */
     assert_int_equal(quality_ladder_common(&seen, (int[QUALITY_LADDER_STEPS]){ [QUALITY_LADDER_STEPS - 1] = 10 }),
                      QUALITY_LADDER_STEPS - 1);
-    seen.unit_bytes = 90e3; /* too much for 500, not for 100 */
+    seen.unit_bytes = 90e3; /* too much for 500 clients, not for 100 */
     assert_int_equal(quality_ladder_common(&seen, (int[QUALITY_LADDER_STEPS]){ 100 }), 0);
     int crowd = quality_ladder_common(&seen, (int[QUALITY_LADDER_STEPS]){ 500 });
     assert_true(crowd > 0 && quality_ladder_rung(&seen, crowd).scale == 1);
@@ -337,7 +338,7 @@ TEST(who_see_the_same_take_one_step)
     assert_int_equal(quality_ladder_step(&ladder, common), 5);
 }
 
-/* Whatever a client acknowledges, the window is never exceeded, and a good acknowledgement always opens it. */
+/* Whatever a client acknowledges, the window is never exceeded, and a valid acknowledgement always opens it. */
 TEST(random_clients)
 {
     unsigned seed = (unsigned)sweep_seed();

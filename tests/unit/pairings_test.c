@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Displays that are let in by six digits: kept over a restart, revoked, and how many may wait and be guessed at. */
+/* Pairing of displays by six digits: pairings survive a restart and can be revoked, and pending requests and guesses are limited. */
 #include "access/pairings.h"
 
 #include "tests/support/test.h"
@@ -47,7 +47,7 @@ static void print_secret(int i, char secret[TOKEN_MAX_CHARS + 1])
     assert_true(pairings_secret_valid(secret));
 }
 
-/* By the i-th device, at an address that has eight. */
+/* Requests a pairing for the i-th device; every eight devices share an address. */
 static enum pairing ask(struct pairings_fixture *f, int i, int64_t now_ns, char digits[PAIRING_DIGITS + 1])
 {
     char secret[TOKEN_MAX_CHARS + 1];
@@ -122,7 +122,7 @@ CASE(digits_expire)
 {
     char digits[PAIRING_DIGITS + 1], others[PAIRING_DIGITS + 1];
     ask(f, 1, 0, digits);
-    assert_int_not_equal(approve(f, digits, PAIRING_QUIET_S * NS_PER_S), REFUSAL_NONE); /* the display has not asked since */
+    assert_int_not_equal(approve(f, digits, PAIRING_QUIET_S * NS_PER_S), REFUSAL_NONE); /* the display has not polled since */
     int64_t now_ns = 1000 * NS_PER_S, begun_ns = now_ns;
     ask(f, 1, now_ns, digits);
     for (; now_ns < begun_ns + PAIRING_S * NS_PER_S; now_ns += 2 * NS_PER_S)
@@ -139,11 +139,11 @@ CASE(few_wait_and_few_guesses_are_judged)
     char digits[PAIRING_DIGITS + 1], more[PAIRING_DIGITS + 1];
     for (int i = 0; i < PAIRINGS; i++)
         assert_int_equal(ask(f, i, 0, digits), PAIRING_WAITS);
-    /* Eight addresses that took all places keep a ninth out of none of its first seven: each gets its share. */
+    /* Eight addresses that fill the table cannot keep a ninth address out: it gets its share of seven. */
     for (int i = 0; i < PAIRINGS_FROM - 1; i++)
         assert_int_equal(ask(f, PAIRINGS + i, 0, more), PAIRING_WAITS);
     assert_int_equal(ask(f, PAIRINGS + PAIRINGS_FROM - 1, 0, more), PAIRING_FULL);
-    assert_int_equal(ask(f, 0, 0, more), PAIRING_FULL); /* the first address lost one, and has as many as others */
+    assert_int_equal(ask(f, 0, 0, more), PAIRING_FULL); /* the first address lost one request and now has as many as the others */
     assert_int_equal(ask(f, PAIRINGS, PAIRING_QUIET_S * NS_PER_S, more), PAIRING_WAITS); /* the others have gone */
     for (int i = 0; i < PAIRINGS_FROM - 1; i++)
         assert_int_equal(ask(f, PAIRINGS + 1 + i, PAIRING_QUIET_S * NS_PER_S, digits), PAIRING_WAITS);
@@ -178,7 +178,7 @@ static void mirror(const struct pairings_fixture *f, struct pairings *renderer, 
     json_decref(told);
 }
 
-/* The renderer has no folder, and another clock. */
+/* The renderer has no folder of its own, and its clock differs. */
 CASE(a_renderer_asks_its_core)
 {
     struct pairings *renderer = pairings_open(f->log, NULL);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sets of moved sensors: a trial at once, another one when the ways along the surface are there; what cannot be is refused whole. */
+/* Trial layouts of sensors: a trial is available at once and replaced when distances along the surface are ready; an invalid layout is
+   refused whole. */
 #include "placing/placing.h"
 
 #include "tests/support/test.h"
@@ -75,7 +76,7 @@ static int tear_down(void **state)
 
 #define CASE(name) TEST_ON(struct placing_fixture *f, name, set_up, tear_down)
 
-/* The next answer about gaps; or NULL, once none of the set waits. */
+/* Returns the next answer about sensor gaps; NULL once no request of the set is pending. */
 static struct sensor_coverage_answer *collect(struct placing_fixture *f, bool gaps)
 {
     for (int seen = 0;;) {
@@ -127,9 +128,9 @@ TEST_WITH(test_a_move_is_a_trial_at_once_and_a_better_one_later, set_up, tear_do
         const float *at_m = view->positions_m[v];
         double straight_m = hypot(hypot(at_m[0] - 0.5, at_m[1] - 0.5), at_m[2] - 1.0), along_m = (double)trial_distances(sensor)[v];
         farthest_m = fmax(farthest_m, along_m);
-        assert_true(along_m > 0.94 * straight_m - 0.05); /* the surface is no short cut */
+        assert_true(along_m > 0.94 * straight_m - 0.05); /* the path along the surface is not a shortcut */
     }
-    assert_true(farthest_m > 1.85 && farthest_m < 2.4); /* the middle of the bottom: 0.5 + 1 + 0.5 */
+    assert_true(farthest_m > 1.85 && farthest_m < 2.4); /* path to the middle of the bottom: 0.5 + 1 + 0.5 */
     trials_give(placing_trials(f->placing), &trial);
 }
 
@@ -181,7 +182,7 @@ CASE(test_gaps_are_of_what_the_set_has_moved)
     }
 }
 
-/* Whoever leaves while something is on its way is not waited for, and gets nothing. */
+/* A client that leaves while a request is running is not waited for and gets no answer. */
 CASE(test_a_set_that_goes_takes_its_questions_along)
 {
     for (int i = 0; i < 20; i++) {

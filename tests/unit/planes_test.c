@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Halved chroma: colours keep to their rims, and what has none stays as it was. */
+/* Chroma subsampling: coloured edges keep their colours, and grey stays grey. */
 #include "encode/planes.h"
 
 #include "tests/support/test.h"
@@ -59,7 +59,7 @@ static int chroma_of(const uint8_t bgr[3], int c)
     return (int)lround(of[c]) + 128;
 }
 
-/* Lines one pixel wide, at every place of a block, upright and lying. */
+/* Lines one pixel wide at every position of a block, vertical and horizontal. */
 TEST(thin_lines_keep_their_colour)
 {
     for (int turn = 0; turn < 2; turn++)
@@ -80,7 +80,7 @@ TEST(thin_lines_keep_their_colour)
         }
 }
 
-/* Where two colours meet, neither takes the other's beyond the block that both are in. */
+/* Where two colours meet, neither spreads beyond the block that contains both. */
 TEST(colours_beside_each_other_stay)
 {
     static const uint8_t amber[3] = { 85, 155, 233 };
@@ -96,7 +96,7 @@ TEST(colours_beside_each_other_stay)
     picture_finish(&picture);
 }
 
-/* Luma, and chroma where nothing is to be mended, are libyuv's. */
+/* Reference: luma, and chroma without correction, as libyuv computes them. */
 static void plain(const struct frame_bytes *of, uint8_t *bytes)
 {
     const struct yuv_planes *p = &of->planes;
@@ -105,7 +105,7 @@ static void plain(const struct frame_bytes *of, uint8_t *bytes)
                p->height_px);
 }
 
-/* Of any size, cut in any way. */
+/* Frames of any size, split into rows in any way. */
 TEST(cuts_make_no_difference)
 {
     static const int sizes[][2] = { { 1, 1 }, { 2, 3 }, { 31, 17 }, { 130, 95 }, { 333, 77 } };
