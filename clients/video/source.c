@@ -25,7 +25,7 @@ enum ask { ASK_PLANT, ASK_VIEWS, ASK_PICTURE, ASK_COUNT };
 
 struct video_source {
     const struct video_options *options;
-    struct http_request http; /* while `asking`, a request thread owns it */
+    struct http_request http; /* handle of the request; while `asking`, the request's thread owns it */
     CURLcode code;            /* result of the request */
     bool asking;
     _Atomic bool ended;

@@ -118,7 +118,8 @@ session.on('params', async () => {
         if (['difference', 'uncertainty', 'blind'].includes(half.show))
             modules.get('coverage');
     }
-    if (params.clip && !document.body.classList.contains('wall') && await modules.get('clipGizmo')) // the clip gizmo, not on a wall
+    // loads the clip gizmo when something is clipped, except on a wall
+    if (params.clip && !document.body.classList.contains('wall') && await modules.get('clipGizmo'))
         refresh();
 });
 let moved = false;

@@ -2,7 +2,7 @@
 // Actions on alarms by role and state, and the list of shelved, suppressed and out-of-service alarms.
 import { calls, isGone } from './alarms.js';
 
-const ACTIONS = { // actions by alarm state, where Plantcast manages the alarms
+const ACTIONS = { // actions by alarm state, for alarms that Plantcast manages itself
     unacknowledged: ['acknowledge', 'shelve'], returned: ['acknowledge', 'shelve'], acknowledged: ['shelve'],
     latched: ['acknowledge', 'reset'],
     shelved: ['unshelve'], out_of_service: ['in_service'],

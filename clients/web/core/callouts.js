@@ -41,7 +41,7 @@ function group(members, measure) {
     const xs = members.map(({ x }) => x), ys = members.map(({ y }) => y);
     const [left, right, top, bottom] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
     const [one] = members, alone = members.length === 1, { width, height } = alone ? one : measure(members);
-    // a member that had such a label, or one of the other kind
+    // a member whose previous label was of the same kind (own label or call-out)
     const before = members.find(({ callout }) => (callout === undefined) === alone);
     return {
         members, x: (left + right) / 2, y: (top + bottom) / 2, across: (right - left) / 2, down: (bottom - top) / 2, width, height,

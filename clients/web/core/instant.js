@@ -20,7 +20,7 @@ export function fieldInstant(text, timeZone) {
     const asUtc = date ? Date.parse(`${date}T${time}${seconds || ':00'}Z`) : NaN, clock = zoneClock(timeZone);
     if (!Number.isFinite(asUtc))
         return null;
-    // offsets before and after a time change that may be near
+    // UTC offsets a day earlier and a day later, in case a time change lies between
     const offsets = [-86400e3, 86400e3].map((off) => offsetMs(clock, asUtc + off));
     const wanted = new Date(asUtc).toISOString().slice(0, 19);
     const fits = offsets.map((offset) => asUtc - offset).filter((utcMs) => fieldText(utcMs * 1000, timeZone) === wanted);

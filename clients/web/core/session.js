@@ -297,7 +297,7 @@ export class Session {
             this.emit('camera');
     }
 
-    // Acknowledges frames that cannot be decoded too; otherwise the server would stop sending.
+    // Acknowledges a frame that cannot be decoded, too: withholding the acknowledgement would not help.
     passedOver(frame) {
         if (!frame.more)
             this.connection.send({ type: 'ack', seq: frame.seq });

@@ -17,7 +17,7 @@ onmessage = ({ data }) => {
         ({ scale } = data);
         [band.width, band.height] = [data.width, data.height];
     }
-    if (typeof data === 'string') // not a size, which a hidden page may send too
+    if (typeof data === 'string') // only 'beat' and 'rest' change this: a hidden page, which rests, may send a new size too
         rests = data === 'rest';
     silent = 0;
     // Clears the warning. Also draws once at the start, because a canvas's first frame, its size and its font need the main thread.

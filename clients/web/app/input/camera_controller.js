@@ -16,7 +16,7 @@ import { isOnPicture } from './input.js';
 
 const DEGREES_PER_HEIGHT = 180; // orbit angle of a drag over the whole height of the picture
 const DOUBLE_CLICK_MS = 350, DOUBLE_CLICK_PX = 24;
-const ANCHOR_MS = 600, ANCHOR_PX = 10; // a wheel turn continues the previous one within this time and distance
+const ANCHOR_MS = 600, ANCHOR_PX = 10; // a wheel event within this time and distance continues the previous one, about the same anchor
 const LEAST_ARRIVAL_DEG = 15;   // minimum elevation of an arriving camera, to stay above the floor
 const MOST_BACK = 30;           // maximum number of flights to go back through
 const WRITTEN = 'input:not([type="radio"], [type="checkbox"], [type="range"]), select, textarea'; // fields that take typed text
