@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Two plants side by side: what is said to have come, gone and changed; and what makes a configuration another one. */
+/* Comparison of two plants: which items were added, removed and changed, and which changes make a different configuration. */
 #include "tests/support/test.h"
 
 #include "base/mem.h"

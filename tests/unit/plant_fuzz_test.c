@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Replays the fuzzer's seeds and what a few thousand random changes make of them. */
+/* Replays the seeds of the plant file fuzzer and a few thousand random mutations of them. */
 #include "tests/fuzz/plant_fuzz.c"
 
 #include "tests/support/test.h"
@@ -10,7 +10,7 @@
 #define SEEDS "tests/fuzz/plant"
 enum { CHANGED = 200, MAX_BYTES = 1 << 16 };
 
-/* Flips, drops, doubles or moves a piece, as a careless editor would. Returns the new length. */
+/* Flips, removes, duplicates or moves a piece of the text, as a careless editor might. Returns the new length. */
 static size_t change(uint8_t *bytes, size_t count, size_t room)
 {
     size_t at = (size_t)rand() % (count + 1), piece = (size_t)rand() % 12 + 1;
@@ -44,7 +44,7 @@ static void replay(const char *path, unsigned seed)
     for (int round = 0; round < CHANGED; round++) {
         size_t length = count;
         memcpy(bytes, text, count);
-        srand(seed + (unsigned)round); /* one round can be repeated alone */
+        srand(seed + (unsigned)round); /* each round has its own seed, so that it can be repeated alone */
         for (int changes = rand() % 4; changes >= 0; changes--)
             length = change(bytes, length, MAX_BYTES);
         LLVMFuzzerTestOneInput(bytes, length);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The plant file's `notify`: what is read, and that what is wrong is said at its place. */
+/* The plant file's `notify` section: parsing, and errors reported with their position. */
 #include "tests/support/test.h"
 
 #include "base/mem.h"

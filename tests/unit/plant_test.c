@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Plant files: what a good one means, and every kind of mistake with its line, column and words. */
+/* Plant files: the meaning of a valid file, and every kind of mistake with its line, column and message. */
 #include "plant/plant.h"
 
 #include "tests/support/test.h"
@@ -86,7 +86,7 @@ CASE(everything_is_read)
          "Source,Group,Asset,Node,X,Y,Z,Strength,Decay,Byte Order,Stale s,LL,L,H,HH\n"
          "A,40001,Float,500,Square Root,0,27648,-50,150,mm,1,say \"hi\",s,g,101,,1,2,3,7,8,BADC,9,-2,,,2\n"
          "B,3!300007.4,,,,,,,,,,,,g,101,TI-B,,,,,,,,,,,\n");
-    plant_case_assert_loaded(f, 1); /* the group has no unit, its tag has mm */
+    plant_case_assert_loaded(f, 1); /* the group has no unit, but its tag has mm: a warning */
     const struct plant *p = f->plant;
     assert_string_equal(p->name, "Werk Süd");
     assert_true(p->up == AXIS_Y && p->view.set && p->view.eye_m[1] == 2.5 && p->view.target_m[2] == 10 && p->view.fov_deg == 60);
@@ -184,8 +184,9 @@ CASE(sensors_are_given_in_the_asset_frame)
          placed_csv);
     plant_case_assert_loaded(f, 0);
     assert_int_equal(plant_sensors(f->plant, 0, &s), 2);
-    /* About x: (x, y, z) -> (x, -z, y); then about z: (x, y, z) -> (-y, x, z); so (a, b, c) -> (c, a, b). Back from (0, 2, 3). */
-    assert_point(s[0].position_m, 2, 3, 0); /* larger by the scale, in the same metres */
+    /* Rotation about x: (x, y, z) -> (x, -z, y), then about z: (x, y, z) -> (-y, x, z), together (a, b, c) -> (c, a, b). The expected
+       positions apply the inverse to points relative to (0, 2, 3). */
+    assert_point(s[0].position_m, 2, 3, 0); /* enlarged by the asset's scale, in metres */
     assert_true(s[0].tag == 0 && s[0].node_hash == 0 && !s[0].node);
     assert_float_equal(f->plant->assets[0].unit_m, 2e-3, 1e-15);
     assert_true(s[1].tag == 2 && s[1].node_hash != 0);
@@ -229,7 +230,7 @@ CASE(an_asset_stands_upright_in_a_plant_that_is_y_up)
          placed_csv);
     plant_case_assert_loaded(f, 0);
     assert_int_equal(plant_sensors(f->plant, 0, &s), 2);
-    assert_point(s[0].position_m, 1, -3, -8); /* 8 below the foot; 3 towards the south, which is z there and -y here */
+    assert_point(s[0].position_m, 1, -3, -8); /* 8 below the foot; 3 towards the south, which is z in the model and -y here */
     mem_free(s);
 }
 
@@ -256,7 +257,7 @@ CASE(the_locale_changes_nothing)
 
 /* --- plant.yaml, bad -------------------------------------------------------------------------------------------------------- */
 
-/* small_yaml with one line replaced; line 0: nothing. */
+/* Loads small_yaml with one line replaced by `text`, together with the tag list; line 0 replaces nothing. */
 static void load_csv_with(struct plant_case *f, int line, const char *text, const char *csv)
 {
     struct text yaml = { 0 };
@@ -291,7 +292,7 @@ CASE(unknown_keys_are_named)
     FOUND(f, { "plant.yaml", 1, 19, "expected the name of a key, found a list" });
 }
 
-/* Radiance HDR of one white pixel, and a black one that is no picture of anything. */
+/* Radiance HDR files: two valid ones of white pixels, and a black one that cannot serve as surroundings. */
 CASE(surroundings_are_read)
 {
     static const char hdr[] = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n\x80\x80\x80\x81\x80\x80\x80\x81";

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Texts in PNG files: put in, found again, and nothing found in what is cut or damaged. */
+/* Texts in PNG files: written, found again, and not found in truncated or damaged files. */
 #include "tests/support/test.h"
 #include <png.h>
 

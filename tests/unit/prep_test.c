@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* plantcast-prep as a program: what it makes, what it leaves alone, what it makes anew, and what it says is wrong. */
+/* The program plantcast-prep: which files it builds, leaves alone and builds again, and which errors it reports. */
 #include "tests/support/test.h"
 #include <fcntl.h>
 #include <jansson.h>
@@ -19,7 +19,7 @@
 #include "tests/support/prep_case.h"
 #include "tests/support/temp.h"
 
-/* A plate of 2 m x 1 m in 40 x 20 squares, and an instrument node beside it. */
+/* A plate of 2 m x 1 m in 40 x 20 squares, and an instrument node next to it. */
 #define ACROSS 40u
 #define UP 20u
 
@@ -39,7 +39,7 @@ static const char tags_text[] = "T1,400001,Float,plc,temperature,A,,0,0,0\n"
                                 "T4,400007,Float,plc,temperature,B,TT-2,,,\n"
                                 "T5,400009,Float,plc,temperature,C,,1,0.5,0.4\n";
 
-/* A revision has its second plate elsewhere, a third one, and its nodes and meshes in another order. */
+/* The new revision has its second plate at another position, a third plate, and its nodes and meshes in another order. */
 static const char first_nodes[] = "\"scenes\":[{\"nodes\":[0,1,2]}],\"nodes\":[{\"name\":\"plate-1\",\"mesh\":0},{\"name\":\"plate-2\","
                                   "\"mesh\":0,\"translation\":[0,5,0]},{\"name\":\"TT-2\",\"translation\":[2,1,0]}],";
 static const char next_nodes[] = "\"scenes\":[{\"nodes\":[0,1,2,3]}],\"nodes\":[{\"name\":\"TT-2\",\"translation\":[2,1,0]},"
@@ -129,7 +129,7 @@ CASE(a_plant_is_prepared)
     assert_null(strchr(s->err.at, '\r'));
     assert_null(strchr(s->err.at, 27));
     char *a = file_of(s, 0), *b = file_of(s, 1), *c = file_of(s, 2);
-    assert_string_equal(a, b); /* two places of one thing, with sensors at the same places of it */
+    assert_string_equal(a, b); /* two instances of one mesh, with sensors at the same positions on it */
     assert_string_not_equal(a, c);
     struct folder_file file;
     char why[200], *folder = temp_path(s->folder, "plant.prepared");
@@ -142,7 +142,7 @@ CASE(a_plant_is_prepared)
     assert_int_equal(own, (ACROSS + 1) * (UP + 1));
     assert_true(v->header->level_count > 1 && own < v->header->vertex_count);
     assert_true(v->sensors[1].node_hash != 0 && v->sensors[0].node_hash == 0);
-    for (uint32_t i = 0; i < v->header->vertex_count; i++) { /* on a plate, the way along the surface is the straight line */
+    for (uint32_t i = 0; i < v->header->vertex_count; i++) { /* on a plate the distance along the surface is the straight distance */
         float x = v->positions_m[i][0] + 1, y = v->positions_m[i][1] + 0.5f;
         assert_float_equal(asset_distance_m(v, 0, i), hypotf(x, y), 1e-3);
         assert_float_equal(asset_distance_m(v, 1, i), hypotf(2 - x, 1 - y), 1e-3);
@@ -202,7 +202,7 @@ static void group_says(struct prep_case *s, const char *more)
     mem_free(text);
 }
 
-/* Triangles are cut where its field bends, and that is also where a reach ends; a limit bends nothing. */
+/* Subdivision depends on the field, and so on a change of the reach; a change of a limit does not affect the field. */
 CASE(another_reach_is_another_file)
 {
     assert_states(s, "built", "shared", "built");
@@ -274,7 +274,7 @@ CASE(distances_are_printed)
     for (char *line = strchr(s->out.at, '\n') + 1; *line; line = strchr(line, '\n') + 1) {
         double x, y, z, geodesic_m, euclidean_m;
         assert_int_equal(sscanf(line, "%lf,%lf,%lf,%lf,%lf", &x, &y, &z, &geodesic_m, &euclidean_m), 5);
-        assert_float_equal(euclidean_m, hypot(x - 10, y), 1e-5); /* plant frame: B stands at x = 10 */
+        assert_float_equal(euclidean_m, hypot(x - 10, y), 1e-5); /* in the plant frame, B stands at x = 10 */
         assert_float_equal(geodesic_m, euclidean_m, 1e-3);
         lines++;
     }
@@ -285,7 +285,7 @@ CASE(distances_are_printed)
     prep_case_expect(s, "distances $PLANT --asset B", 2);
 }
 
-/* The program reads images by a module beside it, which most plants never need. */
+/* A module that is loaded on demand reads images, because most plants never need it. */
 CASE(textures_are_read)
 {
     struct prep_case *c = s;
@@ -326,7 +326,7 @@ CASE(textures_are_read)
     sheet_finish(&sheet);
 }
 
-/* By shepard, a single sensor has all of a value everywhere. */
+/* With shepard and a single sensor the field is constant, so no triangles are subdivided. */
 CASE(a_field_that_is_constant_needs_no_triangles)
 {
     struct prep_case *c = s;
@@ -344,16 +344,17 @@ CASE(a_field_that_is_constant_needs_no_triangles)
         json_t *report = prep_case_json(&c->out);
         triangles[more] = prep_case_number(report, "assets.0.levels.0.triangles");
         const json_t *surface = json_object_get(json_array_get(json_object_get(report, "assets"), 0), "surface");
-        for (int n = 0; n < 2; n++) /* a second way to find distances is only gone where they show */
+        for (int n = 0; n < 2; n++) /* distances are checked by a second method only if the field depends on them */
             assert_int_equal(json_is_null(json_object_get(surface, n ? "heat_disagreement" : "time_m2")), more == 0);
         json_decref(report);
     }
     assert_in_range((int)triangles[0], 2 * ACROSS * UP, 2 * ACROSS * UP + 8); /* a vertex for each sensor */
-    assert_true(triangles[1] > triangles[0] + 8);                             /* paper's field has a peak there */
+    assert_true(triangles[1] > triangles[0] + 8);                             /* paper's field peaks at the sensor */
     assert_true(triangles[2] == triangles[1]);
 }
 
-/* Sensors that stand for their whole asset need neither a surface nor triangles of their own; beside one whose place is known they do. */
+/* Sensors with an assumed position, which represent their whole asset, need neither a surface nor subdivision; if another sensor's
+   position is known, both are needed. */
 CASE(assumed_places_need_no_surface)
 {
     struct prep_case *c = s;
@@ -403,7 +404,7 @@ CASE(a_new_revision_costs_what_it_changes)
     assert_states(s, "unchanged", "shared", "built"); /* the second plate is elsewhere */
     assert_states(s, "unchanged", "shared", "unchanged");
     write_model(s, moved_node);
-    assert_states(s, "built", "shared", "unchanged"); /* a sensor of A and B stands on it */
+    assert_states(s, "built", "shared", "unchanged"); /* a sensor that belongs to A and B is on this asset */
     write_model(s, next_nodes);
     assert_states(s, "built", "shared", "unchanged");
 }
@@ -424,7 +425,7 @@ CASE(what_is_wrong_is_said_with_its_place)
     prep_case_says(&s->err, "no node's name matches 'tank*'");
     prep_case_says(&s->err, "plant.yaml:7: error: asset E:");
     prep_case_says(&s->err, "truncated GLB: 4 bytes");
-    struct text manifest = { 0 }; /* offers the rest, and says what is missing */
+    struct text manifest = { 0 }; /* the manifest offers the other assets and names the missing ones */
     prep_case_read(s, "plant.prepared/manifest.json", &manifest);
     json_t *root = prep_case_json(&manifest);
     for (size_t i = 0; i < 5; i++)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rows of colours that previews look up: equal ones are kept once, and there are never too many. */
+/* Colour ramps that previews look up: equal rows are shared, and their number is limited. */
 #include "tests/support/test.h"
 
 #include "base/mem.h"
@@ -32,7 +32,7 @@ static void end(struct ramp_rows_setup *s)
         mem_free(*at);
 }
 
-/* The colours of a material, from black to its own; as context it is grey, but for one bit. */
+/* Sets a material's ramp from black to its own colour. As context the material is grey; `grey` varies one bit. */
 static void set(struct ramp_rows_setup *s, size_t material, uint32_t color, uint32_t grey)
 {
     for (uint32_t i = 0; i < STEPS; i++) {

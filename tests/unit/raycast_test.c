@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rays against a loop over every triangle of the plant. */
+/* Ray casting compared with a loop over every triangle of the plant. */
 #include "scene/raycast.h"
 
 #include "tests/support/test.h"
@@ -23,7 +23,7 @@ static void corner(const struct scene_asset *asset, uint32_t vertex, double out[
         out[i] = (double)asset->file->view.positions_m[vertex][i] + asset->placement[12 + i];
 }
 
-/* By Cramer's rule: origin + t direction = a + u ab + v ac. True: t. */
+/* Solves origin + t direction = a + u ab + v ac by Cramer's rule. Returns true with *t and *facing if the ray hits the triangle. */
 static bool slow_triangle(const struct ray *ray, const double a[3], const double b[3], const double c[3], double *t, double *facing)
 {
     double m[3][4], ab[3], ac[3];
@@ -68,7 +68,7 @@ static double slow_raycast(const struct visibility *visibility, const struct ray
     return best;
 }
 
-/* How many closed bodies the ray is in at that t: those it leaves later, less those it comes into. */
+/* Returns how many closed bodies contain the ray's point at `from`: exits after it minus entries after it. */
 static int slow_bodies(const struct visibility *visibility, const struct ray *ray, double from)
 {
     int bodies = 0;
@@ -91,7 +91,7 @@ static int slow_bodies(const struct visibility *visibility, const struct ray *ra
     return bodies;
 }
 
-/* A plane closes what is cut: where the ray passes the cut it is in some body. False: no plane does, and it is in none. */
+/* A section plane caps cut bodies: the ray must hit a cap where it passes the plane inside a body. Returns false if the ray hits no cap. */
 static bool agrees_on_cap(const struct visibility *visibility, const struct ray *ray, const struct raycast_hit *hit)
 {
     double low = ray->low, high = ray->high, facing = 0;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Plan: which registers are asked for together, on random tag lists against the rules counted out one by one. */
+/* Read plans of Modbus: which registers are read together, on random tag lists compared with the rules applied one by one. */
 #include "tests/support/test.h"
 
 #include "base/mem.h"
@@ -37,7 +37,7 @@ TEST(neighbours_go_together_and_gaps_part)
     assert_int_equal(plan.block_count, 2);
     assert_block(&plan, 0, 10, 6, 3);
     assert_block(&plan, 1, 18, 6, 3);
-    assert_int_equal(plan.tags[0], 1); /* sorted by register, tags named by index */
+    assert_int_equal(plan.tags[0], 1); /* sorted by register; entries are tag indices */
     assert_int_equal(plan.tags[5], 4);
     read_plan_finish(&plan);
     plant_by_hand_destroy(&plant);
@@ -102,7 +102,7 @@ TEST(gaps_are_bridged_up_to_the_device_s_limit)
     assert_block(&plan, 0, 0, 15, 3); /* gaps of 4 and 5 */
     assert_block(&plan, 1, 23, 2, 1); /* of 8 */
     read_plan_split(&plan, plant, 0);
-    assert_block(&plan, 0, 0, 2, 1); /* and the gap has gone with it */
+    assert_block(&plan, 0, 0, 2, 1); /* the gap is dropped together with the tag */
     assert_block(&plan, 1, 6, 9, 2);
     read_plan_finish(&plan);
     plant->sources[0].max_registers = 8;
@@ -155,7 +155,8 @@ TEST(splitting_ends_at_single_tags)
 
 enum { REGISTERS = 1000 };
 
-/* Every tag in one block, blocks within the limits, and no longer run of registers that no tag is on than the device bears. */
+/* Asserts that every tag is in exactly one block, that blocks respect the limits, and that no gap of unused registers is longer than the
+   device allows. */
 static void check_rules(const struct plant *plant, const struct read_plan *plan)
 {
     char wanted[2][REGISTERS + 4] = { { 0 } };
@@ -244,7 +245,7 @@ TEST(a_plan_is_put_in_words)
     plant->sources[0].device = "/dev/ttyS0";
     plant->sources[0].baud = 1200;
     read_plan_text(&text, plant, 0);
-    /* (3 x 13 + 14 bytes of values) x 2, and 7 of silence for each request, of 10 bits */
+    /* Bytes per second: (3 x 13 + 14 bytes of values) x 2 = 106, at 10 bits each; silence takes the time of 7 bytes per request. */
     assert_non_null(strstr(text.at, "source a: /dev/ttyS0, 1200 baud, parity N, 1 stop bit: 4 tags"));
     assert_non_null(strstr(text.at, "106 bytes in a second; the pauses take 6 % of the time; 123 % of what the line can carry: TOO MUCH"));
     text_finish(&text);

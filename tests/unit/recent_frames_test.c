@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which of the frames drawn last will do for who asks a moment later. */
+/* Recent-frame cache: which of the last frames can serve a request that comes a moment later. */
 #include "service/recent_frames.h"
 
 #include "tests/support/test.h"
@@ -14,7 +14,7 @@ static struct view view_of(int number)
     return (struct view){ .width_px = 64, .height_px = 36, .camera = { .fov_deg = 30 + number } };
 }
 
-/* Of readings that were taken then. */
+/* Adds a frame whose readings were taken at read_ns. */
 static void draw(struct recent_frames *recent, int view_number, uint64_t content, int64_t read_ns)
 {
     struct frame *frame = frame_create(64, 36);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sensors moved on a loaded asset: the distances that plantcast-prep would store, each ask answered once, and what is refused. */
+/* Relocation of sensors on a loaded asset: distances equal those that plantcast-prep would store, each request is answered once, and
+   invalid ones are refused. */
 #include "surface/relocation.h"
 
 #include "tests/support/test.h"
@@ -20,9 +21,9 @@
 #include "tests/support/temp.h"
 
 #define FAR 3e-3  /* of the largest distance */
-#define ON 1e-3   /* m: bridges move the surface by less */
-#define SEEN 1e-5 /* m: from the surface that is seen */
-#define NEAR 0.05 /* m: likewise, for what only coarser levels have */
+#define ON 1e-3   /* metres; bridging moves the surface by less */
+#define SEEN 1e-5 /* metres; distance of a vertex from the visible surface */
+#define NEAR 0.05 /* metres; the same for vertices that only coarser levels have */
 
 struct result_box { /* where a result comes to */
     pthread_mutex_t lock;
@@ -117,15 +118,15 @@ static struct asset *prepared(struct prep_case *c)
     return asset;
 }
 
-struct most {           /* that distances may differ, of the largest one */
-    double mean, worst; /* of the vertices that are compared */
-    double far_share;   /* vertices that differ by more than 0.3 %, of those of the finest level that are seen */
+struct most {           /* allowed differences of distances, as a share of the largest distance */
+    double mean, worst; /* mean and largest difference among the compared vertices */
+    double far_share;   /* share of the finest level's visible vertices that differ by more than 0.3 % */
 };
 
 enum sight { UNSEEN, SEEN_FINEST, SEEN_COARSE };
 
-/* Of each vertex: what the finest level has, and what only coarser ones have, which err. Vertices on what nobody sees, inside another
-   part, are left out: plantcast-prep gives them what is near, and that is not one thing. */
+/* Classifies vertices: of the finest level, only of coarser levels (which have errors), or hidden inside another part. Hidden ones are
+   not compared: plantcast-prep assigns them a nearby distance, which is ambiguous. */
 static enum sight *sights_of(const struct relocation_shape *shape)
 {
     struct cache_file kept;
@@ -227,7 +228,8 @@ static void try_sensors(const struct asset *asset, const struct relocation_shape
 
 TEST(a_moved_sensor_has_the_distances_that_would_be_stored)
 {
-    static const struct most as_stored[] = { { 2e-4, 0.02, 2e-3 }, { 1e-3, 0.07, 0.0065 } }; /* at most where two parts lie in each other */
+    /* the largest errors occur where two parts intersect */
+    static const struct most as_stored[] = { { 2e-4, 0.02, 2e-3 }, { 1e-3, 0.07, 0.0065 } };
     static const struct most as_made_anew[] = { { 5e-4, 0.05, 0.015 }, { 2e-3, 0.08, 0.014 } };
     struct asset *asset = prepared(*state);
     struct relocation_shape shape = finest_of(asset);
@@ -235,7 +237,7 @@ TEST(a_moved_sensor_has_the_distances_that_would_be_stored)
     shape.surface_path = path;
     enum sight *sights = sights_of(&shape);
     try_sensors(asset, &shape, sights, as_stored);
-    shape.surface_key++; /* another asset's, so it is not used */
+    shape.surface_key++; /* the key of another asset's file, so the file is not used */
     try_sensors(asset, &shape, sights, as_made_anew);
     mem_free(sights);
     mem_free(path);
@@ -264,7 +266,8 @@ TEST(a_point_that_is_far_away_is_refused)
     struct relocation *relocation = relocation_create(the_log, workers, &shape);
     assert_true(relocation_place(relocation, (const double[3]){ 0.3, 0.6, 1.2 }, &place, NULL));
     assert_float_equal(place.distance_m, 1.2, 1e-6);
-    assert_false(relocation_place(relocation, (const double[3]){ 0.3, 0.6, 1.5 }, &place, NULL)); /* the plate's diagonal is 1.41 m */
+    /* the limit is the plate's diagonal of 1.41 m */
+    assert_false(relocation_place(relocation, (const double[3]){ 0.3, 0.6, 1.5 }, &place, NULL));
     assert_int_equal(relocation_request(relocation, (const double[3]){ 0.3, 0.6, 1.5 }, put_into_box, &box), 0);
     assert_int_equal(relocation_request(relocation, (const double[3]){ 0.3, NAN, 0 }, put_into_box, &box), 0);
     assert_int_equal(relocation_request(relocation, (const double[3]){ 0.3, INFINITY, 0 }, put_into_box, &box), 0);
@@ -285,7 +288,7 @@ TEST(an_asset_without_surface_is_said_to_be_broken)
         box_init(&box);
         struct relocation *relocation = relocation_create(the_log, workers, &shapes[i]);
         uint64_t ticket = relocation_request(relocation, (const double[3]){ 0.5, 0.1, 0 }, put_into_box, &box);
-        assert_true((ticket > 0) == (i == 0)); /* a triangle without area is a place all the same */
+        assert_true((ticket > 0) == (i == 0)); /* a degenerate triangle is a valid position too */
         assert_true(relocation_place(relocation, (const double[3]){ 0.5, 0.1, 0 }, &place, NULL) == (i == 0));
         if (ticket) {
             wait_for(&box, 1);
@@ -299,7 +302,7 @@ TEST(an_asset_without_surface_is_said_to_be_broken)
 
 /* --- where memory runs out ----------------------------------------------------------------------------------------------------- */
 
-static atomic_int until_fault; /* the so-manyth array that may fail does; 0: none */
+static atomic_int until_fault; /* the n-th allocation that may fail does fail; 0: none fails */
 void *__real_mem_try_array(size_t count, size_t bytes_each);
 void *__wrap_mem_try_array(size_t count, size_t bytes_each);
 void *__wrap_mem_try_array(size_t count, size_t bytes_each)
@@ -323,7 +326,7 @@ static void ask_and_wait(struct relocation *relocation, struct result_box *box)
     wait_for(box, 1);
 }
 
-/* Each array of a walk fails once; then the next ask is answered as ever. */
+/* Makes each allocation of a propagation fail once; the next request must succeed. */
 static void try_walks_without_memory(struct relocation *relocation, const struct cad *plate)
 {
     int failed = 0;
@@ -376,7 +379,7 @@ TEST(without_memory_it_says_so_and_goes_on)
             assert_int_equal(box.result.status, relocation_state(relocation) == RELOCATION_WARM ? RELOCATION_DONE : RELOCATION_NO_SURFACE);
             assert_true(reached || relocation_state(relocation) == RELOCATION_WARM);
             broken += reached && relocation_state(relocation) == RELOCATION_BROKEN;
-            warm += reached && relocation_state(relocation) == RELOCATION_WARM; /* the kept surface was too large: it is made anew */
+            warm += reached && relocation_state(relocation) == RELOCATION_WARM; /* the cached surface was too large, so it is built again */
             mem_free(box.result.geodesic_m);
             if (!reached)
                 try_walks_without_memory(relocation, &plate);
@@ -411,7 +414,7 @@ TEST(what_waits_is_cancelled)
     struct relocation_shape shape = shape_of(&plate);
     struct workers *one = workers_create(1);
     pthread_mutex_lock(&gate);
-    workers_submit(one, hold, &gate); /* nothing gets warm as long as the gate is shut */
+    workers_submit(one, hold, &gate); /* the worker is blocked, so nothing becomes warm until the gate opens */
     struct relocation *relocation = relocation_create(the_log, one, &shape);
     uint64_t first = relocation_request(relocation, (const double[3]){ 0.5, 0.5, 0 }, put_into_box, &cancelled);
     relocation_request(relocation, (const double[3]){ 0.25, 0.5, 0 }, put_into_box, &kept);
@@ -431,7 +434,7 @@ TEST(what_waits_is_cancelled)
     workers_submit(one, hold, &gate);
     relocation_request(relocation, (const double[3]){ 0.5, 0.5, 0 }, put_into_box, &dropped);
     pthread_mutex_unlock(&gate);
-    relocation_destroy(&relocation); /* answers before it returns, one way or the other */
+    relocation_destroy(&relocation); /* answers every pending request before it returns */
     assert_int_equal(dropped.count, 1);
     assert_int_equal(cancelled.count, 1);
     workers_destroy(&one);

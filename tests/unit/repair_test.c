@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Seams between faces that have gaps: each gap is closed with what is across it, and not with what it runs over. */
+/* Cracks in seams between faces: each crack is closed with the face across it, not with a face that it overlaps. */
 #include "surface/repair/repair.h"
 
 #include "tests/support/test.h"
@@ -9,7 +9,7 @@
 #define GAP_M 0.0002f
 #define TOLERANCE_M 0.001
 
-enum { QUADS = 6, BELOW = 2 }; /* two of a sheet, and four of one that lies on it */
+enum { QUADS = 6, BELOW = 2 }; /* two faces of the lower sheet and four of the sheet on top of it */
 
 static size_t open_edges(const struct trimesh *mesh)
 {
@@ -27,7 +27,7 @@ static size_t open_edges(const struct trimesh *mesh)
     return open;
 }
 
-/* Whether a point of the lower sheet is one of the upper sheet as well. */
+/* Returns whether a vertex of the lower sheet also belongs to the upper sheet. */
 static bool sheets_share(const struct trimesh *mesh)
 {
     bool share = false;
@@ -38,7 +38,8 @@ static bool sheets_share(const struct trimesh *mesh)
     return share;
 }
 
-/* Below, a gap runs up, its left side at x = 0. Above, two gaps cross, and two of the four corners there lie just on that side. */
+/* The lower sheet has a crack along y with its left side at x = 0. In the upper sheet two cracks cross, and two of the four corners
+   there lie just on that left side. */
 TEST(a_gap_is_not_set_into_one_that_it_runs_over)
 {
     static const float corners[QUADS][8] = {
@@ -67,8 +68,8 @@ TEST(a_gap_is_not_set_into_one_that_it_runs_over)
     trimesh_finish(&mesh);
 }
 
-/* Two faces at a gap along x = 0, and two just on them that fit those to the left, all cut along the gap: left closes with right, not with
-   what lies on it. */
+/* Two faces at a crack along x = 0 and two faces on top of them that match the left ones, all cut along the crack: left must close with
+   right, not with the faces on top. */
 TEST(a_gap_is_closed_across_not_with_what_lies_on_it)
 {
     static const float corners[4][8] = {
@@ -93,7 +94,7 @@ TEST(a_gap_is_closed_across_not_with_what_lies_on_it)
     }
     assert_true(trimesh_weld(&mesh, (const float(*)[3])positions, 16, triangles, 8, 1e-9, vertex_point, &degenerate, &repeated));
     repair_seams(&mesh, TOLERANCE_M, target, &report);
-    for (int i = 0; i < 2; i++) { /* what is at the gap's ends is one */
+    for (int i = 0; i < 2; i++) { /* the vertices at each end of the crack are merged */
         static const uint32_t ends[2][4] = { { 1, 4, 9, 12 }, { 2, 7, 10, 15 } };
         for (int j = 1; j < 4; j++)
             assert_int_equal(target[vertex_point[ends[i][j]]], target[vertex_point[ends[i][0]]]);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Replays: every recorded sample comes through the store, in its order and at its time, once or again and again. */
+/* Replays: every recorded sample reaches the store in its order and at its time, once or in a loop. */
 #include "tests/support/test.h"
 #include <math.h>
 
@@ -61,7 +61,7 @@ static void on_sample_event(void *arg, const struct sample_event *event)
     if (all->count == MOST)
         return;
     all->at[all->count] = *event;
-    all->count++; /* only now may it be looked at */
+    all->count++; /* published last, so that readers see a complete entry */
 }
 
 static void play(struct replay_setup *s, const char *keys, const char *csv, const char *tags)
@@ -93,7 +93,7 @@ static void wait_for_link(struct replay_setup *s, bool up)
     assert_true(store_link_is_up(s->store, 0) == up);
 }
 
-/* Of one tag, in the order of hearing. */
+/* Collects the events of one tag in the order of arrival. Returns their number. */
 static size_t of_tag(const struct replay_setup *s, int tag, struct sample_event *out, size_t most)
 {
     size_t count = 0;
@@ -110,14 +110,14 @@ CASE(every_sample_comes_at_its_time)
     play(s, "speed: 100", "time_s,shell,TT 2\n0,1,5\n10,2.5,\n20,-3,\n50,0,6\n60,4,7\n", "Tag Name,Address\nTT-1,shell\nTT 2,\n");
     wait_for_heard(s, 8);
     size_t count = of_tag(s, 0, got, 20);
-    assert_int_equal(count, 6); /* the last one: that the link is lost */
+    assert_int_equal(count, 6); /* the last event is the lost link */
     for (size_t i = 0; i < 5; i++) {
         assert_true(got[i].value == values[i] && got[i].quality == QUALITY_GOOD);
         assert_true(llabs(got[i].mono_ns - got[0].mono_ns - (int64_t)(at_s[i] * 1e7)) < 1000);
         assert_true(llabs(got[i].utc_ns - got[0].utc_ns - (int64_t)(at_s[i] * 1e7)) < NS_PER_MS);
     }
     assert_int_equal(of_tag(s, 1, got, 20), 4); /* blank cells are no samples */
-    wait_for_link(s, false);                    /* it has ended: nothing pretends to be live */
+    wait_for_link(s, false);                    /* the replay has ended: no value may look live */
 }
 
 CASE(a_loop_goes_on)
@@ -178,7 +178,7 @@ static void check_series(const char *path, const char *name, size_t count, doubl
     series_finish(&series);
 }
 
-/* As historians write them: with a zone, with an offset, or as the plant's clocks went, an hour of one night twice. */
+/* Timestamps as historians write them: with a zone, with an offset, or in local time with one hour of a night twice. */
 CASE(times_may_be_instants)
 {
     static const char *const wide[] = {

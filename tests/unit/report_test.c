@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The report of plantcast-prep, on models whose numbers are known. */
+/* The report of plantcast-prep on models with known numbers. */
 #include "tests/support/test.h"
 #include <unistd.h>
 
@@ -24,8 +24,8 @@ static const char tags_rows[] = "T-GAP,400001,Float,plc,temperature,GAP,,0.5,0.5
                                 "T-APART,400003,Float,plc,temperature,APART,,10.5,0.5,1.5\n"
                                 "T-INSIDE,400005,Float,plc,temperature,INSIDE,,22,2,4.02\n";
 
-/* Two boxes of 1 m with 0.2 mm between them; two with 0.5 m between them, one of them with a face twice, a face without area, lines and
-   points; a small box inside a large one; and one box without a sensor. */
+/* Models: two boxes of 1 m, 0.2 mm apart; two boxes 0.5 m apart, one with a duplicate face, a degenerate face, lines and points; a small
+   box inside a large one; and one box without a sensor. */
 static int set_up(void **state)
 {
     static const float twice[3][3] = { { 10, 0, 0 }, { 10, 1, 0 }, { 11, 0, 0 } },
@@ -85,9 +85,9 @@ TEST_WITH(numbers_are_those_of_the_model, set_up, prep_case_tear_down)
         { "assets.1.surface.components_after", 2, 2 },
         { "assets.1.surface.bridges", 0, 0 },
         { "assets.1.surface.longest_bridge_m", 0, 0 },
-        { "assets.1.surface.unreachable_vertices", 24, 24 }, /* the other box, three to a corner */
+        { "assets.1.surface.unreachable_vertices", 24, 24 }, /* the other box with three vertices per corner */
         { "assets.1.sensors.0.surface_distance_m", 0.5 - 1e-6, 0.5 + 1e-6 },
-        { "assets.1.sensors.0.limit_m", 0.122, 0.123 }, /* 5 % of a diagonal of hypot(2, 1, 1) m */
+        { "assets.1.sensors.0.limit_m", 0.122, 0.123 }, /* 5 % of the diagonal, hypot(2, 1, 1) m */
         { "assets.2.surface.components_before", 2, 2 },
         { "assets.2.surface.hidden_vertices", 24, 24 },
         { "assets.2.sensors.0.surface_distance_m", 0.02 - 1e-6, 0.02 + 1e-6 },
@@ -104,7 +104,7 @@ TEST_WITH(numbers_are_those_of_the_model, set_up, prep_case_tear_down)
         if (!(found >= expected[i].least && found <= expected[i].most))
             fail_msg("%s is %.9g, expected %g to %g", expected[i].path, found, expected[i].least, expected[i].most);
     }
-    for (int asset = 0; asset < 4; asset++) { /* what is in the file, and what the levels say */
+    for (int asset = 0; asset < 4; asset++) { /* numbers in the asset file against numbers in the report's levels */
         char path[60];
         snprintf(path, sizeof(path), "assets.%d.levels.0.triangles", asset);
         double split = prep_case_number(report, path);
@@ -139,7 +139,7 @@ TEST_WITH(what_is_wrong_comes_first, set_up, prep_case_tear_down)
     prep_case_says(&c->out, "Boxes: 4 assets, ");
 }
 
-/* What was built before is reported as if it had been built now, but for the time. */
+/* An asset that was built earlier is reported as if it had just been built, except for the time. */
 TEST_WITH(an_unchanged_asset_keeps_its_report, set_up, prep_case_tear_down)
 {
     struct prep_case *c = *state;
@@ -167,14 +167,14 @@ TEST_WITH(an_unchanged_asset_keeps_its_report, set_up, prep_case_tear_down)
     assert_null(strstr(c->out.at, "Surfaces")); /* nothing was done */
     prep_case_says(&c->out, "4 unchanged");
     prep_case_tags(c, "T-GAP,400001,Float,plc,temperature,GAP,,0.5,0.5,1\n");
-    prep_case_expect(c, "$PLANT", 0); /* files that are not named any more go, and their reports */
+    prep_case_expect(c, "$PLANT", 0); /* files and reports of assets that are no longer in the plant are deleted */
     char *command = mem_printf("test $(ls '%s/plant.prepared' | grep -c report.json) = $(ls '%s/plant.prepared' | grep -c 'asset$')",
                                c->folder, c->folder);
     assert_int_equal(system(command), 0);
     mem_free(command);
 }
 
-/* Half a metre is a gap or not as the plant file says; only that asset is built again. */
+/* Whether half a metre counts as a gap depends on the tolerance in the plant file; changing it rebuilds only that asset. */
 TEST_WITH(the_plant_file_sets_the_tolerance, set_up, prep_case_tear_down)
 {
     struct prep_case *c = *state;
@@ -223,7 +223,7 @@ TEST(the_time_left_follows_the_work)
     progress_begin(&progress, out, 10, 4, 0);
     assert_true(progress_left_s(&progress, s) < 0);
     for (int i = 0; i < 3; i++)
-        progress_expect(&progress, i == 0 ? 400 : 100); /* three of six are known: 1200 in all, if the others are like these */
+        progress_expect(&progress, i == 0 ? 400 : 100); /* three of six parts are known: 1,200 expected in all if the others are alike */
     progress_step(&progress, 400, 4 * s);
     assert_float_equal(progress_left_s(&progress, 4 * s), 8, 1e-9);
     progress_step(&progress, 100, 5 * s);

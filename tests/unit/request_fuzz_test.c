@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Replays the seeds of the fuzzer of requests, and what random changes make of them. */
+/* Replays the seeds of the HTTP request fuzzer and random mutations of them. */
 #include "tests/fuzz/request_fuzz.c"
 
 #include "tests/support/test.h"

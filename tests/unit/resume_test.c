@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A facility is prepared, interrupted in every way, and continued where it was. */
+/* Preparation of a facility is interrupted in every way and then resumed. */
 #include "tests/support/test.h"
 #include <dirent.h>
 #include <errno.h>
@@ -37,7 +37,7 @@ static int set_up(void **state)
 
 #define CASE(name) TEST_ON(struct prep_case *c, name, set_up, prep_case_tear_down)
 
-/* Files in the prepared folder whose names end so. */
+/* Returns the number of files in the prepared folder with this ending. */
 static size_t count_files(const struct prep_case *c, const char *ending)
 {
     char *folder = temp_path(c->folder, "facility.prepared");
@@ -53,7 +53,7 @@ static size_t count_files(const struct prep_case *c, const char *ending)
     return count;
 }
 
-/* Its standard output goes to FOLDER/out. */
+/* Starts plantcast-prep with its standard output in FOLDER/out. Returns the process id. */
 static pid_t start(const struct prep_case *c, int terminal)
 {
     char *program = prep_case_program(), *out = temp_path(c->folder, "out");
@@ -96,7 +96,7 @@ static void assert_continued(struct prep_case *c, size_t there)
     assert_int_equal(count_states(report, "unchanged"), there);
     assert_int_equal(count_states(report, "built"), ASSETS - there);
     assert_int_equal(count_files(c, ".asset"), ASSETS);
-    assert_int_equal(count_files(c, ".new"), 0); /* what was half written is gone */
+    assert_int_equal(count_files(c, ".new"), 0); /* half-written files are deleted */
     assert_int_equal(count_files(c, "manifest.json"), 1);
     json_decref(report);
 }
@@ -144,7 +144,7 @@ CASE(interrupted_it_finishes_what_it_has_begun)
     assert_continued(c, there);
 }
 
-/* On a terminal, one line that changes, and nothing of it is left. */
+/* On a terminal progress is one line that is updated and finally erased. */
 CASE(a_terminal_shows_one_line)
 {
     struct text seen = { 0 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Files of a plant that are replaced together: killed, or out of disk, at each step; and the plant file's own text. */
+/* Files of a plant that are replaced together: killed, or out of disk space, at each step; and edits to the plant file's text. */
 #include "preprocess/import/revision/revision_files.h"
 
 #include "tests/support/test.h"
@@ -22,7 +22,7 @@
 static int steps_left = -1; /* -1: none fails */
 static bool kills;
 
-/* In place of the C library's. */
+/* Replaces rename() of the C library. */
 int rename(const char *from, const char *to)
 {
     if (steps_left == 0 && kills)
@@ -59,7 +59,7 @@ static int take(const char *folder, const char *own)
     return lock;
 }
 
-/* Also replaces a list in a folder of its own, and remembers one that stays as it is. */
+/* Applies a revision that also replaces a list in a subfolder and records one list that stays unchanged. */
 static int apply_to(const char *folder, const char *plant_as_read)
 {
     char *own = mem_printf("%s/.import-1", folder), *list = mem_printf("%s/lists/tags.csv", folder);
@@ -184,7 +184,8 @@ TEST(rights_of_a_file_stay)
     temp_folder_destroy(&folder);
 }
 
-/* Runs one of both in a process of its own, in which the step-th renaming fails or kills it. Returns true if it got to the end. */
+/* Applies or undoes a revision in a child process in which the step-th rename fails or kills the process. Returns true if all steps
+   succeeded. */
 static bool run_until(const char *folder, bool undoing, int step, bool killed)
 {
     int status;
@@ -215,7 +216,7 @@ static void sweep(bool killed)
             bool new = all(folder, true);
             assert_true(new || all(folder, false));
             assert_true(!ended || new == !undoing);
-            if (new) { /* and it can still be undone */
+            if (new) { /* the applied revision can still be undone */
                 assert_int_equal(undo(folder, false), 0);
                 assert_true(all(folder, false));
             }

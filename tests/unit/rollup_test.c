@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rollups: against a plain sum over very short steps; months: their names and borders. */
+/* Rollups compared with a plain sum over very short steps; names and borders of months. */
 #include "tests/support/test.h"
 
 #include "history/month.h"
@@ -100,7 +100,7 @@ TEST(merged_buckets_are_longer_ones)
     assert_true(none.low == 0 && none.high == 9 && none.mean == 4);
 }
 
-/* From 0 at 100 s to 30 at 400 s: the part from 200 s to 300 s. */
+/* The line from 0 at 100 s to 30 at 400 s is bridged over the part from 200 s to 300 s. */
 TEST(a_bridge_is_a_straight_line)
 {
     struct history_bucket a = { .t_us = 90 * US_PER_S, .last = 0 }, b = { .t_us = 400 * US_PER_S, .first = 30 };

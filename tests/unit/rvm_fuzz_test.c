@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Replays the seeds of the fuzzer of RVM files and their attributes, and what random changes make of them. PLANTCAST_FUZZ_ROUNDS: how many
- * of each seed. */
+/* Replays the seeds of the fuzzer of RVM files and their attributes, and random mutations of them. PLANTCAST_FUZZ_ROUNDS: mutations per
+   seed. */
 #include "tests/fuzz/rvm_fuzz.c"
 
 #include "tests/support/test.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* RVM files put together here, byte by byte: areas and volumes against formulas, joints that are closed, files that are broken. */
+/* RVM files built byte by byte: areas and volumes compared with formulas, closed joints, and damaged files. */
 #include "preprocess/import/rvm.h"
 
 #include "tests/support/test.h"
@@ -143,7 +143,7 @@ static double volume_m3(const struct cad_node *node)
     return sum / 6;
 }
 
-/* Each normal looks to the side from which its triangle goes round against the clock. */
+/* Asserts that normals point to the side from which their triangle appears counter-clockwise. */
 static void check_normals(const struct cad_node *node)
 {
     for (size_t i = 0; i < node->triangle_count; i++) {
@@ -203,7 +203,7 @@ TEST(test_areas_and_volumes_are_those_of_the_formulas)
         }
 }
 
-/* How many edges have one triangle only, where corners nearer than a micrometre are one. */
+/* Counts edges with only one triangle; vertices closer than a micrometre are merged. */
 static size_t open_edges(const struct cad_model *model)
 {
     size_t triangles = 0, open = 0;
@@ -235,17 +235,17 @@ static size_t open_edges(const struct cad_model *model)
     return open;
 }
 
-/* A pipe, an elbow about it in a slanted plane, a pipe, a reducer, a pipe with a dish on it. */
+/* A pipe, an elbow turned in a slanted plane, a pipe, a reducer, and a pipe closed by a dish. */
 TEST(test_a_pipe_run_is_closed)
 {
     struct text file = { 0 };
     struct rvm_counts counts;
     double c = cos(0.7), s = sin(0.7);
-    /* The elbow: from (offset, 0, 0) by a quarter turn to (0, offset, 0), all turned about x by 0.7. */
+    /* The elbow runs from (offset, 0, 0) through a quarter turn to (0, offset, 0), all turned about x by 0.7. */
     const double turned[12] = { 0.001, 0, 0, 0, 0.001 * c, 0.001 * s, 0, -0.001 * s, 0.001 * c, 0, 0, 0 };
-    /* Its first end looks to -y: a pipe along y, 1 m long, centre at (300, -500, 0). */
+    /* The elbow's first end faces -y: a pipe of 1 m along y with its centre at (300, -500, 0). */
     const double first[12] = { 0.001, 0, 0, 0, -0.001 * s, 0.001 * c, 0, -0.001 * c, -0.001 * s, 0.3, -0.5 * c, -0.5 * s };
-    /* Its second end looks to -x: pipe, reducer and dish go that way. */
+    /* The elbow's second end faces -x: pipe, reducer and dish continue in this direction. */
     const double second[12] = { 0, 0.001 * c, 0.001 * s, 0, -0.001 * s, 0.001 * c, -0.001, 0, 0, -0.5, 0.3 * c, 0.3 * s };
     double third[12], fourth[12];
     memcpy(third, second, sizeof(third));
@@ -376,7 +376,8 @@ TEST(test_a_long_name_stays_whole)
     text_finish(&name);
 }
 
-/* Cut at each byte, and with each byte of the first 4 kB set to 255: read to an end, or refused with a place. */
+/* Files truncated at each byte, and with each of the first 4,096 bytes set to 255, are either read completely or refused with a
+   position. */
 TEST(test_broken_files_are_refused_at_a_byte)
 {
     struct text file = { 0 };
@@ -392,7 +393,7 @@ TEST(test_broken_files_are_refused_at_a_byte)
     begin(&file, "END:");
     for (size_t i = 0; i < 2 * file.length; i++) {
         size_t length = i < file.length ? i : file.length;
-        char *copy = malloc(length + 1), why[256]; /* to the byte, for the sanitizer */
+        char *copy = malloc(length + 1), why[256]; /* exactly sized, so that the sanitizer detects an overrun */
         assert_non_null(copy);
         memcpy(copy, file.at, length);
         if (i >= file.length)

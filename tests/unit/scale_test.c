@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The legend's rule: values to places to colours, in bands and on logarithmic scales. */
+/* The scale of the legend: from values to positions to colours, in bands and on logarithmic scales. */
 #include "field/scale.h"
 
 #include "tests/support/test.h"
@@ -43,7 +43,7 @@ TEST(test_outside)
     }
 }
 
-/* A reading of exactly MAX is stored as a float, which may be above MAX as a double. */
+/* A reading of exactly MAX is stored as a float, which may exceed MAX as a double. */
 TEST(test_limits_are_compared_as_floats)
 {
     assert_true((double)0.3f > 0.3);
@@ -58,18 +58,18 @@ TEST(test_bands_of_an_interval)
     expect_row(12, 9.99, 0, 100, 10);
     expect_row(38, 10, 0, 100, 10);
     expect_row(243, 99, 0, 100, 10);
-    expect_row(243, 100, 0, 100, 10); /* MAX is in the last band */
+    expect_row(243, 100, 0, 100, 10); /* MAX belongs to the last band */
     expect_row(243, (double)0.3f, 0, 0.3, 0.03);
-    expect_row(249, 100, 0, 100, 19);   /* 0, 19, ... 95, cut at 100: centre 97.5 */
+    expect_row(249, 100, 0, 100, 19);   /* bands at 0, 19, ... 95; the last one ends at 100, so its centre is 97.5 */
     expect_row(128, 3, 0, 100, 1e6);    /* one band only */
-    expect_row(51, -95, -100, 100, 80); /* from MIN, not from 0: -100..-20 */
+    expect_row(51, -95, -100, 100, 80); /* bands count from MIN, not from 0: -100 to -20 */
 }
 
 TEST(test_bands_of_breaks)
 {
     struct scale scale = linear(0, 100, 10); /* breaks come first */
     memcpy(scale.breaks, (double[]){ -5, 60, 80, 95, 100 }, 5 * sizeof(double));
-    scale.break_count = 5; /* of which three are inside: four bands */
+    scale.break_count = 5; /* three of the breaks are inside the range: four bands */
     static const struct {
         double value;
         int index;
@@ -109,7 +109,7 @@ TEST(test_logarithmic)
     for (double place = 0; place <= 1; place += 0.125)
         assert_true(fabs(scale_place(&scale, scale_value(&scale, place)) - place) < 1e-12);
     assert_true(fabs(scale_value(&scale, 0.5) - 10) < 1e-9);
-    assert_true(scale_step(&scale) < 0.1 * log(1e4) / 255); /* what can be seen at its low end */
+    assert_true(scale_step(&scale) < 0.1 * log(1e4) / 255); /* the smallest visible difference at the low end */
     memcpy(scale.breaks, (double[]){ 1, 10 }, 2 * sizeof(double));
     scale.break_count = 2;
     assert_int_equal(scale_index(&scale, 0.9), 42);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Scenes from real plant and asset files: everything in its place, and files of another plant refused with the reason. */
+/* Scenes from real plant and asset files: everything is at its position, and files of another plant are refused with the reason. */
 #include "scene/scene_create.h"
 
 #include "tests/support/test.h"
@@ -23,7 +23,7 @@ static const char plant_text[] =
     "groups: [{ id: t, unit: K, min: 0, max: 1 }]\n"
     "tags: tags.csv\n";
 
-/* B's places are where those of the asset frame come to lie: (x, y, z) -> (10 - y, 20 + x, 30 + z). */
+/* The positions of B are transformed from the asset frame: (x, y, z) -> (10 - y, 20 + x, 30 + z). */
 static const char tags_text[] = "Tag Name,Group,Asset,Node,X,Y,Z\n"
                                 "a1,t,A,,1,2,3\n"
                                 "b1,t,B,,8,21,33\n"
@@ -39,7 +39,8 @@ struct scene_fixture {
     struct log *log;
 };
 
-/* A triangle and two sensors, at (1, 2, 3) and at the node TI-2 in (4, 2, 0) of the asset frame; origin (1, 1, 1). */
+/* Writes an asset with a triangle and two sensors, at (1, 2, 3) and at node TI-2 in (4, 2, 0) of the asset frame; its origin is (1, 1,
+   1). */
 static void write_asset(const struct scene_fixture *f, const char *name, double sensor_x_m, const char *node, uint32_t sensor_count)
 {
     const float positions[3][3] = { { -1, 0, 0 }, { 3, 0, 0 }, { 0, 1, 2 } }, normals[3][3] = { { 0, 0, 1 }, { 0, 0, 1 }, { 0, 0, 1 } };
@@ -84,7 +85,7 @@ static void write_manifest(const struct scene_fixture *f, const char *text)
     mem_free(temp_write_text(f->prepared, "manifest.json", text));
 }
 
-/* All assets, last first, from one file. */
+/* Writes a manifest of all assets in reverse order that all refer to one file. */
 static void write_good_manifest(const struct scene_fixture *f)
 {
     struct text text = { 0 };
@@ -168,7 +169,7 @@ CASE(everything_is_in_its_place)
     assert_point(b->sensors[1].position_m, 8, 24, 30);
     assert_point(b->sensors[0].surface_m, 8, 21, 32.5);
     assert_float_equal(b->sensors[0].surface_distance_m, 0.5, 1e-6);
-    assert_point(c->sensors[0].position_m, -4, -3, 2); /* turned about x: y to z, z to -y */
+    assert_point(c->sensors[0].position_m, -4, -3, 2); /* rotated about x: y to z, z to -y */
     assert_point(a->bounds_min_m, 0, 1, 1);
     assert_point(a->bounds_max_m, 4, 2, 3);
     assert_point(b->bounds_min_m, 8, 20, 31);
@@ -179,7 +180,7 @@ CASE(everything_is_in_its_place)
     assert_null(scene);
 }
 
-/* The log goes to stderr; here it goes to a file for a while, and `words` must be in it. */
+/* Asserts that creating the scene fails and that the log contains `words`. Redirects stderr, where the log writes, to a file meanwhile. */
 static void assert_refused(struct scene_fixture *f, const char *words)
 {
     char *path = temp_path(f->folder, "log.txt");
@@ -187,7 +188,7 @@ static void assert_refused(struct scene_fixture *f, const char *words)
     fflush(stderr);
     int kept = dup(STDERR_FILENO);
     assert_non_null(freopen(path, "w", stderr));
-    struct log *log = log_create(LOG_ERROR); /* a new one, which has said nothing yet that it could count as a repeat */
+    struct log *log = log_create(LOG_ERROR); /* a new log, so that no message is suppressed as a repetition */
     struct scene *scene = scene_create(log, f->plant, f->prepared);
     log_destroy(&log);
     fflush(stderr);
@@ -251,7 +252,7 @@ CASE(broken_manifests_are_refused)
     mem_free(path);
 }
 
-/* The plant file or the model was changed, and plantcast-prep forgotten. */
+/* The plant file or the model changed without running plantcast-prep again. */
 CASE(what_was_not_prepared_is_refused)
 {
     struct plant_asset *asset = &f->plant->assets[1];
@@ -272,7 +273,7 @@ CASE(what_was_not_prepared_is_refused)
     assert_refused(f, "m.glb, or its nodes");
 }
 
-/* plantcast-prep says why one could not be prepared: the others are there. */
+/* If the manifest states why one asset is missing, the other assets are loaded. */
 CASE(a_missing_asset_does_not_keep_the_others_away)
 {
     uint64_t model;
@@ -291,7 +292,7 @@ CASE(a_missing_asset_does_not_keep_the_others_away)
     assert_string_equal(scene->assets[1].missing, "no node's name matches 'B'");
     assert_int_equal(scene->assets[1].sensor_count, 0);
     assert_true(scene->assets[0].sensor_count > 0);
-    for (int axis = 0; axis < 3; axis++) { /* B stood at (10, 20, 30): the plant's box does not know of it */
+    for (int axis = 0; axis < 3; axis++) { /* B stood at (10, 20, 30); the bounds of the plant no longer include it */
         assert_true(scene->bounds_max_m[axis] < 9);
         assert_true(scene->assets[1].bounds_max_m[axis] == scene->bounds_max_m[axis]);
     }
@@ -311,7 +312,7 @@ CASE(home_is_the_view_of_the_plant)
     scene_home(scene, 1.5, &camera);
     assert_true(camera_valid(&camera));
     assert_true(scene->extreme_count >= 4);
-    for (int i = 0; i < 3; i++) { /* the outermost places are within the plant, and reach about as far */
+    for (int i = 0; i < 3; i++) { /* the outermost points of assets lie within the plant's bounds and nearly reach them */
         double least = INFINITY, most = -INFINITY, slack = 0.15 * (scene->bounds_max_m[i] - scene->bounds_min_m[i]) + 1e-6;
         for (size_t n = 0; n < scene->extreme_count; n++) {
             least = fmin(least, scene->extremes_m[n][i]);
@@ -335,7 +336,7 @@ CASE(home_is_the_view_of_the_plant)
     scene_destroy(&scene);
 }
 
-/* B stands 10 m away from what is between the others. */
+/* The home view covers only assets that are visible at the start. B stands 10 m away from the others. */
 CASE(home_is_of_what_is_shown_at_the_start)
 {
     f->plant->assets[1].start = PLANT_START_HIDDEN;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Whose picture is drawn next: a renderer that takes its time is simulated, and who got what is counted. */
+/* The scheduler: which request is drawn next, tested by simulating a slow render thread and counting the frames of each client. */
 #include "service/scheduler.h"
 
 #include "tests/support/test.h"
@@ -43,8 +43,8 @@ TEST(slow_pictures_wait_for_a_pause)
     assert_int_equal(choose(&scheduler, wait_until_ns, NONE, now_ns, NONE, wait_until_ns), URGENCY_INPUT);
 }
 
-/* A picture of input takes 30 ms, of data 30 ms, a refinement 50 steps of 10 ms. All are always wanted again as soon as they were
-   drawn: nobody who moves waits for more than a step and the others' pictures. */
+/* Frames for input and for data take 30 ms each, a refinement 50 steps of 10 ms. Every client requests again immediately: a moving
+   client must wait no longer than one step plus the others' frames. */
 TEST(everyone_gets_a_share)
 {
     enum { STEPS = 50 };
@@ -80,7 +80,7 @@ TEST(everyone_gets_a_share)
     assert_true(longest_ns[URGENCY_REFINE] <= 15 * NS_PER_S && longest_ns[URGENCY_SNAPSHOT] <= 15 * NS_PER_S);
 }
 
-/* Fifty refinements are waiting when somebody begins to move. */
+/* Fifty refinements are queued when a client begins to move. */
 TEST(a_queue_of_refinements_does_not_hold_up_a_move)
 {
     struct scheduler scheduler = { .long_ns = 99 * NS_PER_S };
@@ -91,7 +91,7 @@ TEST(a_queue_of_refinements_does_not_hold_up_a_move)
     }
 }
 
-/* Three who always want the next picture, which costs 5, 10 and 40 ms, and one who comes now and then. */
+/* Three clients that request continuously, with frames of 5, 10 and 40 ms, and one that requests occasionally. */
 TEST(time_is_shared_by_what_pictures_cost)
 {
     static const int64_t cost_ns[] = { 5 * NS_PER_MS, 10 * NS_PER_MS, 40 * NS_PER_MS, 10 * NS_PER_MS };

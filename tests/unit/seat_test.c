@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A core's seat is its own: kept over restarts, never shared, not copied with its folder. */
+/* A core's seat (its unique identity): kept across restarts, never shared, and not copied with its folder. */
 #include "tests/support/test.h"
 #include <unistd.h>
 
@@ -32,7 +32,7 @@ TEST(it_is_kept_and_never_shared)
     seat_leave(&seat);
 }
 
-/* As after `cp -a`: the same text in another file. */
+/* The same text in another file, as `cp -a` leaves it. */
 TEST(a_copy_is_another)
 {
     struct seat seat = { 0 };

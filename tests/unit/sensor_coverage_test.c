@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Gaps on a plate whose distances and areas can be counted by hand, and against a plain sum over its vertices. */
+/* Sensor coverage of a plate whose distances and areas can be computed by hand, compared with a plain sum over its vertices. */
 #include "placing/sensor_coverage.h"
 
 #include "tests/support/test.h"
@@ -40,7 +40,7 @@ static struct sensor_coverage find(const struct toy *toy, double reach_m, double
     return gaps;
 }
 
-/* The share of the plate for which f holds: each vertex for its part of the square metres. */
+/* Returns the share of the plate's area for which f holds; each vertex counts for its part of the area. */
 static double share_of(bool (*f)(const double nearest[2], double limit_m), double limit_m)
 {
     double hit = 0, all = 0;
@@ -48,10 +48,10 @@ static double share_of(bool (*f)(const double nearest[2], double limit_m), doubl
         for (int j = 0; j <= CELLS; j++) {
             double x = side_m * i / CELLS, y = side_m * j / CELLS, nearest[2] = { INFINITY, 0 };
             int inside = (i > 0 && i < CELLS) + (j > 0 && j < CELLS);
-            double triangles = inside ? 3 * inside : 1.5; /* a corner has one or two */
+            double triangles = inside ? 3 * inside : 1.5; /* a corner vertex has one or two triangles, 1.5 on average */
             for (int s = 0; s < SENSORS; s++) {
                 double m = hypot(x - sensors[s][0], y - sensors[s][1]);
-                if (m <= nearest[0]) { /* of two as near, one that can be used */
+                if (m <= nearest[0]) { /* of two equally near sensors the one with a good reading counts */
                     nearest[0] = m;
                     nearest[1] = s;
                 }
@@ -76,10 +76,11 @@ TEST_WITH(test_the_farthest_place_and_the_next_sensor, set_up, tear_down)
 {
     struct sensor_coverage gaps = find(*state, INFINITY, 0, (uint8_t[SENSORS]){ 1, 1, 1 });
     assert_int_equal(gaps.sensors, SENSORS);
-    assert_true(fabs(gaps.farthest_m - hypot(1, 4)) < 1e-6); /* of (1, 4), from the first; the third is hardly farther */
+    /* the point (1, 4) is farthest, from the first sensor; the third one is hardly farther from it */
+    assert_true(fabs(gaps.farthest_m - hypot(1, 4)) < 1e-6);
     assert_true(fabs(gaps.farthest_at_m[0] - 101) < 1e-5 && fabs(gaps.farthest_at_m[1] - 4) < 1e-5);
     assert_true(fabs(gaps.farthest_at_m[2] - 7) < 1e-5);
-    assert_true(fabs(gaps.next_m - 4) < 1e-6); /* the first from the second; those two are 1.1 m apart */
+    assert_true(fabs(gaps.next_m - 4) < 1e-6); /* from the first sensor to the second; these two are 1.1 m apart across the plate */
     assert_int_equal(gaps.next_tags[0], 0);
     assert_int_equal(gaps.next_tags[1], 1);
     assert_true(fabs(gaps.far_m - side_m * sqrt(2) / 5) < 1e-6); /* a fifth of its size */
@@ -111,8 +112,8 @@ TEST_WITH(test_a_sensor_that_is_tried_out_counts, set_up, tear_down)
     trial.sensors[0].vertex = CELLS * (CELLS + 1);
     trial.sensors[0].place_m[0] = 100;
     assert_true(sensor_coverage_find(&order, &gaps));
-    assert_true(fabs(gaps.farthest_m - 4) < 1e-6 && fabs(gaps.farthest_at_m[0] - 104) < 1e-5); /* the corner that nobody has now */
-    trial.sensors[0].asset = 1; /* it goes to the other one, which has none of its own */
+    assert_true(fabs(gaps.farthest_m - 4) < 1e-6 && fabs(gaps.farthest_at_m[0] - 104) < 1e-5); /* the corner that the moved sensor left */
+    trial.sensors[0].asset = 1; /* the sensor moves to the other asset, which has no sensor */
     order.asset = 1;
     trial.sensors[0].vertex = 0;
     memset(trial.sensors[0].surface_m, 0, sizeof(trial.sensors[0].surface_m));

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What asks a service manager for more time does so while there is work, and no longer. */
+/* Requests for more time to the service manager: sent while the program makes progress, and no longer. */
 #include "tests/support/test.h"
 #include <sys/socket.h>
 #include <sys/un.h>
@@ -12,7 +12,7 @@
 #include "base/system/service_manager.h"
 #include "tests/support/temp.h"
 
-enum { EVERY_MS = 500, LIMIT_S = 30 }; /* asked sixty times within the limit */
+enum { EVERY_MS = 500, LIMIT_S = 30 }; /* sixty requests within the limit */
 
 struct service_manager_setup {
     char *folder, *path;
@@ -23,7 +23,7 @@ static int set_up(void **state)
 {
     struct service_manager_setup *s = *state = mem_new(sizeof(*s));
     struct sockaddr_un address = { .sun_family = AF_UNIX };
-    setsid(); /* as a service manager starts it; in a session of many, others' work would count */
+    setsid(); /* own session, as a service manager would start it; otherwise the work of other processes in the session counts too */
     s->folder = temp_folder_create();
     s->path = temp_path(s->folder, "notify");
     memcpy(address.sun_path, s->path, strlen(s->path));
@@ -44,7 +44,7 @@ static int tear_down(void **state)
 
 #define CASE(name) TEST_ON(struct service_manager_setup *s, name, set_up, tear_down)
 
-/* How often it was asked since the last time. */
+/* Returns how many requests for more time arrived since the last call. */
 static int asked(const struct service_manager_setup *s)
 {
     char line[200];
@@ -73,7 +73,7 @@ CASE(it_asks_while_it_works_and_not_while_it_hangs)
     struct service_patience *patience = service_patience_begin("working", LIMIT_S);
     work_ms(5 * EVERY_MS);
     assert_true(asked(s) >= 3);
-    rest_ms(EVERY_MS + EVERY_MS / 2); /* what was worked before counts once more */
+    rest_ms(EVERY_MS + EVERY_MS / 2); /* work done before this pause causes one more request */
     asked(s);
     rest_ms(3 * EVERY_MS);
     assert_int_equal(asked(s), 0);
@@ -105,10 +105,10 @@ CASE(one_step_may_not_last_for_ever)
     int asks = asked(s);
     if (clock_work_ns() - before_ns > 1500 * NS_PER_MS)
         assert_true(asks >= 5);
-    else /* what had no processor did not work */
+    else /* without processor time there was no progress */
         print_message("# not judged: asked %d times in %lld ms of a processor\n", asks,
                       (long long)((clock_work_ns() - before_ns) / NS_PER_MS));
-    rest_ms(200); /* one waited for room in the socket */
+    rest_ms(200); /* one request was waiting for space in the socket */
     asked(s);
     work_ms(1000);
     assert_int_equal(asked(s), 0);

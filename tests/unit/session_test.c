@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A session without socket, clock or renderer: what it wants, what it is told, what it answers. */
+/* A session without a socket, clock or render service: its frame requests, the messages that it sends, and its answers. */
 #include "session/session.h"
 
 #include "tests/support/test.h"
@@ -23,7 +23,7 @@ static void say(struct session_case *f, const char *text)
     session_on_message(f->session, text, strlen(text), f->now_ns, f->now_ns);
 }
 
-/* The next text, as JSON; NULL: none is due. */
+/* Returns the next text message as JSON, or NULL if none is due. */
 static json_t *hear(struct session_case *f)
 {
     struct text text = { 0 };
@@ -41,7 +41,7 @@ static const char *type_of(const json_t *message)
     return message ? json_string_value(json_object_get(message, "type")) : "(nothing)";
 }
 
-/* Takes all that is due; fails unless it is of these types, in this order. */
+/* Takes all due messages and asserts that their types are these, in this order. */
 static void expect(struct session_case *f, const char *types)
 {
     char got[256] = "";
@@ -64,7 +64,8 @@ static void greet(struct session_case *f)
     expect(f, "welcome status tags ");
 }
 
-/* Asks the painter that there is not. False: the session wants nothing, or the painter would refuse. */
+/* Takes the session's next request in place of the render service. Returns false if there is none, or if the render service would
+   decline it. */
 static bool ask(struct session_case *f, struct frame_request *request)
 {
     if (!session_next_request(f->session, f->now_ns, request) || request->only_replace)
@@ -116,7 +117,7 @@ static void ack(struct session_case *f, uint32_t seq)
     say(f, text);
 }
 
-/* It is drawn, sent, and acknowledged after so long. */
+/* Draws and sends the requested frame; it is acknowledged after way_ns. */
 static void carry(struct session_case *f, const struct frame_request *request, size_t bytes, int64_t way_ns)
 {
     struct encoded_frame *encoded = empty_picture(f, request);
@@ -143,7 +144,7 @@ static struct frame_request show(struct session_case *f)
     return request;
 }
 
-/* New readings under a refined picture: quick says whether the render thread can colour it again, or draws a moving one instead. */
+/* New readings while a refined frame is shown. quick: whether the render thread can recolour it in time, or draws a preview instead. */
 static struct frame_request show_data(struct session_case *f, bool quick)
 {
     struct frame_request request = { 0 };
@@ -169,7 +170,7 @@ CASE(refined_frames_are_asked_for_signed)
     f->now_ns += NS_PER_S;
     struct frame_request refined = show(f);
     assert_true(refined.view.tier == TIER_REFINED && refined.record && refined.codec == WIRE_CODEC_PNG && !refined.draft);
-    struct frame_request data = show_data(f, true); /* colours it again, or is a preview as those before */
+    struct frame_request data = show_data(f, true); /* recolours the refined frame, or is a preview like those before */
     assert_true(data.record && data.codec == WIRE_CODEC_PNG && (!data.or_moving || data.moving_codec == WIRE_CODEC_JPEG));
     say(f, "{\"type\":\"sign\",\"frames\":\"all\"}");
     preview = show(f);
@@ -178,7 +179,7 @@ CASE(refined_frames_are_asked_for_signed)
     preview = show(f);
     assert_true(!preview.record && preview.codec == WIRE_CODEC_JPEG);
     say(f, "{\"type\":\"sign\",\"frames\":\"all\"}");
-    say(f, "{\"type\":\"codecs\",\"codecs\":[\"jpeg\"]}"); /* signed frames are none of these */
+    say(f, "{\"type\":\"codecs\",\"codecs\":[\"jpeg\"]}"); /* without PNG, which signed frames need */
     assert_false(show(f).record);
 }
 
@@ -296,7 +297,7 @@ CASE(readings_that_are_rare_do_not_make_what_is_shown_old)
     show(f);
     f->now_ns += 250 * MS;
     show(f);
-    for (int s = 0; s < 60; s++) { /* nothing changes for a minute; the client pings */
+    for (int s = 0; s < 60; s++) { /* no data for a minute, while the client pings */
         f->now_ns += NS_PER_S;
         say(f, "{\"type\":\"ping\",\"t\":1}");
         expect(f, "pong ");
@@ -305,7 +306,7 @@ CASE(readings_that_are_rare_do_not_make_what_is_shown_old)
     assert_int_equal(session_fresh_ns(f->session), f->now_ns);
     int64_t then_ns = f->now_ns;
     f->now_ns += 100 * MS;
-    session_on_data(f->session, f->now_ns); /* what is shown has been old since then, not for a minute */
+    session_on_data(f->session, f->now_ns); /* the frame has been outdated since the data came, not for a minute */
     session_on_tick(f->session, f->now_ns);
     assert_int_equal(session_fresh_ns(f->session), then_ns);
     f->now_ns += NS_PER_S;
@@ -320,7 +321,7 @@ CASE(newest_camera_wins_and_the_last_state_arrives)
     struct frame_request request;
     greet(f);
     show(f);
-    for (uint32_t seq = 1; seq <= 50; seq++) { /* nobody acknowledges: two pictures, then none */
+    for (uint32_t seq = 1; seq <= 50; seq++) { /* without acknowledgements two frames are sent and then none */
         char text[128];
         snprintf(text, sizeof(text), "{\"type\":\"camera\",\"seq\":%u,\"eye\":[%u,-9,4],\"target\":[0,0,1]}", seq, seq + 5);
         say(f, text);
@@ -397,7 +398,7 @@ CASE(a_view_that_cannot_be_drawn_is_said_once)
     show(f);
 }
 
-/* Nothing changes: what there was no memory for is tried again all the same, and not all the time. */
+/* No data changes, but a frame that failed for lack of memory is requested again, at intervals. */
 CASE(a_view_that_cannot_be_drawn_is_tried_again)
 {
     struct frame_request request;
@@ -539,7 +540,7 @@ CASE(data_on_a_loaded_server_does_not_put_refinement_off_for_ever)
     assert_in_range(refined, 2, 4);
 }
 
-/* What was being refined was given up for readings of which nothing is to be seen: the preview that is shown does not stay. */
+/* A refinement was abandoned for new readings that change no pixel: the preview on display must still be refined. */
 CASE(data_that_changes_nothing_does_not_end_a_refinement_that_it_overtook)
 {
     struct frame_request refined, data;
@@ -557,8 +558,8 @@ CASE(data_that_changes_nothing_does_not_end_a_refinement_that_it_overtook)
     assert_true(ask(f, &refined) && refined.view.tier == TIER_REFINED);
 }
 
-/* The render service says that the client has the refined frame already, and the client was never sent one: the session asks for it once
-   more, to be sent whole, after a pause. */
+/* The render service reports that the client already has the refined frame, but the frame was never sent: after a pause the session
+   requests it once more, complete. */
 CASE(a_refined_picture_that_is_lost_is_asked_for_again)
 {
     struct frame_request refined;
@@ -577,7 +578,7 @@ CASE(a_refined_picture_that_is_lost_is_asked_for_again)
     assert_false(ask(f, &refined));
 }
 
-/* Nothing says yet that the server is loaded: readings do not wait until what takes a minute is refined. */
+/* The server's load is not known yet: readings must not wait for a refinement that takes a minute. */
 CASE(data_does_not_wait_for_the_first_refined_picture)
 {
     struct frame_request refined, data, preview;
@@ -585,7 +586,7 @@ CASE(data_does_not_wait_for_the_first_refined_picture)
     show(f);
     f->now_ns += NS_PER_S;
     assert_true(ask(f, &refined) && refined.view.tier == TIER_REFINED);
-    for (int i = 0; i < 5; i++) { /* over a link so slow that one frame fills it */
+    for (int i = 0; i < 5; i++) { /* a link so slow that a single frame fills it */
         session_on_data(f->session, f->now_ns += 3 * NS_PER_S);
         assert_true(ask(f, &data) && (i > 0 || (data.view.tier == TIER_REFINED && data.or_moving)));
         session_on_data(f->session, f->now_ns += 100 * MS);
@@ -597,11 +598,12 @@ CASE(data_does_not_wait_for_the_first_refined_picture)
     ack(f, send_picture(f));
     f->now_ns += NS_PER_S;
     session_on_data(f->session, f->now_ns);
-    assert_true(ask(f, &data) && data.view.tier == TIER_REFINED && !data.or_moving); /* under a refined picture, where all can be */
+    /* the refined frame is recoloured if that is possible */
+    assert_true(ask(f, &data) && data.view.tier == TIER_REFINED && !data.or_moving);
 }
 
-/* A preview that was asked for while something was being refined, and drawn once that had come, does not stay either: one for readings that
-   waited, and one for a client that decodes something else. */
+/* A preview requested during a refinement and drawn after it must be refined again: tested for delayed readings, and for a client that
+   changes its codec. */
 CASE(a_preview_that_comes_after_a_refined_picture_does_not_stay)
 {
     struct frame_request refined, preview;
@@ -630,7 +632,7 @@ CASE(a_preview_that_comes_after_a_refined_picture_does_not_stay)
     assert_false(ask(f, &preview));
 }
 
-/* A minute of readings that change twice a second: the refined picture stays, whatever else the server has to do. */
+/* A minute of readings that change twice per second: the refined frame stays, whatever else the server has to do. */
 CASE(data_leaves_a_refined_picture_that_is_quick_to_color)
 {
     struct frame_request request;
@@ -648,7 +650,7 @@ CASE(data_leaves_a_refined_picture_that_is_quick_to_color)
     assert_false(ask(f, &request));
 }
 
-/* 125 kB/s: what moves becomes smaller, what stands still is refined in two stages. */
+/* At 125 kB/s moving previews become smaller, and still views are refined in two stages. */
 CASE(a_slow_client_gets_less_and_everything_in_the_end)
 {
     struct frame_request request;
@@ -741,19 +743,19 @@ CASE(hidden_pages_get_nothing)
     assert_true(request.always && request.view.camera_seq == 1);
 }
 
-/* A view that is hidden and shown in turns costs a new picture each time, as a new session does. */
+/* Hiding and showing a view repeatedly costs a new frame each time and is admitted like a new session. */
 CASE(views_shown_again_and_again_are_admitted_as_new_ones)
 {
     static const char HIDE[] = "{\"type\":\"visible\",\"visible\":false}", SHOW[] = "{\"type\":\"visible\",\"visible\":true}";
     struct frame_request request;
     greet(f);
     show(f);
-    for (int i = 0; i < 3; i++) /* drawing takes all of the time, and readings come late */
+    for (int i = 0; i < 3; i++) /* drawing takes all of the time, and readings are delayed */
         f->admission.windows[i] = (struct admission_window){ .drawing_ns = NS_PER_S, .data_wait_ns = 2 * NS_PER_S };
     f->now_ns += NS_PER_S;
     say(f, HIDE);
     say(f, SHOW);
-    assert_true(ask(f, &request)); /* a look at another window keeps the place */
+    assert_true(ask(f, &request)); /* hiding the view for a moment keeps its admission */
     assert_true(session_has_pixels(f->session));
     say(f, HIDE);
     say(f, SHOW);
@@ -776,7 +778,7 @@ CASE(tags_come_whole_then_by_change_then_nothing)
     assert_int_equal(json_array_size(values), 1);
     assert_int_equal(json_integer_value(json_array_get(row, 0)), 1);
     assert_true(json_number_value(json_array_get(row, 1)) == 3.25);
-    assert_int_equal(json_array_size(row), 2); /* it is good, and no alarm */
+    assert_int_equal(json_array_size(row), 2); /* a good reading without alarm has two members only */
     assert_int_equal(json_integer_value(json_object_get(tags, "age_ms")), 40);
     json_decref(tags);
     f->now_ns += 3600 * NS_PER_S;
@@ -860,7 +862,7 @@ CASE(too_many_messages_are_put_off)
     assert_false(f->session->rate.exceeded);
 }
 
-/* What had left the socket before it was told to stop is read at once; it counts for the seconds after. */
+/* Messages that were sent before the session told the client to stop are read at once, and count against the following seconds. */
 CASE(messages_beyond_a_second_count_for_the_next)
 {
     const int most = (int)f->quotas.at[QUOTA_MESSAGES], beyond = most / 4, seconds = 12;
@@ -970,7 +972,7 @@ CASE(a_follower_is_shown_its_leaders_view)
     session_on_leader(f->session, f->now_ns);
     request = show(f);
     assert_true(request.view.camera.eye_m[0] == 3 && request.view.field.group == leader->view.field.group);
-    assert_int_equal(request.view.camera_seq, 1); /* no other was asked for by this client */
+    assert_int_equal(request.view.camera_seq, 1); /* the client itself requested no other camera */
     following = hear(f);
     assert_string_equal(json_string_value(json_object_get(following, "group")), "pressure");
     json_decref(following);
@@ -986,7 +988,7 @@ CASE(a_follower_is_shown_its_leaders_view)
     request = show(f);
     assert_true(request.view.width_px == 320 && request.view.camera.eye_m[0] == 9);
     session_follow(f->session, leader, f->now_ns);
-    session_leader_gone(f->session, f->now_ns); /* what is there stays, at its own size, and is said to be of one who has gone */
+    session_leader_gone(f->session, f->now_ns); /* the last frame stays at its size and is marked: its leader has gone */
     following = hear(f);
     assert_int_equal(json_integer_value(json_object_get(following, "session")), 8);
     assert_true(json_is_true(json_object_get(following, "gone")));

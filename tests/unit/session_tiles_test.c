@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tiles of one picture: what they are sent to show, and that none waits for ever for what another will not have. */
+/* Tiles of one picture: which frames they present together, and that none waits forever for a frame that another tile will never get. */
 #include "session/tiles/tile_sync.h"
 
 #include "tests/support/test.h"
@@ -31,7 +31,7 @@ static void tear_down(struct wall_case *wall)
     }
 }
 
-/* A tile has a frame of that picture, and has acknowledged it. */
+/* Gives tile i a sent and acknowledged frame of `picture`. */
 static void have(struct wall_case *wall, int i, uint64_t picture, uint32_t seq)
 {
     session_tile_sent(wall->members[i], picture, seq);
@@ -62,7 +62,7 @@ TEST(test_of_two_pictures_none_is_waited_for)
     set_up(&wall);
     have(&wall, 0, 6, 3);
     have(&wall, 1, 7, 3);
-    wall.members[0]->delivery.pacer.asked = 1; /* it may have the other's yet */
+    wall.members[0]->delivery.pacer.asked = 1; /* a request is pending: the tile may still get the other picture */
     session_tiles_present(&wall.tiles, &presented, 0, 0);
     assert_false(wall.members[0]->demand.any || wall.members[1]->demand.any);
     wall.members[0]->delivery.pacer.asked = 0;
@@ -72,7 +72,7 @@ TEST(test_of_two_pictures_none_is_waited_for)
     tear_down(&wall);
 }
 
-/* 6 is drawn and on its way from the encoder; the answer that 7 is no other one comes before it. */
+/* Frame 6 is drawn and still in the encoder; the answer that picture 7 equals it overtakes it. */
 TEST(test_an_answer_without_a_frame_overtakes_one)
 {
     struct wall_case wall;
@@ -86,7 +86,7 @@ TEST(test_an_answer_without_a_frame_overtakes_one)
     wall.members[0]->delivery.pacer.asked = 1;
     have(&wall, 1, 7, 4);
     session_tiles_present(&wall.tiles, &presented, 0, 0);
-    assert_int_equal(presented, 5); /* not 7 by the frame of 5 */
+    assert_int_equal(presented, 5); /* picture 7 must not be presented by the frame of 5 */
     session_tile_came(wall.members[0], &request, 0);
     assert_int_equal(request.picture, 7);
     wall.members[0]->delivery.pacer.asked = 0;
@@ -97,8 +97,8 @@ TEST(test_an_answer_without_a_frame_overtakes_one)
     tear_down(&wall);
 }
 
-/* The picture is larger than all tiles by what it is moved, at any size, so that no tile ever sees beyond its edge. Displays of that size,
-   each of the moves, at a few sizes of a preview. */
+/* The picture exceeds the tiles by the amount of its shift at every size, so that no tile ever sees beyond its edge. Checks each shift
+   of displays of this size, at a few preview sizes. */
 static void check_moves(int width_px, int height_px)
 {
     struct wall wall = { .inches = 10, .tile = { .columns = 3, .rows = 2, .bezel_mm = { 20, 0 } } };
@@ -123,11 +123,11 @@ static void check_moves(int width_px, int height_px)
 TEST(test_tiles_are_moved_within_the_picture)
 {
     check_moves(320, 180);
-    check_moves(4096, 2160); /* three of them are more than a picture has: they are smaller from the start */
+    check_moves(4096, 2160); /* three such displays exceed the largest picture, so they start smaller */
     check_moves(8192, 8192);
 }
 
-/* A client says how large its display is: one window may be a sliver, with bezels that are thousands of times as wide. */
+/* Displays state their own size: a window may be a sliver, with bezels thousands of times as wide. */
 TEST(test_a_picture_is_never_larger_than_one_may_be)
 {
     for (int i = 0; i < WALL_DISPLAYS * 2 * 100; i++) {
@@ -146,7 +146,7 @@ TEST(test_a_picture_is_never_larger_than_one_may_be)
     }
 }
 
-/* Whose display was not looked at for a while takes as many pixels as when it came: those of its display, not of the whole picture. */
+/* A tile that was hidden for a while reserves as many pixels as when it was added: those of its display, not of the whole picture. */
 TEST(test_a_tile_seen_again_takes_its_own_pixels)
 {
     const struct wall wall = { .inches = 10, .tile = { .columns = 3, .rows = 2 } };
@@ -185,7 +185,7 @@ TEST(test_a_move_is_sent_once)
     tear_down(&wall);
 }
 
-/* Returns the size after pictures that took so long, one in 50 ms. */
+/* Returns the size step after frames of made_ms each, one every 50 ms. */
 static int size_after(struct quality_ladder *ladder, int64_t made_ms, int64_t from_ms, int64_t to_ms)
 {
     for (int64_t ms = from_ms; ms <= to_ms; ms += 50)
@@ -199,8 +199,8 @@ TEST(test_a_server_that_takes_long_makes_smaller_pictures)
     assert_int_equal(size_after(&ladder, 120, 1000, 9000), 0); /* fast enough */
     assert_int_equal(size_after(&ladder, 220, 10000, 10400), 0);
     assert_int_equal(size_after(&ladder, 220, 10450, 10600), 1); /* half a second too long */
-    assert_int_equal(size_after(&ladder, 125, 11000, 19000), 1); /* what it costs now is right: no larger, no smaller */
-    assert_int_equal(size_after(&ladder, 60, 20000, 29000), 1);  /* a larger one would cost 107 */
+    assert_int_equal(size_after(&ladder, 125, 11000, 19000), 1); /* the current cost is right: the size neither grows nor shrinks */
+    assert_int_equal(size_after(&ladder, 60, 20000, 29000), 1);  /* the next larger size would take 107 ms */
     assert_int_equal(size_after(&ladder, 40, 30000, 32900), 1);
     assert_int_equal(size_after(&ladder, 40, 32950, 33100), 0);
     assert_int_equal(size_after(&ladder, 900, 40000, 60000), QUALITY_LADDER_SIZES - 1);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A session that travels in time: what it asks for, what it shows and says there, how it plays, and that others stay in the present. */
+/* A session that shows the past: its requests for snapshots, its frames and messages, playback, and that other sessions stay in the
+   present. */
 #include "tests/support/test.h"
 #include <jansson.h>
 #include <math.h>
@@ -45,7 +46,7 @@ static void say(struct session_case *f, const char *text)
     session_on_message(f->session, text, strlen(text), f->now_ns, utc_ns(f));
 }
 
-/* The newest text of that type, of all that are due. */
+/* Returns the newest due message of this type and drops the others. */
 static json_t *hear(struct session_case *f, const char *type)
 {
     struct text text = { 0 };
@@ -98,7 +99,7 @@ static void go(struct session_case *f, int64_t ago_s, double speed)
     say(f, text);
 }
 
-/* What it asks for, in seconds before NOW; NAN: nothing. */
+/* Returns the instant that the session requests, in seconds before NOW; NAN if it requests none. */
 static double wanted(struct session_case *f)
 {
     int64_t at_us;

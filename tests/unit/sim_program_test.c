@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* plantcast-sim as a program, and the daemon's Modbus source reading from it: every data type over a real wire. */
+/* The program plantcast-sim, read by the daemon's Modbus source: every data type over a real connection. */
 #include "tests/support/test.h"
 #include <arpa/inet.h>
 #include <errno.h>
@@ -213,7 +213,7 @@ static const struct reading *look(struct sim_reader *reader, int tag)
     return &reader->snapshot->readings[tag];
 }
 
-/* Waits for quality and, where it is not NAN, value within 1e-4 of it. */
+/* Waits until the tag has this quality and, unless `value` is NAN, a value within 1e-4 of it. */
 static void expect(struct sim_reader *reader, const struct plant *plant, const char *name, uint32_t quality, double value)
 {
     int64_t end_ns = clock_mono_ns() + 8 * NS_PER_S;
@@ -251,7 +251,7 @@ CASE(every_type_over_the_wire)
         assert_string_equal(control(s, command), "ok");
         expect(&reader, s->plant, sets[i].name, QUALITY_GOOD, sets[i].value);
     }
-    expect(&reader, s->plant, "bit 4", QUALITY_GOOD, 1); /* its neighbour did not change it */
+    expect(&reader, s->plant, "bit 4", QUALITY_GOOD, 1); /* writing the neighbouring bit did not change this one */
     reader_stop(&reader);
 }
 
@@ -405,7 +405,7 @@ CASE(says_what_stops_it)
     s->out = first_out;
 }
 
-/* The plants of real models and recorded series: only there where the data is. */
+/* Plants of real models and recorded series; skipped where the data is absent. */
 CASE(real_plants_are_served)
 {
     const char *const plants[] = { "tests/plants/plant_room.yaml", "tests/plants/cookie_line.yaml" };

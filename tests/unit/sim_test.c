@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* plantcast-sim's parts: encoding against the daemon's decoding, the process, recorded series and their map. */
+/* Parts of plantcast-sim: encoding compared with the daemon's decoding, the process model, recorded series and their map. */
 #include "tests/support/test.h"
 #include <math.h>
 #include <unistd.h>
@@ -21,7 +21,7 @@ static double random_between(double low, double high)
     return low + (high - low) * (rand() / (double)RAND_MAX);
 }
 
-/* Largest error that the raw type makes: half a step, or a float's own precision. */
+/* Returns the largest error due to the raw type: half a raw step, or the precision of a float. */
 static double tolerance(const struct plant_tag *tag, double raw_low, double raw_high)
 {
     double step = tag->type == DATA_FLOAT32 ? fmax(fabs(raw_low), fabs(raw_high)) * 1.2e-7 : tag->type == DATA_FLOAT64 ? 1e-9 : 0.500001;
@@ -35,7 +35,7 @@ static void check_there_and_back(const struct plant_tag *tag, double value, doub
     struct sample sample;
     assert_true(sim_encode(tag, value, words));
     decode_sample(tag, words, &sample);
-    if (tag->scaling == SCALING_SQUARE_ROOT) { /* a step of the raw value is a step of the square */
+    if (tag->scaling == SCALING_SQUARE_ROOT) { /* a raw step is a step of the squared value */
         double low = tag->negate ? -tag->scaled_low : tag->scaled_low;
         allowed = allowed * fabs(tag->scaled_high - tag->scaled_low) /
                   fmax(fabs(value - low), sqrt(allowed * fabs(tag->scaled_high - tag->scaled_low)));
@@ -176,7 +176,7 @@ static const struct process_tag unit[] = {
 };
 enum { TAGS = sizeof(unit) / sizeof(unit[0]), CYCLE_TICKS = 6900 };
 
-struct course { /* of one tag over one cycle of upsets */
+struct course { /* behaviour of one tag during a cycle of upsets */
     double least, most, calm_sum, jump;
     int calm_count;
 };
@@ -220,7 +220,7 @@ TEST(process_behaves)
         const struct course *course = cycles[c];
         for (size_t i = 0; i < TAGS; i++) {
             assert_true(fabs(course[i].calm_sum / course[i].calm_count - unit[i].normal) <= 0.05 * unit[i].span); /* comes back to normal */
-            assert_true(course[i].jump <= 0.04 * unit[i].span); /* no sensor leaps in 0.1 s */
+            assert_true(course[i].jump <= 0.04 * unit[i].span); /* no sensor jumps within 0.1 s */
         }
         assert_true(course[0].most - unit[0].normal > 8); /* overhead warms up */
         assert_true(course[1].most - unit[1].normal > 0.5);
@@ -281,11 +281,11 @@ TEST(wide_series)
     assert_true(series_at(&series, 541, true) == 1.5);
     series_finish(&series);
     assert_true(series_read(&series, path, "b", &found, why) && found);
-    assert_int_equal(series.count, 2); /* an empty cell is no value */
+    assert_int_equal(series.count, 2); /* an empty cell gives no value */
     assert_true(series_at(&series, 200, false) == -2);
     series_finish(&series);
     assert_false(series_read(&series, path, "d", &found, why));
-    assert_non_null(strstr(why, ":4: d: expected a number")); /* and the state word in line 3 is none, which is no error */
+    assert_non_null(strstr(why, ":4: d: expected a number")); /* line 3 has a status word instead of a number, which is no error */
     series_finish(&series);
     assert_true(series_read(&series, path, "c", &found, why));
     assert_false(found);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The files of the web client: those below the folder, by every honest path, and nothing by any other. */
+/* Files of the web client: served for every valid path below the folder, and for no other path. */
 #include "net/http/site.h"
 
 #include "tests/support/test.h"
@@ -127,7 +127,7 @@ CASE(nothing_else_is)
     site_destroy(&nowhere);
 }
 
-/* An upgrade replaces the files below a daemon that runs: it serves those that it was started with. */
+/* An upgrade replaces the files under a running daemon: it keeps serving the files from its start. */
 CASE(files_stay_as_they_were_at_the_start)
 {
     struct web_site *before = site_create(NULL, f->web);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Store: what becomes of a reading when it is exact zero, not a number, old, or cut off. */
+/* The store: readings that are exactly zero, not a number, old, or cut off from their source. */
 #include "tests/support/test.h"
 #include <math.h>
 
@@ -11,7 +11,7 @@
 #define S INT64_C(1000000000)
 
 struct store_setup {
-    struct plant *plant; /* tags 0 and 1 of source 0, tag 2 of source 1; stale after 5 s */
+    struct plant *plant; /* tags 0 and 1 of source 0, tag 2 of source 1; all become stale after 5 s */
     struct store *store;
     struct snapshot *snapshot;
 };
@@ -107,7 +107,7 @@ CASE(goes_stale)
     assert_quality(look(s, 0, 15 * S - 1)->quality, QUALITY_GOOD);
     uint32_t before = look(s, 0, 15 * S - 1)->changes;
     assert_quality(look(s, 0, 15 * S)->quality, QUALITY_BAD_COMMUNICATION_ERROR);
-    assert_int_equal(look(s, 0, 16 * S)->changes, before + 1); /* once, however often it is looked at */
+    assert_int_equal(look(s, 0, 16 * S)->changes, before + 1); /* counted once, however often snapshots are taken */
     write_one(s, 0, 7, QUALITY_GOOD, 20 * S);
     const struct reading *r = look(s, 0, 20 * S);
     assert_quality(r->quality, QUALITY_GOOD);
@@ -159,7 +159,8 @@ CASE(a_refused_tag_that_is_cut_off_says_so)
     write_one(s, 0, 7, QUALITY_GOOD, 10 * S);
     write_one(s, 0, 0, QUALITY_BAD_CONFIGURATION, 11 * S);
     store_link_lost(s->store, 0, 12 * S);
-    assert_quality(look(s, 0, 12 * S)->quality, QUALITY_BAD_COMMUNICATION_ERROR); /* never the value from before the refusal */
+    /* the value from before the refusal is never shown as current */
+    assert_quality(look(s, 0, 12 * S)->quality, QUALITY_BAD_COMMUNICATION_ERROR);
 }
 
 CASE(some_tags_can_be_lost)
@@ -197,16 +198,16 @@ CASE(counts_every_change)
     write_one(s, 0, 7.5, QUALITY_UNCERTAIN_UNITS_EXCEEDED, 12 * S);
     assert_int_equal(look(s, 0, 12 * S)->changes, ++wanted);
     write_one(s, 0, 8, QUALITY_GOOD, 12 * S);
-    write_one(s, 0, 9, QUALITY_GOOD, 12 * S); /* two that nobody looked at between */
+    write_one(s, 0, 9, QUALITY_GOOD, 12 * S); /* two changes without a snapshot in between */
     wanted += 2;
     assert_int_equal(look(s, 0, 12 * S)->changes, wanted);
     store_link_lost(s->store, 0, 13 * S);
     store_link_lost(s->store, 0, 13 * S);
     assert_int_equal(look(s, 0, 13 * S)->changes, ++wanted);
-    assert_int_equal(look(s, 0, 17 * S)->changes, ++wanted); /* Uncertain to Bad, by age alone */
+    assert_int_equal(look(s, 0, 17 * S)->changes, ++wanted); /* from Uncertain to Bad by age alone */
     write_one(s, 0, 0, QUALITY_BAD_DEVICE_FAILURE, 18 * S);
     assert_int_equal(look(s, 0, 18 * S)->changes, ++wanted);
-    write_one(s, 0, 5, QUALITY_BAD_DEVICE_FAILURE, 19 * S); /* the value of a Bad sample is nobody's business */
+    write_one(s, 0, 5, QUALITY_BAD_DEVICE_FAILURE, 19 * S); /* a Bad sample carries no value */
     assert_int_equal(look(s, 0, 19 * S)->changes, wanted);
 }
 
@@ -232,7 +233,7 @@ static void count_events(void *arg, const struct sample_event *event)
     *(int64_t *)arg += event->mono_ns;
 }
 
-/* Another plant: one tag stays, at another place and with another patience; one is new. */
+/* The readings move to another plant: one tag stays, at another index and with another stale time; one tag is new. */
 CASE(readings_go_on_in_another_plant)
 {
     static int by_name[] = { 1, 0 };
@@ -249,7 +250,7 @@ CASE(readings_go_on_in_another_plant)
     store_adopt(store, s->store);
     store_snapshot(store, 30 * S, 1030 * S, snapshot);
     assert_true(snapshot->readings[1].value == 42);
-    assert_int_equal(snapshot->readings[1].alarm, ALARM_NONE); /* until it is said that it stands there, too */
+    assert_int_equal(snapshot->readings[1].alarm, ALARM_NONE); /* no alarm until the new plant's alarms report it */
     assert_quality(snapshot->readings[1].quality, QUALITY_GOOD); /* by its new patience */
     assert_true(snapshot->readings[1].age_ns == 20 * S);
     assert_quality(snapshot->readings[0].quality, QUALITY_BAD_WAITING);
@@ -260,12 +261,13 @@ CASE(readings_go_on_in_another_plant)
     plant_by_hand_destroy(&plant);
 }
 
-/* Another source that takes over a tag whose server was lost is told the value of before at its own time, a moment off by our clock. */
+/* Another source takes over a tag whose server was lost. It repeats the old value with the original timestamp, a moment off by our
+   clock. */
 CASE(a_value_told_again_is_good_again)
 {
     write_one(s, 0, 42, QUALITY_GOOD, 10 * S);
     store_write(s->store, &(struct sample){ .tag = 0, .value = 7, .quality = QUALITY_GOOD }, 1, 10 * S - 1, 1010 * S);
-    assert_true(look(s, 0, 10 * S)->value == 42); /* while it is alive, what came later stays */
+    assert_true(look(s, 0, 10 * S)->value == 42); /* while the first source is alive, its later value stays */
     store_tags_dead(s->store, &(int){ 0 }, 1, 20 * S);
     assert_true(quality_is_bad(look(s, 0, 21 * S)->quality));
     store_write(s->store, &(struct sample){ .tag = 0, .value = 9, .quality = QUALITY_GOOD }, 1, 10 * S - 1, 1009 * S);
@@ -287,7 +289,7 @@ CASE(all_who_listen_hear_until_they_leave)
     assert_int_equal(other, 3 + 2 * 10); /* both tags of the link */
 }
 
-/* Before the first sample nobody knows what time it is: an alarm or a point in history would be of 1970. */
+/* Before the first sample the store has no wall clock time: events of losses must not be dated 1970. */
 CASE(what_is_lost_at_first_is_not_told_at_a_wrong_time)
 {
     int64_t heard = 0;
@@ -337,7 +339,7 @@ CASE(a_value_that_never_moves_is_doubted)
     assert_quality(look(s, 1, 1000 * S)->quality, QUALITY_GOOD); /* nobody asked for it */
 }
 
-/* A gateway goes on answering with what it last had from a controller that has stopped. */
+/* A gateway keeps answering with the last values of a controller that has stopped. */
 CASE(a_stopped_heartbeat_makes_all_bad)
 {
     s->plant->sources[0].heartbeat_s = 3;
@@ -361,7 +363,7 @@ CASE(a_stopped_heartbeat_makes_all_bad)
     }
     write_one(s, 1, 10, QUALITY_GOOD, 20 * S);
     assert_quality(look(s, 0, 20 * S)->quality, QUALITY_GOOD);
-    write_one(s, 1, 0, QUALITY_BAD_CONFIGURATION, 21 * S); /* cannot be read any more: nor does it change */
+    write_one(s, 1, 0, QUALITY_BAD_CONFIGURATION, 21 * S); /* the heartbeat tag became unreadable, which also counts as no change */
     assert_quality(look(s, 0, 22 * S)->quality, QUALITY_GOOD);
     assert_quality(look(s, 0, 23 * S)->quality, QUALITY_BAD_DEVICE_FAILURE);
 }
@@ -402,7 +404,7 @@ CASE(other_tags_vouch)
                   { -1, QUALITY_BAD_SENSOR_FAILURE, QUALITY_GOOD } };
     for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
         write_one(s, 1, cases[i].word, QUALITY_GOOD, S);
-        assert_quality(heard[0], cases[i].pattern); /* at once, not with its own next sample */
+        assert_quality(heard[0], cases[i].pattern); /* immediately, not only with this tag's next sample */
         assert_quality(heard[2], cases[i].any);
         assert_quality(look(s, 0, S)->quality, cases[i].pattern);
         assert_quality(look(s, 2, S)->quality, cases[i].any);
@@ -416,7 +418,7 @@ CASE(other_tags_vouch)
     assert_quality(look(s, 0, 3 * S)->quality, QUALITY_UNCERTAIN);
 }
 
-/* Times of day in a sample are for people; ages go by the clock that never steps. */
+/* Wall clock times in samples are for display only; ages use the monotonic clock. */
 CASE(a_step_of_the_wall_clock_makes_nothing_fresh_or_stale)
 {
     store_write(s->store, &(struct sample){ 0, 7, QUALITY_GOOD }, 1, 10 * S, 1000 * S);
@@ -483,7 +485,7 @@ CASE(says_when_a_reading_gets_stale)
     assert_true(take(s, 9 * S) == INT64_MAX); /* both are */
 }
 
-/* Random writes, losses and alarms, and time between them: nothing that a snapshot shows changes unless it was told, or announced. */
+/* Random writes, losses, alarms and pauses: every change in a snapshot was reported to listeners or predicted by the due time. */
 CASE(nothing_changes_unannounced)
 {
     struct snapshot *last = snapshot_create(3);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The legend strip's code: what it holds, what it mends, and what it refuses. */
+/* Encoding of the legend strip: what it stores, which errors it corrects, and what it refuses. */
 #include "tests/support/test.h"
 
 #include "protocol/strip_format.h"
@@ -14,7 +14,7 @@ static void expect_same(const struct strip *a, const struct strip *b)
     assert_string_equal(a->unit, b->unit);
 }
 
-/* Pinned: pictures that were drawn must be read by later versions. */
+/* Pins the byte format: later versions must be able to read existing pictures. */
 TEST(test_bytes)
 {
     static const uint8_t head[] = { 1, 4, 0, 0, 0x48, 0xc1, 0, 0, 0xf0, 0x43, 't', 'e', 'm', 'p' };
@@ -69,7 +69,7 @@ TEST(test_long_names_and_nonsense)
     uint8_t code[STRIP_BYTES];
     struct strip strip, odd = { .min = 1, .max = 2, .log = true, .group = "" };
     int mended;
-    memcpy(odd.group, "temperaturtemperatur12°", 22); /* as much as has room: the last sign is cut in two */
+    memcpy(odd.group, "temperaturtemperatur12°", 22); /* as much as fits: the last character is cut in two */
     odd.group[21] = "°"[0];
     memcpy(odd.unit, "kJ/(kg K)", 10);
     strip_encode(&odd, code);
@@ -83,5 +83,5 @@ TEST(test_long_names_and_nonsense)
     strip_encode(&odd, code);
     assert_false(strip_decode(code, &strip, &mended)); /* a logarithm of 0 */
     memset(code, 0, sizeof(code));
-    assert_false(strip_decode(code, &strip, &mended)); /* all the parity is right, and it is no strip */
+    assert_false(strip_decode(code, &strip, &mended)); /* all parity bits are right, but it is not a strip */
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a sample of a level's triangles says about how many it will need. */
+/* Estimate of a level's subdivision from a sample of its triangles. */
 #include "tests/support/test.h"
 #include <math.h>
 
@@ -20,7 +20,7 @@ static int set_up(void **state)
     return 0;
 }
 
-/* Triangle t has the vertices 3 t to 3 t + 2. */
+/* Makes a level whose triangle t has the vertices 3 t to 3 t + 2. */
 static void make_level(struct level *level)
 {
     *level = (struct level){ .index_count = 3 * TRIANGLES, .primitive_count = PARTS };
@@ -56,7 +56,7 @@ TEST(a_sample_is_some_neighbours_of_every_part)
     level_finish(&sample);
 }
 
-/* With an edge for each corner that errs so often as much as it may; [triangle of the level]. */
+/* Prepares `split` with three edges per triangle, each with errors[triangle of the level] times the allowed error. */
 static void take_in_hand(struct subdiv *split, const struct level *level, const float *errors)
 {
     size_t count = level->index_count / 3;
@@ -84,7 +84,7 @@ static void release(struct subdiv *split)
     mem_free(split->mesh.cuts);
 }
 
-/* An edge that errs e times too much needs the logarithm of e to base 4 cuts, rounded up. */
+/* An edge whose error is e times too large needs log4(e) rounded up cuts. */
 TEST(a_sample_says_what_the_level_needs)
 {
     struct level level, sample;
@@ -102,7 +102,7 @@ TEST(a_sample_says_what_the_level_needs)
     take_in_hand(&part, &sample, errors);
     assert_true(comes_to(&whole, needed - 100));
     assert_false(comes_to(&whole, needed + 100));
-    assert_true(comes_to(&part, 0.85 * needed)); /* some of it is for chance */
+    assert_true(comes_to(&part, 0.85 * needed)); /* the estimate keeps a margin for chance */
     assert_false(comes_to(&part, 1.1 * needed));
     whole.finest = true;
     assert_false(comes_to(&whole, needed - 100));
@@ -113,7 +113,7 @@ TEST(a_sample_says_what_the_level_needs)
     mem_free(errors);
 }
 
-/* One triangle says nothing about the others, however much it needs: the level is not given up for it. */
+/* One triangle with any error says nothing about the others: the level is not given up for it. */
 TEST(a_sample_is_not_sure_of_what_one_triangle_needs)
 {
     struct level level, sample;

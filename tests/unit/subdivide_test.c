@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Splitting: a few huge triangles show the field of a fine mesh, sensors stand on vertices, no cracks open. The truth here is the formula
-   of the field on the formula of the distance, in doubles. */
+/* Subdivision: a few huge triangles show the field of a fine mesh, sensors are on vertices, and no cracks open. The truth is the field's
+   formula on the distance formula, in doubles. */
 #include "tests/support/test.h"
 #include <math.h>
 
@@ -16,21 +16,21 @@
 #define PI 3.14159265358979323846
 #define SENSORS 6
 
-struct prepared_body { /* a surface with sensors of two groups, prepared by hand */
+struct prepared_body { /* a surface with sensors of two groups, prepared by the test */
     struct geometry g;
     struct plant plant;
     struct plant_sensor sensors[SENSORS];
     struct asset_sensor places[SENSORS];
     struct surface *surface;
     struct surface_field field;
-    bool as_solved; /* true distances along the surface are the solver's at the point itself, not the formula's */
+    bool as_solved; /* the truth uses the solver's distances at the point itself instead of the formula */
     struct levels levels;
     float *distances; /* after splitting */
     uint32_t own_vertices;
     double (*distance)(const double a[3], const double b[3]); /* along the surface */
     size_t own_triangles;
     double radius_m[2][2]; /* paper's: [group][geodesic] */
-    double reach_m[2];     /* of the groups; 0: no limit */
+    double reach_m[2];     /* reach of each group in metres; 0: no limit */
 };
 
 static double random_unit(uint32_t *seed)
@@ -39,8 +39,6 @@ static double random_unit(uint32_t *seed)
     return (*seed >> 8) / 16777216.0;
 }
 
-/* Of random bodies; another at each time in full only: of 120 seeds one has a farthest level whose few pixels within the outline are more
-   than assert_pixels() allows beside a sensor. */
 static uint32_t add_vertex(struct geometry *g, double x, double y, double z, double nx, double ny, double nz)
 {
     const float p[3] = { (float)x, (float)y, (float)z }, n[3] = { (float)nx, (float)ny, (float)nz };
@@ -74,14 +72,14 @@ static double along_plate(const double a[3], const double b[3])
     return vec_distance(a, b);
 }
 
-/* Of radius 1 round the z axis: unrolled, the shorter way round. */
+/* Distance on a cylinder of radius 1 around the z axis, along the shorter way around when unrolled. */
 static double along_cylinder(const double a[3], const double b[3])
 {
     double turn = fabs(atan2(a[1], a[0]) - atan2(b[1], b[0]));
     return hypot(a[2] - b[2], fmin(turn, 2 * PI - turn));
 }
 
-/* 6 m x 4 m, 9 triangles: a fan of 7 round a point off the middle, one of whose edges has a vertex more. */
+/* Makes a plate of 6 m x 4 m with 9 triangles: a fan of 7 around an off-centre point; one edge of the fan has an additional vertex. */
 static void make_plate(struct prepared_body *body)
 {
     static const double rim[7][2] = { { 0, 0 }, { 6, 0 }, { 6, 2 }, { 6, 4 }, { 3.5, 4 }, { 0, 4 }, { 0, 2.5 } };
@@ -100,7 +98,7 @@ static void make_plate(struct prepared_body *body)
     body->distance = along_plate;
 }
 
-/* Of radius 1, 5 m long, open; vertices at the seam are there twice. */
+/* Makes an open cylinder of radius 1 and length 5 m; vertices at the seam are duplicated. */
 static void make_cylinder(struct prepared_body *body, uint32_t around, uint32_t rings)
 {
     struct geometry *g = &body->g;
@@ -157,7 +155,8 @@ static double nearest(const struct prepared_body *body, int group, const double 
     return near_m;
 }
 
-/* Shepard or Algorithm 1, of sensors that read 0 or 1, from distances. Where none reaches, of the nearest alone. */
+/* Returns the field (Shepard or Algorithm 1 of the paper) from distances to sensors that read 0 or 1; where no sensor reaches, the
+   nearest sensor's value. */
 static double field(const struct prepared_body *body, int group, bool paper, const double *distance_m, double radius_m, unsigned readings)
 {
     double value = 0, weight = 0, near_m = nearest(body, group, distance_m), reach_m = body->plant.groups[group].reach_m;
@@ -206,7 +205,7 @@ static double largest(const struct prepared_body *body, int group, bool geodesic
     return most;
 }
 
-/* As they come into a file. */
+/* Reads the distance columns as the asset file stores them. */
 static void take_columns(const struct distance_rows *rows, float *columns)
 {
     const size_t count = asset_distance_count(rows->sensor_count, rows->vertex_count), bytes = count * sizeof(uint16_t), before = 12;
@@ -267,7 +266,7 @@ static void onto_surface(const struct prepared_body *body, double p[3])
     memcpy(p, hit.point_m, sizeof(hit.point_m));
 }
 
-struct field_shown { /* the shown values of a field */
+struct field_shown { /* values of a field at the vertices of a level */
     int group;
     bool paper, geodesic;
     unsigned readings;
@@ -290,7 +289,7 @@ static void random_showing(struct field_shown *showing, uint32_t *seed)
                                      .readings = (unsigned)(random_unit(seed) * (1 << SENSORS)) };
 }
 
-/* What a level shows at a place in one of its triangles, between what it has at the corners. */
+/* Returns the level's value at a point of one of its triangles, interpolated between the corners. */
 static double shown_field(const struct prepared_body *body, const struct field_shown *showing, const uint32_t v[3], const double w[3])
 {
     double shown = 0;
@@ -306,7 +305,7 @@ static double shown_field(const struct prepared_body *body, const struct field_s
     return shown;
 }
 
-/* The finest level's error at a random point, which `snap` puts onto the true surface (NULL: the level's own). */
+/* Returns the finest level's error at a random point, which `snap` moves onto the true surface (NULL: the point on the level is used). */
 static double error_somewhere(const struct prepared_body *body, const struct level *level, uint32_t *seed, void (*snap)(double p[3]))
 {
     const uint32_t *v = level->indices + 3 * (uint32_t)(random_unit(seed) * (level->index_count / 3));
@@ -330,7 +329,7 @@ static double error_somewhere(const struct prepared_body *body, const struct lev
 
 /* --- coarser levels, as they are seen ------------------------------------------------------------------------------------------ */
 
-struct sight_target { /* triangles, to be looked at along rays */
+struct sight_target { /* triangles and their BVH, for casting rays */
     struct trimesh mesh;
     struct bvh *bvh;
 };
@@ -378,8 +377,8 @@ static bool look(const struct sight_target *seen, const double from[3], const do
     return true;
 }
 
-#define OUTLINE 12.0 /* pixels of depth within two across */
-struct outline_camera { /* far away, of pixels as large as the level's error: nearer by, it is not drawn */
+#define OUTLINE 12.0 /* maximum depth, in pixels, between two neighbouring pixels of one surface */
+struct outline_camera { /* orthographic view from afar with pixels of the level's error: from nearer the level is not drawn */
     double along[3], right[3], up[3], pixel_m, back_m;
 };
 
@@ -394,7 +393,7 @@ static void random_camera(struct outline_camera *camera, double pixel_m, double 
     camera->back_m = 4 * size_m;
 }
 
-struct sighted { /* of the finest level, from side * side eyes within a pixel */
+struct sighted { /* what side * side rays within a pixel see of the finest level */
     double low, high, nearest, farthest;
     bool missed;
 };
@@ -422,9 +421,10 @@ static struct sighted look_round(const struct prepared_body *body, const struct 
     return sighted;
 }
 
-/* How far a pixel of the level is from what a dense reference shows within a pixel of there; NAN: nothing is to be seen there. outline: the
-   reference ends there, or so does what is in front: the level may show what is just round the corner. What seems wrong is looked at more
-   closely: beside a sensor a far level's pixel is as wide as the field's peak. */
+/* Returns the difference between a pixel of the level and the values that dense rays on the finest level see within a pixel of it; NAN
+   if nothing is visible. *outline: the reference or an object in front of it ends here, so the level may show what lies around the
+   corner. A pixel that seems wrong is checked with more rays, because near a sensor a distant level's pixel is as wide as the field's
+   peak. */
 static double error_as_seen(const struct prepared_body *body, const struct sight_target *level, const struct sight_target *finest,
                             const struct outline_camera *camera, uint32_t *seed, bool *outline)
 {
@@ -467,7 +467,7 @@ static void say_errors(const struct prepared_body *body, size_t level, const cha
 }
 
 #define POINTS sweep(20000, 5000)
-/* On the finest level; 99.5 % within a step of colour, all within `most`. */
+/* Checks the finest level: 99.5 % of the points are within one colour step, all within `most`. */
 static void assert_field(const struct prepared_body *body, const char *name, void (*snap)(double p[3]), double most)
 {
     double *errors = mem_array(POINTS, sizeof(*errors));
@@ -481,10 +481,10 @@ static void assert_field(const struct prepared_body *body, const char *name, voi
 }
 
 #define PIXELS 6000
-/* On a coarser level, seen from all sides: within the outline 99.9 % within `most` steps, since one ray in thousands slips through between
-   triangles, and 99.5 % within one; at the outline 95 %. What is mostly outline is so few pixels thick that what lies behind its edges is
-   no farther than OUTLINE, and beside a sensor a pixel's shift towards the eye, which no eye beside this one makes up for, is much of the
-   way to it: there it is 98 %, and where a tenth at most lies within the outline, 95 %: one sensor seen from one side is as many. */
+/* Checks a coarser level from random directions. Inside the outline 99.9 % of the pixels must be within `most` steps, because one ray in
+   thousands slips between triangles, and 99.5 % within one step; at the outline 95 %. Small bodies are mostly outline, and near a sensor
+   a shift of one pixel in depth changes the field much: there the bound is 98 %, or 95 % if at most a tenth of the pixels lie inside the
+   outline. */
 static void assert_pixels(const struct prepared_body *body, size_t number, const char *name, double most)
 {
     const struct level *level = &body->levels.at[number];
@@ -506,8 +506,8 @@ static void assert_pixels(const struct prepared_body *body, size_t number, const
     say_errors(body, number, name, "within", errors[0], counts[0]);
     say_errors(body, number, name, "at the outline", errors[1], counts[1]);
     assert_true(counts[0] + counts[1] > PIXELS * 9 / 10);
-    bool large = counts[0] > PIXELS / 2; /* else it is a few pixels wide, most of them at its outline */
-    bool some = counts[0] > PIXELS / 50; /* else two in a hundred are no number */
+    bool large = counts[0] > PIXELS / 2; /* otherwise the body is a few pixels wide, most of them at its outline */
+    bool some = counts[0] > PIXELS / 50; /* otherwise there are too few pixels for a percentage */
     size_t most_of_1000 = large ? 995 : counts[0] > PIXELS / 10 ? 980 : 950;
     assert_true(!some || errors[0][counts[0] * most_of_1000 / 1000] <= 1 / 255.0);
     assert_true(!large || errors[0][counts[0] * 999 / 1000] <= most / 255.0);
@@ -530,7 +530,7 @@ static void onto_cylinder(double p[3])
     p[1] /= r;
 }
 
-/* Each edge has as many faces as before it was cut: two, or one at a border; and a border lies on the old border. */
+/* Asserts that each edge has as many triangles as before subdivision (two, or one at a border) and that borders lie on the old border. */
 static void assert_no_cracks(const struct prepared_body *body, double border_m)
 {
     struct welded_positions places;
@@ -561,7 +561,7 @@ static void assert_no_cracks(const struct prepared_body *body, double border_m)
     welded_finish(&places);
 }
 
-/* At a sensor's vertex its distance is 0, on both ways. */
+/* Asserts that each sensor's own vertex has distance 0 by both measures. */
 static void assert_sensors(const struct prepared_body *body)
 {
     for (size_t i = 0; i < SENSORS; i++) {
@@ -585,8 +585,8 @@ TEST(nine_triangles_show_the_field)
     finish(&body);
 }
 
-/* By area: where two sensors' reaches end at once, and the data with them, is a point at which the field jumps, and triangles around it as
-   small as they may be. */
+/* Compares by area: where the reaches of two sensors and the data end in one point, the field jumps there, surrounded by the smallest
+   allowed triangles. */
 static void assert_plate(const struct prepared_body *body)
 {
     struct sight_target finest;
@@ -629,7 +629,7 @@ TEST(nine_triangles_show_how_far_sensors_reach)
     }
 }
 
-/* A plate of two triangles through a box, whose middle is inside that and seen by nobody: what stands out is as true as anything. */
+/* Makes a plate of two triangles through a box: the part inside is invisible, and the visible parts must be as accurate as usual. */
 static void make_plate_through_box(struct prepared_body *body)
 {
     static const double rim[4][2] = { { -1.6, -1.3 }, { 1.6, -1.3 }, { 1.6, 1.3 }, { -1.6, 1.3 } };
@@ -655,7 +655,7 @@ static bool is_in_box(const double p[3])
     return fabs(p[0]) < 1 && fabs(p[1]) < 1 && fabs(p[2]) < 1;
 }
 
-/* What a level shows at a place of that plate. */
+/* Returns the value that a level shows at a point of that plate. */
 static double shown_on_plate(const struct prepared_body *body, const struct level *level, const struct field_shown *showing,
                              const double p[3])
 {
@@ -675,7 +675,7 @@ static double shown_on_plate(const struct prepared_body *body, const struct leve
     return NAN;
 }
 
-/* At random places of the plate that are not inside the other body; on straight distances, since what leads round that has no formula. */
+/* Collects errors at random points of the plate outside the other body, with straight distances, because the way around has no formula. */
 static void find_errors_on_plate(const struct prepared_body *body, const struct level *level, bool (*is_hidden)(const double p[3]),
                                  double *errors)
 {
@@ -707,7 +707,7 @@ TEST(what_stands_out_of_a_body_shows_the_field)
     finish(&body);
 }
 
-/* Of radius 1, with a plate through its middle as above. */
+/* Makes a sphere of radius 1 with the same plate through its centre. */
 static void make_plate_through_ball(struct prepared_body *body)
 {
     enum { AROUND = 64, HIGH = 32 };
@@ -739,7 +739,8 @@ static bool is_in_ball(const double p[3])
     return vec_dot(p, p) < 1;
 }
 
-/* As true as coarser levels are, with their slack; but for the least pieces, beside a sensor. In the farthest all pieces are such. */
+/* Visible parts are as accurate as on other coarser levels, except for the smallest triangles near a sensor. In the coarsest level all
+   triangles are such. */
 TEST(what_stands_out_is_true_on_coarser_levels_too)
 {
     static const double points[SENSORS][3] = { { 0, 1.3, 0.2 }, { 0, -1.3, 0.5 }, { 0, 0.1, 1.1 },
@@ -759,7 +760,7 @@ TEST(what_stands_out_is_true_on_coarser_levels_too)
     finish(&body);
 }
 
-/* A fine plate is left alone but for the sensors' vertices. */
+/* A fine plate stays as it is, except for the sensors' vertices. */
 TEST(straight_edges_are_not_cut)
 {
     struct prepared_body body = { 0 };
@@ -788,8 +789,8 @@ static bool turns_left(const struct geometry *g, uint32_t a, uint32_t b, uint32_
     return (q[0] - p[0]) * (r[1] - p[1]) > (q[1] - p[1]) * (r[0] - p[0]);
 }
 
-/* A rectangle of shifted cells, sensors anywhere on it. Each cell is cut so that it does not lie over itself: where surfaces do, one place
-   has two distances. */
+/* Makes a rectangle of irregular cells with sensors at random points. Each cell is triangulated without overlap: where surfaces overlap,
+   one point would have two distances. */
 static void make_random_plate(struct prepared_body *body, double points[SENSORS][3], uint32_t *seed)
 {
     struct geometry *g = &body->g;
@@ -828,7 +829,7 @@ TEST(random_plates_show_the_field)
         assert_sensors(&body);
         if (body.levels.at[0].index_count / 3 < body.own_triangles + 100000)
             assert_field(&body, "random plate", stay, 2);
-        else /* sensors of one group side by side on a large plate ask for more than the limit of subdivide.h, which is reported */
+        else /* adjacent sensors of one group on a large plate exceed the limit of subdivide.h, which is reported */
             assert_true(body.levels.at[0].left[LEVEL_LIMIT_TRIANGLES].edges > 0);
         finish(&body);
     }
@@ -852,8 +853,8 @@ TEST(a_cylinder_shows_the_field)
     finish(&body);
 }
 
-/* A ring of random size whose thickness waves, turned at random; sensors at random vertices, no two at one: there is no field
-   where two readings are at one place. */
+/* Makes a ring of random size and varying thickness, turned at random, with sensors at distinct random vertices: two readings at one
+   point would leave the field undefined. */
 static void make_random_ring(struct prepared_body *body, double points[SENSORS][3], uint32_t *seed)
 {
     struct geometry *g = &body->g;
@@ -893,14 +894,14 @@ TEST(random_rings_show_the_field_on_every_level)
         prepare(&body, (const double(*)[3])points);
         assert_sensors(&body);
         assert_true(body.levels.count >= 3);
-        assert_field(&body, "ring", NULL, 3); /* splitting looks at a few places of a triangle */
+        assert_field(&body, "ring", NULL, 3); /* subdivision samples only a few points of a triangle */
         for (size_t l = 1; l < body.levels.count; l++)
             assert_pixels(&body, l, "ring", 4);
         finish(&body);
     }
 }
 
-/* Their distances take most of a file, so only a level that saves half of the triangles is worth its vertices. */
+/* Distances of many sensors take most of the file, so a level is kept only if it has at most half of the triangles. */
 TEST(levels_of_many_sensors_have_half_of_the_triangles)
 {
     enum { MANY = 128 };

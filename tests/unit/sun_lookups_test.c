@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shadows that the bounds of tiles tell are those that all texels tell, bit by bit. */
+/* Shadow lookups by the bounds of tiles equal the lookups of all texels, bit by bit. */
 #include "render/soft/lookups.h"
 
 #include "tests/support/test.h"
@@ -11,10 +11,10 @@
 enum { SIDE_PX = 100, TILES = (SIDE_PX + SUN_TILE_STEP_PX - 1) / SUN_TILE_STEP_PX, ROUNDS = 20000, AREA_PX = 20 };
 
 struct lookup_counts {
-    int told, open, half; /* of places: by bounds, by texels, and of the latter those that are neither lit nor dark */
+    int told, open, half; /* number of points decided by bounds, by texels, and of the latter those partly lit */
 };
 
-/* Flat areas of one depth, slopes, and noise. */
+/* Random depth map with flat areas, slopes and noise. */
 static uint16_t depth_at(const uint16_t areas[], int x, int y)
 {
     uint16_t area = areas[y / AREA_PX * (SIDE_PX / AREA_PX) + x / AREA_PX];
@@ -55,7 +55,7 @@ static int whole_within_map(float part)
     return px < 0 ? 0 : px > SIDE_PX - 1 ? SIDE_PX - 1 : (int)px;
 }
 
-/* A little beyond the map, too; depths at random, or close to that of a texel of the tile. */
+/* Points slightly beyond the map too; depths at random, or close to a texel of the tile. */
 static void places_at_random(const struct soft_light *light, lanes at[3])
 {
     for (int i = 0; i < LANES; i++) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Distances along surfaces against formulas, on clean shapes and on the same shapes with every fault that exports have; what is joined,
-   what is not, what is hidden. */
+/* Distances along surfaces compared with formulas, on clean shapes and with every fault of CAD exports; which parts are joined, kept
+   apart and hidden. */
 #include "surface/repair/repair.h"
 #include "surface/surface.h"
 
@@ -73,7 +73,7 @@ static double cylinder_distance(const double size[3], const double a[3], const d
     return hypot(turn > M_PI ? 2 * M_PI - turn : turn, a[2] - b[2]);
 }
 
-/* Slot: x from size[0] to size[1], y from 0 to size[2]. */
+/* The slot spans x from size[0] to size[1] and y from 0 to size[2]. */
 static void make_slot(struct cad *cad, double size[3], int wide)
 {
     int first = 60 + (int)(40 * cad_random(&chance)), high = 60 + (int)(40 * cad_random(&chance));
@@ -93,12 +93,12 @@ static void make_narrow_slot(struct cad *cad, double size[3])
     make_slot(cad, size, 2);
 }
 
-/* Does the straight line pass through the slot? */
+/* Returns whether the straight line passes through the slot. */
 static bool is_blocked(const double slot[3], const double a[3], const double b[3])
 {
     double low = 0, high = 1, dx = b[0] - a[0], dy = b[1] - a[1];
     const double from[3] = { a[0] - slot[0], slot[1] - a[0], slot[2] - a[1] }, slope[3] = { dx, -dx, -dy };
-    for (int i = 0; i < 3; i++) { /* inside where from + t slope > 0 */
+    for (int i = 0; i < 3; i++) { /* inside the slot where from + t slope > 0 */
         if (slope[i] == 0 && from[i] <= 1e-6)
             return false;
         if (slope[i] > 0)
@@ -134,7 +134,7 @@ static const struct surface_shape shapes[] = {
     { "plate, narrow slot", make_narrow_slot, slot_distance },
 };
 
-/* A source at a vertex, or inside a triangle. */
+/* Chooses a source at a vertex, or inside a triangle. */
 static void choose_source(const struct cad *cad, bool inside, double out[3])
 {
     size_t t = (size_t)(cad_random(&chance) * (double)cad->triangle_count);
@@ -178,7 +178,7 @@ static struct score score_of(const struct surface_shape *shape, const double siz
     return (struct score){ score.mean / largest, score.worst / largest };
 }
 
-/* By default with every other fault, of each shape others. */
+/* Tests a shape with every fault; the default run takes every other fault, alternating by shape. */
 static void test_shape(const struct surface_shape *shape)
 {
     struct cad clean = { 0 };
@@ -232,7 +232,7 @@ TEST(shapes_with_every_fault_are_exact_enough)
 
 /* --- what is joined, and what is not ------------------------------------------------------------------------------------------ */
 
-/* A second copy of a shape, moved. */
+/* Appends a moved copy of a shape. */
 static void append(struct cad *cad, const struct cad *other, double dx, double dy, double dz)
 {
     uint32_t first = (uint32_t)cad->vertex_count;
@@ -257,7 +257,7 @@ static float *distances_from(struct surface *surface, const struct cad *cad, dou
     return distances;
 }
 
-/* Two plates of 1 m in one plane, or over each other; can the second be reached from the first? */
+/* Makes two plates of 1 m in one plane or one above the other. Returns whether the second can be reached from the first. */
 static bool second_plate_reached(double dx, double dz)
 {
     struct cad plate = { 0 }, both = { 0 };
@@ -280,13 +280,13 @@ static bool second_plate_reached(double dx, double dz)
 
 TEST(gaps_are_closed_and_walls_are_not_passed)
 {
-    assert_true(second_plate_reached(1.0003, 0));   /* a hair gap of 0.3 mm */
+    assert_true(second_plate_reached(1.0003, 0));   /* a hairline gap of 0.3 mm */
     assert_false(second_plate_reached(1.02, 0));    /* a slot of 20 mm */
     assert_false(second_plate_reached(0, 0.01));    /* two sheets 10 mm apart */
     assert_true(second_plate_reached(0.5, 0.0002)); /* one lying on the other */
 }
 
-/* Every bridge that is counted can be shown: across the gap, and where the pipe passes through the shell. */
+/* Asserts that every counted bridge is in the debug mesh: across the gap, or where the pipe passes through the shell. */
 static void assert_bridges_are_shown(const struct surface *surface, double low_x, double high_x)
 {
     const struct surface_report *report = surface_report(surface);
@@ -312,7 +312,7 @@ TEST(bridges_lie_in_the_gap)
     struct surface *surface = surface_of(&both);
     assert_int_equal(surface_report(surface)->components, 2);
     assert_int_equal(surface_report(surface)->components_after, 1);
-    assert_int_equal(surface_report(surface)->bridges, 31); /* each of the border's vertices with the one opposite */
+    assert_int_equal(surface_report(surface)->bridges, 31); /* each border vertex is bridged to the one opposite */
     assert_float_equal(surface_report(surface)->longest_bridge_m, 0.0003, 1e-6);
     assert_bridges_are_shown(surface, 0.9999, 1.0004);
     surface_destroy(&surface);
@@ -325,7 +325,7 @@ TEST(a_pipe_that_ends_inside_a_shell_is_joined_to_it)
     struct cad pipe = { 0 }, both = { 0 };
     cad_sphere(&both, &chance, 40);
     cad_cylinder(&pipe, &chance, 48, 60, 3, 0);
-    for (size_t v = 0; v < pipe.vertex_count; v++) { /* radius 0.2, from inside the sphere outwards */
+    for (size_t v = 0; v < pipe.vertex_count; v++) { /* radius 0.2, leading from inside the sphere outwards */
         pipe.positions[v][0] *= 0.2f;
         pipe.positions[v][1] *= 0.2f;
         pipe.positions[v][2] += 0.5f;
@@ -338,11 +338,11 @@ TEST(a_pipe_that_ends_inside_a_shell_is_joined_to_it)
     assert_int_equal(report->components, 2);
     assert_int_equal(report->components_after, 1);
     assert_bridges_are_shown(surface, -0.25, 0.25);
-    assert_true(report->hidden_vertices >= 48 * 8);                   /* the pipe's rings inside the sphere */
-    double seam = asin(0.2), truth = M_PI - seam + (3.5 - cos(seam)); /* over the sphere to the pipe, then along it */
+    assert_true(report->hidden_vertices >= 48 * 8);                   /* the pipe's rings inside the sphere are hidden */
+    double seam = asin(0.2), truth = M_PI - seam + (3.5 - cos(seam)); /* over the sphere to the pipe, then along the pipe */
     assert_float_equal(distances[both.vertex_count - 1], truth, 0.01 * truth);
     for (size_t v = sphere_count; v < both.vertex_count; v++)
-        assert_true(isfinite(distances[v])); /* hidden ends too, for the triangles that pass through */
+        assert_true(isfinite(distances[v])); /* hidden ends have distances too, for the triangles that cross the shell */
     surface_destroy(&surface);
     cad_finish(&both);
     cad_finish(&pipe);
@@ -357,10 +357,10 @@ TEST(nothing_leads_through_a_closed_part)
     cad_closed_pipe(&pipes, &chance, 0.3, 4, 60, 120, 8, M_PI / 2, (const double[3]){ 0, 0, 0 }); /* right through the first one */
     struct surface *surface = surface_of(&pipes);
     const struct surface_report *report = surface_report(surface);
-    float *distances = distances_from(surface, &pipes, 2, 0, 0); /* one end of the second pipe */
+    float *distances = distances_from(surface, &pipes, 2, 0, 0); /* source at one end of the second pipe */
     assert_int_equal(report->components_after, 1);
     assert_true(report->hidden_vertices > 60 * 20);
-    /* To the other end: along 1.5 m of pipe, round half of the first one, no shorter than over it along its side, and 1.5 m again. */
+    /* The other end is reached along 1.5 m of pipe, half around the first pipe (at best straight over its side), and another 1.5 m. */
     double least = 2 * 1.5 + 0.5 * (M_PI - 2 * asin(0.6));
     double other_end = INFINITY;
     for (size_t v = first; v < pipes.vertex_count; v++)
@@ -373,7 +373,7 @@ TEST(nothing_leads_through_a_closed_part)
     mem_free(distances);
 }
 
-/* A closed box of 12 triangles. */
+/* Adds a closed box of 12 triangles. */
 static void add_box(struct cad *all, const double low[3], const double high[3])
 {
     struct cad box = { 0 };
@@ -385,8 +385,8 @@ static void add_box(struct cad *all, const double low[3], const double high[3])
     cad_finish(&box);
 }
 
-/* Two ducts that end in flanges of 3.9 mm, which lie on each other; the tolerance, from the ducts' length, is more. What touches one side
-   of a flange is not joined to its other side. */
+/* Two ducts end in flanges of 3.9 mm that lie on each other; the tolerance, which follows from the ducts' length, is larger. A part that
+   touches one side of a flange is not joined to its other side. */
 TEST(thin_flanges_are_not_bridged)
 {
     struct cad ducts = { 0 };
@@ -409,7 +409,7 @@ TEST(thin_flanges_are_not_bridged)
     mem_free(distances);
 }
 
-/* A plate of 3.9 mm, thinner than the tolerance; one duct ends in it, at any depth, and another stands on its far side. */
+/* A plate of 3.9 mm, thinner than the tolerance; one duct ends in it at various depths, and another stands on its far side. */
 TEST(nothing_leads_through_a_thin_plate)
 {
     enum { DEPTHS = 8 };
@@ -453,7 +453,7 @@ TEST(a_sensor_is_dropped_onto_the_surface)
     float *distances = distances_from(surface, &plate, 0.4, 0.7, 0.05);
     for (size_t v = 0; v < plate.vertex_count; v++) {
         double truth = hypot((double)plate.positions[v][0] - 0.4, (double)plate.positions[v][1] - 0.7);
-        assert_float_equal(distances[v], truth, 1e-4); /* 0 at its own place, growing from there */
+        assert_float_equal(distances[v], truth, 1e-4); /* 0 at its own position, growing from there */
     }
     surface_destroy(&surface);
     cad_finish(&plate);
@@ -469,7 +469,8 @@ TEST(nearest_is_the_nearest)
         const double p[3] = { 4 * cad_random(&chance) - 2, 4 * cad_random(&chance) - 2, 2 * cad_random(&chance) - 1 };
         struct surface_place place;
         surface_nearest(surface, p, &place);
-        double truth = fabs(hypot(hypot(p[0], p[1]) - 1, p[2]) - 0.3); /* of the smooth one; flat triangles lie a little inside */
+        /* the truth of the smooth torus; flat triangles lie slightly inside */
+        double truth = fabs(hypot(hypot(p[0], p[1]) - 1, p[2]) - 0.3);
         assert_float_equal(place.distance_m, truth, 0.006);
         assert_float_equal(hypot3(p, place.position_m), place.distance_m, 1e-9);
     }
@@ -477,7 +478,7 @@ TEST(nearest_is_the_nearest)
     cad_finish(&torus);
 }
 
-/* With the right side's triangles farther than the limit too, at places in the tube. */
+/* Also with a limit that excludes the right side's triangles, at points inside the tube. */
 TEST(within_a_limit_is_the_same_spot_or_none)
 {
     struct cad torus = { 0 };
@@ -512,7 +513,7 @@ TEST(within_a_limit_is_the_same_spot_or_none)
     cad_finish(&torus);
 }
 
-/* Sources and places in the middle of strips, far from any vertex of the model: a pipe as CAD writes it. */
+/* Sources and points in the middle of strips, far from any vertex of the model: a pipe as CAD programs triangulate it. */
 TEST(long_thin_strips_are_exact_near_a_source_too)
 {
     enum { SOURCES = 8, PLACES = 400 };
@@ -552,8 +553,8 @@ TEST(long_thin_strips_are_exact_near_a_source_too)
     cad_finish(&pipe);
 }
 
-/* A few cells out of place: most triangles that the sampling leaves have an edge flipped. Near a source, where distances are short, what is
-   off by a little is off by much of the way. */
+/* Shifts a few cells, so that most triangles after resampling have a flipped edge. Near a source distances are short, so a small error
+   is a large share. */
 static double worst_short_way(int across, int up)
 {
     enum { SOURCES = 8, PLACES = 800 };
@@ -591,8 +592,8 @@ TEST(short_ways_are_exact_whatever_edges_are_flipped)
         int across, up;
         uint64_t state;
     } hard[HARD] = {
-        { 1, 5, 1558015352152668877u },  /* a corner lies behind an end of the side across */
-        { 5, 5, 12376468115645539828u }, /* a source just on an edge */
+        { 1, 5, 1558015352152668877u },  /* a corner lies behind an end of the opposite side */
+        { 5, 5, 12376468115645539828u }, /* a source exactly on an edge */
         { 1, 6, 15378426302762057891u }, /* an edge whose farther end is reached before the nearer one */
     };
     struct cad_random usual;
@@ -611,7 +612,7 @@ TEST(short_ways_are_exact_whatever_edges_are_flipped)
     assert_true(worst < 0.03);
 }
 
-/* On the smaller of two pieces, a walk ends sooner than the one beside it. */
+/* On the smaller of two pieces, a propagation ends sooner than the one running in parallel. */
 TEST(many_sources_at_once_are_as_one_by_one)
 {
     enum { SOURCES = 21 };
@@ -670,7 +671,7 @@ TEST(a_surface_without_area_is_refused)
     log_destroy(&quiet);
 }
 
-/* Lengths whose squares are no numbers any more; what comes out does not matter, that it ends does. */
+/* Sizes whose squares underflow; the result does not matter, but the computation must end. */
 TEST(a_speck_ends)
 {
     static const float sizes[] = { 1e-15f, 1e-24f, 1e-30f };
@@ -683,7 +684,8 @@ TEST(a_speck_ends)
         const double source[1][3] = { { 0.41 * (double)sizes[i], 0.37 * (double)sizes[i], 0 } };
         struct surface *surface =
             surface_create(the_log, workers, (const float(*)[3])plate.positions, plate.vertex_count, plate.triangles, plate.triangle_count,
-                           &(struct surface_params){ .spacing_m = 0.2 * (double)sizes[i] }); /* searches look at all there is */
+                           /* a spacing so large that searches visit all triangles */
+                           &(struct surface_params){ .spacing_m = 0.2 * (double)sizes[i] });
         assert_non_null(surface);
         float *distances = mem_array(plate.vertex_count, sizeof(*distances));
         surface_distances(surface, source, 1, distances);

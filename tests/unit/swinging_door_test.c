@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Door: what is kept of a stream of samples, and how near the line through it comes to them. */
+/* The swinging-door filter: which samples of a stream are kept, and how close the line through them stays to the samples. */
 #include "tests/support/test.h"
 
 #include "history/swinging_door.h"
@@ -36,7 +36,7 @@ static void end(struct door_run *run)
     run->kept_count += swinging_door_end(&run->door, &run->params, run->kept + run->kept_count);
 }
 
-/* The value of what was kept, at a time; quality in *quality. */
+/* Returns the value at t_us on the line through the kept points; *quality receives its quality. */
 static double read_back(const struct door_run *run, int64_t t_us, uint32_t *quality)
 {
     int i = 0;
@@ -67,7 +67,7 @@ static double noise(void)
     return (double)rand() / RAND_MAX - 0.5;
 }
 
-/* Walks, noise, jumps, flat parts and lost quality, of random size: never further off than promised. */
+/* Random walks, noise, jumps, flat parts and lost quality: the line is never farther off than promised. */
 TEST(the_line_keeps_its_promise)
 {
     for (unsigned seed = 1; seed <= 300; seed++) {
@@ -142,7 +142,7 @@ TEST(a_switch_has_steps)
     assert_int_equal(run->kept_count, 11);
 }
 
-/* Daylight saving does not touch UTC; somebody who sets the clock does. */
+/* Daylight saving does not affect UTC, but setting the clock back does. */
 TEST(a_clock_set_back_loses_nothing)
 {
     struct door_run *run = begin(0.5, 0.5, 100000 * S);
@@ -171,7 +171,7 @@ TEST(what_is_held_is_the_newest)
     assert_int_equal(held.t_us, 3 * S);
 }
 
-/* The line to the newest sample, before its door has closed: a step must not look like a ramp meanwhile. */
+/* The line to the newest sample before the door closes keeps the same bound: a step must not look like a ramp meanwhile. */
 TEST(whoever_reads_now_is_promised_the_same)
 {
     srand(20260101);

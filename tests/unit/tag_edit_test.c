@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Places of sensors written into a tag list: what is changed is changed, and nothing else is, to the byte. */
+/* Writing sensor positions into a tag list: the edited cells change, and every other byte stays. */
 #include "tests/support/test.h"
 
 #include "base/files/atomic_file.h"
@@ -25,7 +25,7 @@ TEST(test_one_row)
            "Tag Name,Group,Asset,X,Y,Z\nTT-1,t,E,1.50,2.000,3\nTT-2,t,E,1.25,-3,0.123\nTT-3,t,E,7,8,9\n");
 }
 
-/* A mark at the beginning, another separator, unknown columns, comments in them, blank rows, quotes, line ends, no end at the end. */
+/* A byte order mark, another separator, unknown columns, comments in them, blank rows, quotes, line endings, and no newline at the end. */
 TEST(test_the_rest_stays_to_the_byte)
 {
     const struct tag_edit to = { "T;\"2\"", "E 2", NULL, NULL, NULL, { 10, 20, -0.0001 }, false };
@@ -94,7 +94,7 @@ TEST(test_lines)
     tag_lines_finish(&lines);
 }
 
-/* Random lists: read by the reader that the plant is read with, all cells but those of the edit are what they were. */
+/* Random lists, read by the plant's own reader: all cells except the edited ones are unchanged. */
 static unsigned seed;
 static int below(int n)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tag lists as control systems export them, in their encodings and with their separators; and what is wrong with such lists. */
+/* Tag lists exported by control systems, in various encodings and with various separators; and errors in them. */
 #include "preprocess/match/tag_export.h"
 
 #include "tests/support/test.h"
@@ -67,7 +67,7 @@ TEST(test_ignition)
         "{\"name\":\"PT-7\",\"tagType\":\"AtomicTag\",\"documentation\":\"feed\\u0007 pressure\"}]}]}"));
     assert_string_equal(list.format, "Ignition (JSON)");
     assert_int_equal(list.count, 3);
-    assert_int_equal(list.renamed, 0); /* members of instances have their path from the beginning */
+    assert_int_equal(list.renamed, 0); /* members of instances have their full path from the root */
     check(&list, 0, EXPORT_NAME, "Area1/E-101/TT");
     check(&list, 0, EXPORT_ADDRESS, "ns=1;s=[plc]HR1");
     check(&list, 0, EXPORT_SCALED_HIGH, "150.5");
@@ -89,7 +89,7 @@ TEST(test_ignition)
     assert_non_null(strstr(why, "line 1: not JSON"));
 }
 
-/* A provider with these types and these tags. */
+/* JSON of an Ignition provider with these types and tags. */
 #define PROVIDER(types, tags)                                                                                                              \
     "{'name':'','tagType':'Provider','tags':[{'name':'_types_','tagType':'Folder','tags':[" types                                          \
     "]},{'name':'A','tagType':'Folder','tags':[" tags "]}]}"
@@ -101,7 +101,7 @@ TEST(test_ignition)
     TYPE("Pump", "'parameters':{'Dev':{'dataType':'String','value':'PLC1'},'No':{'dataType':'Integer','value':0}},'tags':[" MEMBER(        \
                      "T", ",'engUnit':'°C','engHigh':120,'opcItemPath':" BOUND("[{Dev}]HR{No}")) "]")
 
-/* Fields of a member that its instance leaves out, or overrides. */
+/* Fields of a type's member that an instance omits or overrides. */
 TEST(test_udt_kinds)
 {
     static const struct {
@@ -219,7 +219,7 @@ TEST(test_udt_kinds)
     print_message("# %zu of %zu kinds of UDT\n", sizeof(cases) / sizeof(*cases), sizeof(cases) / sizeof(*cases));
 }
 
-/* Headers of lists in other languages and of other systems: which columns are found. */
+/* Headers of lists in other languages and from other systems: which columns are recognised. */
 TEST(test_header_kinds)
 {
     static const struct {
@@ -306,7 +306,7 @@ TEST(test_header_kinds)
     print_message("# %zu of %zu kinds of headers\n", sizeof(cases) / sizeof(*cases), sizeof(cases) / sizeof(*cases));
 }
 
-/* Names that look alike are said to be two; both stay. */
+/* Names that look alike give a warning, and both tags stay. */
 TEST(test_alike)
 {
     static const char *const others[] = { "PI–101", "PI‑101", "PI−101", "PI－101", "ＰＩ-101", "PI-101\u00a0", "\u200bPI-101",
@@ -488,7 +488,7 @@ TEST(test_checksum)
     mem_free(path);
 }
 
-/* A cover, a hidden sheet and a list, in a workbook whose parts have names of their own. */
+/* A workbook with a cover, a hidden sheet and a list, and unusual names of its parts. */
 TEST(test_sheets)
 {
     struct tag_export list;
@@ -520,7 +520,7 @@ TEST(test_sheets)
     mem_free(path);
 }
 
-/* A workbook that names `count` sheets, all of which are stored in one part. */
+/* Reads a workbook of `count` sheets that all refer to one part. */
 static bool read_sheets(int count, struct tag_export *list)
 {
     char *path = temp_path(folder, "sheets.xlsx");

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Versions of a tag list on disk: none is ever lost, and what cannot be written is refused with the reason. */
+/* Versions of a tag list on disk: no version is ever lost, and a failed write is refused with the reason. */
 #include "placing/tag_file.h"
 
 #include "tests/support/test.h"
@@ -105,7 +105,7 @@ CASE(test_a_list_that_changed_meanwhile_is_not_written_over)
     mem_free(first);
 }
 
-/* As the daemon sees it whose service may not write there. */
+/* A read-only folder, as a daemon sees it whose service may not write there. */
 CASE(test_a_folder_that_may_not_be_written_is_said)
 {
     char *kept;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tag lists: Kepware's form and ours, and every kind of mistake with its line, column and words. */
+/* Tag lists in Kepware's format and ours, and every kind of mistake with its line, column and message. */
 #include "tests/support/test.h"
 #include <math.h>
 
@@ -92,7 +92,7 @@ CASE(byte_orders_are_resolved)
           { "tags.csv", 3, 19, "Byte Order: 'ABCD' contradicts the address '400001#BB'" });
 }
 
-/* One off by one register looks like a value all the same. */
+/* An address that is off by one register still yields a plausible value, so it is never guessed. */
 CASE(where_long_values_begin_is_never_guessed)
 {
     plant_case_load(c, yaml_no_order,
@@ -217,7 +217,7 @@ CASE(addresses_and_types_are_checked)
           { "tags.csv", 10, 3, "float64 takes 4 registers" });
     plant_case_load(c, yaml, "Tag Name,Data Type\nA,Word\n");
     FOUND(c, { "tags.csv", 1, 1, "the header has no column 'Address'" });
-    plant_case_load(c, yaml_no_source, "Tag Name\nA\n"); /* a plant without sources is shown with values from elsewhere */
+    plant_case_load(c, yaml_no_source, "Tag Name\nA\n"); /* a plant without sources shows values that arrive by other means */
     plant_case_assert_loaded(c, 0);
     assert_int_equal(c->plant->tags[0].source, -1);
 }
@@ -373,10 +373,10 @@ CASE(units_agree_with_the_group)
                     "C,40001,temp,E-101,N,°c\n"
                     "D,40001,temp,E-101,N,°F\n"
                     "E,40001,temp,E-101,N,\n");
-    plant_case_assert_loaded(c, 0); /* what is converted, and what is refused: units_test */
+    plant_case_assert_loaded(c, 0); /* units_test covers which units are converted and refused */
 }
 
-/* A plant file that lacks its groups is one error, not one for every row. */
+/* A plant file without valid groups gives one error, not one per row. */
 CASE(a_broken_plant_file_does_not_flood)
 {
     plant_case_load(c,

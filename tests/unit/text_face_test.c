@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Text that DejaVu Sans has no letters for is set in a font that has them. */
+/* Text that DejaVu Sans has no glyphs for is drawn in a font that has them. */
 #include "tests/support/test.h"
 #include <stdbool.h>
 
@@ -17,7 +17,7 @@ static cairo_t *begin(cairo_font_weight_t weight)
     return cairo;
 }
 
-/* How many letters of a text the font has that it is set in. */
+/* Returns how many of a text's glyphs exist in the selected font. */
 static int count_known(cairo_t *cairo, const char *text)
 {
     cairo_glyph_t *glyphs = NULL;
@@ -45,7 +45,7 @@ static bool has_hangul(void)
 
 TEST(korean_has_its_letters)
 {
-    static const char text[] = "\uc628\ub3c4 TE-171 \uc2dc\ud5d8"; /* 4 of them, 6, and 2 blanks */
+    static const char text[] = "\uc628\ub3c4 TE-171 \uc2dc\ud5d8"; /* 4 Korean characters, 6 Latin ones and 2 blanks */
     if (!has_hangul()) {
         print_message("no font for Korean: package fonts-nanum\n");
         skip();

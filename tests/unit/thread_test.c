@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A thread with ticks: evenly spaced, ended at once when it is to stop. */
+/* A ticking thread: evenly spaced ticks, and immediate stop. */
 #include "tests/support/test.h"
 #include <stdatomic.h>
 

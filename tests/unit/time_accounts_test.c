@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Time of drawing goes to addresses in equal shares: it is simulated, and who got how much is counted. */
+/* Fair sharing of render time between addresses, tested by simulating clients and counting the time of each. */
 #include "service/time_accounts.h"
 
 #include "tests/support/test.h"
@@ -48,7 +48,7 @@ TEST(who_comes_anew_owes_what_it_had)
     assert_ptr_equal(who_has_had_less(greedy, other), other);
     for (int i = 0; i < 60; i++)
         serve(&accounts, other, 20 * NS_PER_MS);
-    time_accounts_leave(&accounts, &greedy); /* the other has caught up: nothing is owed */
+    time_accounts_leave(&accounts, &greedy); /* the other address has caught up: no time is owed */
     assert_int_equal(accounts.count, 1);
     greedy = time_accounts_join(&accounts, 1);
     time_accounts_asked(&accounts, greedy, SHARE);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Instants as people write them, and what is refused. */
+/* Parsing of timestamps in common formats, and which texts are refused. */
 #include "tests/support/test.h"
 #include <time.h>
 
@@ -67,7 +67,7 @@ TEST(what_is_not_one_instant_is_refused)
             fail_msg("'%s' was taken", bad[i]);
 }
 
-/* Both hours of the night when the clocks go back are different instants, and none of them depends on this computer's zone. */
+/* The two equal hours of the night when clocks go back are different instants, independent of this computer's time zone. */
 TEST(summer_time_does_not_matter)
 {
     int64_t first, second;
@@ -79,7 +79,7 @@ TEST(summer_time_does_not_matter)
     char text[TIMESTAMP_BYTES];
     timestamp_print(first, text);
     assert_string_equal(text, "2026-10-25T00:30:00.000Z");
-    assert_true(timestamp_parse("2026-03-29T02:30:00+01:00", NOW, &first)); /* not there on any wall, but one instant */
+    assert_true(timestamp_parse("2026-03-29T02:30:00+01:00", NOW, &first)); /* a local time that no clock shows, but a valid instant */
     unsetenv("TZ");
     tzset();
 }

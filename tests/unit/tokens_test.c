@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The file of tokens: who is let in, who no longer, and which files let in nobody. */
+/* The token file: which tokens are accepted, which are revoked, and which files accept nobody. */
 #include "access/tokens.h"
 
 #include "tests/support/test.h"
@@ -110,7 +110,7 @@ CASE(a_token_may_be_for_one_display)
     assert_int_equal(read.display, 12);
     assert_true(read.unattended);
     assert_int_equal(tokens_role(tokens, &read, NOW_NS), ROLE_VIEWER);
-    read.display = 1; /* the file says another one now */
+    read.display = 1; /* as if the file had since given the token another display */
     assert_int_equal(tokens_role(tokens, &read, NOW_NS), ROLE_NOBODY);
     tokens_destroy(&tokens);
     static const char *const bad[] = { "room", "room:", "room:0", "room:17", "room:1x", "room:-1", "room:111111111111", ":1", "a b:1", "" };
@@ -204,7 +204,7 @@ CASE(wrong_lines_let_in_nobody_and_leave_the_others)
     tokens_destroy(&tokens);
 }
 
-/* Twice the same, and not what was read. */
+/* Looks twice, as a changed file is accepted only when two looks agree. Returns whether the second look read the file. */
 static bool look_until_read(struct tokens *tokens)
 {
     bool first = tokens_look(tokens);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parallel transport against what is known of planes, spheres and boxes. */
+/* Parallel transport compared with formulas for planes, spheres and boxes. */
 #include "tests/support/test.h"
 #include <math.h>
 
@@ -74,7 +74,7 @@ static size_t nearest_vertex(const struct cad *shape, const double point[3])
     return best;
 }
 
-/* On a plane a vector stays what it is, also around slots; of another plate nothing is known. */
+/* On a plane a vector stays constant, also around slots; on a separate plate it is unknown. */
 TEST(test_plane)
 {
     struct carried c = { 0 };
@@ -100,8 +100,8 @@ TEST(test_plane)
     finish(&c);
 }
 
-/* A long strip, folded like an accordion: 40 m of way in a box of 2.3 m. It can be unfolded, so what a vector has across the strip it keeps
-   to the end. */
+/* A long strip folded like an accordion: a path of 40 m in a box of 2.3 m. It can be unfolded, so a vector keeps its component across
+   the strip to the end. */
 TEST(test_accordion)
 {
     const double length_m = 40, forth = 0.05, up = sqrt(1 - forth * forth);
@@ -130,7 +130,7 @@ TEST(test_accordion)
     finish(&c);
 }
 
-/* Along great circles, as far as near the antipode, where all of them meet. */
+/* Transport along great circles up to near the antipode, where all of them meet. */
 TEST(test_sphere)
 {
     struct carried c = { 0 };
@@ -154,7 +154,7 @@ TEST(test_sphere)
         if (cosine < cos(0.9 * M_PI) || sine < 1e-6)
             continue;
         vec_cross(axis, first, turned);
-        for (int i = 0; i < 3; i++) /* Rodrigues: about the axis of the great circle */
+        for (int i = 0; i < 3; i++) /* Rodrigues' rotation about the axis of the great circle */
             want[i] = cosine * first[i] + sine * turned[i] + (1 - cosine) * vec_dot(axis, first) * axis[i];
         vector_at(&c, v, here);
         double error = 2 * asin(fmin(1, 0.5 * vec_distance(want, here)));
@@ -168,7 +168,7 @@ TEST(test_sphere)
     finish(&c);
 }
 
-/* Over an edge as if it were unfolded: from the middle of the top, what points to a side goes down it. */
+/* Transport over an edge as if unfolded: a vector in the middle of the top that points to a side points down on that side. */
 TEST(test_box)
 {
     static const double middles[4][3] = { { 1, 0.5, 0.5 }, { 0.5, 1, 0.5 }, { 0, 0.5, 0.5 }, { 0.5, 0, 0.5 } };
@@ -197,8 +197,8 @@ TEST(test_box)
     finish(&c);
 }
 
-/* A sphere of which three in five triangles are there, some of them to a corner anywhere. At rims, and where more than two triangles meet,
-   edges may have negative weights, and rotations round a triangle do not add up; directions are known all the same. */
+/* A sphere with three in five of its triangles, some with a corner moved anywhere. At borders, and at edges with more than two
+   triangles, weights may be negative and rotations around a triangle do not cancel; directions must be known all the same. */
 TEST(test_tangle)
 {
     struct carried c = { 0 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sensors that are tried out elsewhere: the field is that of a plant that has them there, for who asks and for nobody else. */
+/* Trial layouts: the field equals that of a plant with its sensors at the trial positions, only for sessions that request the trial. */
 #include "tests/support/test.h"
 #include <math.h>
 
@@ -45,7 +45,7 @@ static int teardown(void **state)
 
 #define CASE(name) TEST_ON(struct trials_fixture *f, name, setup, teardown)
 
-/* Along the surface from vertex `to`, as the synthetic plant has it: the sum of the ways along the axes. */
+/* Distance along the surface from vertex `to`, as the synthetic plant defines it: the sum of the distances along the axes. */
 static float *along(const struct trials_fixture *f, size_t to)
 {
     const float(*at)[3] = f->plant->file.view.positions_m;
@@ -83,7 +83,7 @@ static struct scalar *copy_of(struct trials_fixture *f, int asset, uint32_t tria
     return copy;
 }
 
-/* What a plant would show that has the sensor there: the plain sum, in double precision. */
+/* Returns the value of a plant that has the sensor at the trial position: the plain sum in double precision. */
 static double truth(const struct trials_fixture *f, const float *moved_m, size_t vertex)
 {
     double sum = 0, total = 0;
@@ -153,7 +153,7 @@ CASE(test_what_it_does_not_touch_is_shared)
     assert_int_equal(plain->version, version);
 }
 
-/* Each step leaves a set behind; none of it stays. */
+/* Each step of a drag replaces a trial; none of the replaced ones stays in memory. */
 CASE(test_dragging_leaves_nothing_behind)
 {
     uint32_t id = 0, first = 0;
@@ -170,7 +170,7 @@ CASE(test_dragging_leaves_nothing_behind)
     assert_true(field_bytes(f->field) <= bytes);
     assert_null(trials_take(f->trials, first));
     assert_true(trials_live(f->trials, id));
-    struct scalar *gone = copy_of(f, 0, first), *plain = copy_of(f, 0, 0); /* of one that is gone: as the plant has it */
+    struct scalar *gone = copy_of(f, 0, first), *plain = copy_of(f, 0, 0); /* a trial that no longer exists shows the plant's own layout */
     assert_memory_equal(gone, plain, VERTICES * sizeof(*plain));
     mem_free(gone);
     mem_free(plain);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A value in one unit is never shown as one in another: the table against known numbers, and every way by which values come in. */
+/* Conversion of units: a value in one unit is never shown in another; the conversion table against known numbers, and every way by which
+   values arrive. */
 #include "tests/support/test.h"
 #include <math.h>
 
@@ -23,7 +24,7 @@
 
 /* --- the table -------------------------------------------------------------------------------------------------------------- */
 
-/* Of GNU units 2.22, except temperatures, which are defined so. */
+/* Expected values from GNU units 2.22, except temperatures, which are converted by definition. */
 TEST(values_are_converted)
 {
     static const struct {
@@ -165,7 +166,7 @@ CASE(rows_are_in_their_own_unit)
     }
 }
 
-/* An expression computes in the units of its tags' rows. */
+/* An expression computes in the units of the tag rows that it uses. */
 CASE(derived_tags_compute_as_rows_say)
 {
     plant_case_load(c, yaml,
@@ -200,7 +201,7 @@ CASE(what_cannot_be_converted_is_an_error_at_its_cell)
     FOUND(c, { "tags.csv", 2, 25, "H of the group is 90, but HH is 87.7777778, in °C; expected LL < L < H < HH" });
 }
 
-/* A reading of before a reload is none of another unit. */
+/* After a reload, a reading in another unit is not kept. */
 TEST_WITH(readings_are_not_adopted_in_another_unit, plant_case_set_up, plant_case_tear_down)
 {
     struct plant_case *c = *state, other = { .folder = c->folder, .path = c->path };
@@ -217,7 +218,8 @@ TEST_WITH(readings_are_not_adopted_in_another_unit, plant_case_set_up, plant_cas
     store_snapshot(is, 2, 2, snapshot);
     assert_int_equal(snapshot->readings[0].quality, QUALITY_BAD_WAITING);
     assert_true(snapshot->readings[1].value == 70);
-    assert_true(loop_check_fingerprint(c->plant, 0) != loop_check_fingerprint(other.plant, 0)); /* what was proven is another value now */
+    /* the loop check was made in another unit, so it is void */
+    assert_true(loop_check_fingerprint(c->plant, 0) != loop_check_fingerprint(other.plant, 0));
     assert_true(loop_check_fingerprint(c->plant, 1) == loop_check_fingerprint(other.plant, 1));
     snapshot_destroy(&snapshot);
     store_destroy(&was);
@@ -229,7 +231,8 @@ TEST_WITH(readings_are_not_adopted_in_another_unit, plant_case_set_up, plant_cas
 
 /* --- files ------------------------------------------------------------------------------------------------------------------ */
 
-/* What the files say is in the unit of the row, unless they say another; what comes out says which it is, and goes in again as it was. */
+/* Values in files are in the unit of the tag's row unless the file states another one; an export states its unit and can be imported
+   again unchanged. */
 CASE(files_say_their_unit_or_mean_the_row_s)
 {
     static const int64_t start_us = INT64_C(1792886400) * US_PER_S;
@@ -250,7 +253,7 @@ CASE(files_say_their_unit_or_mean_the_row_s)
         struct history_reader *reader = history_reader_create(log, pass ? again : folder);
         assert_int_equal(history_series(reader, "F", start_us, start_us + 9 * US_PER_S, 100, &series), 0);
         history_reader_destroy(&reader);
-        assert_int_equal(series.points.count, 4); /* with the end of the line */
+        assert_int_equal(series.points.count, 4); /* four points, including the one that ends the line */
         for (int i = 0; i < 3; i++)
             assert_true(fabs(series.points.at[i].value - (i < 2 ? 100 : 50)) < 1e-6);
         series_text_csv_head(&out, false);
@@ -272,7 +275,7 @@ CASE(files_say_their_unit_or_mean_the_row_s)
     log_destroy(&log);
 }
 
-/* What a plant recorded in one unit is given in the unit in which it shows the tag now, by every way, and one file has one unit. */
+/* Values recorded in one unit are returned in the tag's current unit by every query, and one export file uses one unit. */
 CASE(what_was_recorded_is_shown_in_the_unit_of_now)
 {
     static const int64_t start_us = INT64_C(1792886400) * US_PER_S;
@@ -291,7 +294,7 @@ CASE(what_was_recorded_is_shown_in_the_unit_of_now)
         struct history_tag *tags = history_tags(c->plant);
         struct snapshot *snapshot = snapshot_create(1);
         struct history_series points, buckets;
-        history_reader_show_by(reader, pass ? NULL : c->plant); /* later the file itself has the unit */
+        history_reader_show_by(reader, pass ? NULL : c->plant); /* in the second pass the month file itself stores the unit */
         assert_int_equal(history_series(reader, "F", start_us, start_us + 7200 * US_PER_S, 20000, &points), 0);
         assert_int_equal(history_series(reader, "F", start_us, start_us + 3600 * US_PER_S, 10, &buckets), 0);
         assert_int_equal(history_at(reader, tags, start_us + 2 * US_PER_S, snapshot), 0);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Vertices of an asset held fast on its surface: those of coarser levels stand off it, and have the distances of their own side. */
+/* Embedding of an asset's vertices in its surface: vertices of coarser levels lie off the surface and get the distances of their own
+   side. */
 #include "surface/vertex_embedding.h"
 
 #include "tests/support/test.h"
@@ -15,7 +16,7 @@
 #include "tests/support/prep_case.h"
 #include "tests/support/temp.h"
 
-#define CELL 0.02 /* m, and how thick the plate is */
+#define CELL 0.02 /* metres; also the thickness of the plate */
 #define ACROSS 80
 #define UP 60
 #define RADIUS 0.8 /* to its inner side */
@@ -35,7 +36,7 @@ static int tear_down(void **state)
     return prep_case_tear_down(state);
 }
 
-/* A plate, closed, bent about the y axis: a level's edges leave it by more than it is thick, towards its other side. */
+/* Makes a closed plate, bent about the y axis: a level's edges leave it by more than its thickness, towards the other side. */
 static void make_bent_plate(struct cad *plate, struct cad_random *random)
 {
     cad_box(plate, random, ACROSS, UP, 1, CELL);
@@ -85,7 +86,7 @@ static void on_side(double turn, double y, double radius, float out[3])
     out[2] = (float)(radius * cos(turn));
 }
 
-/* Places as edges of a coarser level of the plate's outer side have them: nearer to its inner side. */
+/* Points as on edges of a coarser level of the plate's outer side: nearer to its inner side. */
 TEST(what_stands_off_is_on_the_side_that_it_looks_along)
 {
     enum { COUNT = 200 };
@@ -97,7 +98,7 @@ TEST(what_stands_off_is_on_the_side_that_it_looks_along)
     double worst_m = 0, nearest_m = INFINITY;
     cad_random_start(&chance);
     make_bent_plate(&plate, &chance);
-    for (int i = 0; i < COUNT; i++) { /* first the places on its side, which are the finest level's */
+    for (int i = 0; i < COUNT; i++) { /* first points on the side itself, like the finest level's vertices */
         double turn = 0.8 * (cad_random(&chance) - 0.5), y = UP * CELL * (0.3 + 0.4 * cad_random(&chance));
         double off_m = CELL * (0.55 + 0.4 * cad_random(&chance));
         on_side(turn, y, outer, places[i]);
@@ -134,7 +135,7 @@ TEST(what_stands_off_is_on_the_side_that_it_looks_along)
 
 /* --- against plantcast-prep --------------------------------------------------------------------------------------------------- */
 
-/* Vertices of coarser levels that differ from what is stored by more than FAR of the largest distance. */
+/* Counts the vertices of coarser levels whose distance differs from the stored one by more than FAR of the largest distance. */
 static size_t count_far(const struct asset_view *view, const struct surface *surface, const float (*normals)[3])
 {
     const struct asset_level *finest = &view->levels[0];
@@ -170,7 +171,7 @@ static size_t count_far(const struct asset_view *view, const struct surface *sur
     return far;
 }
 
-/* The coarsest level errs by as much as the plate is thick, and in some places passes through itself: no side is the right one there. */
+/* The coarsest level's error equals the plate's thickness, and in some places the level intersects itself: neither side is right there. */
 TEST(coarser_levels_have_the_distances_of_their_own_side)
 {
     struct prep_case *c = *state;

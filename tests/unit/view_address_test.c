@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Addresses of the page as arguments of a query: each form, and what is no form. */
+/* Page addresses converted to query arguments: each valid form, and invalid ones. */
 #include "message/view_address.h"
 
 #include "tests/support/test.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Pixels that are kept: found by shape, within the bound, the least recently used first to go. */
+/* The store of visibility buffers: lookup by shape, memory limit, least recently used evicted first. */
 #include "tests/support/test.h"
 
 
@@ -23,7 +23,7 @@ TEST(test_found_again)
     assert_ptr_equal(visibility_store_find(&store, 7), made);
     assert_int_equal(*made, 42);
     assert_null(visibility_store_find(&store, 8));
-    assert_non_null(make(&store, 7, 300)); /* in place of the old ones */
+    assert_non_null(make(&store, 7, 300)); /* replaces the old buffers */
     assert_int_equal(store.bytes, 300);
     visibility_store_drop(&store, 7);
     assert_null(visibility_store_find(&store, 7));
@@ -38,7 +38,7 @@ TEST(test_bound)
     assert_non_null(make(&store, 1, 400));
     assert_non_null(make(&store, 2, 400));
     assert_non_null(visibility_store_find(&store, 1));
-    assert_non_null(make(&store, 3, 600)); /* the second was not used since */
+    assert_non_null(make(&store, 3, 600)); /* the second buffer is the least recently used one */
     assert_non_null(visibility_store_find(&store, 1));
     assert_null(visibility_store_find(&store, 2));
     assert_int_equal(store.bytes, 1000);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What is shown, hinted at, hidden and cut away; and how clients say so. */
+/* Visibility: shown, ghosted, hidden and clipped assets, and the messages by which clients set them. */
 #include "message/visibility.h"
 
 #include "tests/support/test.h"
@@ -56,7 +56,7 @@ TEST(a_box_keeps_what_is_in_it)
     assert_false(clip_keeps(&clip, (double[3]){ 0, 0, -3.1 }));
 }
 
-/* Random rays and planes: a place of the ray is in the part that stays if and only if every plane keeps it. */
+/* Random rays and planes: a point of the ray lies within the kept part if and only if every plane keeps it. */
 TEST(rays_are_cut_where_planes_are)
 {
     srand(3);

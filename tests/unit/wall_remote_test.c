@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What desks send to walls: one order for each pane, kept over a restart; pointers; places that are not in the plant file. */
+/* Remote control of walls: one command per pane, kept across a restart; pointers; displays and panes that are not in the plant file. */
 #include "tests/support/test.h"
 
 #include <jansson.h>
@@ -51,7 +51,7 @@ static enum refusal_code order(struct wall_remote_fixture *f, const char *view, 
     return wall_remote_order(f->remote, &(struct wall_order){ MAIN, view, "Title", held, "Desk 2" }, "kim", 7);
 }
 
-/* Takes the text; the list's length and a text that it holds are compared. */
+/* Frees the text; asserts the list's length and a part of its text. */
 static void assert_list(char *text, size_t count, const char *part)
 {
     json_t *message = json_loads(text, 0, NULL);
@@ -85,7 +85,7 @@ CASE(places_are_those_of_the_plant_file)
     assert_non_null(wall_place_wrong(&f->plant, &(struct wall_place){ "room", "side", 1 }));
     assert_non_null(wall_place_wrong(&f->plant, &(struct wall_place){ "room", "none", 1 }));
     assert_int_equal(order(f, "group=t", false), REFUSAL_NONE);
-    f->display.pane_count = 0; /* the plant is loaded anew, and has no such pane */
+    f->display.pane_count = 0; /* after a reload the plant has no such pane */
     assert_list(wall_remote_text(f->remote), 0, "walls");
     f->display.pane_count = 2;
     assert_list(wall_remote_text(f->remote), 1, "group=t");

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Replays the seeds of the fuzzer of frame headers, and what random changes make of them. */
+/* Replays the seeds of the frame header fuzzer and random mutations of them. */
 #include "tests/fuzz/wire_fuzz.c"
 
 #include "tests/support/test.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The frame header against the vectors that the browser's reader is tested with too, and against random bytes. */
+/* Parsing of frame headers with the test vectors that the browser's parser uses too, and with random bytes. */
 #include "protocol/wire.h"
 
 #include "tests/support/test.h"
@@ -131,7 +131,7 @@ TEST(every_cut_of_a_frame_is_refused)
     mem_free(bytes);
 }
 
-/* Whatever is accepted is within its ranges, and is written back as it was read. */
+/* An accepted header is within its ranges and is written back as it was read. */
 TEST(random_headers_are_refused_or_sane)
 {
     unsigned seed = (unsigned)sweep_seed(), accepted = 0;

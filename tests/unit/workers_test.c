@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The pool of threads: every job once, in order of start, loops that cover their range, also from within a job. */
+/* The thread pool: every job runs once, in submission order; loops cover their range, also from within a job. */
 #include "base/workers.h"
 
 #include "tests/support/test.h"
@@ -35,7 +35,7 @@ struct ordered {
 static void note_order(void *arg)
 {
     struct ordered *job = arg;
-    job->order[(*job->next)++] = job->number; /* one worker: no two at a time */
+    job->order[(*job->next)++] = job->number; /* with one worker no two jobs run at once */
 }
 
 TEST(one_worker_keeps_the_order)
@@ -118,7 +118,7 @@ struct waiter {
     _Atomic int *done, *wrong;
 };
 
-/* Every worker waits for tasks that none is left to begin. */
+/* Every worker waits for tasks that no free worker is left to run. */
 static void begin_and_end(void *arg)
 {
     const struct waiter *waiter = arg;
