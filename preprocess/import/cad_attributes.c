@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parses attribute files line by line. An element is matched to a node below the node of its enclosing element, or else to any node of that
- * name. */
+/* Parses attribute files line by line. Assigns an element to the node of that name below the enclosing element's node, or if there is none,
+ * to any node of that name. */
 #include "preprocess/import/cad_attributes.h"
 
 #include <stdio.h>
@@ -12,7 +12,7 @@
 
 enum { MAX_DEPTH = 1000 };
 
-struct node_key { /* key of the two node indexes: sorted by parent and name, and by name alone */
+struct node_key { /* node in the two sorted indexes: one by parent and name, one by name alone */
     const char *name;
     int parent, node;
 };
@@ -89,7 +89,7 @@ static void take_line(struct cad_model *model, int node, char *line, const char 
     }
 }
 
-/* Reads the separator of entries from the header line, which ends in ", sep: &end&". */
+/* Reads the separator of entries from the file's header line: the text after "sep:", such as "&end&". */
 static void take_separator(const char *line, char *separator, size_t separator_bytes)
 {
     const char *at = strstr(line, "sep:");

@@ -31,7 +31,7 @@ struct import_command {
     struct conversion_params conversion;
     struct work_folder work;
     char **paths;
-    json_t *findings; /* findings of each model that was read (findings.h) */
+    json_t *findings; /* array of findings.h results, one per model that was read */
     struct plant_draft_model *models;
     int count, unread; /* count: models to convert, later models converted (the length of `models`); unread: models that failed */
     bool anew, interrupted;
@@ -143,7 +143,7 @@ static enum found_plant find_plant(const struct import_command *import)
     return found;
 }
 
-/* Converts all models. If one fails, the plant keeps its current copy of that model. With --anew one failure fails the import, since the
+/* Converts all models. If one fails, the plant keeps its current copy of that model. With `--anew` one failure fails the import, since the
  * plant would lose the model's assets. */
 static int convert_all(struct import_command *import)
 {
@@ -217,7 +217,7 @@ static int run(struct import_command *import)
         &(struct plant_folder_params){ .folder = import->folder, .own = import->work.path, .lent = import->lent }, &why);
     if (lock < 0)
         status = fail_at(import->folder, why);
-    /* the previous holder of the folder lock may have removed our work folder as left over */
+    /* the previous holder of the folder lock may have deleted this process's work folder as a remainder of a dead process */
     else if (mkdir(import->work.path, 0700) != 0 && errno != EEXIST)
         status = fail_at(import->work.path, strerror(errno));
     mem_free(why);

@@ -132,10 +132,10 @@ struct model_reading {
     const char *output;            /* path of the GLB file that the reader writes */
     const char *folder;
     const struct conversion_params *params;
-    char *encoding; /* name of the encoding found by find_encoding(), in memory shared with the child; "": names need no conversion */
+    char *encoding; /* result of find_encoding(): name of the encoding, in memory shared with the child; "": names need no conversion */
 };
 
-/* Runs a built-in reader, in the child process. Returns the child's exit status. */
+/* Runs a built-in reader, in the child process. Returns the exit status of the child: 0, or 1 with the reason on stderr. */
 static int read_ourselves(void *arg)
 {
     const struct model_reading *reading = arg;
@@ -209,7 +209,7 @@ static bool run(const struct model_reading *reading, struct child_params *child,
     return good;
 }
 
-/* Unpacks the model, in the child process, to the path that its reader is given next. */
+/* Unpacks the model, in the child process, to the path that the reader will read. */
 static int unpack_model(void *arg)
 {
     const struct model_reading *reading = arg;
@@ -259,8 +259,8 @@ static int find_encoding(void *arg)
     return 0;
 }
 
-/* Detects the encoding in a child process. Copies its name only if all characters are ones that encoding names have, because the child may
- * be compromised. */
+/* Detects the encoding in a child process. Copies its name only if it consists of letters, digits and punctuation that occur in encoding
+ * names, because the child may be compromised. */
 static bool ask_encoding(const struct model_reading *reading, char encoding[CHARSET_NAME_BYTES], struct text *said,
                          char why[CONVERSION_WHY_BYTES])
 {
@@ -283,8 +283,8 @@ static bool ask_encoding(const struct model_reading *reading, char encoding[CHAR
     return good;
 }
 
-/* Runs Open CASCADE on the solids of an IFC file that web-ifc cannot build. ifc.mjs finds the result in the folder of its output. Returns
- * false only if the user interrupted it; if Open CASCADE fails, the model is read without these solids. */
+/* Runs Open CASCADE on the solids of an IFC file that web-ifc cannot build. ifc.mjs then reads the result from the folder that it writes
+ * to. Returns false only if the user interrupted it; if Open CASCADE fails, the model is read without these solids. */
 static bool build_curved_solids(const struct model_reading *reading, const char *list, struct text *said, char why[CONVERSION_WHY_BYTES])
 {
     char *program = import_format_program(import_format_of("x.step"));
@@ -401,7 +401,7 @@ static bool take_output(const struct model_reading *reading, const char *glb, st
 static bool read_model(const struct import_format *format, const char *path, const char *glb, const char *folder,
                        const struct conversion_params *params, struct text *said, char why[CONVERSION_WHY_BYTES])
 {
-    /* a separate folder, so that a compromised reader cannot replace models that were read earlier */
+    /* each reading has a separate folder, so that a compromised reader cannot replace models that were read earlier */
     char *own = mem_printf("%s/reading", folder), *output = mem_printf("%s/output.glb", own), *input = realpath(path, NULL);
     bool made = mkdir(own, 0700) == 0;
     char *attributes = input && format->reader == FORMAT_RVM ? attributes_beside(input) : NULL;

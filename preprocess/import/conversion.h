@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Converts one model of any supported format to a GLB file. Thread: one conversion at a time per process (child.h). */
+/* Converts one model of any supported format to a GLB file. Thread: one conversion at a time per process, because child.h waits for
+ * signals. */
 #ifndef PREPROCESS_IMPORT_CONVERSION_H
 #define PREPROCESS_IMPORT_CONVERSION_H
 #include <stdbool.h>
@@ -11,12 +12,12 @@ enum { CONVERSION_WHY_BYTES = 512 };
 
 struct conversion_params {
     double chord_m;
-    const char *units, *up; /* units and up axis for formats that do not state them; NULL: guess them, and print the guess */
-    const char *mesh_units; /* units for OBJ, STL, PLY and 3DS where `units` is NULL; NULL: guess them, and print the guess */
+    const char *units, *up; /* units and up axis to assume for formats that do not state them; NULL: guess and print the guess */
+    const char *mesh_units; /* units to assume for OBJ, STL, PLY and 3DS if `units` is NULL; NULL: guess and print the guess */
     const char *encoding;   /* encoding of names in the model; NULL: as stated by the file, else detected and printed */
-    bool keep_covered;      /* RVM: keep faces that are covered by a neighbour's face */
-    int timeout_s;          /* seconds that an external reader program may run */
-    size_t memory_bytes;    /* bytes of memory that an external reader program may use */
+    bool keep_covered;      /* RVM: keep faces that a neighbouring primitive's face covers; false: leave them out */
+    int timeout_s;          /* time limit for an external reader program, seconds */
+    size_t memory_bytes;    /* memory limit for an external reader program, bytes */
 };
 
 /* Reads the model at `path` and writes it to `glb` as glTF. Appends what the reader printed to `said`, line by line. Temporary files go to

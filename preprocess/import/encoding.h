@@ -5,8 +5,9 @@
 #include "base/text/charset.h"
 #include "base/text/text.h"
 
-/* Chooses the encoding of a text. asked: the user's choice, which always wins; NULL: none. said: the encoding stated by the file, used if
- * all bytes are valid in it and the text is not UTF-8; NULL or "": none. Without either, the encoding is detected. */
+/* Chooses the encoding of a text, in this order. asked: the user's choice, which always wins; NULL: none. Then ASCII or Unicode, if the
+ * text is valid UTF-8 or UTF-16. said: the encoding stated by the file, if all bytes are valid in it; NULL or "": none. Otherwise the
+ * encoding is detected. */
 struct charset_choice encoding_choose(const char *text, size_t length, const char *asked, const char *said);
 /* Appends a line that states the encoding of `what`, such as "names". Appends nothing for ASCII and UTF-8. */
 void encoding_say(struct text *out, const char *what, const struct charset_choice *choice);

@@ -11,10 +11,11 @@ struct import_format {
     const char *name;    /* name for people: "STEP" */
     const char *endings; /* file endings: ".step .stp", lower case */
     enum format_reader reader;
-    const char *program; /* FORMAT_PROGRAM: file name of the reader, in the folder of this program or in ../libexec/plantcast/ */
+    /* file name of the reader program (only for FORMAT_PROGRAM), in the folder of this program or in ../libexec/plantcast/ */
+    const char *program;
     const char *runtime; /* interpreter that runs the reader, such as "node"; NULL: the reader is an executable */
     const char *missing; /* advice printed if the reader is not installed */
-    const char *beside;  /* endings of files that a model refers to, ".mtl", lower case; NULL: none */
+    const char *beside;  /* endings of files that a model may refer to, lower case, such as ".mtl"; NULL: none */
     bool unitless;       /* the format states no units, so --units applies */
     bool upless;         /* the format does not state which axis is up, so --up applies */
 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Merges all buffers of a glTF model into one, and turns images into views of that buffer. */
+/* Merges all buffers of a glTF model into one, and turns image files into buffer views. */
 #include "preprocess/import/gltf_pack.h"
 
 #include <string.h>
@@ -57,7 +57,7 @@ static bool take_buffers(struct pack *pack)
         const char *uri = uri_of(json_array_get(list, i));
         size_t size = pack->binary.size;
         if (!uri && standins[i])
-            continue; /* an empty fallback buffer (EXT_meshopt_compression): its views are decoded from another buffer */
+            continue; /* leave out an empty fallback buffer (EXT_meshopt_compression): compressed buffers hold its data */
         if (!uri && (i > 0 || !pack->binary.at)) {
             good = wrong(pack->why, "buffer %zu has no bytes of its own: pack the model into a GLB file by the program that made it", i);
             break;
@@ -119,7 +119,7 @@ static bool take_images(struct pack *pack)
         if (!uri)
             continue;
         unsigned char *bytes = model_uri_read(pack->source->folder, uri, &size, uri_why);
-        if (!bytes) /* skip the image: the reader of the packed model reports the missing texture */
+        if (!bytes) /* leave out an image that cannot be read: plantcast-prep, which reads the packed model, reports the missing texture */
             continue;
         json_array_append_new(views, json_pack("{s:i,s:I,s:I}", "buffer", 0, "byteOffset", append(pack, bytes, size), "byteLength",
                                                (json_int_t)size));

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Adds up triangles and boxes of subtrees by walking the nodes from last to first, so children before parents. */
+/* Reads nodes in depth-first order, then sums up triangles and boxes of subtrees from the last node to the first, so that children come
+ * before parents. */
 #include "preprocess/import/model_outline.h"
 
 #include <stdio.h>
@@ -98,7 +99,8 @@ bool model_outline_extent(const struct model_box *box, double size[3], double ce
 {
     static const struct {
         int from, sign;
-    } axes[3] = { { 0, 1 }, { 2, -1 }, { 1, 1 } }; /* source axis and sign of each axis of the plant (Z up), from glTF axes (Y up) */
+        /* for each plant axis (Z up): index and sign of the glTF axis (Y up) that it comes from */
+    } axes[3] = { { 0, 1 }, { 2, -1 }, { 1, 1 } };
     for (int axis = 0; axis < 3; axis++) {
         int from = axes[axis].from;
         if (!(box->low[from] <= box->high[from]))
@@ -109,8 +111,8 @@ bool model_outline_extent(const struct model_box *box, double size[3], double ce
     return true;
 }
 
-/* Returns whether the model was written by plantcast-import, which has already settled the units: the source format states them, or import
- * printed its guess. */
+/* Returns whether the model was written by plantcast-import, so that its unit (metres) needs no question: the source format stated the
+ * unit, or import has printed its guess. */
 static bool knows_units(const struct model_outline *outline)
 {
     const char *generator = json_string_value(json_object_get(json_object_get(outline->header.json, "asset"), "generator"));

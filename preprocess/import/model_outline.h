@@ -12,13 +12,13 @@ struct outline_node {
     const json_t *extras;   /* glTF extras of the node; NULL: none */
     uint64_t triangles;     /* triangles of the node's own mesh */
     uint64_t all_triangles; /* triangles of the node and of its whole subtree */
-    struct model_box all;   /* box of the node and its subtree, in the model's units and axes; low > high: no geometry */
-    int depth;              /* levels below the root; 0: a root */
+    struct model_box all;   /* bounding box of the node and its subtree, in the model's units and axes; low > high: no geometry */
+    int depth;              /* number of levels above the node; 0: a root */
     bool unnamed;           /* the node has no name of its own */
 };
 
 struct model_outline {
-    struct model_header header; /* parent, subtree end and number of each node */
+    struct model_header header; /* by node: index of its parent, index after the last node of its subtree, and "#number" */
     struct outline_node *nodes; /* array of header.count nodes */
     struct model_box box;
     uint64_t triangles;
@@ -40,7 +40,7 @@ void model_outline_add_printable(struct text *out, const char *text);
 void model_outline_path(const struct model_outline *outline, size_t node, struct text *out);
 
 /* Appends a summary of the model without a line end: "4,679 nodes, 592 unnamed; 52,830 triangles; 21.5 x 22.6 x 3.9 m if metres, up y; 310
- * m from the origin". If that is hardly the size of a plant, a question whether the units are others follows. */
+ * m from the origin". If a plant can hardly be that large or small, a hint follows that the units may be different. */
 void model_outline_summary(const struct model_outline *outline, struct text *out);
 
 /* Converts a box to size and centre in plant axes: Z up, so the last number is the height. Returns false for an empty box. */

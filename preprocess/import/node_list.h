@@ -8,8 +8,8 @@
 #include "preprocess/import/model_outline.h"
 
 struct node_list_params {
-    const regex_t *grep; /* prints only nodes whose path or a property matches; NULL: all */
-    int levels;          /* 0: print a table of paths; N: print a tree of N levels */
+    const regex_t *grep; /* filter: prints only nodes whose path or one of whose properties matches; NULL: prints all nodes */
+    int levels;          /* 0: prints a table of paths; N: prints a tree of N levels */
     bool json;
 };
 

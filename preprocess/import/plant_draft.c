@@ -53,7 +53,7 @@ static bool is_printable(const char *text)
 }
 
 struct draft_choice {    /* choices for each outline node */
-    bool *item, *unique; /* item: the node becomes an asset; unique: no other node has its name */
+    bool *item, *unique; /* item[node]: the node becomes an asset; unique[node]: no other node has its name */
     bool typed, classed; /* typed: the model has nodes of type ZONE; classed: it has IFC classes */
 };
 
@@ -77,7 +77,7 @@ static void find_unique(const struct model_outline *outline, bool *unique)
     mem_free(sorted);
 }
 
-/* Returns the first level with at least two nodes that have geometry, or the deepest level if there is none. */
+/* Returns the level nearest to the root with at least two nodes that have geometry, or the deepest level if there is none. */
 static int branching_level(const struct model_outline *outline)
 {
     int deepest = 0, level = 0;
@@ -117,7 +117,7 @@ static bool is_spatial(const char *class)
 }
 
 /* Chooses the nodes that become assets: children of a ZONE, else IFC elements, else the nodes of one level (equipment, pipes, structures).
- * A node above those is chosen too if it has geometry of its own. Descendants of a chosen node are not chosen. */
+ * A node above the chosen nodes is chosen too if it has triangles of its own. Descendants of a chosen node are not chosen. */
 static void choose(const struct plant_draft_model *from, struct draft_choice *choice)
 {
     const struct model_outline *outline = &from->outline;

@@ -7,7 +7,9 @@
 struct plant_draft_model {
     char *file;             /* file name of the model in the plant folder */
     const char *units, *up; /* values of `units` and `up` for the model's assets in plant.yaml; NULL: the key is omitted */
-    int item_level; /* level of the equipment in the tree if properties do not tell; 0: the first level with two nodes that have geometry */
+    /* tree level whose nodes become assets if no node has a type or an IFC class; 0: the first level with at least two nodes that have
+     * geometry */
+    int item_level;
     struct model_outline outline;
 };
 
@@ -15,19 +17,19 @@ struct plant_draft {
     const char *name, *folder;
     const struct plant_draft_model *models;
     size_t count;
-    bool anew; /* replace an existing plant file and tag list */
+    bool anew; /* true: replace an existing plant file and tag list */
 };
 
-/* Appends a plant-file line for each asset of the model, restricted to the nodes marked in `wanted` (NULL: all nodes). The keys of the JSON
- * object `ids` are the ids in use; new ids are added to it. Returns the number of assets. */
+/* Appends a plant-file line for each asset of the model, restricted to the nodes marked in `wanted` (NULL: all nodes). ids: a JSON object
+ * whose keys are the asset ids in use; new ids are added as keys. Returns the number of assets. */
 size_t plant_draft_add_assets(const struct plant_draft_model *model, const bool *wanted, json_t *ids, struct text *out);
 
 /* Returns the text of the plant file, which the caller frees with mem_free. *assets receives the number of its assets. */
 char *plant_draft_text(const struct plant_draft *draft, size_t *assets);
 /* Returns the text of a tag list without tags (static, not to be freed). */
 const char *plant_draft_tags(void);
-/* Writes FOLDER/plant.yaml and FOLDER/tags.csv. A file that exists stays unchanged, since a user may have edited it. Returns 0, or -errno
- * after printing the error. */
+/* Writes FOLDER/plant.yaml and FOLDER/tags.csv. Unless the draft says to replace, a file that exists stays unchanged, since a user may have
+ * edited it. Returns 0, or -errno after printing the error. */
 int plant_draft_write(const struct plant_draft *draft);
 /* Returns whether a plant file is still exactly as plant_draft_begin() wrote it. */
 bool plant_draft_is_begun(const char *path);

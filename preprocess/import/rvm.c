@@ -19,7 +19,7 @@ enum { MAX_DEPTH = 1000, HEADER = 24 };
 struct primitive {
     struct rvm_shape shape;
     int node;
-    size_t byte;                       /* byte offset of the primitive's chunk */
+    size_t byte;                       /* byte offset in the file of the primitive's chunk */
     size_t first_contour, first_point; /* first contour and point of the primitive, as indices because the arrays still grow */
 };
 
@@ -145,7 +145,7 @@ static bool read_color(struct rvm_reader *r)
 static bool begin_group(struct rvm_reader *r)
 {
     uint32_t version, material;
-    double reference_mm; /* a nearby reference point, which the primitives do not depend on */
+    double reference_mm; /* reference point in millimetres; ignored, because primitives have absolute positions */
     char *name = read_word(r, &version) ? read_text(r) : NULL;
     bool good = name != NULL;
     for (int axis = 0; good && axis < 3; axis++)
@@ -184,7 +184,7 @@ static bool read_facets(struct rvm_reader *r, struct primitive *primitive)
                 for (int axis = 0; axis < 3; axis++)
                     if (!read_float(r, &r->points[r->point_count][axis]))
                         return false;
-                r->at += 12; /* skip the vertex normal: each polygon's own normal is used instead */
+                r->at += 12; /* the file's vertex normal is ignored; each polygon's own normal is used */
             }
         }
     }
@@ -233,7 +233,7 @@ static bool read_chunk(struct rvm_reader *r, const char *id, bool *ended)
         return read_color(r);
     if (!strcmp(id, "CNTB"))
         return begin_group(r);
-    if (!strcmp(id, "CNTE")) { /* a CNTE too many is ignored: files of AVEVA Marine may end with one */
+    if (!strcmp(id, "CNTE")) { /* ignore an extra CNTE chunk: files of AVEVA Marine may end with one */
         r->depth -= r->depth > 0;
         return true;
     }
@@ -275,7 +275,7 @@ static bool read_chunks(struct rvm_reader *r)
         size_t from = r->at;
         if (r->count - from < 16 || !chunk_id(r->bytes + from, id))
             return fail(r, "no chunk begins here");
-        if (!strcmp(id, "END:")) /* stop here: some files omit the rest of this last chunk */
+        if (!strcmp(id, "END:")) /* end here, because some files omit the header fields of this last chunk */
             return true;
         if (r->count - from < HEADER)
             return fail(r, "the file ends within chunk %s", id);
@@ -372,8 +372,8 @@ static void add_faces(struct rvm_reader *r, size_t primitive)
     }
 }
 
-/* Marks faces that are covered by a face of another primitive: they lie inside the solid, where neither light nor heat reaches. Two
- * coincident planes whose normals round to different hundredths are missed; then both faces stay, which is harmless. */
+/* Marks faces that are covered by a face of another primitive: they lie inside the solid, where neither light nor heat reaches. A pair of
+ * coincident faces is missed if their normals round to different hundredths. Then both faces stay in the model, which is harmless. */
 static void leave_out_covered_faces(struct rvm_reader *r)
 {
     for (size_t p = 0; p < r->primitive_count; p++)
@@ -398,7 +398,7 @@ static void leave_out_covered_faces(struct rvm_reader *r)
 
 static void tessellate(struct rvm_reader *r, const struct rvm_params *params)
 {
-    size_t *primitives = mem_array(r->model->node_count + 1, sizeof(*primitives)); /* number of primitives of each node */
+    size_t *primitives = mem_array(r->model->node_count + 1, sizeof(*primitives)); /* by node: count of primitives */
     for (size_t i = 0; i < r->losses.count; i++)
         if (r->losses.at[i].why)
             primitives[r->losses.at[i].node]++;
@@ -428,7 +428,7 @@ bool rvm_read(struct cad_model *model, const void *bytes, size_t count, const st
     for (size_t i = 0; i < r->primitive_count; i++)
         if (r->primitives[i].shape.contour_count > 0) {
             r->primitives[i].shape.contours = r->contours + r->primitives[i].first_contour;
-            if (r->points) /* without any points, all contours are empty */
+            if (r->points) /* NULL if the file has no points; then all contours are empty */
                 r->primitives[i].shape.points = (const double(*)[3])(r->points + r->primitives[i].first_point);
         }
     if (!params->keep_covered)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sorts losses by group and reports one line for each group. */
+/* Sorts losses by group and prints one findings.h line per group. */
 #include "preprocess/import/rvm_losses.h"
 
 #include <stdlib.h>

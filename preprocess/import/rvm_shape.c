@@ -77,8 +77,8 @@ static void add_quad(struct cad_node *node, const struct primitive_frame *frame,
     add_triangle(node, frame, a, c, d);
 }
 
-/* Returns the number of corners of a full circle. It is a multiple of 4, so that corners lie on both axes of the section and a section seen
- * from behind has the same corners. */
+/* Returns the number of corners of a full circle. It is a multiple of 4, so that corners lie on both axes of the section, and the corners
+ * of two primitives that meet coincide although one section is mirrored. */
 static int corners_of(double radius_m, double chord_m)
 {
     double cosine = radius_m > 0 ? 1 - chord_m / radius_m : -1;
@@ -86,8 +86,8 @@ static int corners_of(double radius_m, double chord_m)
     return (int)fmin(MAX_CORNERS, fmax(MIN_CORNERS, 4 * ceil(corners / 4)));
 }
 
-/* Returns the angle of the first corner of a section, measured from direction `x` to direction `y` of the primitive's frame. It depends
- * only on the section's plane. */
+/* Returns the angle of a round section's first corner, measured from direction `x` to direction `y` of the primitive's frame. In the
+ * plant's frame, the direction of this corner depends only on the section's plane. */
 static double phase_of(const struct primitive_frame *frame, const double x[3], const double y[3])
 {
     double u[3], v[3], n[3];
@@ -238,8 +238,8 @@ static struct corner_ring torus_ring(double offset, double radius, double angle)
     return (struct corner_ring){ .centre = { offset * c, offset * s, 0 }, .x = { radius * c, radius * s, 0 }, .y = { 0, 0, radius } };
 }
 
-/* Adds a circular torus. If its two ends need different first corners, the corners rotate gradually along the bend, by less than half a
- * corner in total. */
+/* Adds a circular torus. If the first corners of the two ends have different angles (phase_of()), the corners rotate gradually along the
+ * bend, in total by at most half the angle between two corners. */
 static void add_circular_torus(struct cad_node *node, const struct primitive_frame *frame, const double *n, double chord_m,
                                uint32_t open_faces)
 {
@@ -344,8 +344,8 @@ static void add_sphere(struct cad_node *node, const struct primitive_frame *fram
     }
 }
 
-/* Joins two rings that may have different numbers of corners: each triangle advances on the ring whose next corner has the smaller angle. A
- * ring of radius 0 is a single point and contributes no edges. */
+/* Joins two rings by triangles. The rings may have different numbers of corners: each triangle advances to the next corner on the ring
+ * where that corner has the smaller angle. A ring of radius 0 is a single point and contributes no edges. */
 static void join_rings(struct cad_node *node, const struct primitive_frame *frame, const uint32_t rows[2], const int corners[2],
                        const double radii[2])
 {
@@ -386,9 +386,9 @@ static void add_snout(struct cad_node *node, const struct primitive_frame *frame
     for (int end = 0; end < 2; end++) {
         double side = end ? 0.5 : -0.5, r = radii[end];
         struct corner_ring ring = { .centre = { side * n[3], side * n[4], side * height },
-                             .x = { r, 0, r * tan(n[end ? 7 : 5]) },
-                             .y = { 0, r, r * tan(n[end ? 8 : 6]) },
-                             .phase = phase };
+                                    .x = { r, 0, r * tan(n[end ? 7 : 5]) },
+                                    .y = { 0, r, r * tan(n[end ? 8 : 6]) },
+                                    .phase = phase };
         if (r != 0 && !(open_faces >> end & 1))
             add_cap(node, frame, &ring, corners[end], end == 0);
     }

@@ -23,21 +23,21 @@ enum { RVM_MAX_NUMBERS = 9 };
 
 struct rvm_contour {
     size_t first, count; /* range in rvm_shape.points */
-    bool begins_polygon; /* this contour begins a polygon; false: it belongs to the polygon of the contour before it */
+    bool begins_polygon; /* this contour begins a polygon; false: it belongs to the same polygon as the contour before */
 };
 
 /* One primitive. Its own frame is usually in millimetres; `to_plant` converts to the plant's frame in metres. */
 struct rvm_shape {
     enum rvm_kind kind;
     double to_plant[12];                /* 3 x 4 matrix by columns; the last column is the translation */
-    double numbers[RVM_MAX_NUMBERS];    /* dimensions in the order of the file; rvm_numbers[kind] of them are used */
+    double numbers[RVM_MAX_NUMBERS];    /* dimensions in the order of the file; the first rvm_numbers[kind] are used */
     const struct rvm_contour *contours; /* contours of RVM_FACETS; NULL for other kinds */
     const double (*points)[3];          /* points of RVM_FACETS, in the primitive's own frame */
     size_t contour_count;
     uint32_t open_faces; /* bit i set: face i of rvm_shape_faces() is covered by a neighbour and left out */
 };
 
-extern const int rvm_numbers[RVM_FACETS + 1]; /* number of dimensions that follow the header of each kind of primitive */
+extern const int rvm_numbers[RVM_FACETS + 1]; /* by kind of primitive: count of dimensions that follow the chunk's header */
 
 /* A flat face of a primitive in the plant's frame: a circle or a rectangle. */
 struct rvm_face {
@@ -47,8 +47,8 @@ struct rvm_face {
 };
 enum { RVM_MAX_FACES = 6 };
 
-/* Finds the flat faces that a neighbour may cover, numbered as in `open_faces`, and returns their number. These are both ends of round or
- * bent primitives, the base of a dish, the faces of a box, and top and bottom of a pyramid. Snouts with sheared ends have none. */
+/* Finds the flat faces that a neighbour may cover, numbered as in `open_faces`, and returns their count. Candidates are both ends of round
+ * or bent primitives, the base of a dish, the faces of a box, and top and bottom of a pyramid. Snouts with sheared ends have none. */
 int rvm_shape_faces(const struct rvm_shape *shape, struct rvm_face faces[RVM_MAX_FACES]);
 
 /* Appends the primitive's triangles (or its line) to the node. Chords deviate from the true surface by at most chord_m, but a full turn

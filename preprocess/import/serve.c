@@ -95,7 +95,7 @@ int import_serve(const struct serve_params *params)
     int status = make_folder(params->folder);
     if (status == 0)
         status = make_folder(exports);
-    if (status == 0) { /* check that no other program holds the folder's lock; it is kept until this process becomes the daemon */
+    if (status == 0) { /* check that no other program holds the folder's lock; keep the lock until this process becomes the daemon */
         char *why = NULL;
         if (plant_folder_lock(&(struct plant_folder_params){ .folder = params->folder }, &why) < 0)
             status = fail_at(params->folder, why);

@@ -12,10 +12,11 @@
 
 enum {
     BLOCK_BYTES = 1 << 16,
-    /* largest ratio of unpacked to packed size; texts shrink to about a tenth, so a larger ratio means a decompression bomb */
+    /* largest ratio of unpacked to packed size; model texts shrink to about a tenth, so a file with a larger ratio is rejected as a
+     * decompression bomb */
     MAX_RATIO = 200
 };
-static const size_t free_bytes = (size_t)64 << 20; /* number of unpacked bytes that are allowed whatever the ratio */
+static const size_t free_bytes = (size_t)64 << 20; /* bytes that may be unpacked regardless of the ratio */
 
 static const struct {
     const char *packed, *ending;
@@ -36,7 +37,7 @@ const char *unpack_ending(const char *path)
 }
 
 struct archive_reading {
-    unzFile zip; /* archive in ZIP format; NULL: `gzip` is set instead */
+    unzFile zip; /* archive handle if the file is ZIP; NULL: the file is gzip, and `gzip` is set */
     gzFile gzip;
 };
 

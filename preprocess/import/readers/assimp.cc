@@ -35,25 +35,27 @@ constexpr double LONGEST_IN_METRES = 300; /* metres; a model that would be longe
 struct format {
     const char *ending;
     const char *unit, *up; /* unit and up axis of the data that Assimp returns; NULL: the file does not state them */
-    bool own_normals;      /* use the file's normals; false: they are facet normals, which do not describe a smooth surface */
+    bool own_normals;      /* trust the file's normals; false: they are facet normals, so smooth normals are computed */
 };
 
-/* Assimp converts COLLADA and 3DS to Y up and applies the units of COLLADA. For FBX, older versions do neither: see fbx_axes(). */
+/* Assimp converts COLLADA and 3DS to Y up and applies the units of COLLADA. For FBX, older versions of Assimp convert neither axes nor
+ * units: see fbx_axes(). */
 const format formats[] = { { ".obj", nullptr, nullptr, true }, { ".stl", nullptr, nullptr, false }, { ".ply", nullptr, nullptr, true },
                            { ".fbx", "cm", "y", true },        { ".dae", "m", "y", true },          { ".3ds", nullptr, "y", true } };
 
 struct assimp_reader {
     const aiScene *scene;
     struct glb_scene *out;
-    text_encoding encoding;                      /* encoding of names that Assimp returns as raw bytes of the file */
-    std::vector<int> materials;                  /* index of the output material for each Assimp material; -2: not created yet */
-    std::map<std::vector<unsigned>, int> meshes; /* output mesh for each list of Assimp meshes, so that nodes share meshes */
-    size_t triangles = 0, lost = 0;              /* lost: triangles left out because a corner is not finite */
+    text_encoding encoding;     /* encoding of the names, which Assimp returns as the file's raw bytes */
+    std::vector<int> materials; /* by Assimp material: index of the output material (glb_scene.h); -2: not created yet */
+    /* index of the output mesh by list of Assimp meshes, so that nodes with the same list share a mesh */
+    std::map<std::vector<unsigned>, int> meshes;
+    size_t triangles = 0, lost = 0; /* lost: triangles left out because a corner is not finite */
 };
 
 /* --- files ---------------------------------------------------------------------------------------------------- */
 
-constexpr char BLANK = 0x1f; /* replaces a blank within a name of an OBJ or STL file, at which Assimp would end the name */
+constexpr char BLANK = 0x1f; /* replaces a blank within a name of an OBJ or STL file; Assimp would end the name at a blank */
 
 /* Replaces blanks inside names: in lines `o NAME` and `g NAME` of OBJ, `solid NAME` of STL. */
 void keep_blanks(char *bytes, size_t count, bool stl)
@@ -75,7 +77,8 @@ void keep_blanks(char *bytes, size_t count, bool stl)
     }
 }
 
-/* Returns the encoding stated in an XML declaration and blanks it out, because the text is converted to UTF-8 before parsing. */
+/* Returns the encoding stated in an XML declaration and overwrites it with blanks, because the text is converted to UTF-8 before
+ * parsing. */
 std::string take_declared(std::string *text)
 {
     size_t end = text->compare(0, 5, "<?xml") == 0 ? text->find("?>") : std::string::npos, from = text->find("encoding=");
@@ -99,10 +102,10 @@ bool is_text_of_stl(const std::string &bytes)
     return bytes.size() > 5 && !strncasecmp(bytes.c_str(), "solid", 5) && bytes.size() != 84 + 50 * static_cast<uint64_t>(triangles);
 }
 
-/* Converts the keywords of an STL text to lower case, the only case Assimp accepts. Names of solids are unchanged. */
+/* Converts the keywords of an STL text to lower case, the only case Assimp accepts. The names of solids stay unchanged. */
 std::string with_small_words(std::string text)
 {
-    bool blank = true, named = false; /* blank: the line has had only blanks so far */
+    bool blank = true, named = false; /* blank: the current line consists of blanks so far */
     for (size_t i = 0; i < text.size(); i++) {
         bool space = isspace(static_cast<unsigned char>(text[i])) != 0;
         if (text[i] == '\n' || text[i] == '\r') {
@@ -146,8 +149,8 @@ struct errors : Assimp::LogStream {
     }
 };
 
-/* Gives Assimp file contents converted to UTF-8, with blanks in OBJ names replaced. The encoding of the first file applies to all others,
- * because material files are matched by name. */
+/* Gives Assimp file contents converted to UTF-8, with blanks in OBJ names replaced. The encoding found for the first file (the model)
+ * applies to all others: names in material files must match those in the model. */
 struct files : Assimp::DefaultIOSystem {
     text_encoding *encoding;
     const char *asked;
@@ -338,7 +341,7 @@ std::string name_of(const assimp_reader *r, const aiString &from)
     return name;
 }
 
-/* Returns the output mesh of a node, or -1 if the node has no triangles. */
+/* Returns the output mesh of a node, creating it if necessary, or -1 if the node has no triangles. */
 int mesh_of(assimp_reader *r, const aiNode *node)
 {
     std::vector<unsigned> parts(node->mMeshes, node->mMeshes + node->mNumMeshes);
@@ -414,8 +417,8 @@ void collect(const aiScene *scene, const aiNode *node, std::string *out)
         collect(scene, node->mChildren[i], out);
 }
 
-/* Returns whether the node is one step of a transform: Assimp splits an FBX node into a chain of nodes, one per step, which are merged
- * again here. */
+/* Returns whether the node is an intermediate node of Assimp: it splits the transform of an FBX node into a chain of nodes, which are
+ * merged again here. */
 bool is_step(const aiNode *node)
 {
     return strstr(node->mName.C_Str(), "_$AssimpFbx$_") != nullptr;
@@ -424,7 +427,8 @@ bool is_step(const aiNode *node)
 void add(assimp_reader *r, const aiNode *node, const transform &steps, int parent, int depth)
 {
     double matrix[16];
-    bool made_up = depth == 0 && node->mNumMeshes == 0 && node->mTransformation.IsIdentity(); /* this is the root node that Assimp adds */
+    /* whether this is the root node that Assimp adds to every model */
+    bool made_up = depth == 0 && node->mNumMeshes == 0 && node->mTransformation.IsIdentity();
     bool step = is_step(node) && node->mNumMeshes == 0;
     transform place = steps * transform_of(node);
     if (depth > MAX_DEPTH)
@@ -432,8 +436,8 @@ void add(assimp_reader *r, const aiNode *node, const transform &steps, int paren
     matrix_of(node, place, matrix);
     int number = parent;
     if (!made_up && !step) {
-        number = glb_scene_add_node(r->out, parent, name_of(r, node->mName).c_str(), mesh_of(r, node),
-                                    place.IsIdentity() ? nullptr : matrix);
+        number =
+            glb_scene_add_node(r->out, parent, name_of(r, node->mName).c_str(), mesh_of(r, node), place.IsIdentity() ? nullptr : matrix);
         add_properties(r, number, node->mMetaData);
     }
     for (unsigned i = 0; i < node->mNumChildren; i++)
@@ -529,7 +533,6 @@ void convert(const char *input, const char *output, const char *units, const cha
 
 int main(int argc, char **argv)
 {
-    return reader_main(argc, argv, "plantcast-import-assimp", [](char **arguments) {
-        convert(arguments[0], arguments[1], arguments[3], arguments[4], arguments[5]);
-    });
+    return reader_main(argc, argv, "plantcast-import-assimp",
+                       [](char **arguments) { convert(arguments[0], arguments[1], arguments[3], arguments[4], arguments[5]); });
 }

@@ -37,7 +37,7 @@ class Model {
             try {
                 line = this.api.GetLine(this.id, id);
             } catch {
-                line = null; // the id refers to a statement that the file does not have
+                line = null; // the id refers to a statement that is missing from the file
             }
             this.lines.set(id, line);
         }
@@ -111,7 +111,8 @@ class Model {
     }
 }
 
-// Returns one mesh for an element, in the frame of its first part. Elements with equal parts share a mesh.
+// Returns one mesh for an element, in the frame of its first piece of geometry. Elements whose pieces and relative positions are equal
+// share a mesh.
 function meshOf(glb, geometries, parts, name) {
     const frame = parts[0].flatTransformation;
     const placed = parts.map((part) => ({ ...part, place: relativeTo(frame, part.flatTransformation) }));
@@ -211,7 +212,7 @@ async function main([input, output, , , , encoding]) {
         throw new Error('it is no IFC file: it does not begin with ISO-10303-21');
     if (!bytes.subarray(-4096).toString('latin1').includes('END-ISO-10303-21'))
         throw new Error('it is cut off: it does not end with END-ISO-10303-21');
-    const errors = collectErrors(); // must run before web-ifc, which captures the console
+    const errors = collectErrors(); // must run before web-ifc is initialised, because web-ifc keeps the console functions that it finds
     const api = new webIfc.IfcAPI();
     api.SetWasmPath(`${folder}/`, true);
     await api.Init();
@@ -245,7 +246,7 @@ async function main([input, output, , , , encoding]) {
 }
 
 main(process.argv.slice(2)).catch((error) => {
-    // errors that are not plain Error objects come from web-ifc itself
+    // an error that is not an Error object comes from web-ifc itself
     const reason = String(error?.message ?? error).split('\n')[0], ours = error?.constructor === Error;
     process.stderr.write(`${ours && reason ? reason : `its content could not be read (${reason || 'no reason is known'})`}\n`);
     process.exit(1);

@@ -84,7 +84,7 @@ class step_writer
     const ifc_model &in;
     std::ostringstream out;
     std::set<int> done;
-    int made = 0; /* statements added so far that have no counterpart in the IFC file; their numbers count down from 2000000000 */
+    int made = 0; /* count of added statements without a counterpart in the IFC file; their ids are 2000000000, 1999999999, ... */
 
     void write(std::ostream &to, const value &from)
     {
@@ -145,7 +145,8 @@ class step_writer
         return to.str();
     }
 
-    /* Returns the reference to the curve of a swept surface's profile. Throws unsupported if the surface has a placement of its own. */
+    /* Returns the reference to the curve of a swept surface's profile. Throws `unsupported` if the surface has a placement other than the
+     * identity. */
     std::string swept_curve(const entity &surface)
     {
         entity profile = in.statements.get(surface[0]);
@@ -162,9 +163,9 @@ class step_writer
         const std::string &type = from.type;
         faces += type == "IFCADVANCEDFACE" || type == "IFCFACESURFACE";
         bool curve = type == "IFCRATIONALBSPLINECURVEWITHKNOTS", plain = type.find("BSPLINECURVE") != std::string::npos;
-        const std::set<size_t> whole =
-            plain ? std::set<size_t>{ 0, 5 } : type.find("BSPLINESURFACE") != std::string::npos ? std::set<size_t>{ 0, 1, 7, 8 }
-                                                                                               : std::set<size_t>{};
+        const std::set<size_t> whole = plain                                              ? std::set<size_t>{ 0, 5 }
+                                       : type.find("BSPLINESURFACE") != std::string::npos ? std::set<size_t>{ 0, 1, 7, 8 }
+                                                                                          : std::set<size_t>{};
         if (curve || type == "IFCRATIONALBSPLINESURFACEWITHKNOTS") {
             const char *kind = curve ? "CURVE" : "SURFACE";
             size_t knots = curve ? 5 : 7, weights = curve ? 8 : 12;

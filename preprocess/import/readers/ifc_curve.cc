@@ -95,8 +95,8 @@ std::vector<curve_piece> indexed(const ifc_model &in, const entity &curve)
     return out;
 }
 
-/* Returns the parameter of an IfcTrimmingSelect in units of the curve. The select holds a parameter, a point or both; by_point says which
- * one the file prefers. */
+/* Returns the parameter of an IfcTrimmingSelect in units of the curve. The select holds a parameter, a point or both. by_point: the file
+ * prefers the point. */
 double trim_at(const ifc_model &in, const curve_piece &basis, const value &select, bool by_point, double per_unit)
 {
     const value *parameter = nullptr, *point = nullptr;
@@ -113,7 +113,7 @@ double trim_at(const ifc_model &in, const curve_piece &basis, const value &selec
     return file::number(*parameter) * per_unit;
 }
 
-/* Returns the whole basis curve as one piece. Fails if the curve consists of several. */
+/* Returns the whole basis curve as one piece. Throws `unsupported` if the curve consists of several pieces. */
 curve_piece basis_of(const ifc_model &in, const entity &curve);
 
 std::vector<curve_piece> trimmed_curve(const ifc_model &in, const entity &curve, int depth)
@@ -124,8 +124,7 @@ std::vector<curve_piece> trimmed_curve(const ifc_model &in, const entity &curve,
         bool whole = false;
         if (curve[1].list.empty() || curve[2].list.empty())
             throw unsupported("a curve is trimmed by nothing");
-        std::vector<curve_piece> out =
-            trimmed(pieces_within(in, from, depth + 1), curve[1].list[0], curve[2].list[0], &whole);
+        std::vector<curve_piece> out = trimmed(pieces_within(in, from, depth + 1), curve[1].list[0], curve[2].list[0], &whole);
         if (whole || !same)
             throw unsupported("a trimmed " + from.type);
         return out;
@@ -193,7 +192,7 @@ curve_piece basis_of(const ifc_model &in, const entity &curve)
     if (curve.is("IFCLINE")) {
         entity vector = in.statements.get(curve[1]);
         gp_Dir along = direction_of(in, vector[0], gp::DX());
-        return { new Geom_Line(point_of(in, curve[0]), along), 0, in.length * file::number(vector[1]), 1 };
+        return { new Geom_Line(point_of(in, curve[0]), along), 0, in.length *file::number(vector[1]), 1 };
     }
     if (curve.is("IFCCIRCLE")) {
         Handle(Geom_Circle) circle = new Geom_Circle(gp::XOY(), in.length * file::number(curve[1]));
@@ -237,8 +236,14 @@ double length_of(const curve_piece &part)
     return GCPnts_AbscissaPoint::Length(GeomAdaptor_Curve(part.curve), std::fmin(part.first, part.last), std::fmax(part.first, part.last));
 }
 
-gp_Pnt curve_piece::start() const { return curve->Value(first); }
-gp_Pnt curve_piece::end() const { return curve->Value(last); }
+gp_Pnt curve_piece::start() const
+{
+    return curve->Value(first);
+}
+gp_Pnt curve_piece::end() const
+{
+    return curve->Value(last);
+}
 
 gp_Vec curve_piece::tangent(bool at_end) const
 {
@@ -282,7 +287,7 @@ gp_Dir direction_of(const ifc_model &in, const value &reference, const gp_Dir &o
     return { at[0], at[1], at[2] };
 }
 
-/* Returns a frame with the given Z axis, and X as close to `x` as possible. */
+/* Returns a frame with the given Z axis, and an X axis as close to direction `x` as possible. */
 static gp_Ax3 frame_of(const gp_Pnt &origin, const gp_Dir &z, const gp_Dir &x)
 {
     return z.IsParallel(x, 1e-9) ? gp_Ax3(origin, z) : gp_Ax3(origin, z, x);
@@ -364,7 +369,8 @@ std::vector<curve_piece> rounded(const std::vector<gp_Pnt> &points, const std::v
 {
     std::vector<curve_piece> out;
     size_t count = points.size();
-    std::vector<gp_Pnt> before = points, after = points; /* where the arc at each corner begins and ends */
+    /* by corner: distances along the two lines at which the arc that rounds the corner begins and ends */
+    std::vector<gp_Pnt> before = points, after = points;
     for (size_t i = closed ? 0 : 1; i + (closed ? 0 : 1) < count; i++) {
         gp_Vec in(points[i], points[(i + count - 1) % count]), on(points[i], points[(i + 1) % count]);
         double radius = radii.empty() ? 0 : radii[i % radii.size()], angle = in.Angle(on);

@@ -45,7 +45,8 @@ TopoDS_Wire wire_through(const polygon &points)
     return wire.IsDone() ? wire.Wire() : TopoDS_Wire();
 }
 
-/* Adds a face. A face whose corners are not in a plane becomes a fan of triangles. Returns false for a face without area. */
+/* Adds a face. A face whose corners are not in a plane becomes a fan of triangles. Returns false, and adds nothing, if the face has no
+ * area. */
 bool add_face(const flat_face &from, TopoDS_Compound *to)
 {
     BRep_Builder builder;
@@ -109,7 +110,8 @@ polygon loop_of(const ifc_model &in, const entity &bound)
     return out;
 }
 
-/* Reads a face. One with several outer bounds becomes several faces; if no bound is marked as outer, the largest is. */
+/* Reads a face. A face with several outer bounds becomes several faces. If no bound is marked as outer, the largest bound counts as
+ * outer. */
 void take_face(const ifc_model &in, const entity &face, std::vector<flat_face> *out)
 {
     std::vector<polygon> inner;
@@ -139,7 +141,7 @@ void take_shell(const ifc_model &in, const entity &shell, std::vector<flat_face>
         take_face(in, in.statements.get(reference), out);
 }
 
-/* --- indices into a list of points */
+/* --- face sets: faces as indices into a list of points */
 
 polygon picked(const polygon &points, const value &indices, const value &renumbered)
 {

@@ -144,7 +144,7 @@ file::file(const char *path)
     if (!in)
         throw std::runtime_error("it cannot be opened");
     bytes.assign(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
-    bool begins = true; /* the next statement may begin here: the last semicolon has been passed */
+    bool begins = true; /* true after a semicolon: the next '#' begins a statement */
     for (size_t at = 0; at < bytes.size();) {
         if (begins && bytes[at] == '#') {
             ifc_parser p = { bytes, at + 1 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Reports losses of an IFC file: elements that have a shape but no triangles, and errors that web-ifc logs.
 const LINES = /Curve|Polyline|IfcLine|Circle|Ellipse|Point|Text|Annotation|GeometricSet|BoundingBox|Vertex|Edge|Alignment/;
-const REFERENCE = 5; // web-ifc's type number of values that refer to a statement
+const REFERENCE = 5; // web-ifc's type code of values that refer to a statement
 // Formats a record of findings.h.
 const fields = (...values) => values.map((value) => String(value).replace(/\s+/g, ' ').trim()).join('\t');
 const MAX_IDS = 20; // maximum number of statement ids listed per kind of error
@@ -21,8 +21,8 @@ function reached(model, ids) {
     return found;
 }
 
-// Captures what web-ifc prints, its only way to report omissions. Returns { stop, at, lines }: stop() ends the capture; at() returns the
-// ids of statements with errors; lines() returns the lines to print, without errors in items that Open CASCADE built instead.
+// Captures the console output of web-ifc, its only way to report omissions. Returns { stop, at, lines }: stop() ends the capture; at()
+// returns the ids of statements with errors; lines() returns the lines to print, without errors in items that Open CASCADE built instead.
 export function collectErrors() {
     const { log, error } = console, found = new Map();
     console.log = console.error = (...words) => {
@@ -76,8 +76,8 @@ export function findDamaged(model, product, errors) {
     });
 }
 
-// Returns { lost, lines, ids }: a findings.h line for each element that has a shape but no triangles; the elements that consist only of
-// lines and points; the ids of the lost elements.
+// Returns { lost, lines, ids }: `lost`: a findings.h line for each element that has a shape but no triangles; `lines`: names of elements
+// that consist only of lines and points; `ids`: statement ids of the lost elements.
 export function findLosses(model, product, isShown, failed) {
     const lost = [], lines = [], ids = [];
     for (const id of model.ofType(product)) {

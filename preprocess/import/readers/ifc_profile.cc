@@ -68,7 +68,7 @@ std::vector<TopoDS_Face> faces_of(const TopoDS_Wire &outer, const std::vector<To
     return { fix.Face() };
 }
 
-using lengths = std::vector<double>; /* the lengths among a profile's values, from the third on; 0: absent */
+using lengths = std::vector<double>; /* lengths of a parametrised profile in millimetres: its values from the third on; 0: absent */
 
 /* Builds an I profile whose flanges may differ in width. The fillet radii are those between the web and each flange. */
 TopoDS_Wire i_shape(double depth, double web, double bottom, double bottom_thick, double bottom_fillet, double top, double top_thick,
@@ -162,7 +162,8 @@ std::vector<gp_Pnt> points_along(const std::vector<curve_piece> &pieces, double 
     return out;
 }
 
-/* Returns the outline of a centre line in the XY plane with a thickness. Corners are mitred, ends are perpendicular to the line. */
+/* Returns the outline of a strip of constant thickness along a centre line in the XY plane. Corners are mitred, ends are perpendicular to
+ * the line. */
 TopoDS_Wire thickened(const std::vector<curve_piece> &pieces, double thickness, double chord_mm)
 {
     std::vector<gp_Pnt> line = points_along(pieces, chord_mm), right;

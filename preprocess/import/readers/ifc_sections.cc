@@ -42,7 +42,7 @@ std::vector<TopoDS_Wire> wires_of(const TopoDS_Face &face)
     return out;
 }
 
-/* --- sections with their own placements */
+/* --- IfcSectionedSpine: each section has a placement of its own */
 
 TopoDS_Shape spine_of(const ifc_model &in, const entity &item)
 {
@@ -55,7 +55,7 @@ TopoDS_Shape spine_of(const ifc_model &in, const entity &item)
     return through_faces(faces);
 }
 
-/* --- sections placed upright along a curve */
+/* --- IfcSectionedSolidHorizontal: sections stand upright at distances along a curve */
 
 struct station {
     double along_mm; /* position of the section along the curve from its start, millimetres */
@@ -117,7 +117,7 @@ void add_between(const ifc_model &in, const std::vector<curve_piece> &pieces, st
         if (high - low < 1e-6)
             continue;
         double turn = straight ? 0 : std::acos(std::fmax(-1, std::fmin(1, part.tangent(false).Dot(part.tangent(true)))));
-        /* half the angle in radians that one chord of the curve may turn */
+        /* half the angle in radians by which the curve may turn along one chord */
         double chord = std::acos(1 - std::fmin(0.5, in.chord_mm * turn / length));
         int steps = straight ? 1 : std::max(8, static_cast<int>(std::ceil(turn / chord)));
         for (int i = 1; i <= steps; i++) {
@@ -126,8 +126,8 @@ void add_between(const ifc_model &in, const std::vector<curve_piece> &pieces, st
                 return;
             if (from.profile != to.profile)
                 throw unsupported("a section that changes along a curve");
-            out->push_back({ from.along_mm + share * (to.along_mm - from.along_mm), from.offset + (to.offset - from.offset) * share,
-                             from.profile });
+            out->push_back(
+                { from.along_mm + share * (to.along_mm - from.along_mm), from.offset + (to.offset - from.offset) * share, from.profile });
         }
     }
 }

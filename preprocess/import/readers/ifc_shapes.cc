@@ -25,8 +25,8 @@ double si_prefix(const value &name)
     static const struct {
         const char *name;
         double factor;
-    } prefixes[] = { { ".KILO.", 1e3 }, { ".HECTO.", 1e2 }, { ".DECI.", 1e-1 }, { ".CENTI.", 1e-2 }, { ".MILLI.", 1e-3 },
-                     { ".MICRO.", 1e-6 } };
+    } prefixes[] = { { ".KILO.", 1e3 },   { ".HECTO.", 1e2 },  { ".DECI.", 1e-1 },
+                     { ".CENTI.", 1e-2 }, { ".MILLI.", 1e-3 }, { ".MICRO.", 1e-6 } };
     for (const auto &prefix : prefixes)
         if (name.is(prefix.name))
             return prefix.factor;
@@ -73,9 +73,10 @@ struct ifc_part {
 struct ifc_writer {
     const ifc_model &in;
     struct glb_scene *scene;
-    std::map<int, ifc_part> parts;     /* built items, by statement id */
-    std::map<int, std::string> failed; /* items and elements left to web-ifc, with the reason for each */
-    std::set<int> asked;               /* elements of which web-ifc builds nothing or only a part */
+    std::map<int, ifc_part> parts; /* built items, by statement id */
+    /* by statement id of an item or element that could not be built and is left to web-ifc: the reason */
+    std::map<int, std::string> failed;
+    std::set<int> asked; /* ids of elements that web-ifc builds not at all or only in part */
     size_t elements = 0;
 };
 
@@ -146,8 +147,8 @@ struct placed_item {
     gp_GTrsf place;
 };
 
-/* Collects the items of a representation and of the representations it maps. Clears *whole if any item is left to web-ifc. all: collect
- * items of every type. */
+/* Collects the items of a representation and of the representations it maps. Sets *whole to false if any item is left to web-ifc. all:
+ * collects items of every type, not only those that need Open CASCADE. */
 void collect(ifc_writer *w, const entity &representation, const gp_GTrsf &above, int depth, bool all, std::vector<placed_item> *out,
              bool *whole)
 {
@@ -199,8 +200,9 @@ void matrix_of(const gp_GTrsf &place, double scale, bool turn, const double shif
 /* Returns whether a representation shows the body, and not the axis, plan or clearance space of an element. */
 bool is_body(const entity &representation)
 {
-    static const char *const others[] = { "Axis", "FootPrint", "Box", "Annotation", "Profile", "Clearance", "Lighting",
-                                         "CoG", "Reference" };
+    static const char *const others[] = {
+        "Axis", "FootPrint", "Box", "Annotation", "Profile", "Clearance", "Lighting", "CoG", "Reference"
+    };
     for (const char *other : others)
         if (representation[1].text == other)
             return false;

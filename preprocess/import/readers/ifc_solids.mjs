@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Merges solids of an IFC file that Open CASCADE built (ifc_shapes.hh) with web-ifc's geometry for all other items.
+// Merges solids of an IFC file that Open CASCADE built (ifc_shapes.hh) with the geometry that web-ifc built for all other items.
 import { existsSync, readFileSync } from 'node:fs';
 import { multiplied } from './glb_writer.mjs';
 
@@ -16,8 +16,8 @@ function parseGlb(path) {
     return { json, read };
 }
 
-// Returns { elements, failed }: for each element its parts and whether they are all of its geometry; for each item that could not be built,
-// the reason.
+// Returns { elements, failed }. elements: a Map from element id to { parts, whole }, its built items and whether they are all of its
+// geometry. failed: a Map from the id of an item that could not be built to the reason.
 export function readSolids(path) {
     const elements = new Map(), failed = new Map();
     if (!existsSync(path))
@@ -60,8 +60,8 @@ function styles(model, type) {
     return (item) => found.get(item);
 }
 
-// Replaces web-ifc's geometry by the solids of the same items. An element with openings keeps web-ifc's geometry, which has them cut out.
-// Sets solids.said to findings.h lines about problems.
+// Replaces web-ifc's geometry of an item by the solid that Open CASCADE built. An element with openings keeps web-ifc's geometry, if it has
+// any, because only web-ifc cuts the openings out. Sets solids.said to findings.h lines about problems.
 export function takeSolids(model, solids, { shown, known }, { styledItem, voids }) {
     const colorOf = styles(model, styledItem), cut = new Set();
     model.relate(voids, 'RelatingBuildingElement', 'RelatedOpeningElement', (element) => cut.add(element));

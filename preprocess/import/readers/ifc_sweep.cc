@@ -29,7 +29,8 @@ namespace ifc
 namespace
 {
 
-constexpr double VOLUME_SLACK = 0.04; /* relative tolerance of a sweep's volume; a circle with 24 corners loses 1.1 % of its area */
+/* relative tolerance of a sweep's volume against area times length; triangles with 24 corners to a circle lose 1.1 % */
+constexpr double VOLUME_SLACK = 0.04;
 
 TopoDS_Shape wire_swept(const TopoDS_Wire &outline, const TopoDS_Wire &spine, const gp_Dir *up)
 {
@@ -43,7 +44,7 @@ TopoDS_Shape wire_swept(const TopoDS_Wire &outline, const TopoDS_Wire &spine, co
     pipe.Build();
     if (!pipe.IsDone())
         throw unsupported("a profile that cannot be swept along its curve");
-    pipe.MakeSolid(); /* closing the ends fails for a closed curve, whose tube has none */
+    pipe.MakeSolid(); /* ignore the result: it is false for a closed curve, whose tube has no ends to close */
     return pipe.Shape();
 }
 
@@ -107,8 +108,8 @@ TopoDS_Shape mitred(const TopoDS_Face &face, const std::vector<curve_piece> &pie
     return along(face, pieces, nullptr, nullptr);
 }
 
-/* Sweeps a disk along all pieces. The expected volume is known: area times length. If the result of a sweeping method differs, parts of its
- * triangles are wrong, and the next method is tried. The last method sweeps each piece separately, with closed ends and without mitred
+/* Sweeps a disk along all pieces. The expected volume is known: area times length. If the volume from one sweeping method differs, some of
+ * its triangles are wrong, and the next method is tried. The last method sweeps each piece separately, with closed ends and without mitred
  * corners. */
 TopoDS_Shape disk_along(const ifc_model &in, const TopoDS_Face &face, double area, const std::vector<curve_piece> &pieces)
 {
@@ -132,9 +133,7 @@ TopoDS_Shape disk_along(const ifc_model &in, const TopoDS_Face &face, double are
 
 TopoDS_Face disk(double radius, double hole)
 {
-    auto circle = [](double r) {
-        return TopoDS_Wire(BRepBuilderAPI_MakeWire(BRepBuilderAPI_MakeEdge(gp_Circ(gp::XOY(), r)).Edge()));
-    };
+    auto circle = [](double r) { return TopoDS_Wire(BRepBuilderAPI_MakeWire(BRepBuilderAPI_MakeEdge(gp_Circ(gp::XOY(), r)).Edge())); };
     BRepBuilderAPI_MakeFace face(gp_Pln(gp::XOY()), circle(radius));
     if (hole > 0)
         face.Add(TopoDS::Wire(circle(hole).Reversed()));

@@ -49,7 +49,7 @@ struct iges_tree {
     Handle(XCAFDoc_ColorTool) colors;
     Handle(XCAFDoc_LayerTool) layers;
     const struct text_encoding *encoding;
-    Handle(Transfer_TransientProcess) process; /* Open CASCADE's map from each entity to its shape */
+    Handle(Transfer_TransientProcess) process; /* Open CASCADE's transfer map: finds the shape that an entity was read into */
     double unit_mm;
     std::map<const Standard_Transient *, TDF_Label> made;
 };
@@ -121,7 +121,7 @@ std::vector<entity> members_of(const entity &from)
     return out;
 }
 
-/* Returns the subfigure definition if the entity is an instance of one, else the entity itself. */
+/* Returns the subfigure definition that the entity is an instance of, or the entity itself if it is no instance. */
 entity product_of(const entity &from)
 {
     Handle(IGESBasic_SingularSubfigure) place = Handle(IGESBasic_SingularSubfigure)::DownCast(from);
@@ -152,9 +152,9 @@ struct iges_item {
     TopoDS_Shape shape;
 };
 
-/* Returns the members of a group with their shapes. These come from the group's own shape, since the shape recorded for a single surface
- * may lack its placement. Members without a shape are left out. An instance with a scale has none in the group: its definition's shape is
- * used. */
+/* Returns the members of a group with their shapes. The shapes are taken out of the group's own shape, since the shape recorded for a
+ * single surface may lack its placement. Members without a shape are left out. For an instance with a scale, which the group's shape lacks,
+ * the shape of its definition is used. */
 std::vector<iges_item> items_of(const iges_tree &t, const iges_item &group)
 {
     std::vector<iges_item> out;
@@ -180,7 +180,7 @@ void describe_layer(const iges_tree &t, const TDF_Label &label, const std::strin
         t.layers->SetLayer(label, TCollection_ExtendedString(t.encoding->utf8(layer).c_str(), Standard_True));
 }
 
-/* Sets the name, colour and layer of a label. Values that the entity lacks stay unchanged. */
+/* Copies the name, colour and layer of an entity to a label. Does not change the values that the entity lacks. */
 void describe(const iges_tree &t, const TDF_Label &label, const entity &from)
 {
     Quantity_Color color;
@@ -199,7 +199,8 @@ bool has_faces(const TopoDS_Shape &shape)
 
 enum class shape_kind { nothing, surface, part };
 
-/* Classifies an entity: the loose surfaces of a group form one part together, solids and groups are parts of their own. */
+/* Returns how an entity becomes a part of the model: a loose surface is joined with others of its group, a solid or a group becomes a
+ * separate part. */
 shape_kind kind_of(const iges_item &what)
 {
     if (!has_faces(what.shape))
@@ -227,7 +228,7 @@ TDF_Label add_surfaces(const iges_tree &t, const std::vector<iges_item> &surface
     return label;
 }
 
-/* Groups loose surfaces by layer; each layer becomes a part. */
+/* Groups loose surfaces by layer; each layer becomes one part. */
 std::map<std::string, std::vector<iges_item>> by_layer(const std::vector<iges_item> &loose)
 {
     std::map<std::string, std::vector<iges_item>> out;
@@ -247,7 +248,7 @@ TDF_Label add_whole(const iges_tree &t, const TopoDS_Shape &shape)
 
 TDF_Label label_of(iges_tree *t, const iges_item &what, int depth);
 
-/* Adds a scaled copy as a separate part, because an XCAF placement cannot scale. */
+/* Adds a scaled instance as a separate part with scaled geometry, because an XCAF placement cannot scale. */
 TDF_Label add_scaled(iges_tree *t, const iges_item &what)
 {
     gp_Trsf larger;
@@ -273,7 +274,7 @@ void add_component(iges_tree *t, const TDF_Label &to, const iges_item &what, int
         describe(*t, component, what.from);
 }
 
-/* Unwraps groups that hold a single part with neither a name nor a placement of its own. */
+/* Descends into a group that holds a single part, while that part has no name and no placement, and returns the innermost group. */
 iges_item without_wrappings(const iges_tree &t, iges_item what)
 {
     for (int depth = 0; depth < MAX_DEPTH && is_group(what.from); depth++) {
@@ -309,7 +310,7 @@ TDF_Label add_group(iges_tree *t, const iges_item &group, int depth)
     return label;
 }
 
-/* Returns the label of a part without its placement, shared by all its placements. */
+/* Returns the label of a part's shape without placement; all instances of the part share it. */
 TDF_Label label_of(iges_tree *t, const iges_item &what, int depth)
 {
     if (depth > MAX_DEPTH)
@@ -326,7 +327,7 @@ TDF_Label label_of(iges_tree *t, const iges_item &what, int depth)
     return label;
 }
 
-/* Adds a root. XCAF roots have no placement, so a placed root is wrapped in an assembly. */
+/* Adds a root entity of the file to the document. XCAF roots have no placement, so a placed root is wrapped in an assembly. */
 void add_root(iges_tree *t, const iges_item &root)
 {
     if (product_of(root.from) == root.from && root.shape.Location().IsIdentity()) {
@@ -373,7 +374,7 @@ void iges_tree_add(IGESControl_Reader &iges, const Handle(TDocStd_Document) & do
 std::string iges_units(IGESControl_Reader &iges)
 {
     Handle(IGESData_IGESModel) model = Handle(IGESData_IGESModel)::DownCast(iges.WS()->Model());
-    static const char *const names[] = { "",     "inch", "millimetre", "",    "foot",      "mile",
+    static const char *const names[] = { "",      "inch",      "millimetre",       "",           "foot",       "mile",
                                          "metre", "kilometre", "mil (0.001 inch)", "micrometre", "centimetre", "microinch" };
     int flag = model.IsNull() ? 0 : model->GlobalSection().UnitFlag();
     return flag > 0 && flag < static_cast<int>(sizeof(names) / sizeof(names[0])) ? names[flag] : "";

@@ -44,9 +44,10 @@
 namespace
 {
 
-constexpr size_t MAX_NODES = 2'000'000; /* limit of output nodes: assemblies nested in assemblies can grow exponentially */
+/* maximum number of output nodes: assemblies that contain one another repeatedly multiply the nodes exponentially */
+constexpr size_t MAX_NODES = 2'000'000;
 constexpr size_t MOST_NAMED = 20;
-constexpr double ANGLE_RAD = 0.5;       /* largest angle in radians between neighbouring facets, where the chord error would allow more */
+constexpr double ANGLE_RAD = 0.5; /* largest angle in radians between neighbouring facets, where the chord error would allow more */
 const double PLAIN[4] = { 0.35, 0.35, 0.35, 1 };
 
 /* --- names, colours, places ------------------------------------------------------------------------------------------------------- */
@@ -118,7 +119,7 @@ struct occt_reader {
     Handle(XCAFDoc_LayerTool) layers;
     struct glb_scene *scene;
     double chord_mm;
-    std::map<std::string, occt_part> parts; /* tessellated parts, by label entry and inherited colour */
+    std::map<std::string, occt_part> parts;         /* tessellated parts, by XCAF label and colour inherited from the assembly */
     std::map<std::string, step_external> externals; /* of STEP, as step_files.hh says */
     size_t nodes = 0, places = 0, skipped_faces = 0;
     std::vector<std::string> lines; /* names of parts that are only curves or points */
@@ -188,7 +189,7 @@ void write_groups(occt_reader *r, const std::map<key, color_group> &groups, cons
     }
 }
 
-/* Returns why a shape without faces has none, or "" for one that is only curves or points. */
+/* Returns the reason why a shape has no faces, for a message; "" if it consists only of curves or points, which is no loss. */
 std::string reason_without_faces(const occt_reader *r, const TopoDS_Shape &shape)
 {
     if (!shape.IsNull() && TopExp_Explorer(shape, TopAbs_VERTEX).More())
@@ -197,11 +198,12 @@ std::string reason_without_faces(const occt_reader *r, const TopoDS_Shape &shape
     return missing ? "its shape is empty, or in a file that is missing" : "its shape is empty";
 }
 
-/* Prints a part of which nothing, or not all, is shown. */
+/* Reports a part that lost all or some of its faces. */
 void say_lost_part(occt_reader *r, const TDF_Label &label, const char *id, const mesh_outcome &of)
 {
     std::string name = name_of(label), why;
-    std::replace_if(name.begin(), name.end(), [](unsigned char c) { return c < ' '; }, ' ');
+    std::replace_if(
+        name.begin(), name.end(), [](unsigned char c) { return c < ' '; }, ' ');
     if (of.faces == 0)
         why = reason_without_faces(r, XCAFDoc_ShapeTool::GetShape(label));
     else if (of.missing == 0)
@@ -214,7 +216,8 @@ void say_lost_part(occt_reader *r, const TDF_Label &label, const char *id, const
         printf("lost\t%s\t%s\tpart\t\t%s\n", id, name.c_str(), why.c_str());
 }
 
-/* Tessellates a simple shape, once for each colour it inherits. mesh is -1 if the shape has no faces. */
+/* Returns the tessellated mesh of a shape without sub-assemblies, one for each colour that it inherits. mesh is -1 if the shape has no
+ * faces. */
 occt_part part_of(occt_reader *r, const TDF_Label &label, const XCAFPrs_Style &style)
 {
     TCollection_AsciiString entry;
@@ -350,8 +353,8 @@ void say_lines(const occt_reader &r)
     for (size_t i = 0; i < r.lines.size() && i < MOST_NAMED; i++)
         names += (i > 0 ? ", " : "") + r.lines[i];
     if (!r.lines.empty())
-        printf("not shown: %zu parts that are only curves or points: %s%s\n",
-               r.lines.size(), names.c_str(), r.lines.size() > MOST_NAMED ? ", ..." : "");
+        printf("not shown: %zu parts that are only curves or points: %s%s\n", r.lines.size(), names.c_str(),
+               r.lines.size() > MOST_NAMED ? ", ..." : "");
 }
 
 /* Computes the root matrix: millimetres to metres, and Z up to Y up unless the model is Y up already. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Faces that became no shape are counted by the body that they belong to, which is named after its product. */
+/* Finds faces that Open CASCADE could not read and counts them per body. Each body is reported with the name of its product. */
 #include "preprocess/import/readers/occt_losses.hh"
 
 #include <IGESBasic_SingularSubfigure.hxx>
@@ -39,8 +39,8 @@ namespace
 
 using entity = Handle(Standard_Transient);
 
-constexpr size_t MOST_KINDS = 100; /* of errors that are printed */
-constexpr size_t MOST_IDS = 5;     /* that are named in a line */
+constexpr size_t MOST_KINDS = 100; /* maximum number of kinds of errors that are printed */
+constexpr size_t MOST_IDS = 5;     /* maximum number of entity ids in one printed line */
 constexpr size_t MOST_VISITED = 10000;
 
 struct file_losses {
@@ -54,32 +54,33 @@ struct file_losses {
 /* Returns text on one line without tabs, which separate fields. */
 std::string one_line(std::string text)
 {
-    std::replace_if(text.begin(), text.end(), [](unsigned char c) { return c < ' '; }, ' ');
+    std::replace_if(
+        text.begin(), text.end(), [](unsigned char c) { return c < ' '; }, ' ');
     return text;
 }
 
-/* Returns a message without the number of a parameter ("n0.12 "), so that errors of one kind are one line. */
+/* Returns a message without the index of a parameter ("n0.12 "), so that errors that differ only in this index are counted together. */
 std::string without_number(const std::string &text)
 {
     size_t from = text.find("n0."), end = from == std::string::npos ? from : text.find_first_not_of("0123456789", from + 3);
     return end == std::string::npos ? text : text.substr(0, from) + text.substr(end + (text[end] == ' '));
 }
 
-/* Returns whether another part of the reader deals with an error: step_files.hh says which files are missing, iges_tree.cc builds
- * instances of subfigures that have another size. */
+/* Returns whether another part of the reader handles an error: step_files.hh reports missing files, and iges_tree.cc builds scaled
+ * instances of subfigures. */
 bool is_dealt_with(const entity &from, const std::string &text)
 {
     Handle(IGESBasic_SingularSubfigure) place = Handle(IGESBasic_SingularSubfigure)::DownCast(from);
     return text.find("Can not read external file") != std::string::npos || (!place.IsNull() && place->HasScaleFactor());
 }
 
-/* Returns "#12" of STEP, "D12" of IGES. */
+/* Returns the entity's id in the file: "#12" in STEP, "D12" in IGES. */
 std::string id_of(const file_losses &of, const entity &from)
 {
     return of.model->StringLabel(from)->ToCString();
 }
 
-/* Returns a type of Open CASCADE without its package: "AdvancedFace". */
+/* Returns the entity's Open CASCADE type without package prefix, such as "AdvancedFace". */
 std::string type_of(const entity &from)
 {
     std::string name = from->DynamicType()->Name();
@@ -113,8 +114,8 @@ void say_errors(const file_losses &of)
             add_errors(of, of.process->Mapped(i), of.process->MapItem(i)->Check(), &kinds);
     for (const auto &[text, kind] : kinds)
         if (printed++ < MOST_KINDS)
-            printf("error\t%zu\tOpen CASCADE: %s%s%s%s\n",
-                   kind.count, of.file.c_str(), text.c_str(), kind.ids.c_str(), kind.count > MOST_IDS ? " ..." : "");
+            printf("error\t%zu\tOpen CASCADE: %s%s%s%s\n", kind.count, of.file.c_str(), text.c_str(), kind.ids.c_str(),
+                   kind.count > MOST_IDS ? " ..." : "");
     if (printed > MOST_KINDS)
         printf("error\t%zu\tOpen CASCADE: %serrors of other kinds\n", printed - MOST_KINDS, of.file.c_str());
 }
@@ -151,13 +152,13 @@ std::string product_name(const entity &from)
     return name.IsNull() ? "" : one_line(name->ToCString());
 }
 
-/* The body of a face, or the face itself where it has none, and the name of its product. */
+/* Owner of a face: `body` is the body that contains it, or the face itself if there is none; `name` is the name of its product. */
 struct face_owner {
     entity body;
     std::string name;
 };
 
-/* Follows references backwards, the nearest first, until a product. */
+/* Finds a face's body and product by following references backwards, breadth first, until the first product. */
 face_owner owner_of(const Interface_Graph &graph, const entity &face)
 {
     face_owner out = { face, "" };
@@ -200,13 +201,13 @@ void say_lost(const file_losses &of, const lost_faces &lost)
     const std::string reason = lost.owner.body == lost.faces[0]
                                    ? "it could not be read"
                                    : std::to_string(lost.faces.size()) + " of its faces could not be read:" + ids + more;
-    printf("lost\t%s\t%s%s\t%s\t\t%s\n",
-           id_of(of, lost.owner.body).c_str(), of.file.c_str(), lost.owner.name.c_str(), type_of(lost.owner.body).c_str(), reason.c_str());
+    printf("lost\t%s\t%s%s\t%s\t\t%s\n", id_of(of, lost.owner.body).c_str(), of.file.c_str(), lost.owner.name.c_str(),
+           type_of(lost.owner.body).c_str(), reason.c_str());
 }
 
 void say_lost_faces(const file_losses &of, const Interface_Graph &graph)
 {
-    std::map<int, lost_faces> bodies; /* by the body's number in the model */
+    std::map<int, lost_faces> bodies; /* by the body entity's index in the model */
     for (int i = 1; i <= of.model->NbEntities(); i++) {
         const entity face = of.model->Value(i);
         if (!is_face(face) || has_shape(of, face))
@@ -220,7 +221,7 @@ void say_lost_faces(const file_losses &of, const Interface_Graph &graph)
         say_lost(of, entry.second);
 }
 
-/* Prints places of products that were read, but not in that place. */
+/* Reports instances of products that are missing although the product itself was read. */
 void say_lost_places(const file_losses &of)
 {
     for (int i = 1; i <= of.model->NbEntities(); i++) {
@@ -229,8 +230,8 @@ void say_lost_places(const file_losses &of)
         if (product.IsNull() || has_shape(of, place) || !has_shape(of, product))
             continue;
         Handle(TCollection_HAsciiString) name = place->Name().IsNull() || place->Name()->IsEmpty() ? place->Id() : place->Name();
-        printf("lost\t%s\t%s%s\tplace\t\tthe file does not say where it is, or not in a form that is read\n",
-               id_of(of, place).c_str(), of.file.c_str(), name.IsNull() ? "" : one_line(name->ToCString()).c_str());
+        printf("lost\t%s\t%s%s\tplace\t\tthe file does not say where it is, or not in a form that is read\n", id_of(of, place).c_str(),
+               of.file.c_str(), name.IsNull() ? "" : one_line(name->ToCString()).c_str());
     }
 }
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* BRepMesh leaves out faces whose boundary it cannot unfold, such as a cone through its apex. As B-spline surfaces most of them work. */
+/* BRepMesh leaves out faces whose boundary it cannot unfold into a plane, such as a cone through its apex. Most such faces can be
+ * tessellated after conversion to B-spline surfaces. */
 #include "preprocess/import/readers/occt_mesh.hh"
 
 #include <BRepBuilderAPI_NurbsConvert.hxx>
@@ -18,7 +19,7 @@
 namespace
 {
 
-constexpr double LEAST_MM2 = 1e-6; /* a smaller face cannot be seen */
+constexpr double LEAST_MM2 = 1e-6; /* smaller faces are too small to see */
 
 Handle(Poly_Triangulation) triangles_of(const TopoDS_Face &face, TopLoc_Location *place)
 {
@@ -37,7 +38,7 @@ void mesh(const TopoDS_Shape &shape, double chord_mm, double angle_rad, bool par
     try {
         BRepMesh_IncrementalMesh(shape, chord_mm, Standard_False, angle_rad, parallel);
     } catch (const Standard_Failure &) {
-        /* the caller finds faces without triangles */
+        /* ignore the error: the caller looks for faces without triangles */
     }
 }
 
@@ -54,7 +55,7 @@ void mesh_as_spline(const TopoDS_Face &face, double chord_mm, double angle_rad)
             return;
         for (int i = 1; i <= found->NbNodes(); i++)
             found->SetNode(i, found->Node(i).Transformed(place.Transformation()));
-        found->RemoveUVNodes(); /* they are of the B-spline surface */
+        found->RemoveUVNodes(); /* remove them: they are parameters of the B-spline surface, not of the original one */
         found->ComputeNormals();
         BRep_Builder().UpdateFace(plain, found);
     } catch (const Standard_Failure &) {
@@ -62,7 +63,7 @@ void mesh_as_spline(const TopoDS_Face &face, double chord_mm, double angle_rad)
     }
 }
 
-/* Returns 0 for a face that Open CASCADE cannot measure. */
+/* Returns the area of a face in mm2, or 0 if Open CASCADE cannot compute it. */
 double area_of(const TopoDS_Face &face)
 {
     try {

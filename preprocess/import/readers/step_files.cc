@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Open CASCADE finds external files by their exact name in the folder of the file that it reads, and only those said to be of AP203 or
- * AP214. Copies refer to each other by names of their own, so other folders, other cases and encoded names do no harm. */
+/* Copies STEP files so that Open CASCADE can read assemblies of several files. Open CASCADE opens an external file only by its exact
+ * name, in the folder of the main file, and if declared as AP203 or AP214. So the copies get simple names and refer to each other by
+ * these names. */
 #include "preprocess/import/readers/step_files.hh"
 
 #include <unistd.h>
@@ -16,14 +17,15 @@ namespace
 
 constexpr char MARK[] = "`|";
 constexpr size_t MOST_FILES = 5000;
-constexpr size_t MOST_BEFORE = 1000; /* bytes of a statement that are searched for its keyword */
+constexpr size_t MOST_BEFORE = 1000; /* number of bytes at the start of a statement that are searched for its keyword */
 
 struct preparing {
     std::string input_folder, output_folder;
     const char *asked;
     step_files out;
-    std::map<std::string, std::string> names; /* of copies, by path, or by the name of a file that is missing */
-    std::vector<std::string> open;            /* paths of external files that are not copied yet */
+    /* file names of copies, by path of the original, or by stated name if the original is missing */
+    std::map<std::string, std::string> names;
+    std::vector<std::string> open; /* paths of external files that are not copied yet */
 };
 
 std::string lower(std::string text)
@@ -86,7 +88,8 @@ std::string without_escapes(const std::string &text)
     return out;
 }
 
-/* Returns the path of a file that lies in the folder, in the case in which it lies there, or "". The folder cannot be listed. */
+/* Finds a file that a model names, in the model's folder and ignoring case: tries spellings, because the confined reader cannot list the
+ * folder. Returns its path, or "" if there is none. */
 std::string find_beside(const preparing &p, const std::string &named)
 {
     const std::string base = named.substr(named.find_last_of("/\\") == std::string::npos ? 0 : named.find_last_of("/\\") + 1);
@@ -99,7 +102,7 @@ std::string find_beside(const preparing &p, const std::string &named)
     return "";
 }
 
-/* Returns the name that copies use for an external file. */
+/* Returns the name under which copies refer to an external file, and queues the file for copying. */
 std::string external_name(preparing *p, const std::string &literal)
 {
     const std::string named = without_escapes(literal), path = find_beside(*p, named), &known = path.empty() ? named : path;
@@ -124,7 +127,8 @@ bool names_files(const std::string &statement)
     return false;
 }
 
-/* Returns the string to write into the copy. before: the copy up to the string, whose statement begins at `statement`. */
+/* Converts one quoted string for the copy: a file name, a data format or a name. before: text of the copy before the string. statement:
+ * offset in `before` at which the string's statement begins. */
 std::string converted_string(preparing *p, const std::string &before, size_t statement, const std::string &text)
 {
     if (is_step_name(text) && names_files(before.substr(statement, MOST_BEFORE)))
@@ -135,7 +139,7 @@ std::string converted_string(preparing *p, const std::string &before, size_t sta
     return plain ? text : text + MARK;
 }
 
-/* Returns the text of a STEP file with all its strings converted. */
+/* Returns the text of a STEP file with all its strings converted by converted_string(). */
 std::string converted_text(preparing *p, const std::string &text)
 {
     std::string out;
@@ -187,7 +191,7 @@ step_files step_files_prepare(const std::string &path, const std::string &folder
 {
     preparing p = { path.substr(0, path.rfind('/') + 1), folder, asked, {}, {}, {} };
     const std::string text = read_whole(path.c_str());
-    p.names[path] = "external_0.stp"; /* a file that refers to itself */
+    p.names[path] = "external_0.stp"; /* the main file may refer to itself */
     const std::string converted = converted_text(&p, utf8_of(path, asked, true));
     p.out.main = path;
     if (converted != text) {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Copies of STEP files as Open CASCADE reads them best: names in UTF-8, and assemblies whose parts are in other files. Thread: one. */
+/* Prepares copies of STEP files for Open CASCADE: names in UTF-8, and references to external files rewritten to the names of their copies.
+ * Thread: one. */
 #ifndef PREPROCESS_IMPORT_READERS_STEP_FILES_HH
 #define PREPROCESS_IMPORT_READERS_STEP_FILES_HH
 #include <map>

@@ -17,8 +17,8 @@ enum { TEXTS = 3 };
 
 struct one_text {
     const char *name;
-    char *before, *after; /* before: current text, NULL if there is no file; after: new text, NULL if the file stays unchanged */
-    char *kept;           /* path of the kept previous version of the file; NULL: none is kept */
+    char *before, *after; /* before: current text, NULL if the file does not exist; after: new text, NULL if the file stays unchanged */
+    char *kept;           /* path where the file's previous version is kept; NULL: not kept */
 };
 
 struct revision_making {
@@ -34,8 +34,8 @@ static int fail_at(const char *path, const char *why)
     return 1;
 }
 
-/* Adds one text file to the transaction and takes ownership of `after`. versioned: the current file may have been written by a person, so
- * it is kept under a new name. */
+/* Adds one text file to the transaction and takes ownership of `after`. versioned: keeps the current file under a new name, because a
+ * person may have written it. */
 static int add_text(struct revision_making *making, struct one_text *one, const char *name, char *after, bool versioned)
 {
     char *path = mem_printf("%s/%s", making->params->folder, name);

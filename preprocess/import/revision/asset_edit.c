@@ -31,7 +31,7 @@ static bool fail(struct editor *editor, const char *why)
     return false;
 }
 
-/* Records a replacement and takes ownership of `with`. */
+/* Records that a byte range of the text is to be replaced, and takes ownership of the new text `with`. */
 static void splice(struct editor *editor, size_t begin, size_t end, char *with)
 {
     mem_grow(&editor->splices, &editor->splice_room, editor->splice_count + 1, sizeof(*editor->splices));
@@ -81,8 +81,8 @@ static size_t line_end(const char *text, size_t at)
 static bool remove_item(struct editor *editor, const yaml_node_t *item)
 {
     const char *text = editor->text;
-    size_t begin = line_begin(text, byte_at(editor, item->start_mark)), indent = strspn(text + begin, " "),
-           end = line_end(text, begin), limit = byte_at(editor, item->end_mark);
+    size_t begin = line_begin(text, byte_at(editor, item->start_mark)), indent = strspn(text + begin, " "), end = line_end(text, begin),
+           limit = byte_at(editor, item->end_mark);
     if (text[begin + indent] != '-')
         return fail(editor, "its lists of assets and nodes have to be one item a line");
     for (size_t line = end; text[line]; line = line_end(text, line)) {
@@ -146,9 +146,8 @@ static bool edit_nodes(struct editor *editor, const yaml_node_t *value, const st
 static void add_tag(struct editor *editor, const yaml_node_t *map, const yaml_node_t *id_key, const yaml_node_t *id, const char *tag)
 {
     char *text = quoted(tag);
-    char *with = map->data.mapping.style == YAML_FLOW_MAPPING_STYLE
-                     ? mem_printf(", tag: %s", text)
-                     : mem_printf("\n%*stag: %s", (int)id_key->start_mark.column, "", text);
+    char *with = map->data.mapping.style == YAML_FLOW_MAPPING_STYLE ? mem_printf(", tag: %s", text)
+                                                                    : mem_printf("\n%*stag: %s", (int)id_key->start_mark.column, "", text);
     size_t at = byte_at(editor, id->end_mark);
     splice(editor, at, at, with);
     mem_free(text);

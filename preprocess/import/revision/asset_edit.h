@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Edits the assets of a plant file within its text, so that order, comments and everything else stay as people wrote them. Pure. Thread:
+/* Edits the assets of a plant file within its text, so that everything else, such as order and comments, stays unchanged. Pure. Thread:
  * any. */
 #ifndef PREPROCESS_IMPORT_ASSET_EDIT_H
 #define PREPROCESS_IMPORT_ASSET_EDIT_H
@@ -8,8 +8,9 @@
 
 struct asset_edit { /* one asset's edit; all zero: the asset stays unchanged */
     bool removed;
-    char *tag;    /* new tag of the asset; NULL: unchanged */
-    char **nodes; /* new text of each of the asset's node patterns, NULL for a deleted pattern; NULL: no pattern changes */
+    char *tag; /* new tag of the asset; NULL: unchanged */
+    /* array of new texts, one per node pattern of the asset, NULL for a deleted pattern; nodes itself is NULL if no pattern changes */
+    char **nodes;
     size_t node_count;
 };
 

@@ -9,8 +9,8 @@
 struct asset_patterns {
     const struct model_header *before, *after; /* headers of the old and the new model; must outlive this struct */
     const struct node_pairs *pairs;
-    uint32_t *old_names, *new_names; /* node indices sorted by name, of the old and the new model */
-    uint32_t *found;                 /* result of the last search; has room for all nodes of either model */
+    uint32_t *old_names, *new_names; /* node indices of the old model sorted by name, and of the new model */
+    uint32_t *found;                 /* node indices found by the last search; has room for all nodes of the larger model */
 };
 
 void asset_patterns_init(struct asset_patterns *patterns, const struct model_header *before, const struct model_header *after,
@@ -18,13 +18,14 @@ void asset_patterns_init(struct asset_patterns *patterns, const struct model_hea
 void asset_patterns_finish(struct asset_patterns *patterns);
 
 enum asset_pattern_change { ASSET_PATTERN_SAME, ASSET_PATTERN_OTHER, ASSET_PATTERN_GONE };
-/* Determines how a pattern (without a leading "!") changes. `before` marks the old nodes to prefer if the pattern matches several; NULL: no
- * preference. For ASSET_PATTERN_OTHER *out receives the new pattern, which the caller frees with mem_free. */
+/* Determines how a pattern (without a leading "!") changes: not at all, to another text, or it matches no node any more. `before` marks the
+ * old nodes to prefer if the pattern matches several; NULL: no preference. For ASSET_PATTERN_OTHER *out receives the new pattern, which the
+ * caller frees with mem_free. */
 enum asset_pattern_change asset_patterns_follow(struct asset_patterns *patterns, const char *pattern, const bool *before, char **out);
 
-/* Updates an asset's patterns, one a line. Returns them in the same form (freed with mem_free), or NULL if none is left that matches a
- * node. If any pattern changed, *nodes (each element and the array are freed with mem_free) holds the new text of each pattern, or NULL for
- * a deleted one. */
+/* Updates an asset's patterns. `lines` holds one pattern per line. Returns the new patterns in the same form (freed with mem_free), or NULL
+ * if no pattern is left that matches a node. If any pattern changed, *nodes (each element and the array are freed with mem_free) holds the
+ * new text of each pattern, or NULL for a deleted one. */
 char *asset_patterns_update(struct asset_patterns *patterns, const char *lines, char ***nodes, size_t *node_count);
 
 #endif

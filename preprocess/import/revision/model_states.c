@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Compares vertices pairwise if both shapes have equal vertex counts, and boxes otherwise. */
+/* Compares two shapes vertex by vertex if their vertex counts are equal, and otherwise by their bounding boxes. */
 #include "preprocess/import/revision/model_states.h"
 
 #include <math.h>
@@ -11,7 +11,7 @@
 #include "preprocess/geometry/rigid_fit.h"
 #include "surface/mesh/bvh.h"
 
-enum { SAMPLES = 64 }; /* vertices per primitive that the motion is fitted to; all vertices are then checked against the fitted motion */
+enum { SAMPLES = 64 }; /* number of vertices per primitive used to fit the motion; the fitted motion is then checked on all vertices */
 
 /* --- reading ------------------------------------------------------------------------------------------------------------------ */
 
@@ -67,7 +67,8 @@ void model_states_finish(struct model_states *states)
     *states = (struct model_states){ 0 };
 }
 
-/* --- parts: each primitive of each instance ------------------------------------------------------------------------------------- */
+/* --- lists of parts: a part is one primitive of one instance
+ * ------------------------------------------------------------------------------------- */
 
 struct state_part {
     const struct gltf_primitive *primitive;
@@ -101,7 +102,7 @@ static void vertex_of(const struct state_part *part, uint32_t vertex, double out
     transform_point(part->world, (const double[3]){ (double)at[0], (double)at[1], (double)at[2] }, out);
 }
 
-/* Returns whether two runs of parts have the same length and equal vertex and index counts throughout. */
+/* Returns whether the parts of both lists from a_first and b_first on are equally many and pairwise equal in vertex and index counts. */
 static bool alike(const struct state_parts *a, size_t a_first, const struct state_parts *b, size_t b_first)
 {
     bool same = a->count - a_first == b->count - b_first;
@@ -114,8 +115,8 @@ static bool alike(const struct state_parts *a, size_t a_first, const struct stat
 
 /* --- motion ------------------------------------------------------------------------------------------------------------------- */
 
-/* Tests for a pure translation: all vertices moved by the same vector within the tolerance. Fitting a rotation would add small errors to
- * it. */
+/* Tests for a pure translation: all vertices moved by the same vector within the tolerance. Tested before fitting a rotation, which would
+ * add small errors to the translation. */
 static bool find_shift(const double (*from)[3], const double (*to)[3], size_t count, double tolerance, double motion[16])
 {
     double shift[3], other[3], apart[3];

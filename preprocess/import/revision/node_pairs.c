@@ -12,7 +12,7 @@
 struct node_pairing {
     const struct model_outline *old_outline, *new_outline;
     struct node_pairs *pairs;
-    int *olds, *news; /* candidates of the current step; each has room for all nodes */
+    int *olds, *news; /* unpaired nodes that the current pairing method compares; each array has room for all nodes */
     size_t old_count, new_count;
 };
 
@@ -39,8 +39,7 @@ static bool shows(const struct outline_node *node)
 static bool in_same_place(const struct outline_node *a, const struct outline_node *b)
 {
     double tolerance = extent_of(&a->all) * 1e-3;
-    return shows(a) && shows(b) && vec_distance(a->all.low, b->all.low) <= tolerance &&
-           vec_distance(a->all.high, b->all.high) <= tolerance;
+    return shows(a) && shows(b) && vec_distance(a->all.low, b->all.low) <= tolerance && vec_distance(a->all.high, b->all.high) <= tolerance;
 }
 
 static size_t size_of(const struct model_outline *outline, int node)
@@ -93,12 +92,13 @@ static void take_unpaired(struct node_pairing *p)
             p->news[p->new_count++] = (int)i;
 }
 
-/* --- runs of equal candidates --------------------------------------------------------------------------------------------------- */
+/* --- pairing runs of candidates that compare equal
+ * --------------------------------------------------------------------------------------------------- */
 
 enum run_rule {
-    RUN_SINGLE, /* pair nodes only where exactly one old and one new candidate are equal */
-    RUN_PLACED, /* pair nodes whose boxes are in the same place */
-    RUN_ORDERED /* pair single candidates; then nodes in the same place; then the rest in order if both sides have equally many */
+    RUN_SINGLE, /* pair a run only if it has exactly one old and one new candidate */
+    RUN_PLACED, /* pair candidates of a run whose bounding boxes are at the same position */
+    RUN_ORDERED /* pair single candidates, then those at the same position, then the remaining ones in order if as many are old as new */
 };
 
 static void pair_placed(struct node_pairing *p, const int *olds, size_t old_count, const int *news, size_t new_count)
@@ -137,7 +137,7 @@ static void pair_run(struct node_pairing *p, const int *olds, size_t old_count, 
         pair_in_order(p, olds, old_count, news, new_count);
 }
 
-/* Merges two sorted candidate lists and pairs each run of equal nodes. */
+/* Walks two sorted candidate lists in parallel and pairs the nodes within each run of nodes that compare equal. */
 static void pair_runs(struct node_pairing *p, int (*compare)(const struct node_pairing *p, int old_node, int new_node), enum run_rule rule)
 {
     for (size_t i = 0, k = 0; i < p->old_count && k < p->new_count;) {
@@ -204,7 +204,7 @@ static json_t *guids_of(const struct model_outline *outline)
     json_t *found = json_object();
     for (size_t i = 0; i < outline->header.count; i++) {
         const char *guid = model_outline_property(&outline->nodes[i], "GlobalId");
-        if (guid) /* -1 marks a GUID that several nodes share */
+        if (guid) /* value: node index, or -1 if several nodes share the GUID */
             json_object_set_new_nocheck(found, guid, json_integer(json_object_get(found, guid) ? -1 : (json_int_t)i));
     }
     return found;

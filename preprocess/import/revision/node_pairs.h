@@ -5,7 +5,7 @@
 #define PREPROCESS_IMPORT_NODE_PAIRS_H
 #include "preprocess/import/model_outline.h"
 
-struct node_pairs { /* counterparts in the other model, by outline node (depth first); -1: none */
+struct node_pairs { /* by outline node (depth first): index of its counterpart in the other model; -1: none */
     int *to_new, *to_old;
 };
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Plans a revision, checks the result by loading it, and replaces the files. */
+/* Plans a revision, checks the new plant file by loading it in a temporary folder, and replaces the files. */
 #include "preprocess/import/revision/revise.h"
 
 #include <errno.h>
@@ -57,7 +57,7 @@ static char *read_text(const char *path, int *status)
     return text;
 }
 
-/* Finds the tag list, resolving a symlink. If the list lies in another folder, that folder must be writable. */
+/* Finds the tag list, following a symlink. If the list lies in another folder, that folder must be writable. */
 static int find_tags(struct revising *r)
 {
     char folder[PATH_MAX], path[PATH_MAX];
@@ -168,7 +168,8 @@ static void write_review(struct revising *r)
 
 /* --- the files ------------------------------------------------------------------------------------------------------------------ */
 
-/* Adds a text file to the transaction. text NULL: the file stays unchanged. before NULL: nobody else writes this file. */
+/* Adds a text file to the transaction. text: new text; NULL: the file stays unchanged. before: text that the file must still have; NULL:
+ * not checked, because only this program writes the file. */
 static int add_text(struct revising *r, const char *name, const char *text, const char *before)
 {
     struct revision_file *file = &r->files[r->file_count++];
@@ -182,7 +183,7 @@ static const char *if_other(const char *text, const char *before)
     return text && strcmp(text, before) != 0 ? text : NULL;
 }
 
-/* Replaces the files, plant.yaml last. The order keeps the folder loadable after each single replacement. */
+/* Replaces the files, plant.yaml last. In this order, the daemon can load the folder after each single replacement. */
 static int apply(struct revising *r)
 {
     const char *changed;

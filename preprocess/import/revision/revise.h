@@ -16,8 +16,8 @@ struct revise_params {
  * 0, or 1 with the reasons on standard error, and then nothing was changed. */
 int revise(const struct revise_params *params);
 
-/* Restores all files as they were before the last revision. forced: also files that have changed since. lent: see plant_folder.h. Returns
- * the exit status. */
+/* Undoes the last revision: restores all files that it replaced. forced: also restores files that have changed since the revision. lent:
+ * descriptor of the folder lock that the parent process holds (plant_folder.h); 0: none. Returns the exit status. */
 int revise_undo(const char *folder, bool forced, int lent);
 
 #endif

@@ -20,7 +20,7 @@ static const double tolerance_m = 0.002; /* tolerance of positions in metres: ex
 struct planning {
     struct revision *revision;
     const struct revision_input *input;
-    struct asset_edit *assets; /* planned edits, by index of the plant's assets */
+    struct asset_edit *assets; /* array of planned edits, one per asset of the plant */
     struct tag_edit *tags;
     size_t tag_count, tag_room;
     struct text added;
@@ -33,7 +33,7 @@ struct planning {
     struct asset_patterns patterns;
     bool *before, *after; /* nodes of the current asset, in the old and the new model */
     bool *covered;        /* nodes of the new model that belong to an asset */
-    bool *roots;          /* nodes of the old model that an asset's review row already covers */
+    bool *roots;          /* nodes of the old model that an asset's row of the review already mentions */
     char *why;
 };
 
@@ -136,7 +136,7 @@ static struct tag_edit *edit_tag(struct planning *p, const struct plant_tag *tag
     return edit;
 }
 
-/* The tag loses its exact place and stays on its equipment. */
+/* Records that a tag loses its exact position and is placed at its equipment instead. */
 static void lose_place(struct planning *p, const struct plant_tag *tag, const char *detail)
 {
     edit_tag(p, tag)->place = "equipment";
@@ -162,7 +162,7 @@ static void follow_node(struct planning *p, const struct plant_tag *tag)
         if (tag->place_assumed)
             edit->place = "equipment";
         say(p, REVISION_TAG, "renamed", tag->name, "its node %s is now %s", tag->node, pattern);
-        return; /* the edit owns `pattern` and frees it later */
+        return; /* `pattern` belongs to the edit from here on, which frees it later */
     }
     case ASSET_PATTERN_GONE: {
         char *detail = mem_printf("its node %s is no longer in the model", tag->node);
@@ -243,7 +243,7 @@ static void review_asset(struct planning *p, const struct plant_asset *asset, st
     if (other >= 0 && strcmp(old->nodes[root].name, new->nodes[other].name) != 0) {
         const char *name = new->nodes[other].name;
         p->roots[root] = true;
-        /* rename the asset's tag only if people have not changed it */
+        /* rename the asset's tag only if it still is the old node's name */
         if (!strcmp(asset->tag, without_slash(old->nodes[root].name)) && *name)
             edit->tag = mem_strdup(without_slash(name));
         say(p, REVISION_ASSET, "renamed", asset->id, "now %s; its id stays", name);
@@ -256,7 +256,7 @@ static void review_asset(struct planning *p, const struct plant_asset *asset, st
         say(p, REVISION_ASSET, "moved", asset->id, "%.3f m", moved_m);
 }
 
-enum taken { TAKEN, TAKEN_NOW /* the asset was missing from the old model */, TAKEN_NOTHING };
+enum taken { TAKEN, TAKEN_NOW /* the new model has nodes of the asset, the old model had none */, TAKEN_NOTHING };
 
 /* Marks the asset's nodes in the old and the new model, and records edited patterns. */
 static enum taken take(struct planning *p, const struct plant_asset *asset, struct asset_edit *edit)
@@ -342,7 +342,7 @@ static void add_new(struct planning *p, const struct revision_model *model, cons
     bool *wanted = mem_array(new->header.count + 1, sizeof(*wanted)), placed = false;
     for (int i = 0; i < 16; i++)
         placed |= fabs(like->placement[i] - transform_identity[i]) > 0;
-    if (!placed) /* if the model's existing assets have a placement, the placement of a new asset is unknown: add none */
+    if (!placed) /* if the model's existing assets have a placement, the placement of a new asset is unknown, so no asset is added */
         for (size_t i = 0; i < new->header.count; i++) {
             wanted[i] = p->states.pairs.to_old[i] < 0;
             for (size_t k = i; k < new->header.nodes[i].end && wanted[i]; k++)

@@ -16,15 +16,15 @@ struct revision_model {
 enum revision_kind { REVISION_ASSET, REVISION_NODE, REVISION_TAG };
 struct revision_row {
     enum revision_kind kind;
-    /* kind of change (static string): "added", "removed", "renamed", "moved", "changed", "place lost", "equipment lost" */
+    /* change that the row describes (static string): "added", "removed", "renamed", "moved", "changed", "place lost", "equipment lost" */
     const char *change;
     char *name, *detail;
 };
 
-struct revision {                  /* zero-initialise */
-    char *plant_text, *tags_text;  /* new texts of plant.yaml and the tag list; NULL: no change */
-    struct revision_row *rows;     /* the review, in reading order */
-    const char **lost;             /* tags whose equipment is gone; the strings belong to the plant */
+struct revision {                 /* zero-initialise */
+    char *plant_text, *tags_text; /* new texts of plant.yaml and the tag list; NULL: no change */
+    struct revision_row *rows;    /* the review, in reading order */
+    const char **lost;            /* names of tags whose equipment is gone; the strings belong to the plant */
     size_t row_count, row_room, lost_count, lost_room;
 };
 

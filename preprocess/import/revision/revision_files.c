@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Apply and undo both begin by renaming one prepared folder, which is atomic; plant_folder.c completes the rest, also after a crash. */
+/* Both apply and undo first rename one prepared folder, which is atomic. From then on plant_folder.c completes the transaction, also after
+ * a crash. */
 #include "preprocess/import/revision/revision_files.h"
 
 #include <errno.h>
@@ -81,7 +82,8 @@ static int add_file(const char *folder, const char *next, const struct revision_
     return status == 0 && kept != -ENOENT ? kept : status;
 }
 
-/* Returns whether the file still has the text that was read. Checked last: after this only renames follow. */
+/* Returns whether the file still has the text that was read. Called last before the transaction, so that a later edit by a user is
+ * unlikely. */
 static bool is_as_read(const char *folder, const struct revision_file *file)
 {
     size_t bytes;
