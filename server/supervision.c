@@ -42,12 +42,12 @@ struct supervision *supervision_create(struct log *log, struct counters *counter
     supervision->log = log;
     supervision->all = counters;
     supervision->counters.reload_good = counters_add(counters, "plantcast_reload_good", "gauge", "1 unless the last reload was refused.");
-    supervision->counters.reloaded_s =
-        counters_add(counters, "plantcast_configuration_loaded_timestamp_seconds", "gauge", "When the configuration in force was loaded.");
+    supervision->counters.reloaded_s = counters_add(counters, "plantcast_configuration_loaded_timestamp_seconds", "gauge",
+                                                    "Time the configuration in force was loaded, in seconds since 1970.");
     counter_set(supervision->counters.reload_good, 1);
     counter_set(supervision->counters.reloaded_s, clock_utc_ns() / NS_PER_S);
     counter_set(counters_add(counters, "plantcast_build_info{version=\"" PLANTCAST_VERSION "\",commit=\"" PLANTCAST_COMMIT "\"}", "gauge",
-                             "1: what this program was built from."),
+                             "Always 1; the labels name the version of this program."),
                 1);
     if (runtime && *runtime)
         supervision->runtime = mem_printf("%.*s", (int)strcspn(runtime, ":"), runtime);
@@ -118,7 +118,7 @@ void supervision_tick(struct supervision *supervision, const struct net_status *
     look(supervision, status->render_service, now_ns);
     if (status->certificate_ends_s)
         counter_set(counters_add(supervision->all, "plantcast_certificate_expiry_timestamp_seconds", "gauge",
-                                 "When the certificate that is served expires."),
+                                 "Expiry time of the served certificate, in seconds since 1970."),
                     status->certificate_ends_s);
 }
 

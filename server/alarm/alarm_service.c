@@ -204,22 +204,25 @@ static void add_counters(struct alarm_service *service)
     struct counters *c = service->params.counters;
     for (int i = 0; i < ALARM_STATUSES; i++) {
         char *name = mem_printf("plantcast_alarms{state=\"%s\"}", alarm_status_name((enum alarm_status)i));
-        service->counters.statuses[i] = counters_add(c, name, "gauge", "Alarms by their state.");
+        service->counters.statuses[i] = counters_add(c, name, "gauge", "Alarms by state.");
         mem_free(name);
     }
     for (int i = 0; i < ALARM_PRIORITIES; i++) {
         char *name = mem_printf("plantcast_alarms_shown{priority=\"%d\"}", i + 1);
-        service->counters.priorities[i] = counters_add(c, name, "gauge", "Alarms that are to be seen, by priority; 1 is the most urgent.");
+        service->counters.priorities[i] =
+            counters_add(c, name, "gauge", "Alarms shown in the alarm list, by priority; 1 is the most urgent.");
         mem_free(name);
     }
-    service->counters.active = counters_add(c, "plantcast_alarms_active", "gauge", "Alarms that are to be seen and whose cause is there.");
-    service->counters.standing = counters_add(c, "plantcast_alarms_standing", "gauge", "Of these, there for more than a day.");
+    service->counters.active = counters_add(c, "plantcast_alarms_active", "gauge", "Shown alarms whose cause persists.");
+    service->counters.standing =
+        counters_add(c, "plantcast_alarms_standing", "gauge", "Shown alarms whose cause has persisted for more than a day.");
     service->counters.chattering =
         counters_add(c, "plantcast_alarms_chattering", "gauge", "Alarms raised three times or more within the last minute.");
-    service->counters.held = counters_add(c, "plantcast_alarms_held", "gauge", "Of the active ones, those whose measurement is bad.");
+    service->counters.held = counters_add(c, "plantcast_alarms_held", "gauge", "Active alarms whose measurement is bad.");
     service->counters.rate = counters_add(c, "plantcast_alarms_recent", "gauge", "Alarms raised within the last ten minutes.");
     service->counters.raised = counters_add(c, "plantcast_alarms_raised_total", "counter", "Alarms raised.");
-    service->counters.lost = counters_add(c, "plantcast_alarm_samples_lost_total", "counter", "Samples too many to be looked at.");
+    service->counters.lost =
+        counters_add(c, "plantcast_alarm_samples_lost_total", "counter", "Samples dropped before alarm evaluation: queue full.");
 }
 
 static bool start_journal(struct alarm_service *service)

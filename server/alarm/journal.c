@@ -278,10 +278,13 @@ static void restore_all(struct journal *journal, struct alarms *alarms, struct i
 
 static void add_counters(struct journal *journal, struct counters *counters)
 {
-    journal->counters.rows = counters_add(counters, "plantcast_alarm_journal_rows_total", "counter", "Changes of alarms written down.");
-    journal->counters.lost = counters_add(counters, "plantcast_alarm_journal_lost_total", "counter", "Those that could not be kept.");
-    journal->counters.waiting = counters_add(counters, "plantcast_alarm_journal_waiting", "gauge", "Those that wait to be written.");
-    journal->counters.good = counters_add(counters, "plantcast_alarm_journal_good", "gauge", "1 while the journal can be written.");
+    journal->counters.rows =
+        counters_add(counters, "plantcast_alarm_journal_rows_total", "counter", "Alarm state changes written to the journal.");
+    journal->counters.lost =
+        counters_add(counters, "plantcast_alarm_journal_lost_total", "counter", "Alarm state changes that could not be stored.");
+    journal->counters.waiting =
+        counters_add(counters, "plantcast_alarm_journal_waiting", "gauge", "Alarm state changes waiting to be written.");
+    journal->counters.good = counters_add(counters, "plantcast_alarm_journal_good", "gauge", "1 while the alarm journal can be written.");
     counter_set(journal->counters.good, 1);
 }
 

@@ -730,10 +730,12 @@ struct core_link *core_link_start(const struct core_link_params *params)
     link->params = *params;
     link->last_arrival = &link->arrivals;
     link->readings = mem_array(params->plant->tag_count + 1, sizeof(*link->readings));
-    link->up = counters_add(c, "plantcast_core_up", "gauge", "Which of its cores receiving readings from, 1: the first; 0: from none.");
-    link->connects = counters_add(c, "plantcast_core_connects_total", "counter", "Connections to cores that brought readings.");
-    link->refused = counters_add(c, "plantcast_core_refused_total", "counter", "Connections to cores that do not belong to this renderer.");
-    link->behind = counters_add_seconds(c, "plantcast_core_clock_ahead_seconds", "gauge", "By so much the core's clock is ahead of ours.");
+    link->up = counters_add(c, "plantcast_core_up", "gauge", "Number of the core that sends readings: 1 is the first, 0 none.");
+    link->connects = counters_add(c, "plantcast_core_connects_total", "counter", "Connections to a core that delivered readings.");
+    link->refused =
+        counters_add(c, "plantcast_core_refused_total", "counter", "Connections refused: the core does not belong to this renderer.");
+    link->behind = counters_add_seconds(c, "plantcast_core_clock_ahead_seconds", "gauge",
+                                        "Seconds by which the core's clock is ahead of this machine's.");
     lws_set_log_level(LLL_ERR | LLL_WARN, NULL); /* libwebsockets logs only errors and warnings; the loop logs the connection's target */
     thread_init(&link->thread);
     link->stop_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);

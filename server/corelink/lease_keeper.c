@@ -413,13 +413,15 @@ static void add_counters(struct lease_keeper *keeper)
 {
     struct counters *c = keeper->params.counters;
     keeper->counters.active = counters_add(c, "plantcast_core_active", "gauge", "1 while this core leads: polls devices, owns alarms.");
-    keeper->counters.epoch = counters_add(c, "plantcast_core_epoch", "gauge", "How often the lead changed hands, as PostgreSQL has it.");
+    keeper->counters.epoch =
+        counters_add(c, "plantcast_core_epoch", "gauge", "Epoch of the lease: rises each time that another core takes the lead.");
     keeper->counters.age =
-        counters_add_seconds(c, "plantcast_core_lease_age_seconds", "gauge", "Since what confirmed this core's lease was sent.");
-    keeper->counters.database = counters_add(c, "plantcast_core_lease_database_up", "gauge", "1 while PostgreSQL answers about the lease.");
-    keeper->counters.standby = counters_add(c, "plantcast_core_standby", "gauge", "1 while a standby follows this core, and is named.");
+        counters_add_seconds(c, "plantcast_core_lease_age_seconds", "gauge", "Age of the last confirmed request for the lease.");
+    keeper->counters.database =
+        counters_add(c, "plantcast_core_lease_database_up", "gauge", "1 while PostgreSQL answers requests for the lease.");
+    keeper->counters.standby = counters_add(c, "plantcast_core_standby", "gauge", "1 while a named standby follows this core.");
     keeper->counters.differs = counters_add(c, "plantcast_core_standby_differs", "gauge",
-                                            "1 while the other core has another version or configuration, and is no standby.");
+                                            "1 while the other core differs in version or configuration and cannot be standby.");
 }
 
 static bool make_timer(struct lease_keeper *keeper)

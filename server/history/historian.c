@@ -609,16 +609,17 @@ static void *run(void *arg)
 
 static void add_counters(struct historian *historian, struct counters *counters)
 {
-    historian->counters.samples = counters_add(counters, "plantcast_history_samples_total", "counter", "Samples the historian was told.");
-    historian->counters.points = counters_add(counters, "plantcast_history_points_total", "counter", "Points it kept of them.");
-    historian->counters.lost = counters_add(counters, "plantcast_history_lost_total", "counter", "Samples it could not keep.");
-    historian->counters.waiting = counters_add(counters, "plantcast_history_waiting_points", "gauge", "Points that wait to be written.");
+    historian->counters.samples =
+        counters_add(counters, "plantcast_history_samples_total", "counter", "Samples received by the historian.");
+    historian->counters.points = counters_add(counters, "plantcast_history_points_total", "counter", "Points stored in history.");
+    historian->counters.lost =
+        counters_add(counters, "plantcast_history_lost_total", "counter", "Samples that could not be stored in history.");
+    historian->counters.waiting = counters_add(counters, "plantcast_history_waiting_points", "gauge", "Points waiting to be written.");
     historian->counters.good = counters_add(counters, "plantcast_history_good", "gauge", "1 while history can be written.");
-    historian->counters.bytes = counters_add(counters, "plantcast_history_bytes", "gauge", "What all months take on disk.");
-    historian->counters.free =
-        counters_add(counters, "plantcast_history_free_bytes", "gauge", "Free bytes on that disk, measured each second.");
-    historian->counters.backup =
-        counters_add(counters, "plantcast_backup_timestamp_seconds", "gauge", "When the last backup was made; 0: not known.");
+    historian->counters.bytes = counters_add(counters, "plantcast_history_bytes", "gauge", "Disk space taken by all months of history.");
+    historian->counters.free = counters_add(counters, "plantcast_history_free_bytes", "gauge", "Free space on the disk of the history.");
+    historian->counters.backup = counters_add(counters, "plantcast_backup_timestamp_seconds", "gauge",
+                                              "Time of the last backup, in seconds since 1970; 0: unknown.");
 }
 
 static void on_restored(void *arg)

@@ -11,12 +11,13 @@ void latency_stages_init(struct latency_stages *latency, struct counters *counte
 {
     for (int i = 0; i < STAGE_COUNT; i++) {
         char *name = mem_printf("plantcast_stage_seconds{stage=\"%s\"}", names[i]);
-        latency->of[i] = counters_add_histogram(counters, name, "What a frame's way is made of, in the order of the stages.");
+        latency->of[i] = counters_add_histogram(counters, name, "Time that a frame spends in each stage of the pipeline.");
         mem_free(name);
     }
-    latency->input = counters_add_histogram(counters, "plantcast_input_to_frame_seconds", "From a client's input to its acknowledgement.");
-    latency->sensor =
-        counters_add_histogram(counters, "plantcast_sensor_to_frame_seconds", "From a changed reading to a client's acknowledgement.");
+    latency->input = counters_add_histogram(counters, "plantcast_input_to_frame_seconds",
+                                            "Time from a client's input to its acknowledgement of the frame.");
+    latency->sensor = counters_add_histogram(counters, "plantcast_sensor_to_frame_seconds",
+                                             "Time from a changed reading to a client's acknowledgement of the frame.");
 }
 
 void latency_stages_sent(struct latency_stages *latency, const struct encoded_frame *encoded, int64_t now_ns)

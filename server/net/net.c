@@ -348,31 +348,32 @@ static void add_counters(struct server_context *server)
 {
     struct counters *c = server->params.counters;
     latency_stages_init(&server->latency, c);
-    server->counters.sessions = counters_add(c, "plantcast_sessions", "gauge", "Clients that are connected.");
-    server->counters.sessions_all = counters_add(c, "plantcast_sessions_total", "counter", "Clients that ever were.");
-    server->counters.refused = counters_add(c, "plantcast_sessions_refused_total", "counter", "Clients that were not let in.");
+    server->counters.sessions = counters_add(c, "plantcast_sessions", "gauge", "Connected clients.");
+    server->counters.sessions_all = counters_add(c, "plantcast_sessions_total", "counter", "Client sessions opened since the start.");
+    server->counters.refused = counters_add(c, "plantcast_sessions_refused_total", "counter", "Client sessions refused.");
     server->counters.connections = counters_add(c, "plantcast_connections", "gauge", "TCP connections.");
-    server->counters.busy = counters_add(c, "plantcast_drawing_busy_percent", "gauge", "Of the render thread's time, for moving pictures.");
+    server->counters.busy =
+        counters_add(c, "plantcast_drawing_busy_percent", "gauge", "Percentage of the render thread's time spent on live views.");
     server->counters.frames = counters_add(c, "plantcast_frames_sent_total", "counter", "Frames sent.");
     server->counters.frame_bytes = counters_add(c, "plantcast_frame_bytes_total", "counter", "Bytes of frames sent.");
     server->counters.dropped =
-        counters_add(c, "plantcast_frames_dropped_total", "counter", "Frames made and overtaken before they were sent.");
-    server->counters.given_up = counters_add(c, "plantcast_frames_given_up_total", "counter", "Frames that were not sent to their end.");
-    server->counters.stalled = counters_add(c, "plantcast_sessions_stalled_total", "counter", "Clients closed because they took nothing.");
-    server->counters.messages = counters_add(c, "plantcast_messages_total", "counter", "Messages of clients.");
-    server->counters.errors = counters_add(c, "plantcast_message_errors_total", "counter", "Messages of clients answered with an error.");
-    server->counters.clock_set =
-        counters_add(c, "plantcast_clock_synchronised", "gauge", "1 while something keeps this machine's clock right.");
-    server->counters.clock_error = counters_add_seconds(c, "plantcast_clock_error_seconds", "gauge",
-                                                        "By so much this machine's clock may be wrong at most; 0: not known.");
+        counters_add(c, "plantcast_frames_dropped_total", "counter", "Frames replaced by a newer one before they were sent.");
+    server->counters.given_up = counters_add(c, "plantcast_frames_given_up_total", "counter", "Frames whose sending was abandoned.");
+    server->counters.stalled =
+        counters_add(c, "plantcast_sessions_stalled_total", "counter", "Sessions closed because the client stopped reading.");
+    server->counters.messages = counters_add(c, "plantcast_messages_total", "counter", "Messages received from clients.");
+    server->counters.errors = counters_add(c, "plantcast_message_errors_total", "counter", "Messages from clients answered with an error.");
+    server->counters.clock_set = counters_add(c, "plantcast_clock_synchronised", "gauge", "1 while this machine's clock is synchronised.");
+    server->counters.clock_error =
+        counters_add_seconds(c, "plantcast_clock_error_seconds", "gauge", "Maximum error of this machine's clock; 0: unknown.");
     server->counters.clock_leap =
-        counters_add(c, "plantcast_clock_leap_seconds", "gauge", "Seconds that are added at the end of the month, or taken away.");
-    server->counters.logins_wrong = counters_add(c, "plantcast_logins_wrong_total", "counter", "Tokens that were nobody's, or no longer.");
+        counters_add(c, "plantcast_clock_leap_seconds", "gauge", "Leap second announced for the end of the month: 1, -1 or 0.");
+    server->counters.logins_wrong = counters_add(c, "plantcast_logins_wrong_total", "counter", "Log-ins with an unknown or expired token.");
     server->counters.logins_held =
-        counters_add(c, "plantcast_logins_held_total", "counter", "Tokens that were not looked at, of addresses that are slowed.");
+        counters_add(c, "plantcast_logins_held_total", "counter", "Log-ins refused unchecked: the address is slowed.");
     server->counters.logins_slowed =
-        counters_add(c, "plantcast_logins_slowed_addresses", "gauge", "Addresses that are slowed, for ten wrong tokens within a minute.");
-    server->counters.renderers = counters_add(c, "plantcast_renderers", "gauge", "Renderers that this core feeds.");
+        counters_add(c, "plantcast_logins_slowed_addresses", "gauge", "Addresses slowed after ten wrong tokens within a minute.");
+    server->counters.renderers = counters_add(c, "plantcast_renderers", "gauge", "Renderers connected to this core.");
     server->counters.requests = counters_add(c, "plantcast_http_requests_total", "counter", "HTTP requests.");
 }
 

@@ -21,7 +21,7 @@ static struct wall_seen *find(struct server_context *server, const struct wall_p
     seen->display = display->display;
     snprintf(name, sizeof(name), "plantcast_wall_frame_age_seconds{wall=\"%s\",display=\"%d\"}", display->wall, display->display);
     seen->age = counters_add_seconds(server->params.counters, name, "gauge",
-                                     "How long ago what a display of a wall shows was the newest; goes on while it is not connected.");
+                                     "Age of the picture on a display of a wall; keeps rising while the display is disconnected.");
     return seen;
 }
 

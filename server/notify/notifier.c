@@ -245,10 +245,11 @@ static void add_counters(struct notifier *notifier)
         const char *id = notify->recipients[i].id;
         notifier->counters[i].sent = add_counter(notifier, "plantcast_notify_sent_total", id, "counter", "Messages delivered.");
         notifier->counters[i].failed = add_counter(notifier, "plantcast_notify_failed_total", id, "counter", "Deliveries that failed.");
-        notifier->counters[i].waiting = add_counter(notifier, "plantcast_notify_waiting", id, "gauge", "Alarms that wait to be told.");
+        notifier->counters[i].waiting = add_counter(notifier, "plantcast_notify_waiting", id, "gauge", "Alarms waiting for notification.");
     }
-    notifier->lost = counters_add(counters, "plantcast_notify_lost_total", "counter", "Alarms that somebody should have been told of.");
-    notifier->spool_good = counters_add(counters, "plantcast_notify_spool_good", "gauge", "1 while what waits can be kept on disk.");
+    notifier->lost = counters_add(counters, "plantcast_notify_lost_total", "counter", "Alarm notifications lost.");
+    notifier->spool_good =
+        counters_add(counters, "plantcast_notify_spool_good", "gauge", "1 while waiting notifications can be stored on disk.");
     counter_set(notifier->spool_good, 1);
 }
 

@@ -238,9 +238,9 @@ struct publisher *publisher_start(const struct publisher_params *params)
     publisher->stop_fd = eventfd(0, EFD_CLOEXEC);
     publisher->client_id = make_client_id(params->plant->publish);
     publisher->snapshot = snapshot_create(params->plant->tag_count);
-    publisher->up = counters_add(params->counters, "plantcast_publish_up", "gauge", "1 while the broker takes readings and alarms.");
+    publisher->up = counters_add(params->counters, "plantcast_publish_up", "gauge", "1 while the broker accepts readings and alarms.");
     publisher->messages =
-        counters_add(params->counters, "plantcast_publish_messages_total", "counter", "Messages of readings and alarms to the broker.");
+        counters_add(params->counters, "plantcast_publish_messages_total", "counter", "Readings and alarms published to the broker.");
     make_topics(publisher);
     int error = publisher->stop_fd < 0 ? errno : pthread_create(&publisher->thread, NULL, run, publisher);
     publisher->started = !error;

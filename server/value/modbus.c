@@ -119,7 +119,7 @@ static void add_counters(struct modbus_source *modbus, struct counters *counters
     modbus->reads_failed = source_counter(base, counters, "reads_total", ",result=\"failed\"", "counter", reads);
     modbus->connects = source_counter(base, counters, "connects_total", "", "counter", "connections made to field devices and brokers");
     modbus->up = source_counter(base, counters, "up", "", "gauge", up);
-    modbus->host = source_counter(base, counters, "host", "", "gauge", "which of its hosts readings come from, 1: the first; 0: from none");
+    modbus->host = source_counter(base, counters, "host", "", "gauge", "number of the host that delivers readings: 1 is the first, 0 none");
 }
 
 static void add_plan(struct modbus_source *modbus)

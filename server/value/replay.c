@@ -146,7 +146,7 @@ static struct source *replay_create(const struct source *base, struct counters *
 {
     struct replay *replay = mem_new(sizeof(*replay));
     replay->base = *base;
-    replay->samples = source_counter(base, counters, "samples_total", "", "counter", "samples given by replays, brokers and servers");
+    replay->samples = source_counter(base, counters, "samples_total", "", "counter", "samples received from replays, brokers and servers");
     replay->up = source_counter(base, counters, "up", "", "gauge", "1 while readings come in");
     replay->lanes = mem_array(base->plant->tag_count, sizeof(*replay->lanes));
     for (size_t i = 0; i < base->plant->tag_count; i++)

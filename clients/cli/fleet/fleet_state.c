@@ -148,16 +148,17 @@ WHILE_IT_ANSWERS(recorded)
 void fleet_metrics(const struct fleet_file *file, const struct fleet_plant_state *states, struct text *out)
 {
     add_metric(file, states, out, "plantcast_fleet_up", "gauge", "1 while the server of a plant answers.", up_of);
-    add_metric(file, states, out, "plantcast_fleet_polls_total", "counter", "Requests to it.", asked_of);
-    text_add(out, "# HELP plantcast_fleet_alarms Alarms that are to be seen, by priority.\n# TYPE plantcast_fleet_alarms gauge\n");
+    add_metric(file, states, out, "plantcast_fleet_polls_total", "counter", "Requests sent to the plant's server.", asked_of);
+    text_add(out, "# HELP plantcast_fleet_alarms Alarms shown in the alarm list, by priority.\n# TYPE plantcast_fleet_alarms gauge\n");
     for (size_t i = 0; i < file->count; i++)
         for (int k = 0; k < FLEET_PRIORITIES && states[i].answers; k++)
             text_add(out, "plantcast_fleet_alarms{plant=\"%s\",priority=\"%d\"} %lld\n", file->plants[i].id, k + 1,
                      (long long)states[i].state.alarms[k]);
     add_metric(file, states, out, "plantcast_fleet_unacknowledged", "gauge", "Alarms to be acknowledged.", unacknowledged_of);
     add_metric(file, states, out, "plantcast_fleet_links_down", "gauge", "Sources without a connection.", links_down_of);
-    add_metric(file, states, out, "plantcast_fleet_certificate_expiry_timestamp_seconds", "gauge", "0: none.", certificate_s_of);
-    add_metric(file, states, out, "plantcast_fleet_backup_timestamp_seconds", "gauge", "The last backup; 0: not known.", backup_s_of);
-    add_metric(file, states, out, "plantcast_fleet_free_bytes", "gauge", "Free where history lies.", free_bytes_of);
+    add_metric(file, states, out, "plantcast_fleet_certificate_expiry_timestamp_seconds", "gauge",
+               "Expiry time of the certificate; 0: none.", certificate_s_of);
+    add_metric(file, states, out, "plantcast_fleet_backup_timestamp_seconds", "gauge", "Time of the last backup; 0: unknown.", backup_s_of);
+    add_metric(file, states, out, "plantcast_fleet_free_bytes", "gauge", "Free space on the disk of the history.", free_bytes_of);
     add_metric(file, states, out, "plantcast_fleet_recorded", "gauge", "1 while history and alarms can be written.", recorded_of);
 }

@@ -251,10 +251,10 @@ struct openid *openid_start(const struct openid_params *params)
     pthread_mutex_init(&openid->asking, NULL);
     clock_cond_init(&openid->wake);
     openid->good = counters_add(params->counters, "plantcast_openid_good", "gauge", "1 while the identity provider answers.");
-    openid->people = counters_add(params->counters, "plantcast_openid_people", "gauge", "People who are signed in.");
-    openid->refused = counters_add(params->counters, "plantcast_openid_refused_total", "counter", "Log-ins by OpenID Connect refused.");
+    openid->people = counters_add(params->counters, "plantcast_openid_people", "gauge", "Users signed in by OpenID Connect.");
+    openid->refused = counters_add(params->counters, "plantcast_openid_refused_total", "counter", "OpenID Connect sign-ins refused.");
     openid->foreign = counters_add(params->counters, "plantcast_openid_foreign_total", "counter",
-                                   "Answers of an identity provider that no log-in waited for.");
+                                   "Answers of the identity provider that matched no pending sign-in.");
     openid->config = openid_config_read(params->log, params->path);
     if (openid->config && curl_global_init(CURL_GLOBAL_DEFAULT) == CURLE_OK)
         openid->started = pthread_create(&openid->thread, NULL, openid_run, openid) == 0;

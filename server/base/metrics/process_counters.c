@@ -60,15 +60,16 @@ void process_counters_set(struct counters *counters)
                 clock_work_ns() / 1000);
     if (read_stat(fields)) {
         counter_set(counters_add(counters, "process_threads", "gauge", "Threads."), (int64_t)fields[STAT_THREADS]);
-        counter *start_s = counters_add(counters, "process_start_time_seconds", "gauge", "When the process was started, since 1970.");
+        counter *start_s =
+            counters_add(counters, "process_start_time_seconds", "gauge", "Start time of the process, in seconds since 1970.");
         if (atomic_load(start_s) == 0) /* the start time is set only once, so that a later change of the clock does not change it */
             counter_set(start_s, boot_s() + (int64_t)(fields[STAT_START] / (unsigned long long)sysconf(_SC_CLK_TCK)));
         counter_set(counters_add(counters, "process_virtual_memory_bytes", "gauge", "Address space in use."),
                     (int64_t)fields[STAT_VIRTUAL]);
-        counter_set(counters_add(counters, "process_resident_memory_bytes", "gauge", "Resident memory, mapped files and all."),
+        counter_set(counters_add(counters, "process_resident_memory_bytes", "gauge", "Resident memory, mapped files included."),
                     (int64_t)fields[STAT_RESIDENT] * sysconf(_SC_PAGESIZE));
     }
-    counter_set(counters_add(counters, "process_open_fds", "gauge", "Files and sockets that are open."), count_files());
+    counter_set(counters_add(counters, "process_open_fds", "gauge", "Open files and sockets."), count_files());
     if (getrlimit(RLIMIT_NOFILE, &files) == 0)
-        counter_set(counters_add(counters, "process_max_fds", "gauge", "How many may be open."), (int64_t)files.rlim_cur);
+        counter_set(counters_add(counters, "process_max_fds", "gauge", "Limit of open files and sockets."), (int64_t)files.rlim_cur);
 }

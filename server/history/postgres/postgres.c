@@ -394,15 +394,15 @@ static void *run(void *arg)
 
 static void add_counters(struct postgres *postgres, struct counters *counters)
 {
-    postgres->counters.up = counters_add(counters, "plantcast_postgres_up", "gauge", "1 while PostgreSQL takes what is recorded.");
+    postgres->counters.up = counters_add(counters, "plantcast_postgres_up", "gauge", "1 while PostgreSQL accepts recorded points.");
     postgres->counters.points =
-        counters_add(counters, "plantcast_postgres_points_total", "counter", "Recorded points that PostgreSQL has taken.");
+        counters_add(counters, "plantcast_postgres_points_total", "counter", "Recorded points that PostgreSQL has received.");
     postgres->counters.waiting =
-        counters_add(counters, "plantcast_postgres_waiting_points", "gauge", "Recorded points that wait on disk for PostgreSQL.");
+        counters_add(counters, "plantcast_postgres_waiting_points", "gauge", "Recorded points waiting on disk for PostgreSQL.");
     postgres->counters.lost = counters_add(counters, "plantcast_postgres_lost_total", "counter",
-                                           "Points that PostgreSQL is not sent: too many waited, or keep_gb was reached.");
+                                           "Points never sent to PostgreSQL: too many were waiting or keep_gb was reached.");
     postgres->counters.restored =
-        counters_add(counters, "plantcast_postgres_restored_total", "counter", "Points of the past that were read from PostgreSQL.");
+        counters_add(counters, "plantcast_postgres_restored_total", "counter", "Points restored from PostgreSQL into history.");
 }
 
 void postgres_count_lost(struct postgres *postgres, int64_t points)

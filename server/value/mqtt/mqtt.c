@@ -140,16 +140,15 @@ static void add_counters(struct mqtt_source *mqtt, struct counters *counters)
     const char *messages = "messages from brokers";
     mqtt->messages_ok = source_counter(base, counters, "messages_total", ",result=\"ok\"", "counter", messages);
     mqtt->messages_refused = source_counter(base, counters, "messages_total", ",result=\"refused\"", "counter", messages);
-    mqtt->samples = source_counter(base, counters, "samples_total", "", "counter", "samples given by replays, brokers and servers");
+    mqtt->samples = source_counter(base, counters, "samples_total", "", "counter", "samples received from replays, brokers and servers");
     mqtt->connects = source_counter(base, counters, "connects_total", "", "counter", "connections made to field devices and brokers");
     if (base->config->mqtt.payload == MQTT_SPARKPLUG) {
-        mqtt->gaps = source_counter(base, counters, "gaps_total", "", "counter", "messages of Sparkplug nodes out of their sequence");
-        mqtt->historical =
-            source_counter(base, counters, "historical_total", "", "counter", "historical values of Sparkplug nodes, not read");
+        mqtt->gaps = source_counter(base, counters, "gaps_total", "", "counter", "Sparkplug messages out of sequence");
+        mqtt->historical = source_counter(base, counters, "historical_total", "", "counter", "historical Sparkplug values ignored");
         mqtt->rebirths = source_counter(base, counters, "rebirths_total", "", "counter", "requests for Sparkplug birth certificates");
     }
     mqtt->up = source_counter(base, counters, "up", "", "gauge", "1 while readings come in");
-    mqtt->host = source_counter(base, counters, "host", "", "gauge", "which of its hosts readings come from, 1: the first; 0: from none");
+    mqtt->host = source_counter(base, counters, "host", "", "gauge", "number of the host that delivers readings: 1 is the first, 0 none");
 }
 
 /* Returns the configured client id or makes a random one: a broker ends the connection of another client with the same id. */

@@ -175,11 +175,11 @@ static struct source *opcua_create(const struct source *base, struct counters *c
 {
     struct opcua_source *opcua = mem_new(sizeof(*opcua));
     opcua->base = *base;
-    opcua->samples = source_counter(base, counters, "samples_total", "", "counter", "samples given by replays, brokers and servers");
+    opcua->samples = source_counter(base, counters, "samples_total", "", "counter", "samples received from replays, brokers and servers");
     opcua->connects = source_counter(base, counters, "connects_total", "", "counter", "connections made to field devices and brokers");
-    opcua->refused = source_counter(base, counters, "nodes_refused", "", "gauge", "nodes that the OPC UA server does not let us read");
+    opcua->refused = source_counter(base, counters, "nodes_refused", "", "gauge", "nodes that the OPC UA server refuses to read");
     opcua->up = source_counter(base, counters, "up", "", "gauge", "1 while readings come in");
-    opcua->host = source_counter(base, counters, "host", "", "gauge", "which of its hosts readings come from, 1: the first; 0: from none");
+    opcua->host = source_counter(base, counters, "host", "", "gauge", "number of the host that delivers readings: 1 is the first, 0 none");
     opcua_nodes_init(&opcua->nodes, base->plant, base->index);
     opcua->wrong = mem_array(opcua->nodes.count, sizeof(*opcua->wrong));
     stamped_writer_init(&opcua->writer, base->plant, base->store);
