@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Cost of alarms: one JSON line per row. 20,000 tags with four limits each, scanned once a second; and a journal of a long year. */
+/* Cost of alarms, printed as one JSON line per row: 20,000 tags with four limits each, scanned once per second, and a journal of a long
+   year. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -43,7 +44,7 @@ struct alarm_bench {
     int changes;
 };
 
-/* One scan of all tags and ten looks at the clock, as in a second of the daemon's life. Milliseconds of work. */
+/* Simulates one second of the daemon: one scan of all tags and ten ticks of the clock. Returns the milliseconds of work. */
 static double second(struct alarm_bench *bench)
 {
     int64_t begun_ns = clock_work_ns();
@@ -60,7 +61,7 @@ static double second(struct alarm_bench *bench)
     return (double)(clock_work_ns() - begun_ns) / 1e6;
 }
 
-/* FLOOD_HZ tags a second go beyond their limit, and those before them come back. */
+/* Each second FLOOD_HZ tags exceed a limit and those of the second before return. Returns the worst milliseconds of work per second. */
 static double flood(struct alarm_bench *bench)
 {
     double worst_ms = 0;
@@ -93,7 +94,7 @@ static void row(const char *name, double value, double goal)
 
 enum { YEAR_S = 365 * 86400, KEPT = 300000, KEPT_ALARMS = 2000, INSTANTS = 21 };
 
-/* More than 800 changes a day, of 2,000 alarms. */
+/* Fills a journal with more than 800 changes per day of 2,000 alarms. */
 static bool fill_journal(struct journal_file *file)
 {
     struct journal_entry *entries = mem_array(KEPT, sizeof(*entries));
@@ -118,7 +119,7 @@ static void count_row(void *arg, const struct journal_row *r)
     ++*(int *)arg;
 }
 
-/* How each alarm was at an instant, and a page of the journal from there. */
+/* Measures the query for all alarms' states at an instant and for a page of the journal from there. */
 static bool look_back(void)
 {
     char *folder = temp_folder_create();

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Encoding the demo plant at 1920x1080: time and size of a moving picture, and size of what changes under a still camera when 60
-   tags change together once a second; and decoding both by what the command line decodes with. One JSON line per row. */
+/* Encoding of the demo plant at 1920x1080, printed as one JSON line per row: time and size of moving frames; size of changes under a
+   still camera when 60 tags change together once per second; and decoding of both with the decoders of the command line. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -43,7 +43,7 @@ static bool values_init(struct codec_bench *bench)
     return bench->values != NULL;
 }
 
-/* The first TAGS tags of the group that is shown follow the plant; the others stay as they are. */
+/* Simulates readings of the first TAGS tags of the displayed group; the others keep their values unless `all`. */
 static void read_tags(struct codec_bench *bench, int group, bool all)
 {
     int left = TAGS;

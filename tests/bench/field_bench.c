@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Cost of the field, in time and in work of all cores: one JSON line per row. */
+/* Cost of the field in time and in processor work on all cores, printed as one JSON line per row. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
@@ -91,7 +91,7 @@ static void measure(struct field_bench *bench, const char *name, void (*change)(
     fflush(stdout);
 }
 
-/* How long the thread that asks is held up, where it asks for pieces as the painter does. */
+/* Measures how long a thread is blocked that requests the field in pieces, as the render thread does. */
 static void measure_pieces(struct field_bench *bench, const char *kind, void (*change)(struct field_bench *))
 {
     enum { MOST = 4096 };
@@ -152,7 +152,7 @@ static void measure_plant(struct workers *workers, size_t sensors)
     synthetic_destroy(&bench.plant);
 }
 
-/* So many columns are not kept but made anew from distances for each change. */
+/* So many sensors that columns are not cached but recomputed from distances at each change. */
 static void measure_many(struct workers *workers, size_t sensors)
 {
     struct field_bench bench = { .plant = synthetic_create(.vertices = VERTICES, .sensors = sensors, .seed = 1), .sensors = sensors };

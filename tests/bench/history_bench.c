@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Cost of the historian: one JSON line per row. */
+/* Cost of the historian, printed as one JSON line per row. */
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -34,7 +34,7 @@ static double noise(void)
     return (double)rand() / RAND_MAX - 0.5;
 }
 
-/* Values that wander, with noise around them: as transmitters do. wander in units a second. */
+/* Writes values that drift and have noise, as transmitters do. wander: drift in units per second. */
 static void write_values(struct store *store, struct sample *samples, double wander, double noise_size)
 {
     for (int i = 0; i < TAGS; i++) {
@@ -53,7 +53,7 @@ static double counted(struct counters *counters, const char *name)
     return (double)*counters_add(counters, name, "counter", "");
 }
 
-/* 100,000 values a second: into the store and onto the disk. */
+/* Measures 100,000 values per second into the store and onto the disk. */
 static void record(const char *name, double noise_size)
 {
     char *folder = temp_folder_create();
@@ -85,7 +85,7 @@ static void record(const char *name, double noise_size)
     temp_folder_destroy(&folder);
 }
 
-/* Every sample beyond the deadband: nothing is left out, and every minute has its rollup. */
+/* Writes samples that all exceed the deadband, so that none is dropped, and rollups for every minute. */
 static void fill(struct log *log, const char *folder, const struct history_tag *tags, int64_t end_us)
 {
     size_t count = DAYS * 86400 / STEP_S;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Ten Modbus devices of 2,000 tags each, all to be read once a second; one is dead and one is slow. One JSON line per row. */
+/* Ten Modbus devices with 2,000 tags each, all read once per second; one is dead and one is slow. Prints one JSON line per row. */
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -31,7 +31,8 @@ static struct plant *make_plant(const struct modbus_device *devices)
     return plant;
 }
 
-/* A device's oldest value, look for look. Adds how many were not Good, or not what the device holds. */
+/* Returns the age of a device's oldest value at each look, in milliseconds. Adds to *wrong the values that are not Good or differ from
+   the device's. */
 static double oldest_ms(const struct snapshot *snapshot, int device, long *wrong)
 {
     double oldest = 0;

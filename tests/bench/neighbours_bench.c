@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Cost of "predicted without it", of all sensors as the daemon asks for them and of each one, beside the cost of a reading that changes:
-   one JSON line per row. A plate of 37,000 vertices with 5 and with 512 sensors. */
+/* Cost of predicting sensors from the others, for all sensors as the daemon requests it and for single ones, compared with the cost of a
+   changed reading. A plate of 37,000 vertices with 5 and with 512 sensors; prints one JSON line per row. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -72,7 +72,7 @@ static void draw_field(struct neighbours_bench *bench)
         abort();
 }
 
-/* As a second later: what was found before is too old. */
+/* Advances the time until the cached predictions expire, then requests all. */
 static void ask_all(struct neighbours_bench *bench)
 {
     bench->snapshot->taken_mono_ns += 2 * NEIGHBOURS_FRESH_NS;
@@ -80,7 +80,7 @@ static void ask_all(struct neighbours_bench *bench)
         abort();
 }
 
-/* Work of all cores. Returns the median; `ms` is sorted. */
+/* Measures the work on all cores in ms[], sorted. Returns the median. */
 static double time_of(struct neighbours_bench *bench, void (*work)(struct neighbours_bench *), double ms[ROUNDS])
 {
     for (int i = -WARM_UP; i < ROUNDS; i++) {

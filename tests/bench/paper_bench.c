@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The two experiments of the paper at 1920x1080: many instances with 5 sensors each, and many sensors on one instance. All readings
-   change ten times a second while the camera swings round; one JSON line per row. Beside each the same by brute force: every triangle
-   of the finest level, and the paper's sum over all sensors at each fragment.
-   usage: paper_bench [cpu|gpu [INSTANCES SENSORS]]   only these rows, 0: none; gpu: only on an EGL device that is hardware */
+   change ten times per second while the camera swings; each row is one JSON line, followed by a row for brute force (all triangles of
+   the finest level, and the paper's sum over all sensors per fragment).
+   usage: paper_bench [cpu|gpu [INSTANCES SENSORS]]   runs only these rows, 0: none; gpu: only on an EGL device that is hardware */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -23,11 +23,11 @@
 #define PLANT_MODEL "../shared/data/models/plm_plant_5parts.glb"
 #define FOLDER "build/bench"
 enum { WIDTH_PX = 1920, HEIGHT_PX = 1080, PROBE_WIDTH_PX = 192, PROBE_HEIGHT_PX = 108 };
-enum { FEW_SENSORS = 5, MANY_SENSORS = 512 }; /* of which frames should take equally long */
-enum { IN_FLIGHT = 3, FLOW_FRAMES = 960 };    /* of pictures that are not waited for one by one */
+enum { FEW_SENSORS = 5, MANY_SENSORS = 512 }; /* frames with MANY_SENSORS should take as long as frames with FEW_SENSORS */
+enum { IN_FLIGHT = 3, FLOW_FRAMES = 960 };    /* frames given to the GPU ahead, and frames per run, of the throughput measurement */
 enum { CAMERAS = 48, MOST_FRAMES = 96, LEAST_FRAMES = 2, HULL_POINTS = 96 };
 static const int64_t CHANGE_NS = 100 * NS_PER_MS, LONGEST_NS = 3 * NS_PER_S; /* of a row */
-static const double LONGEST_BRUTE_MS = 20e3;                                 /* of a frame that is drawn more than once */
+static const double LONGEST_BRUTE_MS = 20e3;                                 /* slower frames are drawn only once */
 static const double SWING_RAD = 6 * M_PI / 180, FOV_DEG = 15, WANTED_COVERAGE = 0.6;
 
 struct paper_model {
@@ -48,9 +48,9 @@ struct paper_bench {
     double hull_m[HULL_POINTS][3];
     struct camera cameras[CAMERAS];
     double coverage; /* the least of them */
-    double brute_ms; /* of the last row by brute force, and its sensors; 0: none */
+    double brute_ms; /* time of the previous brute-force row; brute_sensors is its number of sensors, 0: no such row */
     int brute_sensors;
-    double few_ms; /* with the fewest sensors of a series; 0: not measured */
+    double few_ms; /* milliseconds with the fewest sensors of a series; 0: not measured */
 };
 
 struct timing_series { /* times of one row */
@@ -61,7 +61,7 @@ struct timing_series { /* times of one row */
 
 /* --- cameras that have everything in view --------------------------------------------------------------------------------- */
 
-/* Points of the model, plant frame less the instance's own place, that lie farthest out in many directions. */
+/* Finds points of the model that are extreme in many directions, in the plant frame without the instance's offset. */
 static void find_hull(struct paper_bench *bench)
 {
     const struct scene_asset *asset = &bench->crowd.scene->assets[0];
@@ -81,7 +81,7 @@ static void find_hull(struct paper_bench *bench)
     }
 }
 
-/* Extremes of the picture's plane, in tangents. Instances are moved, not turned. */
+/* Computes the extents in the image plane as tangents. Instances are translated copies without rotation. */
 static void find_extremes(const struct paper_bench *bench, const double eye_m[3], double axes[3][3], double low[2], double high[2])
 {
     low[0] = low[1] = INFINITY;
@@ -99,7 +99,7 @@ static void find_extremes(const struct paper_bench *bench, const double eye_m[3]
         }
 }
 
-/* From that side, as near as it gets with all of it in the picture. */
+/* Places the camera in the given direction, as close as possible with everything in view. */
 static void fit(const struct paper_bench *bench, double azimuth, double elevation, struct camera *camera)
 {
     const struct scene *scene = bench->crowd.scene;
@@ -139,7 +139,7 @@ static struct frame *draw(struct paper_bench *bench, const struct view *view)
     return frame;
 }
 
-/* The part of the pixels that show a field: those that are others by another map of colours. Ground and shadows do not count. */
+/* Returns the share of pixels that show a field: pixels that change with another colour map. Ground and shadows do not count. */
 static double coverage_from(struct paper_bench *bench, const struct camera *camera)
 {
     struct view view;
@@ -169,7 +169,8 @@ static void try_side(struct paper_bench *bench, double azimuth, double elevation
         *best = (struct view_side){ azimuth, elevation, coverage };
 }
 
-/* The side from which the picture is filled best, and a swing round it; no camera comes twice, or it would stand still for the renderer. */
+/* Chooses the direction that fills the image best, and cameras on a swing around it; no camera repeats, because the renderer would reuse
+   the frame of a still camera. */
 static void choose_cameras(struct paper_bench *bench)
 {
     struct view_side best = { 0 };
@@ -191,7 +192,7 @@ static void choose_cameras(struct paper_bench *bench)
 
 /* --- rows ------------------------------------------------------------------------------------------------------------------- */
 
-/* What a peer needs to draw the same (tests/bench/vtk_peer.py); its path is that of the plant. */
+/* Writes the scene for the comparison program (tests/bench/vtk_peer.py), which draws the same. */
 static void write_scene(const struct paper_bench *bench, const char *folder)
 {
     char *path = mem_printf("%s/scene.json", folder);
@@ -280,7 +281,7 @@ static void run_series(struct paper_bench *bench, struct timing_series *series)
     series->seconds = (double)(clock_mono_ns() - began_ns) / 1e9;
 }
 
-/* One frame, whatever it takes; a small one before it brings all that it needs into the GPU's memory. */
+/* Draws one frame, however long it takes; a small frame before it uploads all data to the GPU. */
 static void run_one(struct paper_bench *bench, struct timing_series *series)
 {
     struct view view;
@@ -292,7 +293,7 @@ static void run_one(struct paper_bench *bench, struct timing_series *series)
     series->seconds = series->time_ms[0] / 1e3;
 }
 
-/* Pictures given to the GPU before others have come. */
+/* Measures throughput: frames are submitted to the GPU before previous ones are finished. */
 static void run_flow(struct paper_bench *bench, struct timing_series *series)
 {
     struct view view;
@@ -345,7 +346,7 @@ static void print_row(const struct paper_bench *bench, const char *name, struct 
     fflush(stdout);
 }
 
-/* A frame's cost does not grow with the sensors. */
+/* Checks that a frame's cost does not grow with the number of sensors. */
 static void compare_sensors(struct paper_bench *bench, const struct paper_model *model, int sensors, const struct timing_series *series)
 {
     double here_ms = series->work_ms[series->frames / 2];
@@ -362,7 +363,7 @@ static void print_missing(const char *name, const char *why)
     fflush(stdout);
 }
 
-/* Its time grows with the sensors. */
+/* Measures the brute-force method, whose time grows with the number of sensors. */
 static void measure_brute(struct paper_bench *bench, const char *name, int sensors, struct timing_series *series)
 {
     bool slow = bench->brute_sensors > 0 && bench->brute_ms * sensors / bench->brute_sensors > LONGEST_BRUTE_MS;
@@ -408,7 +409,7 @@ static void measure(struct paper_bench *bench, const struct paper_model *model, 
 
 struct goal { /* 0: none */
     int count;
-    double cpu_ms[2], gpu_ms; /* on two cores, by model; ten times as fast as the paper's */
+    double cpu_ms[2], gpu_ms; /* goals in milliseconds: on two cores, by model; on a GPU, ten times as fast as the paper */
 };
 static const struct goal instance_goals[] = {
     { 1, { 7, 7 }, 100.0 / 420 }, { 5, { 0 }, 0 }, { 25, { 0 }, 0 }, { 100, { 14, 22 }, 100.0 / 140 }, { 400, { 25, 45 }, 0 }
@@ -418,7 +419,7 @@ static const struct goal sensor_goals[] = { { .count = 5 },    { .count = 10 }, 
                                             { .count = 1024 }, { .count = 4096 } };
 enum { INSTANCE_GOALS = sizeof(instance_goals) / sizeof(instance_goals[0]), SENSOR_GOALS = sizeof(sensor_goals) / sizeof(sensor_goals[0]) };
 
-/* instances, sensors: of the only rows; -1: all of them. */
+/* instances, sensors: run only this row; -1: all rows, 0: none. */
 static void measure_model(struct paper_bench *bench, const struct paper_model *model, bool gpu, int instances, int sensors)
 {
     for (int i = 0; i < INSTANCE_GOALS; i++) {

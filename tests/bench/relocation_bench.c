@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Cost of moving a sensor on the demo plant's exchanger while it is shown, as the daemon does it: one JSON line. */
+/* Cost of moving a sensor on the demo plant's heat exchanger while it is displayed, as in the daemon; prints one JSON line. */
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -44,7 +44,7 @@ static const struct asset_view *find(const struct scene *scene, const char *id)
     return NULL;
 }
 
-/* From the question to the distances of all vertices, straight ones and those along the surface. */
+/* Measures the time from the request to the distances of all vertices, straight and along the surface. */
 static void measure(struct relocation *relocation, const struct asset_view *view)
 {
     double ms[ROUNDS];
@@ -70,7 +70,7 @@ static void measure(struct relocation *relocation, const struct asset_view *view
     mem_free(euclidean_m);
 }
 
-/* With the surface that plantcast-prep kept. NULL: there is none. */
+/* Creates the relocation with the surface cached by plantcast-prep. Returns NULL if there is none. */
 static struct relocation *create_mover(struct log *log, struct workers *workers, const struct asset_view *view)
 {
     const struct asset_level *finest = &view->levels[0];

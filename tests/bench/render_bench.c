@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Cost of the demo plant's pictures at 1920x1080, in time and in work of all cores: one JSON line per row. */
+/* Cost of the demo plant's frames at 1920x1080, in time and in processor work on all cores; prints one JSON line per row. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -44,7 +44,7 @@ static void print_why(const char *why)
     printf("{\"name\": \"render_moving_1080p_ms\", \"value\": null, \"p95\": null, \"unit\": \"ms\", \"why\": \"%s\"}\n", why);
 }
 
-/* Readings within each group's range, not all alike. */
+/* Sets readings that vary within each group's range. */
 static void fill(struct snapshot *snapshot, const struct plant *plant)
 {
     snapshot->taken_mono_ns = clock_mono_ns();
@@ -120,13 +120,13 @@ static void put_on(const struct render_bench *bench, enum dress dress, struct vi
     for (int i = 0; dress == GHOSTS && i < GHOST_COUNT; i++)
         asset_set_add(&view->visibility.ghosts, i * (int)bench->scene->asset_count / GHOST_COUNT);
     view->look = dress == GLOSSY ? LOOK_GLOSSY : view->look;
-    if (dress == CUT) { /* half-way up, what is closed with caps */
+    if (dress == CUT) { /* cuts at half height, through bodies that get section caps */
         double middle_m = 0.5 * (bench->scene->bounds_min_m[2] + bench->scene->bounds_max_m[2]);
         view->visibility.clip = (struct clip){ .plane_count = 1, .planes = { { 0, 0, -1, middle_m } } };
     }
 }
 
-/* The plant's own view, from a little farther aside each time: a camera that stands still is only coloured anew. */
+/* Measures the plant's own view with the camera moved slightly each time: frames of a still camera would only be recoloured. */
 static void measure(struct render_bench *bench, enum tier tier, enum dress dress, const char *time_name, const char *work_name, int rounds)
 {
     struct view view;
@@ -162,7 +162,7 @@ static void measure_all(struct render_bench *bench, enum tier tier, int rounds)
     }
 }
 
-/* The camera stands still, and one reading changes. */
+/* Measures a frame with a still camera after one reading changed. */
 static void measure_recolour(struct render_bench *bench)
 {
     struct view view;
@@ -173,7 +173,7 @@ static void measure_recolour(struct render_bench *bench)
     while (tag + 1 < bench->plant->tag_count && bench->plant->tags[tag].group != view.field.group)
         tag++;
     const struct plant_group *group = &bench->plant->groups[view.field.group];
-    for (int i = -3; i < MOVING_ROUNDS; i++) { /* the third picture is the first to be coloured anew only */
+    for (int i = -3; i < MOVING_ROUNDS; i++) { /* from the third frame on, only the recolouring is measured */
         bench->snapshot->readings[tag].value = group->min + (0.3 + 0.01 * (i + 3)) * (group->max - group->min);
         double began_ms = measure_ms(CLOCK_MONOTONIC), worked_ms = measure_ms(CLOCK_PROCESS_CPUTIME_ID);
         struct frame *frame = split_view_draw_now(bench->renderer, &view, bench->snapshot);
@@ -189,7 +189,7 @@ static void measure_recolour(struct render_bench *bench)
     print_row("recolour_cpu_ms", work_ms, MOVING_ROUNDS, 0);
 }
 
-/* Bit by bit, with 10 ms for each step: how long it all takes, and for how long others wait. */
+/* Draws a refined frame in steps of 10 ms and measures the total time and the longest step, during which other clients wait. */
 static void measure_steps(struct render_bench *bench)
 {
     struct view view;
@@ -223,7 +223,7 @@ static void measure_steps(struct render_bench *bench)
     print_row("render_still_1080p_stepped_cpu_ms", work_ms, STILL_ROUNDS, 0);
 }
 
-/* Under a still camera: one reading, or every one, changed. The field's own part is not counted. */
+/* Measures recolouring under a still camera after one or all readings changed, without the time of the field itself. */
 static void measure_again(struct render_bench *bench, enum dress dress, bool all, double goal, const char *time_name, const char *work_name)
 {
     struct view view;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What programs pay for 20,000 tags: one JSON line per row. Work of the loop, which serves pictures meanwhile: a page must be short. */
+/* Cost of listing 20,000 tags to programs, printed as one JSON line per row. The event loop also serves frames, so each page must be
+   quick. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -25,7 +26,7 @@ static struct plant *make_plant(void)
     return plant;
 }
 
-/* Milliseconds of the longest page and of all of them. */
+/* Requests all pages. Returns the milliseconds of the longest page and of all pages. */
 static void ask_all(const struct session_context *context, size_t count, double *longest_ms, double *all_ms, size_t *bytes)
 {
     *longest_ms = *all_ms = 0;

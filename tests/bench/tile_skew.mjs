@@ -53,7 +53,7 @@ after(async () => {
     await plant?.destroy();
 });
 
-// Who leads: its camera looks at the row of boxes, its parameters hide some.
+// Opens the session that leads the wall: its camera faces the row of boxes, and its parameters hide some of them.
 async function driver() {
     const client = await PlainClient.open(plant.port);
     await client.hello({ width: WIDTH, height: HEIGHT, codecs: ['jpeg'], tile: { wall: 'wall', display: 1 } });
@@ -64,7 +64,8 @@ async function driver() {
     client.seq = 0;
     ending.push(() => client.close());
     client.tell = (number) => {
-        const gray = number ^ (number >> 1); // neighbours differ in one digit: no mixture of two is a third
+        // Gray code: neighbouring numbers differ in one digit, so a mixture of two frames never reads as a third number
+        const gray = number ^ (number >> 1);
         client.say({ type: 'params', seq: ++client.seq, look: 'materials',
             hidden: boxes.filter((_, i) => gray >> (i % BITS) & 1).map(({ id }) => id) });
     };
@@ -72,7 +73,7 @@ async function driver() {
     return client;
 }
 
-// The pixels at the digits of one screen. area: where the picture is on it.
+// Returns the colours of the pixels at the digits of one screen. area: the frame's rectangle on the screen.
 function digits(screen, side, area) {
     const { at } = screen.grab();
     return PLACES_M.map((m) => {
@@ -92,7 +93,7 @@ function reader(shown, hidden) {
     };
 }
 
-// Shows five numbers a second; [[ms when the number was first seen, ...], ...] by screen.
+// Shows five numbers per second. Returns, by screen, the milliseconds at which each number was first visible.
 async function watch(name, client, areas, seconds) {
     const settle = async (number) => {
         client.tell(number);
@@ -100,7 +101,7 @@ async function watch(name, client, areas, seconds) {
         return areas.map((area, side) => digits(screens[side], side, area));
     };
     const differ = (one, other) => one.every((lights, side) => lights.every((light, i) => Math.abs(light - other[side][i]) > 10));
-    let shown = await settle(0), hidden = await settle(0b10101); // Gray code of it: every digit
+    let shown = await settle(0), hidden = await settle(0b10101); // 0b10101 in Gray code sets every digit
     for (const end = performance.now() + 60000; !differ(shown, hidden); hidden = await settle(0b10101)) {
         assert.ok(client.leads(), 'it leads no more: this machine is too busy to say how far apart tiles are');
         assert.ok(performance.now() < end, `no digits to be read: ${JSON.stringify([shown, hidden])}`);
@@ -126,7 +127,7 @@ async function watch(name, client, areas, seconds) {
     return seen;
 }
 
-// Of pictures that both showed: how far apart.
+// Returns the delays between the two screens for numbers that both showed.
 function skews([left, right]) {
     const out = [];
     for (const { value, at } of left) {
@@ -147,7 +148,8 @@ function judge(name, seen, seconds) {
 }
 
 test('two browsers, one with a clock that is 5 s off', options, async () => {
-    const url = `http://127.0.0.1:${plant.port}/wall.html?wall=wall&display=`; // browsers first: who leads is not to wait for their start
+    // browsers first, so that the leader does not wait for their start
+    const url = `http://127.0.0.1:${plant.port}/wall.html?wall=wall&display=`;
     const open = await Promise.all(screens.map((screen, i) => browserOn(screen.name, 'about:blank', WIDTH, HEIGHT, i ? CLOCK_MS : 0)));
     ending.push(...open.map(({ close }) => close));
     const client = await driver();

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `step_samples FOLDER`: a skid with two pumps and six bolts, as STEP in three schemas and as IGES, in millimetres, inches and metres. */
+/* `step_samples FOLDER` writes test files: a skid with two pumps and six bolts, as STEP in three schemas and as IGES, in millimetres,
+   inches and metres. */
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
 #include <BRepToIGES_BREntity.hxx>
@@ -46,8 +47,8 @@ void name(const TDF_Label &label, const char *text)
     TDataStd_Name::Set(label, TCollection_ExtendedString(text, Standard_True));
 }
 
-/* Lengths in millimetres: a plate of 2000 x 1000 x 20, on it two pumps, each a red cylinder and a green box with one blue side, and six
- * bolts. */
+/* Lengths are in millimetres: a plate of 2000 x 1000 x 20 with six bolts and two pumps on it, each a red cylinder and a green box with
+   one blue side. */
 Handle(TDocStd_Document) make_skid()
 {
     Handle(TDocStd_Document) document;
@@ -134,7 +135,7 @@ struct iges_drawing {
         out->Init(of, gp_XYZ(x, y, z) / unit_mm, scale != 1, scale);
         return named(out, text);
     }
-    /* Its axis lies along x, and its foot at x, y. */
+    /* Returns the entity rotated so that its axis lies along x, with its foot at x, y. */
     entity turned(const entity &what, double x, double y)
     {
         Handle(IGESGeom_TransformationMatrix) matrix = new IGESGeom_TransformationMatrix;
@@ -152,7 +153,7 @@ struct iges_drawing {
         what->InitColor(color);
         return what;
     }
-    /* Groups have no colour in IGES, so each surface has. */
+    /* IGES groups have no colour, so each surface gets one. */
     std::vector<entity> sides(const TopoDS_Shape &of, double red, double green, double blue)
     {
         std::vector<entity> out;
@@ -162,7 +163,7 @@ struct iges_drawing {
     }
 };
 
-/* The same skid; the motor's first side is blue. A casing lies, and a bolt is four times as large. */
+/* Writes the same skid as IGES; the first side of each motor is blue. A casing is rotated, and one bolt is four times as large. */
 bool write_iges(const std::string &path, const char *unit, double unit_mm)
 {
     iges_drawing d(unit, unit_mm);
@@ -186,7 +187,7 @@ bool write_iges(const std::string &path, const char *unit, double unit_mm)
     return d.writer.Write(path.c_str());
 }
 
-/* Surfaces that are in no group, three on level 1, three on level 2: as many CAD systems export. */
+/* Writes surfaces without a group, three on level 1 and three on level 2, as many CAD systems export. */
 bool write_loose(const std::string &path)
 {
     iges_drawing d("MM", 1);

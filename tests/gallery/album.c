@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Many pictures of one plant, whose light is worked out once. usage: album PLANT.yaml <LIST
-   Each line: a file to write, then what `plantcast snapshot` is told, between tabs. */
+/* Draws many pictures of one plant and computes its lighting only once. usage: album PLANT.yaml <LIST
+   Each line of LIST: a file to write, then the arguments of `plantcast snapshot`, separated by tabs. */
 #include <getopt.h>
 #include <stdio.h>
 #include <string.h>

@@ -30,7 +30,7 @@ function radiance(turn, height) {
     return grey + window + lamp;
 }
 
-// A level white surface reflects 1, as Plantcast exposes surroundings.
+// Scales the surroundings so that a horizontal white surface reflects 1, as Plantcast exposes them.
 function surroundings() {
     const pixels = new Float32Array(ENV_WIDTH * ENV_HEIGHT);
     let level = 0;

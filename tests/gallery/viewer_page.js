@@ -10,11 +10,11 @@ const toThree = ([x, y, z]) => new THREE.Vector3(x, z, -y);
 const toPlant = ({ x, y, z }) => [x, -z, y];
 
 const renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true });
-renderer.toneMapping = THREE.NeutralToneMapping; // the Khronos one, as in shaders/light.glsl
+renderer.toneMapping = THREE.NeutralToneMapping; // the Khronos tone mapping, as in shaders/light.glsl
 renderer.setClearColor(0, 0);
 renderer.shadowMap.enabled = true;
 document.body.append(renderer.domElement);
-let drawn = null; // { rgba, shadowless, width, height }
+let drawn = null; // last drawn picture: { rgba, shadowless, width, height }
 
 function pixels(source, width, height) {
     const canvas = new OffscreenCanvas(width, height), c = canvas.getContext('2d', { willReadFrequently: true });
@@ -51,7 +51,7 @@ function sunLight(sun, ball) {
     return light;
 }
 
-// How open each pixel is to the sky over its surface: depth pictures from all sides of the hemisphere.
+// Returns each pixel's openness: the visible share of the hemisphere above its surface, from depth pictures in all directions.
 function openness(scene, model, ball, camera, width, height) {
     const target = new THREE.WebGLRenderTarget(width, height, { type: THREE.FloatType }), sum = new Float32Array(width * height);
     const light = new THREE.DirectionalLight(0xffffff, Math.PI);
@@ -121,7 +121,8 @@ function lab([r, g, b]) {
 
 const at = (rgba, i) => rgba.subarray(4 * i, 4 * i + 3);
 
-// Well inside the model: no rim, which both draw by their own antialiasing, and no edge that Plantcast draws.
+// Whether the pixel is well inside the model: not at a silhouette, which both programs antialias differently, nor at an edge that Plantcast
+// draws.
 function inside(x, y) {
     const { rgba, width, height } = drawn;
     for (let dy = -RIM_PX; dy <= RIM_PX; dy++) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Faces of two assets in one place: one of them is seen at every pixel, in both tiers and however a moving picture is drawn. */
+/* Coincident faces of two assets: the same one is visible at every pixel, in both tiers and by every drawing method of previews. */
 #include "scene/coincident.h"
 
 #include "tests/support/test.h"
@@ -10,7 +10,7 @@
 
 static struct rig rig;
 
-/* A wall with a sensor, and slanting plates without one on its faces, in other triangles. */
+/* Makes a wall with a sensor, and slanted plates without sensors on its faces, with different triangles. */
 static struct toy *make_wall(void)
 {
     static const double here[3] = { 100, 50, 0 }, sensor[1][3] = { { 0, 0, 1 } };
@@ -24,7 +24,7 @@ static struct toy *make_wall(void)
     return toy;
 }
 
-/* Pixels of the wall, which have colours of the map, that are something else with the plates. */
+/* Counts pixels of the wall in a colour of the map that change when the plates are added. */
 static size_t differences(const struct frame *both, const struct frame *wall)
 {
     size_t count = 0, pixels = (size_t)wall->width_px * (size_t)wall->height_px;

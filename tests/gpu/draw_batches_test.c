@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Assets that share a model are drawn by one call: what is seen is what is seen when each is drawn by itself, and there are no more
-   calls for more of them. */
+/* Draw batches: assets that share a model are drawn by one call. The picture equals drawing each by itself, and more assets need no more
+   calls. */
 #include "tests/support/test.h"
 #include <limits.h>
 #include <math.h>
@@ -15,7 +15,7 @@
 #include "value/quality.h"
 
 enum { WIDTH_PX = 320, HEIGHT_PX = 180, TEXELS_PX = 8, PICTURES = 12 };
-/* Of a still picture's pixels: where in a pixel of a silhouette a texture is read depends on what was drawn there before. */
+/* share of a refined frame's pixels that may differ: at silhouettes the texture sample position depends on the drawing order */
 static const double RIM_PART = 0.01;
 static struct rig rig;
 static uint64_t seed;
@@ -34,7 +34,7 @@ static bool one_in(uint64_t n)
     return synthetic_random(&seed) % n == 0;
 }
 
-/* One of plain steel, one with a texture, one whose texture cuts holes, and glass. */
+/* Makes materials: plain steel, one with a texture, one whose texture cuts holes, and glass. */
 static void make_materials(void)
 {
     for (int i = 0; i < TEXELS_PX * TEXELS_PX; i++)
@@ -64,7 +64,7 @@ static void wear(struct test_shape *shape)
     shape->texel_bytes = sizeof(texels);
 }
 
-/* Turned about the vertical, of any size, some as in a mirror. */
+/* Makes a random placement: rotated about the vertical, scaled, sometimes mirrored. */
 static void place_anyhow(double placement[16])
 {
     double angle = random_between(0, 2 * M_PI), size = random_between(0.4, 1.6);
@@ -75,7 +75,7 @@ static void place_anyhow(double placement[16])
     memcpy(placement, m, sizeof(m));
 }
 
-/* Three models, the first two with sensors, and more of each. */
+/* Makes a scene of three models, the first two with sensors, and `more` instances of each. */
 static struct toy *make_crowd(int more)
 {
     static const double sensors[2][3] = { { 0.5, 0, 0 }, { -0.5, 0, 0.2 } };
@@ -162,7 +162,7 @@ static int count_different(const struct frame *a, const struct frame *b)
     return count;
 }
 
-/* Clusters that are not seen left out; all of every asset; and what others hide left out. */
+/* Compares batches with single draws: with culled clusters, with all clusters, and with occlusion culling. */
 TEST(test_together_as_one_by_one)
 {
     for (int way = 0; way < 3; way++) {
@@ -195,7 +195,7 @@ TEST(test_together_as_one_by_one)
     }
 }
 
-/* Readings that come while a picture is drawn bit by bit are not seen in it, though both lie in one buffer. */
+/* Readings that arrive during a progressive render are not visible in it, although both are stored in one buffer. */
 TEST(test_a_picture_under_way_keeps_its_readings)
 {
     struct stand stand;
@@ -222,7 +222,7 @@ TEST(test_a_picture_under_way_keeps_its_readings)
     stand_finish(&stand);
 }
 
-/* Balls side by side, all in view. */
+/* Sets up a row of balls, all in view. */
 static void stand_row(struct stand *stand, int assets)
 {
     static const double sensor[1][3] = { { 0.5, 0, 0 } };
@@ -245,7 +245,8 @@ struct calls {
     uint64_t all, draws;
 };
 
-/* Of a picture like one before it, which made what is kept; or of one where each reading is another one. */
+/* Counts the GL calls of the second of two frames. changes: all readings change before it; otherwise the frame is identical and uses
+   caches. */
 static struct calls count_calls(struct stand *stand, enum tier tier, int least, bool changes)
 {
     struct view view;
@@ -264,7 +265,7 @@ static struct calls count_calls(struct stand *stand, enum tier tier, int least, 
     return calls;
 }
 
-/* Readings that changed are one upload for each asset. */
+/* Changed readings need one upload per asset. */
 TEST(test_more_assets_are_no_more_calls)
 {
     enum { FEW = 12, MANY = 60, ROUNDS = 4, ROUND_CALLS = 24, ROUND_DRAWS = 3 };

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Triangles too long for the field: picks and pixels on them, against plain sums over all sensors in double precision. Each pick must be
-   within a step of colour; each pixel must be, too, or be marked uncertain. */
+/* Triangles too long for the field: picks and pixels compared with plain sums over all sensors in double precision. Each pick must be
+   within one colour step; each pixel must be within one step too, or be marked uncertain. */
 #include "tests/support/test.h"
 #include <math.h>
 #include <unistd.h>
@@ -30,8 +30,9 @@ struct drawn_error_case {
 };
 struct drawn_error_tally {
     int compared, marked, marked_right, no_data, other;
-    double worst_pick, worst_drawn;    /* in parts of the range; drawn: where nothing is marked */
-    double worst_marked, worst_beyond; /* beyond: what pick.drawn_error says, less than 0 if it is a bound */
+    double worst_pick, worst_drawn;    /* largest errors as shares of the range: of picks; of unmarked pixels */
+    double worst_marked, worst_beyond; /* largest error of marked pixels; largest excess over pick.drawn_error, negative if that is a
+                                          bound */
 };
 
 static double between(double low, double high)
@@ -50,7 +51,7 @@ static double weight_of(const struct view *view, double distance_m, double radiu
     return weight;
 }
 
-/* NAN: no data, by distances through space. */
+/* Returns the true value at a pick by straight distances; NAN: no data. */
 static double truth_at(const struct drawn_error_case *site, const struct view *view, const struct pick *pick)
 {
     const struct scene_asset *asset = &site->scene->assets[pick->asset];
@@ -113,7 +114,7 @@ static void compare_pixel(const struct drawn_error_case *site, const struct view
         tally->worst_beyond = fmax(tally->worst_beyond, drawn - pick.drawn_error / range);
 }
 
-/* From a random direction above it, filling the picture or close to it. */
+/* Chooses a random camera above the scene that roughly fills the image. */
 static void look(const struct scene *scene, struct view *view)
 {
     double forward[3] = { between(-1, 1), between(-1, 1), between(-2, -0.5) }, nearer = between(0.4, 1);
@@ -134,7 +135,7 @@ static void compare_view(const struct drawn_error_case *site, const struct view 
     mem_free(measured);
 }
 
-/* One view each by shepard with a soft and a sharp power, and by the paper. */
+/* Compares one view each for shepard with a low and a high power, and for paper. */
 static void compare(const struct drawn_error_case *site, struct drawn_error_tally *tally)
 {
     static const double powers[] = { 2, 6, 0 };
@@ -161,14 +162,14 @@ static void expect_truth(const char *name, const struct drawn_error_tally *tally
     print_message("# beyond the bound that picks tell: %.2f steps\n", tally->worst_beyond / STEP);
     assert_true(tally->compared > 500);
     assert_true(tally->worst_pick <= STEP);
-    assert_true(tally->worst_drawn <= 1.02 * STEP); /* a pixel's value is a float, its place another one */
+    assert_true(tally->worst_drawn <= 1.02 * STEP); /* a pixel's value is a float at a slightly different point than the pick */
     assert_true(tally->worst_beyond <= 0.1 * STEP);
 }
 
 /* --- needles ---------------------------------------------------------------------------------------------------------------- */
 
-/* A plate of NEEDLES strips from side to side up to x = end_m, each two triangles, from there on one of small triangles, and a small box
-   for each sensor. */
+/* Makes a plate with NEEDLES strips from side to side up to x = end_m, each of two triangles, small triangles beyond, and a small box
+   per sensor. */
 static void make_plate(struct test_shape *shape, double end_m, double (*places)[3])
 {
     double low = 0;
@@ -218,10 +219,10 @@ TEST(test_needles)
     struct drawn_error_tally tally;
     tally_plates(SIDE_M, &tally);
     expect_truth("needles", &tally);
-    assert_true(tally.marked > tally.compared / 4 && tally.worst_marked > STEP); /* there is something to be marked */
+    assert_true(tally.marked > tally.compared / 4 && tally.worst_marked > STEP); /* a good part of the pixels is marked */
 }
 
-/* Small triangles, which are right, stay unmarked beside needles that are marked. */
+/* Small triangles, whose field is right, stay unmarked next to marked needles. */
 TEST(test_half_of_needles)
 {
     struct drawn_error_tally tally;
@@ -231,7 +232,7 @@ TEST(test_half_of_needles)
     assert_true(tally.marked_right < tally.marked / 4);
 }
 
-/* Sets up a plate of needles. resolved_levels: as if preparing had left no error in them. */
+/* Sets up a plate of needles. resolved_levels: levels that preparation declares free of error, one bit each. */
 static void stand_on_plate(struct stand *stand, struct view *view, uint64_t resolved_levels)
 {
     struct toy *toy = toy_create();
@@ -245,7 +246,7 @@ static void stand_on_plate(struct stand *stand, struct view *view, uint64_t reso
     view_default(&toy->scene, WIDTH_PX, HEIGHT_PX, view);
 }
 
-/* The frame says how far it may be off, and nothing where readings are equal. */
+/* The frame states its largest drawing error, and 0 if all readings are equal. */
 TEST(test_equal_readings_mark_nothing)
 {
     struct stand stand;
@@ -262,13 +263,13 @@ TEST(test_equal_readings_mark_nothing)
     stand_finish(&stand);
 }
 
-/* The bound that preparing gives holds for all sensors, and for readings in the range. */
+/* The error bound from preparation holds only if all sensors are good and readings are in range; otherwise the error is measured. */
 TEST(test_lost_sensors_and_wild_readings_are_measured)
 {
     struct stand stand;
     struct view view;
     stand_on_plate(&stand, &view, 1);
-    for (int way = 0; way < 3; way++) { /* as prepared, one lost, one far out of range */
+    for (int way = 0; way < 3; way++) { /* first as prepared, then with one sensor lost, then with one far out of range */
         for (int i = 0; i < SENSORS; i++)
             toy_set(stand.snapshot, i, 20 + 10 * i, way == 1 && i == 1 ? QUALITY_BAD_COMMUNICATION_ERROR : QUALITY_GOOD);
         if (way == 2)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The picture tells the field's values, and only those: pixel by pixel on a flat plate, against the legend's own rule. */
+/* Field colours: on a flat plate every pixel shows the field's value by the legend's rule. */
 #include "tests/support/test.h"
 #include <math.h>
 
@@ -18,7 +18,7 @@ static const double side_m = 4;
 static struct rig rig;
 static struct stand stand;
 
-/* Seen from above, x to the right, y upward, filling the picture. */
+/* Makes a view from above, x to the right, y upwards, with the plate filling the image. */
 static void look_down(struct view *view)
 {
     view_default(&stand.toy->scene, SIDE_PX, SIDE_PX, view);
@@ -49,7 +49,8 @@ static int tear_down(void **state)
     return 0;
 }
 
-/* The field where the middle of a pixel lies, from the corners of its triangle. The plate's squares are cut from (0, 0) to (1, 1). */
+/* Returns the field at a pixel's centre, interpolated from the corners of its triangle. The plate's squares are split along (0, 0) to
+   (1, 1). */
 static double value_at(const struct scalars *scalars, int x, int y)
 {
     double u = (x + 0.5) / SIDE_PX * CELLS, v = (1 - (y + 0.5) / SIDE_PX) * CELLS;
@@ -60,7 +61,7 @@ static double value_at(const struct scalars *scalars, int x, int y)
     return u > v ? a + u * (b - a) + v * (c - b) : a + v * (b - a) + u * (c - b);
 }
 
-/* One colour of the map, as it is. Where the still tier averages over the samples of a pixel, colours next to each other may mix. */
+/* Whether the pixel has exactly a colour of the map. In refined frames samples are averaged, so neighbouring colours may mix. */
 static bool is_color_of(const struct view *view, double value, const uint8_t *bgrx)
 {
     struct scale scale;
@@ -76,7 +77,7 @@ static bool is_color_of(const struct view *view, double value, const uint8_t *bg
     return false;
 }
 
-/* A line runs through the pixel or one beside it. */
+/* Whether an isoline runs through the pixel or a neighbour. */
 static bool near_line(const struct view *view, const struct scalars *scalars, int x, int y)
 {
     double lines[VIEW_ALL_LINES], low = INFINITY, high = -INFINITY;
@@ -92,7 +93,7 @@ static bool near_line(const struct view *view, const struct scalars *scalars, in
     return false;
 }
 
-/* How many pixels inside the plate have a colour that the legend does not give their value. */
+/* Counts the pixels inside the plate whose colour differs from the legend's colour of their value. */
 static int count_wrong(const struct view *view)
 {
     const struct scalars *scalars = field_scalars(stand.field, 0, &view->field, stand.snapshot);
@@ -146,7 +147,7 @@ TEST_WITH(test_logarithmic_scale, set_up, tear_down)
     }
 }
 
-/* Dark where the field has that value, and about as wide as it should be. */
+/* Isolines are dark where the field has their value, and about as wide as specified. */
 TEST_WITH(test_isolines_run_where_the_value_is, set_up, tear_down)
 {
     struct view view;
@@ -166,7 +167,7 @@ TEST_WITH(test_isolines_run_where_the_value_is, set_up, tear_down)
                 dark += is_dark;
                 assert_true(!is_dark || near_line(&view, scalars, x, y));
             }
-        assert_true(dark > near / 12 && dark < near / 2); /* one or two of five pixels */
+        assert_true(dark > near / 12 && dark < near / 2); /* one or two of five pixels across a line */
         frame_unref(&frame);
     }
     view.color_scale.lines[0] = 300; /* beyond the range */
@@ -174,7 +175,7 @@ TEST_WITH(test_isolines_run_where_the_value_is, set_up, tear_down)
     assert_int_equal(count_wrong(&view), 0);
 }
 
-/* The value that is written on a line is the field's at that place; drawn at once or bit by bit. */
+/* The number written on an isoline is the field's value there, in one step or in progressive rendering. */
 TEST_WITH(test_labels_stand_on_their_lines, set_up, tear_down)
 {
     struct view view;
@@ -265,7 +266,7 @@ TEST_WITH(test_no_data_is_grey_stripes, set_up, tear_down)
     }
 }
 
-/* A lost sensor's place shows no colour of the map; elsewhere all stays. */
+/* The position of a lost sensor shows no colour of the map; everything else stays. */
 TEST_WITH(test_lost_sensor_leaves_its_place_empty, set_up, tear_down)
 {
     struct view view;
@@ -300,7 +301,7 @@ TEST_WITH(test_uncertain_is_stippled, set_up, tear_down)
     }
 }
 
-/* Of the weight at the middle of a pixel: how much the first sensor has, by Shepard with a power of 2. */
+/* Returns the first sensor's share of the weight at a pixel's centre, for Shepard with power 2. */
 static double part_of_first(int x, int y)
 {
     static const double sensors[PLATE_TAGS][2] = { { 0, 0 }, { 4, 1 }, { 2, 4 } };
@@ -314,7 +315,7 @@ static double part_of_first(int x, int y)
     return first / sum;
 }
 
-/* Between vertices, not along them: triangles are a twelfth of the plate. */
+/* The border of uncertainty runs between vertices, not along them: each triangle spans a twelfth of the plate. */
 TEST_WITH(test_the_rim_of_the_uncertain_runs_true, set_up, tear_down)
 {
     const double slack = 0.02;
@@ -339,7 +340,7 @@ TEST_WITH(test_the_rim_of_the_uncertain_runs_true, set_up, tear_down)
     }
 }
 
-/* Alarm colours are saturated; the field's never are. */
+/* Alarm colours are saturated; the field's colours never are. */
 static bool is_alarm_color(const uint8_t *bgrx)
 {
     return bgrx[2] > 150 && bgrx[2] - bgrx[0] > 120;
@@ -353,7 +354,7 @@ static int count_alarm_colors(const struct frame *frame)
     return count;
 }
 
-/* Beside the plate there is room for the legend, and all of the plate's rim is in sight. */
+/* The image is wide enough for the legend next to the plate, and the whole rim of the plate is visible. */
 static void check_alarms(const struct view *view)
 {
     struct view wide = *view;
@@ -369,7 +370,7 @@ static void check_alarms(const struct view *view)
         overlay_draw(frame, &stand.toy->scene, stand.snapshot, NULL);
         int x0 = 400 + (int)(200 * 10 / 14.0), y0 = 200 + (int)(100 * 10 / 14.0), around = 0, left = 0;
         for (int y = 0; y < 400; y++)
-            for (int x = 0; x < 600; x++) { /* the legend is to the right of it */
+            for (int x = 0; x < 600; x++) { /* the legend lies to the right of column 600 */
                 bool near = hypot(x - x0, y - y0) < 14;
                 around += near && is_alarm_color(frame_pixel(frame, x, y));
                 left += !near && is_alarm_color(frame_pixel(frame, x, y));
@@ -405,7 +406,7 @@ TEST_WITH(test_operator_sees_limits, set_up, tear_down)
     check_alarms(&view);
 }
 
-/* At each sensor, how far it is from the one that is asked of: straight, and along the plate the same. */
+/* Markers show each sensor's distance from the selected sensor; on a plate both distances are equal. */
 TEST_WITH(test_markers_tell_distances, set_up, tear_down)
 {
     const double want_m[PLATE_TAGS] = { hypot(4, 1), 0, hypot(2, 3) };
@@ -428,7 +429,7 @@ TEST_WITH(test_markers_tell_distances, set_up, tear_down)
         }
 }
 
-/* Pictures of a clock that nothing keeps right say so beside it. */
+/* Frames state an unsynchronised clock next to the time. */
 TEST_WITH(test_a_clock_that_is_not_set_is_said, set_up, tear_down)
 {
     struct view view;
@@ -450,7 +451,7 @@ TEST_WITH(test_a_clock_that_is_not_set_is_said, set_up, tear_down)
     frame_unref(&unset);
 }
 
-/* Of tags that were not proven, once one was: markers and legend say so; elsewhere the picture is as before. */
+/* Once one tag has passed its loop check, markers and legend show which tags have not; the rest of the frame stays. */
 TEST_WITH(test_unproven_tags_are_marked, set_up, tear_down)
 {
     enum { WIDE_PX = 600 };
@@ -498,7 +499,7 @@ TEST_WITH(test_default_look_keeps_to_the_palette, set_up, tear_down)
     struct view view;
     look_down(&view);
     view.look = LOOK_DEFAULT;
-    view.ramp_interval = 200; /* one band: one colour, only lightness may differ */
+    view.ramp_interval = 200; /* a single band has one colour, in which only lightness may differ */
     uint8_t rgb[3], shaded[3];
     memcpy(rgb, colormap_at(0)->rgb[128], 3);
     for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
@@ -515,7 +516,7 @@ TEST_WITH(test_default_look_keeps_to_the_palette, set_up, tear_down)
     }
 }
 
-/* Strips in the colours of the map itself, as a model may have them, and no sensor: in no picture of a field is any of them a colour. */
+/* A model without sensors whose strips have the map's own colours: in no view of a field do these colours appear. */
 TEST_WITH(test_context_has_no_color, set_up, tear_down)
 {
     enum { STRIPS = 16 };

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A field that there is no memory for is shown as no data: never as an asset that has no sensors, never as some value. The linker leads
-   mem_try_array and pool_take here. */
+/* A field without memory is shown as no data, never as an asset without sensors and never as some value. The linker redirects
+   mem_try_array and pool_take to this file. */
 #include "tests/support/test.h"
 
 
@@ -22,7 +22,7 @@ void *__wrap_mem_try_array(size_t count, size_t bytes_each);
 struct pool_slice *__real_pool_take(struct pool *pool, size_t count);
 struct pool_slice *__wrap_pool_take(struct pool *pool, size_t count);
 
-/* Arrays by vertex: of doubles the sums, of floats the weights, of scalars what is shown. */
+/* Fails arrays of one entry per vertex: doubles are sums, floats are weights, scalars are the displayed values. */
 void *__wrap_mem_try_array(size_t count, size_t bytes_each)
 {
     bool by_vertex = count == VERTICES;
@@ -32,7 +32,7 @@ void *__wrap_mem_try_array(size_t count, size_t bytes_each)
     return __real_mem_try_array(count, bytes_each);
 }
 
-/* Light has slices of as many texels, but is there before anything fails. */
+/* Fails slices of one entry per vertex. Lighting uses equal slices, but exists before anything fails. */
 struct pool_slice *__wrap_pool_take(struct pool *pool, size_t count)
 {
     return fault == NO_BUFFER && count == VERTICES ? NULL : __real_pool_take(pool, count);
@@ -53,7 +53,7 @@ static int set_up(void **state)
     return 0;
 }
 
-/* Several plates side by side, of two sensors each. */
+/* Sets up several plates side by side with two sensors each. */
 static int set_up_many(void **state)
 {
     static const double sensors[2][3] = { { 0, 0, 0 }, { 1.5, 3.5, 0 } };
@@ -86,7 +86,7 @@ static void look_down(struct view *view)
     view->look = LOOK_FLAT;
 }
 
-/* Every pixel inside the plate is of one of the stripes, and both are there. */
+/* Asserts that every pixel inside the plate has one of the hatching's two colours, and that both occur. */
 static void assert_hatched(const struct view *view)
 {
     struct frame *frame = stand_draw(&stand, view);
@@ -130,7 +130,7 @@ TEST_WITH(test_bit_by_bit_too, set_up, tear_down)
     view.field.power = 9;
     fault = NO_WEIGHTS;
     struct render_job *job = planned_begin(stand.renderer, &view, stand.snapshot);
-    fault = ALL_WELL; /* of what drawing needs, some is as large */
+    fault = ALL_WELL; /* other arrays of the drawing have the same size */
     assert_non_null(job);
     while (!renderer_step(stand.renderer, job, 1000000)) {
     }
@@ -140,7 +140,7 @@ TEST_WITH(test_bit_by_bit_too, set_up, tear_down)
     frame_unref(&frame);
 }
 
-/* Fields that are worked out for the same picture do not push each other out, nor what is shown of them. */
+/* Fields computed for one frame evict neither each other nor their displayed values. */
 TEST_WITH(test_with_little_room_many_are_shown_alike, set_up_many, tear_down)
 {
     struct view view;
@@ -164,7 +164,7 @@ TEST_WITH(test_with_little_room_many_are_shown_alike, set_up_many, tear_down)
             const uint8_t *a = frame_pixel(want, i % SIDE_PX, i / SIDE_PX), *b = frame_pixel(got, i % SIDE_PX, i / SIDE_PX);
             shown += a[0] != a[1] || a[1] != a[2];
             for (int c = 0; c < 3; c++)
-                assert_true(abs(a[c] - b[c]) <= 2); /* sums made anew are rounded otherwise */
+                assert_true(abs(a[c] - b[c]) <= 2); /* recomputed sums are rounded differently */
         }
         assert_true(shown > SIDE_PX * SIDE_PX / 10);
         frame_unref(&want);
@@ -181,7 +181,7 @@ static void assert_kept(const struct fields *fields, struct fields_entry *const 
         assert_ptr_equal(fields->entries[i], was[i]);
 }
 
-/* A plant of which one picture needs more than there is room for: its fields are not made anew for each. Others go. */
+/* One frame of this plant needs more than the cache limit: its fields are not recomputed for each frame, while others are evicted. */
 TEST_WITH(test_what_one_picture_needs_stays, set_up_many, tear_down)
 {
     struct view view;

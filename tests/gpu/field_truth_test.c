@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The truth rules where people see them: what pixels show when sensors are lost, out of range, out of reach or mad. Five sensors on a
-   plate and, apart from it but of the same asset, a second plate that no way leads to. */
+/* The rules of truth in pixels: lost sensors, readings out of range, points out of reach, and absurd values. Five sensors on one plate,
+   and a second plate of the same asset that is not connected. */
 #include "tests/support/test.h"
 #include <math.h>
 
@@ -41,7 +41,7 @@ static int tear_down(void **state)
     return 0;
 }
 
-/* Seen from above, both plates filling the picture. */
+/* Makes a view from above with both plates filling the image. */
 static void look_down(struct view *view, enum tier tier)
 {
     view_default(&stand.toy->scene, WIDTH_PX, HEIGHT_PX, view);
@@ -51,7 +51,7 @@ static void look_down(struct view *view, enum tier tier)
     view->tier = tier;
 }
 
-/* The pixel over a place on the plates. */
+/* Returns the pixel at a position on the plates. */
 static const uint8_t *pixel_at(const struct frame *frame, double x_m, double y_m)
 {
     int x = (int)(x_m / side_m * HEIGHT_PX), y = (int)((side_m - y_m) / side_m * HEIGHT_PX);
@@ -70,7 +70,7 @@ static bool is_rgb(const uint8_t *bgrx, const uint8_t rgb[3])
     return bgrx[2] == rgb[0] && bgrx[1] == rgb[1] && bgrx[0] == rgb[2];
 }
 
-/* The colour number that the picture shows there; -1: none of the map. The still tier averages over the samples of a pixel. */
+/* Returns the index of the colour shown there, or -1 if it is not in the map. Refined frames average the samples of a pixel. */
 static int shown_at(const struct view *view, double x_m, double y_m)
 {
     struct frame *frame = stand_draw(&stand, view);
@@ -82,7 +82,7 @@ static int shown_at(const struct view *view, double x_m, double y_m)
     return index;
 }
 
-/* Over a square of the first plate: whether it is grey all over, hatching that is. */
+/* Whether a square on the first plate is grey everywhere, which means hatched. */
 static bool is_hatched(const struct view *view, double x_m, double y_m, double half_m)
 {
     struct frame *frame = stand_draw(&stand, view);
@@ -106,7 +106,7 @@ TEST_WITH(test_the_hottest_goes_bad, set_up, tear_down)
         assert_in_range(shown_at(&view, 2, 2), 235, 245);
         toy_set(stand.snapshot, HOTTEST, 95, QUALITY_BAD_SENSOR_FAILURE);
         assert_true(is_hatched(&view, 2, 2, 0.7));
-        assert_in_range(shown_at(&view, 0.3, 0.3), 45, 62); /* the others stay, and nothing of its 95 is in them */
+        assert_in_range(shown_at(&view, 0.3, 0.3), 45, 62); /* the other sensors stay, and the lost sensor's 95 has no effect on them */
         view.field.fill = FILL_NEIGHBOURS;
         assert_false(is_hatched(&view, 2, 2, 0.7)); /* asked for, and stippled */
         struct frame *frame = stand_draw(&stand, &view);
@@ -153,7 +153,7 @@ TEST_WITH(test_one_sensor_is_everywhere_it_reaches, set_up, tear_down)
         toy_set(stand.snapshot, HOTTEST, 60, QUALITY_GOOD);
         assert_int_equal(shown_at(&view, 2, 2), 153);
         assert_int_equal(shown_at(&view, 2.5, 2.4), 153);
-        assert_true(is_hatched(&view, 0.2, 0.2, 0.2)); /* the place of one that was lost */
+        assert_true(is_hatched(&view, 0.2, 0.2, 0.2)); /* position of a lost sensor */
     }
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Contexts, programs and pictures: what every pass relies on. */
+/* Contexts, programs and framebuffers: the basis of every render pass. */
 #include "tests/support/test.h"
 #include <sys/wait.h>
 #include <unistd.h>
@@ -45,7 +45,7 @@ TEST(test_context_tells_what_it_is)
     assert_int_equal(rig.gl->software, strstr(rig.gl->renderer, "llvmpipe") != NULL);
 }
 
-/* Functions of GL are loaded once for all contexts, so that there can be none of another back end beside this one. */
+/* GL functions are loaded once for all contexts, so a context of another back end cannot exist in the same process. */
 TEST(test_contexts_beside_each_other_are_of_one_kind)
 {
     for (enum gl_kind kind = GL_EGL_DEVICE; kind <= GL_OSMESA; kind++)
@@ -93,7 +93,7 @@ TEST(test_defines_and_includes_reach_the_compiler)
     glDeleteShader(shader);
 }
 
-/* Blue above, red below, with a green pixel in the corner: rows must come from the top, bytes as b, g, r. */
+/* Draws blue above red with a green pixel in the corner, which shows whether rows come from the top and bytes are b, g, r. */
 static void draw_flag(const struct target *target)
 {
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target->framebuffer);
@@ -142,8 +142,8 @@ TEST(test_target_too_large_is_refused)
     assert_false(target_init(&target, rig.log, rig.gl->max_texture_px * 2, 16, 1));
 }
 
-/* Mesa's EGL without its drivers (libgl1-mesa-dri is not installed): no context, and no crash. In a process of its own, which
-   has loaded none yet. */
+/* Mesa's EGL without drivers (libgl1-mesa-dri not installed) gives no context and must not crash. Runs in a child process that has not
+   loaded drivers yet. */
 static pid_t try_without_drivers(void)
 {
     pid_t child = fork();
@@ -152,7 +152,7 @@ static pid_t try_without_drivers(void)
     struct log *log = log_create(LOG_INFO);
     setenv("LIBGL_DRIVERS_PATH", "/nowhere", 1);
     struct gl *gl = gl_create(log, GL_EGL_SURFACELESS, NULL);
-    _exit(gl && gl->software); /* those of a GPU are not Mesa's */
+    _exit(gl && gl->software); /* drivers of a GPU are not Mesa's */
 }
 
 static pid_t without_drivers;
@@ -186,7 +186,7 @@ static bool draws_with(struct log *log, const char *name, const char *renderer)
     return good;
 }
 
-/* Those of the list that can be used, by either name. */
+/* Whether every usable device of the list can be opened by index and by address. */
 static bool right_devices_draw(struct log *log, char *list)
 {
     for (char *line = strtok(list, "\n"); line; line = strtok(NULL, "\n")) {
@@ -201,7 +201,7 @@ static bool right_devices_draw(struct log *log, char *list)
     return true;
 }
 
-/* There is no context by it, even one of software, and the reason is said once. */
+/* Whether opening this device fails, without falling back to software, and logs the reason once. */
 static bool is_refused(struct log *log, FILE *said, const char *name, const char *reason)
 {
     char text[4096] = "";

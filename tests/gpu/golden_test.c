@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Pictures against those in tests/golden, made on llvmpipe: as a session without a GPU has them (render/soft, render/refined; the code is
-   the same with each context), and drawn by the context itself. GOLDEN_UPDATE=1 makes them anew; look at them before you commit them. */
+/* Compares frames with tests/golden, made on llvmpipe: as a session without a GPU gets them (render/soft, render/refined; the same code
+   for each context), and as drawn by the context itself. GOLDEN_UPDATE=1 writes the golden files again: look at them before committing
+   them. */
 #include "tests/support/test.h"
 #include <sys/stat.h>
 
@@ -24,9 +25,9 @@ struct golden {
     enum look look;
     double ramp_interval;
     int selected_asset;
-    bool overlay, opened; /* opened: an orthographic picture with a cut and a ghost */
-    double far_part;      /* of the pixels may differ by more than FAR, in any channel */
-    bool split;           /* limits to the left; isolines and breaks on a logarithmic scale to the right */
+    bool overlay, opened; /* overlay: with overlay; opened: orthographic, with a section and a ghost */
+    double far_part;      /* share of pixels that may differ by more than FAR in a channel */
+    bool split;           /* left: operator's view; right: isolines and breaks on a logarithmic scale */
     bool dark;
 };
 enum { FAR = 20 };
@@ -69,7 +70,7 @@ static uint8_t *load(const char *name)
     return bgrx;
 }
 
-/* Part of the pixels that are far from the golden ones; `differences` gets ten times what differs. */
+/* Returns the share of pixels far from the golden ones; `differences` receives ten times the difference. */
 static double compare(const uint8_t *got, const uint8_t *want, uint8_t *differences)
 {
     int far = 0;
@@ -156,7 +157,7 @@ static void test_golden(void **state)
     }
 }
 
-/* Values, a sensor beyond the range, one that is uncertain and one that is bad. */
+/* Sets readings: several values, one beyond the range, one uncertain and one bad. */
 static void fill(void)
 {
     toy_fill(stand.snapshot, 0);

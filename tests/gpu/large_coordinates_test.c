@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A plant where its survey has it, 5,500 km north of the origin (UTM), looks as it does at the origin. */
+/* A plant at survey coordinates, 5,500 km north of the origin (UTM), looks the same as at the origin. */
 #include "tests/support/test.h"
 #include <math.h>
 
@@ -11,7 +11,7 @@
 enum { WIDTH_PX = 320, HEIGHT_PX = 240, PIXELS = WIDTH_PX * HEIGHT_PX };
 
 static const double FAR_OFF_M[3] = { 412345, 5512345, 120 };
-static const double SAME_M = 1e-6; /* of what is 5.5e6 m off a double keeps 1e-9 */
+static const double SAME_M = 1e-6; /* metres; at 5.5e6 m a double resolves 1e-9 */
 
 static struct rig rig;
 static struct stand near, far;
@@ -38,7 +38,7 @@ static void move_scene(struct scene *scene, const double by_m[3])
     }
 }
 
-/* The i-th look at the near one, and the same at the far one. */
+/* Makes the i-th view of the near plant, and the same of the far one. */
 static void look(int i, struct view *at_near, struct view *at_far)
 {
     view_default(&near.toy->scene, WIDTH_PX, HEIGHT_PX, at_near);
@@ -53,7 +53,7 @@ static void look(int i, struct view *at_near, struct view *at_far)
     move(at_far->camera.target_m, FAR_OFF_M);
 }
 
-/* Where edges run through the middle of a pixel, that may fall to either side. */
+/* Pixels whose centre lies exactly on an edge may fall to either side. */
 static void assert_same(const struct view *at_near, const struct view *at_far)
 {
     struct frame *a = stand_draw(&near, at_near), *b = stand_draw(&far, at_far);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Light that is chosen while others watch: baked in bits, kept within a bound, shown when it is ready. */
+/* Lighting that is chosen while others watch: baked in small steps, within a memory limit, shown when ready. */
 #include "tests/support/test.h"
 #include <math.h>
 #include <unistd.h>
@@ -56,7 +56,7 @@ static int count_steps(struct light *light, const struct light_key *key)
     return steps;
 }
 
-/* With and without the light of the sky to be worked out. */
+/* Tested with sky light that is already baked and with sky light that is not. */
 TEST(test_bits_make_the_same_light)
 {
     struct gpu_scene gpu_scene;
@@ -86,8 +86,8 @@ static void damage(const char *path)
     fclose(file);
 }
 
-/* The next start reads it, bakes the rest, and comes to the same light for another sun too; not from a file that is damaged, or of a plant
-   in which something was moved. */
+/* The next start reads the cached openness, bakes the rest, and gets the same light for another sun too; a damaged cache, or one of a
+   plant with moved assets, is not used. */
 TEST(test_openness_is_kept)
 {
     struct gpu_scene gpu_scene;
@@ -127,7 +127,7 @@ TEST(test_openness_is_kept)
     rmdir(folder);
 }
 
-/* A wall whose corners stick in others: as bright in between as it is, not as dark as its corners. */
+/* A wall whose corners are inside other bodies: its middle is as bright as it should be, not as dark as its corners. */
 TEST(test_large_faces_are_lit_within)
 {
     static const double here[3] = { 0, 0, 0 };
@@ -158,7 +158,7 @@ TEST(test_large_faces_are_lit_within)
     toy_destroy(&toy);
 }
 
-/* Tests that do not examine the light of the sky share one baked sky. */
+/* Folder of one baked sky shared by the tests that do not examine sky light. */
 static char *openness_folder;
 
 static int keep_openness(void **state)
@@ -175,7 +175,7 @@ static int forget_openness(void **state)
     return 0;
 }
 
-/* Forty sessions, each with a sun of its own; one of them is being drawn all the while. */
+/* Forty sessions with a sun of their own each, one of which is being drawn throughout. */
 TEST_WITH(test_many_lights_fit_in_a_bound, keep_openness, forget_openness)
 {
     struct gpu_scene gpu_scene;
@@ -218,7 +218,7 @@ TEST_WITH(test_the_nearest_sun_stands_in, keep_openness, forget_openness)
     gpu_scene_finish(&gpu_scene);
 }
 
-/* Of the usual light's key and others: the usual one, if it is cached. */
+/* Among several keys the default light's is preferred, if it is cached. */
 TEST_WITH(test_one_light_stays, keep_openness, forget_openness)
 {
     struct gpu_scene gpu_scene;
@@ -247,7 +247,7 @@ static bool same_pixels(const struct frame *a, const struct frame *b)
     return !memcmp(a->bgrx, b->bgrx, (size_t)a->stride_bytes * (size_t)a->height_px);
 }
 
-/* A moving session turns the sun: nobody waits, and a few pictures later it has what it asked for. */
+/* A moving session rotates the sun: no frame waits for baking, and a few frames later the session has the requested light. */
 TEST(test_a_moving_session_does_not_wait)
 {
     struct view view;
@@ -276,7 +276,7 @@ TEST(test_a_moving_session_does_not_wait)
     frame_unref(&exact);
 }
 
-/* Who is in a hurry has a picture before its light is worked out; it is worked out while nobody asks for anything. */
+/* A preview is drawn before its light is baked; baking goes on while no frame is requested. */
 TEST(test_the_first_light_is_rough)
 {
     struct stand fresh;
@@ -300,7 +300,7 @@ TEST(test_the_first_light_is_rough)
     stand_finish(&fresh);
 }
 
-/* A still picture shows the sun that was asked for, however long that takes. */
+/* A refined frame has the requested sun, however long baking takes. */
 TEST(test_a_still_picture_waits_for_its_light)
 {
     struct view view;
@@ -318,7 +318,7 @@ TEST(test_a_still_picture_waits_for_its_light)
 
 int main(void)
 {
-    unsetenv("PLANTCAST_SHARED"); /* what others have kept is not looked for */
+    unsetenv("PLANTCAST_SHARED"); /* ignores caches of other runs */
     if (!rig_init(&rig, "light_test"))
         return 0;
     stand_init(&stand, &rig, toy_unit());

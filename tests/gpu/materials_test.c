@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Materials against glTF's own reflectance, integrated here in double precision: a grid of spheres from rough to smooth, dielectric
-   to metal, under surroundings read from a file and under the sun; and white ones in a white furnace, which must not be seen. */
+/* Materials compared with glTF's reflectance model, integrated in double precision: a grid of spheres from rough to smooth and from
+   dielectric to metal, under surroundings from a file and under the sun; and white spheres in a white furnace, which must be invisible. */
 #include "tests/support/test.h"
 #include <math.h>
 
@@ -12,16 +12,17 @@
 
 enum { STEPS = 5, SPHERES = STEPS * STEPS, SIDE_PX = 64, /* steps: at most */
         WIDTH = 256, HEIGHT = 128, SAMPLES = 400 };
-static const double SKY_LIGHT = 0.55, SUN_LIGHT = 0.78, SPACE_M = 8; /* as in shaders/environment.glsl; between the spheres */
+/* as in shaders/environment.glsl; SPACE_M: distance between the spheres */
+static const double SKY_LIGHT = 0.55, SUN_LIGHT = 0.78, SPACE_M = 8;
 static struct rig rig;
-static int steps, spheres; /* steps: from rough to smooth, and from dielectric to metal */
+static int steps, spheres; /* steps: number of roughness values, and of metallic values */
 
 struct scene_of {
     struct stand stand;
     struct asset_material materials[SPHERES];
     char *folder, *path;
     double (*radiance)(const double towards[3], int channel);
-    double level[3]; /* what a level white surface gets of it, over pi */
+    double level[3]; /* irradiance of a horizontal white surface, divided by pi */
 };
 
 /* --- surroundings ---------------------------------------------------------------------------------------------------------------- */
@@ -33,7 +34,7 @@ static double white(const double towards[3], int channel)
     return 3;
 }
 
-/* Blue above, brown below, a wide warm lamp to one side. */
+/* Radiance of the surroundings: blue above, brown below, a wide warm lamp on one side. */
 static double room(const double towards[3], int channel)
 {
     static const double above[3] = { 0.7, 0.9, 1.2 }, below[3] = { 0.35, 0.30, 0.25 }, lamp[3] = { 3.0, 2.6, 1.8 };
@@ -41,7 +42,7 @@ static double room(const double towards[3], int channel)
     return below[channel] + (above[channel] - below[channel]) * up + lamp[channel] * exp(12 * (at - 1));
 }
 
-/* Radiance HDR: mantissas and a common exponent. The middle column looks along +x. */
+/* Writes a Radiance HDR file: mantissas with a common exponent. The middle column points along +x. */
 static void write_hdr(const char *path, double (*radiance)(const double[3], int))
 {
     FILE *file = fopen(path, "wb");
@@ -60,7 +61,7 @@ static void write_hdr(const char *path, double (*radiance)(const double[3], int)
     fclose(file);
 }
 
-/* Not in rows: none may stand in the sight of another, seen from any of the few directions that light comes from. */
+/* Returns the centre of sphere i, staggered so that no sphere hides another from any of the few light directions. */
 static const double *place_of(int i)
 {
     static double place[3];
@@ -110,7 +111,7 @@ static void scene_finish(struct scene_of *scene)
     temp_folder_destroy(&scene->folder);
 }
 
-/* From -y, so that a pixel's place is x and z. */
+/* Draws one sphere from -y, so that a pixel's position gives x and z. */
 static struct frame *draw_sphere(struct scene_of *scene, int i, const double sun[3])
 {
     struct view view;
@@ -155,8 +156,9 @@ static double smith(double n_l, double n_v, double a2)
     return 0.5 / (n_l * sqrt(n_v * n_v * (1 - a2) + a2) + n_v * sqrt(n_l * n_l * (1 - a2) + a2));
 }
 
-/* The glTF 2.0 specification, appendix B: light once reflected, and what enters a dielectric and comes out again. What rough facets
-   throw at one another is given back by scaling (Turquin, "Practical multiple scattering compensation for microfacet models"). */
+/* Reflected sky by the glTF 2.0 specification, appendix B: single reflection, and light that enters a dielectric and leaves it again.
+   Multiple reflection between rough facets is compensated by scaling (Turquin, "Practical multiple scattering compensation for
+   microfacet models"). */
 static void reflected_sky(const struct scene_of *scene, const struct asset_material *m, const double n[3], const double v[3], double out[3])
 {
     double alpha = m->roughness * m->roughness, a2 = alpha * alpha, n_v = dot(n, v), all = 0, once = 0;
@@ -204,7 +206,7 @@ static void reflected_sun(const struct asset_material *m, const double n[3], con
     }
 }
 
-/* Khronos PBR Neutral, then sRGB, 0..255. */
+/* Khronos PBR Neutral tone mapping, then sRGB, 0 to 255. */
 static void shown(double c[3])
 {
     double least = fmin(c[0], fmin(c[1], c[2])), offset = least < 0.08 ? least - 6.25 * least * least : 0.04, peak;
@@ -245,7 +247,7 @@ static double difference(const uint8_t *bgrx, const double want[3])
     return sqrt(square);
 }
 
-/* False: not on the sphere, or at its rim. */
+/* Returns false if the pixel is not on the sphere, or at its rim. */
 static bool normal_at(int x, int y, double n[3])
 {
     n[0] = ((x + 0.5) / SIDE_PX - 0.5) * 1.1 / 0.5;
@@ -255,7 +257,7 @@ static bool normal_at(int x, int y, double n[3])
     return square < 0.92 * 0.92;
 }
 
-/* Mean CIELAB difference of one sphere; `step`: of the pixels that are looked at. */
+/* Returns the mean CIELAB difference of one sphere; `step`: spacing of the compared pixels. */
 static double compare(struct scene_of *scene, int i, const double sun[3])
 {
     const double v[3] = { 0, -1, 0 };
@@ -265,7 +267,7 @@ static double compare(struct scene_of *scene, int i, const double sun[3])
     for (int y = 2; y < SIDE_PX; y += 4)
         for (int x = 2; x < SIDE_PX; x += 4) {
             double n[3], want[3];
-            if (!normal_at(x, y, n) || fabs(dot(n, sun)) < 0.12) /* where the sun grazes, shadows are soft */
+            if (!normal_at(x, y, n) || fabs(dot(n, sun)) < 0.12) /* shadows are soft where the sun grazes the surface */
                 continue;
             reflected_sky(scene, &scene->materials[i], n, v, want);
             reflected_sun(&scene->materials[i], n, v, sun, want);
@@ -301,7 +303,7 @@ TEST(test_grid)
     assert_true(all[0] <= 2 && all[1] <= 2 && worst[0] <= 4 && worst[1] <= 4);
 }
 
-/* Under even light, whatever is white comes out as bright as the light, from face to rim. */
+/* Under uniform light a white sphere has the light's brightness everywhere, including its rim. */
 TEST(test_white_furnace)
 {
     struct scene_of scene;
@@ -324,10 +326,10 @@ TEST(test_white_furnace)
     }
     print_message("# white in white: %.1f %% of the pixels off by more than 3 %%, the worst by %.1f %%\n", 100.0 * off / all, 100 * worst);
     scene_finish(&scene);
-    assert_true(off <= 0.04 * all && worst <= 0.07); /* where one of the few directions of the sky is hidden by a neighbour */
+    assert_true(off <= 0.04 * all && worst <= 0.07); /* where a neighbour hides one of the few sky directions */
 }
 
-/* A dark, smooth dielectric mirrors some percent in its middle and much more at its rim. */
+/* A dark, smooth dielectric reflects a few percent in its middle and much more at its rim. */
 TEST(test_rim_mirrors)
 {
     struct scene_of scene;

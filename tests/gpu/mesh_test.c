@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What vertices become on the GPU: folded normals as shaders unfold them, texture coordinates in few bits where they fit. */
+/* Vertex data on the GPU: encoded normals as shaders decode them, and texture coordinates in few bits where they fit. */
 #include "tests/support/test.h"
 #include <math.h>
 
@@ -22,7 +22,7 @@ static float random_signed(void)
     return (float)(2 * synthetic_random_unit(&seed) - 1);
 }
 
-/* The poles, the middles of edges and faces, rims where the halves meet, and any. */
+/* Makes test normals: the poles, middles of edges and faces, the fold of the octahedron, and random ones. */
 static void make_normals(void)
 {
     size_t count = 0;
@@ -149,7 +149,7 @@ TEST(test_bytes_of_its_own)
     }
 }
 
-/* What is written into the caller's memory afterwards is there in the buffer, and not where it had to be copied. */
+/* Vertex data used in place sees later changes of the caller's memory; data that had to be copied does not. */
 TEST(test_what_is_kept_is_read_in_place)
 {
     static float back_m[COUNT][3];

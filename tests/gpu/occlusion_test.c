@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What others hide is left out, and not a pixel of the picture differs: from outside, from among and from within what is drawn. */
+/* Occlusion culling: hidden geometry is not drawn, and no pixel changes, with cameras outside, among and inside the assets. */
 #include "tests/support/test.h"
 #include <limits.h>
 #include <math.h>
@@ -20,7 +20,7 @@ struct occlusion_tally {
     size_t pictures, left_out, different;
 };
 
-/* Not left out: the same triangles without that, since culling of clusters may lose a pixel of one that is seen edge on. */
+/* Draws with or without occlusion culling. Cluster culling is the same in both, because it may lose a pixel of a cluster seen edge-on. */
 static struct frame *draw(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot, bool leave_out,
                           size_t *count)
 {
@@ -58,7 +58,8 @@ static double random_between(double low, double high)
     return low + (high - low) * synthetic_random_unit(&seed);
 }
 
-/* Within an asset's box, beside it or far off; sometimes orthographic, cut, with ghosts, or with some of it hidden. */
+/* Chooses a random camera inside an asset's box, near it or far away; sometimes orthographic, clipped, with ghosts, or with hidden
+   assets. */
 static void look_anyhow(const struct scene *scene, struct view *view)
 {
     const struct scene_asset *asset = &scene->assets[synthetic_random(&seed) % scene->asset_count];
@@ -111,7 +112,7 @@ TEST(test_the_demo_plant)
 
 /* --- assets that fill their boxes, side by side -------------------------------------------------------------------------------- */
 
-enum { ROW = 3, SIDE = 6 }; /* assets to a side; squares to the side of a face */
+enum { ROW = 3, SIDE = 6 }; /* assets per side; squares per side of a face */
 
 static void add_cube(struct toy *toy, const char *id, const double at[3])
 {
@@ -158,7 +159,7 @@ TEST(test_cubes)
     }
 }
 
-/* Seen from before a face of the city: all cubes but those of that face are left out. */
+/* A camera in front of a face of the city: all cubes except those of that face are culled. */
 TEST(test_a_wall_hides_what_is_behind)
 {
     struct stand stand;
@@ -168,7 +169,7 @@ TEST(test_a_wall_hides_what_is_behind)
     renderer_use_gl(stand.renderer, true);
     view_default(&stand.toy->scene, WIDTH_PX, HEIGHT_PX, &view);
     view.tier = TIER_PREVIEW;
-    view.width_px = 1280; /* where the rim round boxes is less than what is between the cubes */
+    view.width_px = 1280; /* here the margin around boxes is less than the gap between the cubes */
     view.height_px = 720;
     double middle_m = 0.5 * (ROW + 0.02 * (ROW - 1));
     view.camera =
@@ -177,14 +178,15 @@ TEST(test_a_wall_hides_what_is_behind)
     frame_unref(&frame);
     print_message("# a wall: %zu of %d cubes left out\n", count, ROW * ROW * ROW);
     assert_int_equal(count, (ROW - 1) * ROW * ROW);
-    clip_box(&view.visibility.clip, (double[3]){ 1.1, -1, -1 }, (double[3]){ 9, 9, 9 }); /* the wall is cut away: behind it is another */
+    /* the front wall of cubes is clipped away, and another one is behind it */
+    clip_box(&view.visibility.clip, (double[3]){ 1.1, -1, -1 }, (double[3]){ 9, 9, 9 });
     frame = draw(stand.renderer, &view, stand.snapshot, true, &count);
     frame_unref(&frame);
     assert_int_equal(count, (ROW - 2) * ROW * ROW);
     stand_finish(&stand);
 }
 
-/* The eye is in the box of two balls; a wall that fills the picture hides all of the box, and one ball is before it. */
+/* The eye is inside the box of two balls; a wall fills the image and hides the box, but one ball is in front of the wall. */
 TEST(test_the_eye_in_a_box)
 {
     struct toy *toy = toy_create();

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The field worked out at each fragment, with more sensors than the paper's 512, against plain loops over all of them in double precision:
-   numbers, and the colours of what is drawn. A plate seen straight from above, so that a pixel's place on it is known. */
+/* The field computed per fragment, with more sensors than the paper's 512, compared with plain loops in double precision: values and
+   drawn colours. The plate is seen from straight above, so that each pixel's position is known. */
 #include "tests/support/test.h"
 #include <math.h>
 
@@ -16,7 +16,7 @@
 
 enum { SENSORS = 701, CELLS = 40, SAMPLES = 1500, BAD_EVERY = 60 };
 static const double SIDE_M = 4, TOLERANCE = 1.0 / 255;
-static int side_px; /* of a picture: each pixel costs all sensors */
+static int side_px; /* pixels per side; each pixel costs a sum over all sensors */
 static struct rig rig;
 static struct stand stand;
 static uint64_t random_state;
@@ -62,7 +62,7 @@ static const struct asset_view *file(void)
 
 /* --- slow truth --------------------------------------------------------------------------------------------------------------- */
 
-struct plate_spot { /* a place on the plate: where in which triangle */
+struct plate_spot { /* a point on the plate and its triangle */
     double at_m[2], parts[3];
     const uint32_t *corners;
 };
@@ -94,7 +94,7 @@ static double distance_of(const struct plate_spot *spot, int sensor, enum distan
     return sum;
 }
 
-/* The largest distance on the asset: the toy's are straight, along the surface too. */
+/* Returns the largest distance on the asset; the toy's surface distances are straight too. */
 static double largest_m(void)
 {
     double most_m = 0;
@@ -106,7 +106,7 @@ static double largest_m(void)
 
 struct fragment_truth {
     double value;        /* place in the range */
-    bool no_data, a_tie; /* a tie: a pixel's worth of rounding decides */
+    bool no_data, a_tie; /* a_tie: within rounding of a decision */
 };
 
 static struct fragment_truth truth_at(const struct plate_spot *spot, enum interpolation interpolation, enum distance_mode mode,

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Picks against the picture itself: the numbers that its pixels stand for, its depth, its markers; and against the sums in double
-   precision, at the demo plant and at a small one. */
+/* Picks compared with the frame itself (values, depth and markers of its pixels) and with sums in double precision, on the demo plant
+   and on a small one. */
 #include "render/pick/pick.h"
 
 #include "tests/support/test.h"
@@ -49,7 +49,7 @@ struct pick_tally {
     double worst_value, worst_px, worst_sum, longest_ms;
 };
 
-/* Shepard's sum at the place, in double precision, from the distances at its triangle's corners. */
+/* Returns Shepard's sum at the picked point in double precision, from the distances at its triangle's corners. */
 static double slow_value(const struct pick_case *site, const struct view *view, const struct pick *pick)
 {
     double numerator = 0, denominator = 0;
@@ -77,7 +77,8 @@ static double project(const struct view *view, const struct pick_case *site, con
     return 0.5 - 0.5 * clip[2] / clip[3];
 }
 
-/* Of the pixel and those around it, the measured one whose depth is nearest to what was picked: rims fall to either side. */
+/* Returns the measured value, of the pixel and its neighbours, whose depth is closest to the pick: at silhouettes a pixel may fall to
+   either side. */
 static const float *same_place(const float (*measured)[4], int x, int y, double depth)
 {
     const float *best = measured[y * WIDTH_PX + x];
@@ -105,7 +106,7 @@ static void compare_pixel(struct pick_case *site, const struct view *view, const
         tally->differ += centre[1] > MEASURE_NOTHING;
         return;
     }
-    if (pick.inside) { /* planes that close bodies are not measured */
+    if (pick.inside) { /* section caps are not measured */
         tally->inside++;
         assert_true(pick.state == PICK_CONTEXT && isnan(pick.value));
         return;
@@ -134,7 +135,7 @@ static void compare_pixel(struct pick_case *site, const struct view *view, const
         tally->marked_right += marked && error <= 1.0 / 255;
         tally->worst_value = fmax(tally->worst_value, marked ? 0 : error);
         tally->over += !marked && error > 1.0 / 255;
-        if (pick.nearest_count < PICK_NEAREST) /* else there may be more than are told */
+        if (pick.nearest_count < PICK_NEAREST) /* otherwise there may be more sensors than reported */
             tally->worst_sum = fmax(tally->worst_sum, fabs(slow_value(site, view, &pick) - pick.value) / range);
     }
 }
@@ -167,7 +168,7 @@ static void assert_exact(const struct pick_tally *tally)
     assert_true(tally->worst_value <= 1.0 / 255);
     assert_true(tally->worst_px < 1e-3);
     assert_in_range(tally->differ, 0, tally->compared / 200); /* rims of hatching */
-    assert_in_range(tally->moved, 0, tally->compared / 50);   /* rims, and railings thinner than a pixel */
+    assert_in_range(tally->moved, 0, tally->compared / 50);   /* silhouettes, and railings thinner than a pixel */
     assert_true(tally->longest_ms < 10);
 }
 
@@ -199,12 +200,12 @@ TEST(test_small_plant)
         compare_view(&site, &view, 3000, &tally);
         assert_exact(&tally);
         assert_true(way < 8 || tally.inside > 50);
-        assert_true(tally.worst_sum < 1.0 / 255); /* picks are computed, not read from triangles */
+        assert_true(tally.worst_sum < 1.0 / 255); /* picks are computed from distances, not interpolated from the triangle */
     }
     stand_finish(&stand);
 }
 
-/* A real size: several assets of tens of thousands of triangles behind one another. */
+/* A realistic size: several assets of tens of thousands of triangles behind one another. */
 TEST(test_demo_plant)
 {
     struct diag diag = { 0 };
@@ -228,8 +229,8 @@ TEST(test_demo_plant)
         compare_view(&site, &view, 2000, &tally);
         say(&tally);
         assert_true(tally.worst_px < 1e-3 && tally.longest_ms < 10);
-        assert_in_range(tally.over, 0, tally.compared / 300);                /* GPUs and we part at rims */
-        assert_in_range(tally.moved + tally.differ, 0, tally.compared / 10); /* much of it is thinner than a pixel */
+        assert_in_range(tally.over, 0, tally.compared / 300);                /* GPUs and our code differ at silhouettes */
+        assert_in_range(tally.moved + tally.differ, 0, tally.compared / 10); /* much of the plant is thinner than a pixel */
     }
     renderer_destroy(&site.renderer);
     field_destroy(&site.field);
@@ -277,7 +278,7 @@ TEST(test_sensors)
     stand_finish(&stand);
 }
 
-/* Each half of a split view answers for itself. */
+/* In a split view each half answers its own picks. */
 TEST(test_split_view)
 {
     struct stand stand;

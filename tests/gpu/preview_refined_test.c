@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* From the moving to the still tier nothing jumps: colours stay near, and what a texture cuts away is away in both. Every texture of
-   a material does what glTF says. */
+/* Nothing jumps from preview to refined: colours stay close, and holes cut by textures are the same. Every texture of a material has the
+   effect that glTF specifies. */
 #include "tests/support/test.h"
 #include <math.h>
 
@@ -18,8 +18,8 @@ static struct rig rig;
 /* --- how far the tiers are from one another ---------------------------------------------------------------------------------------- */
 
 struct gap {
-    double mean, far_part; /* of the levels of 255, over all channels; part of the pixels off by more than 32 in one */
-    int most;              /* away from edges, which only one tier smooths */
+    double mean, far_part; /* mean difference of all channels, in levels of 255; share of pixels that differ by more than 32 in a channel */
+    int most;              /* largest difference away from edges, which only the refined tier antialiases */
 };
 
 static bool is_edge(const struct frame *frame, int x, int y)
@@ -83,8 +83,8 @@ TEST(test_the_unit_does_not_flash)
 
 /* --- real plants -------------------------------------------------------------------------------------------------------------------- */
 
-enum { BLOCK = 4 }; /* pixels: rims that only one tier smooths are no flash */
-struct flash {      /* of what is seen when a moving picture becomes a still one: delta E (CIE 1976) of the mean colours of blocks */
+enum { BLOCK = 4 }; /* pixels per side; averaging over blocks ignores antialiased edges */
+struct flash {      /* delta E (CIE 1976) between the blocks' mean colours in preview and refined */
     double mean, p95;
 };
 
@@ -123,8 +123,8 @@ static struct flash flash_of(struct site *site, struct view *view)
     return flash;
 }
 
-/* From the plant's own view, near to each of some assets, and with materials alone; every other one before a dark backdrop. What is left
-   are the dark lines around shapes, which moving pictures have not. */
+/* Compares both tiers from the plant's own view, near some assets, and with plain materials; every other view with a dark backdrop. Dark
+   outlines remain as a difference, because previews have none. */
 static void assert_no_flash(const char *path, const char *name)
 {
     enum { VIEWS = 6 };
@@ -168,10 +168,10 @@ struct textured_plate {
     float (*texcoords)[2];
     struct stand stand;
     struct view view;
-    bool floor; /* 1 m below it, three times as wide */
+    bool floor; /* whether a floor lies 1 m below the plate, three times as wide */
 };
 
-/* One square of 2 m that lies level, x and y from -1 to 1, seen from above; the texture's columns run along x, its rows along y. */
+/* Makes a horizontal square of 2 m, x and y from -1 to 1, seen from above; the texture's columns run along x, its rows along y. */
 static void plate_init(struct textured_plate *plate, const double (*sensors)[3], size_t sensor_count)
 {
     struct toy *toy = toy_create();
@@ -209,7 +209,7 @@ static void plate_finish(struct textured_plate *plate)
     mem_free(plate->texcoords);
 }
 
-/* Grey, without textures; every texel white. */
+/* A grey material without textures; every texel is white. */
 static struct textured_plate plain_plate(void)
 {
     struct textured_plate plate = { .material = { .base_color = { 0.5f, 0.5f, 0.5f, 1 },
@@ -233,7 +233,7 @@ static void paint_right(struct textured_plate *plate, const uint8_t rgba[4])
             memcpy(plate->texels[i], rgba, 4);
 }
 
-/* Of the left and the right half: the pixel at their middles. */
+/* Returns the pixels in the middle of the left and of the right half. */
 static void halves(struct textured_plate *plate, enum tier tier, int left[3], int right[3])
 {
     plate->view.tier = tier;
@@ -270,7 +270,7 @@ TEST(test_metal_and_roughness)
         memcpy(plate.texels[i], i % CELLS < CELLS / 2 ? (uint8_t[4]){ 0, 255, 0, 255 } : (uint8_t[4]){ 0, 60, 255, 255 }, 4);
     plate_init(&plate, NULL, 0);
     halves(&plate, TIER_REFINED, left, right);
-    assert_true(left[0] > right[0] + 8); /* the sun lights what is no metal; a mirror shows the sky alone */
+    assert_true(left[0] > right[0] + 8); /* the sun lights the dielectric; a metal mirrors only the sky */
     plate_finish(&plate);
 }
 
@@ -279,7 +279,7 @@ TEST(test_normals)
     struct textured_plate plate = plain_plate();
     int left[3], right[3];
     plate.material.normal_texture = 0;
-    for (int i = 0; i < TEXELS; i++) /* left: towards the sun, which stands to the right; right: away from it */
+    for (int i = 0; i < TEXELS; i++) /* left: tilted towards the sun on the right; right: tilted away from it */
         memcpy(plate.texels[i], i % CELLS < CELLS / 2 ? (uint8_t[4]){ 204, 128, 230, 255 } : (uint8_t[4]){ 52, 128, 230, 255 }, 4);
     plate_init(&plate, NULL, 0);
     halves(&plate, TIER_REFINED, left, right);
@@ -308,7 +308,7 @@ TEST(test_occlusion_and_glow)
     plate_finish(&plate);
 }
 
-/* A grating: on one with sensors too, holes are holes in both tiers. */
+/* A grating has the same holes in both tiers, with and without a sensor. */
 TEST(test_holes_are_holes_in_both_tiers)
 {
     static const double sensor[1][3] = { { -0.5, 0, 0 } };
@@ -331,7 +331,7 @@ TEST(test_holes_are_holes_in_both_tiers)
     }
 }
 
-/* The sun comes from the right: 1 m below, shadows lie 0.75 m to the left. The plate's right half is a hole, from 0 to 1. */
+/* The sun is on the right: 1 m below, shadows are shifted 0.75 m to the left. The plate's right half, from 0 to 1, is a hole. */
 TEST(test_holes_let_the_sun_through)
 {
     for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
@@ -353,7 +353,7 @@ TEST(test_holes_let_the_sun_through)
     }
 }
 
-/* Context is muted: what its textures are in one tier and their mean in the other is not far apart. */
+/* Context is drawn in muted colours, so its textures in one tier are close to their mean colour in the other. */
 TEST(test_textured_context_does_not_flash)
 {
     struct textured_plate plate = plain_plate();

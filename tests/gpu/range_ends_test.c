@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A field that is level all over, at the very end of its range or at the value of an isoline: no pixel of it has the colour of what is
-   outside, nor a line, however thin the triangles and however steeply the eye sees them. */
+/* A constant field at the very end of its range, or at the value of an isoline: no pixel may have an out-of-range colour or a line, even
+   on thin triangles seen at a grazing angle. */
 #include "tests/support/test.h"
 
 
@@ -11,7 +11,7 @@
 enum { WIDTH_PX = 480, HEIGHT_PX = 320, READING = 90 };
 static struct rig rig;
 
-/* Poles from near the eye to far away, and a ball. */
+/* Makes poles from near the eye to far away, and a ball. */
 static struct toy *make_poles(void)
 {
     struct toy *toy = toy_create();
@@ -33,7 +33,7 @@ static void look_along(const struct stand *stand, enum look look, bool cut, stru
         view->visibility.clip = (struct clip){ .plane_count = 1, .planes = { { -1, 0, 0, 6 } } };
 }
 
-/* Pixels that differ much between two ranges. */
+/* Returns the number of pixels that differ much between two ranges. */
 static int count_changed(struct stand *stand, struct view *view, const double range[2], bool lines, const double other[2])
 {
     int changed = 0;
@@ -54,13 +54,13 @@ static int count_changed(struct stand *stand, struct view *view, const double ra
     return changed;
 }
 
-/* What is at the very end looks as what is well inside, and what is a hair outside as what is far outside. */
+/* A value exactly at the end of the range looks like a value well inside; a value slightly outside looks like a value far outside. */
 TEST(test_no_specks_at_the_ends)
 {
     static const enum look looks[] = { LOOK_DEFAULT, LOOK_GLOSSY, LOOK_FLAT };
     static const double ends[2][2] = { { 20, READING }, { READING, 130 } }, inside[2][2] = { { 20, 90.2 }, { 89.8, 130 } };
     static const double past[2][2] = { { 20, 89.99 }, { 90.01, 130 } }, far_past[2][2] = { { 20, 85 }, { 95, 130 } };
-    enum { LINE_PX = 16 }; /* where the eye sees a surface from its edge, rounding is as much as a slope */
+    enum { LINE_PX = 16 }; /* at grazing angles rounding errors are as large as slopes */
     struct stand stand;
     stand_init(&stand, &rig, make_poles());
     renderer_use_gl(stand.renderer, true);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The field that pictures show against the one worked out anew at each fragment, over all sensors: numbers, not colours, at random pixels
-   of whole plants, seen from near and far, in all ways that a client may ask for. Twice: at the very point of the level that the pixel
-   shows; and within a pixel of there on the finest level, since a coarser one may have moved its surface that far. There at pixels' middles
-   first; what those leave out, since much of what is far away is smaller than a pixel, is looked for with many samples to a pixel. */
+/* The displayed field compared with the field computed per fragment over all sensors: values, not colours, at random pixels of whole
+   plants, from near and far, for all parameters that a client may request. Two comparisons: at the pixel's own point on its level; and
+   with the finest level within a pixel, because a coarser level may move the surface that far. The second uses pixel centres first, and
+   then many samples per pixel, because much of a distant plant is smaller than a pixel. */
 #include "tests/support/test.h"
 #include <math.h>
 
@@ -16,10 +16,10 @@
 #include "tests/support/sweep.h"
 #include "tests/support/synthetic.h"
 
-/* By default a quarter of the pixels, of which as many are looked at. */
+/* Image size: the default run uses a quarter of the pixels and compares as many points. */
 static int width_px, height_px;
 enum { VIEWS = 14, SAMPLES = 715 }; /* samples: of a view */
-enum { CLOSE_PX = 32 };             /* samples of two pixels, each way */
+enum { CLOSE_PX = 32 };             /* samples across two pixels, in each direction */
 static const double TOLERANCE = 1.0 / 255;
 
 static struct rig rig;
@@ -27,7 +27,8 @@ static struct rig rig;
 /* --- comparing ------------------------------------------------------------------------------------------------------------- */
 
 struct reference_tally {
-    size_t compared, over, beyond, flags_differ; /* over: at the very point; beyond: of what the finest level has within a pixel */
+    /* over: errors at the pixel's own point; beyond: errors against the finest level within a pixel */
+    size_t compared, over, beyond, flags_differ;
     double worst, worst_beyond;
     int worst_camera;
 };
@@ -37,9 +38,9 @@ static bool has_value(const float pixel[4])
     return pixel[1] >= 0 && pixel[1] < 0.5f;
 }
 
-struct pixels_seen { /* by a camera: numbers of pixels */
+struct pixels_seen { /* values by pixel of one camera */
     const struct view *view;
-    float (*shown)[4], (*here)[4], (*finest)[4]; /* here: the reference on the level that is shown */
+    float (*shown)[4], (*here)[4], (*finest)[4]; /* here: the reference on the displayed level */
     bool shown_is_finest;
 };
 
@@ -60,7 +61,7 @@ static double error_beyond(const struct value_span *span, double value)
     return value < span->low ? span->low - value : value > span->high ? value - span->high : 0;
 }
 
-/* At that pixel, and as wide as its neighbours' middles are apart. */
+/* Makes a view of the area around a pixel, up to its neighbours' centres. */
 static void look_close(const struct view *view, int x, int y, struct view *close)
 {
     double right[3], up[3], forward[3], per_px = 2 * tan(view->camera.fov_deg * M_PI / 360) / height_px;
@@ -70,10 +71,11 @@ static void look_close(const struct view *view, int x, int y, struct view *close
     camera_basis(&view->camera, right, up, forward);
     for (int c = 0; c < 3; c++)
         close->camera.target_m[c] = view->camera.eye_m[c] + forward[c] + u * right[c] + v * up[c];
-    close->camera.fov_deg = 2 * atan(per_px / (1 + u * u + v * v)) * 180 / M_PI; /* off the middle, a pixel is a smaller angle */
+    /* away from the image centre a pixel covers a smaller angle */
+    close->camera.fov_deg = 2 * atan(per_px / (1 + u * u + v * v)) * 180 / M_PI;
 }
 
-/* How far a value is from what the reference says within a pixel of there: a level of detail may move a surface that far. */
+/* Returns the distance of a value from the range of the reference within a pixel: a level of detail may move the surface that far. */
 static double error_within_a_pixel(struct site *site, const struct pixels_seen *seen, size_t at, double value)
 {
     struct value_span span = { INFINITY, -INFINITY };
@@ -110,7 +112,7 @@ static void compare(struct site *site, const struct pixels_seen *seen, size_t sa
         double beyond = error_within_a_pixel(site, seen, at, value);
         tally->compared++;
         tally->over += error > TOLERANCE;
-        tally->beyond += beyond > TOLERANCE; /* also where the finest level has nothing near */
+        tally->beyond += beyond > TOLERANCE; /* counted also where the finest level has nothing nearby */
         tally->worst_beyond = isinf(beyond) ? tally->worst_beyond : fmax(tally->worst_beyond, beyond);
         if (error > tally->worst) {
             tally->worst = error;
@@ -119,7 +121,7 @@ static void compare(struct site *site, const struct pixels_seen *seen, size_t sa
     }
 }
 
-/* Of a triangle as seen from a place, in steradians, signed. Van Oosterom and Strackee, "The solid angle of a plane triangle", 1983. */
+/* Returns the signed solid angle of a triangle in steradians. Van Oosterom and Strackee, "The solid angle of a plane triangle", 1983. */
 static double solid_angle(const double corners[3][3])
 {
     double length[3], across[3];
@@ -131,7 +133,7 @@ static double solid_angle(const double corners[3][3])
                                                       vec_dot(corners[2], corners[0]) * length[1]);
 }
 
-/* By the winding number. What lies inside closed bodies was left out of the surface, since nobody looks from there. */
+/* Winding number test. Surfaces inside closed bodies were removed, so a camera inside one is not useful. */
 static bool is_inside(const struct scene_asset *asset, const double eye_m[3])
 {
     const struct asset_view *file = &asset->file->view;
@@ -163,7 +165,7 @@ static bool is_inside_any(const struct scene *scene, const double eye_m[3])
     return false;
 }
 
-/* From a random side of a random asset with a field; `away` times as far as it is large. */
+/* Chooses a random camera at a random asset with a field, `away` times the asset's size from it. */
 static void look_at_some_asset(struct site *site, double away, struct view *view)
 {
     do
@@ -173,7 +175,7 @@ static void look_at_some_asset(struct site *site, double away, struct view *view
 
 struct reference_display { /* parameters of showing a plant */
     int group;
-    int number, each; /* by default every each-th view is tried, of each way others */
+    int number, each; /* number of this case; the default run tries every each-th case */
     enum interpolation interpolation;
     enum distance_mode distance;
     enum tier tier;
@@ -181,7 +183,7 @@ struct reference_display { /* parameters of showing a plant */
     uint64_t seed; /* of its views */
 };
 
-/* As a client does. False: it is refused. */
+/* Applies the parameters as a client's message does. Returns false if they are refused. */
 static bool ask_for(const struct site *site, const struct reference_display *way, struct view *view)
 {
     struct params_change change;
@@ -210,7 +212,7 @@ static void compare_views(struct site *site, const struct reference_display *way
         view.tier = way->tier;
         if (i % 2) /* else as the plant says */
             view.field.reach_m = (double)INFINITY;
-        site->random = way->seed + (uint64_t)i; /* views stay what they are where levels change */
+        site->random = way->seed + (uint64_t)i; /* the views of a case do not depend on the levels drawn */
         synthetic_random(&site->random);
         look_at_some_asset(site, away[i / 2], &view);
         assert_true(renderer_measure(site->renderer, &view, site->snapshot, way->finest, seen.shown));
@@ -238,16 +240,16 @@ static void say(const struct reference_display *way, const struct reference_tall
                   tally->beyond, 100 * tally->worst_beyond, tally->flags_differ);
 }
 
-/* So large a part of the pixels may err by more than 1/255 of the range, at the very point: on the finest level, and in still pictures,
-   which have room for it; there no pixel errs by two such steps. */
+/* Share of pixels that may err by more than 1/255 of the range at their own point, on the finest level and in refined frames that have
+   room for it; no pixel there may err by two such steps. */
 static const double FINEST_OVER = 0.0005, FINEST_WORST = 2.0 / 255;
 
-struct bounds {           /* the same of moving pictures, on the levels that are drawn */
-    double drawn, beyond; /* beyond: also of what the finest level has within a pixel */
+struct bounds {           /* bounds for previews on the levels that are drawn */
+    double drawn, beyond; /* shares of pixels; beyond: compared with the finest level within a pixel */
     double worst;
 };
 
-/* By default each `each`-th way is tried, of each row others. */
+/* The default run takes every `each`-th case, different ones for each row. */
 static void compare_group(struct site *site, int group, int row, int each, int refused, const struct bounds *bounds)
 {
     int bad = 0;
@@ -257,7 +259,7 @@ static void compare_group(struct site *site, int group, int row, int each, int r
         const struct reference_display way = {
             .group = group,
             .number = i + i / 4,
-            .each = (i & 12) == 8 ? 4 : 7, /* more where errors have their bound on average: moving, on the levels that are drawn */
+            .each = (i & 12) == 8 ? 4 : 7, /* every fourth of the preview cases on drawn levels, where errors are largest */
             .interpolation = i & 1 ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD,
             .distance = i & 2 ? DISTANCE_EUCLIDEAN : DISTANCE_GEODESIC,
             .tier = i & 4 ? TIER_REFINED : TIER_PREVIEW,
@@ -304,7 +306,8 @@ TEST(test_plant_room)
     struct site site;
     assert_true(site_init(&site, &rig, "tests/plants/plant_room.yaml", "plant_room"));
     compare_group(&site, 0, 0, 4, 0, &(struct bounds){ 0.001, 0.001, 0.008 });
-    compare_group(&site, 1, 2, 4, 8, &(struct bounds){ 0.001, 0.001, 0.008 }); /* single sensors, whole triangles: no paper */
+    /* mode paper is refused for assets that have single sensors and are not subdivided */
+    compare_group(&site, 1, 2, 4, 8, &(struct bounds){ 0.001, 0.001, 0.008 });
     site_finish(&site);
 }
 

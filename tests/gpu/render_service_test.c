@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The render thread itself: who moves is served while another is refined; who moves on gets no more of what it wanted. */
+/* The render service: a moving client is served while another's frame is refined, and abandoned requests are not drawn. */
 #include "tests/support/test.h"
 #include <pthread.h>
 #include <stdatomic.h>
@@ -18,8 +18,8 @@
 
 #define ENCODES "plantcast_encodes_total{codec=\"jpeg\"}"
 enum { REFINER = 1, MOVER = 2, PICKER = 3, VIEWERS = 100 };
-static const int64_t RECENT_NS = 600 * NS_PER_MS;  /* pictures that are older are not handed to others */
-static const int64_t PATIENCE_NS = 100 * NS_PER_S; /* far beyond any picture, under sanitizers too */
+static const int64_t RECENT_NS = 600 * NS_PER_MS;  /* older frames are not shared */
+static const int64_t PATIENCE_NS = 100 * NS_PER_S; /* far longer than any frame takes, also under sanitizers */
 
 static struct toy *toy;
 static struct log *logger;
@@ -30,7 +30,7 @@ static struct render_service *service;
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 static pthread_cond_t came = PTHREAD_COND_INITIALIZER;
 static int notices;
-static bool hardware; /* draws a refined picture in one step */
+static bool hardware; /* a GPU, which draws a refined frame in one step */
 
 static void on_pictures(void *arg)
 {
@@ -41,7 +41,7 @@ static void on_pictures(void *arg)
     pthread_mutex_unlock(&lock);
 }
 
-/* The next picture; the caller owns it. */
+/* Waits for the next encoded frame; the caller owns it. */
 static struct encoded_frame *next(void)
 {
     static struct encoded_frame *waiting;
@@ -82,7 +82,7 @@ static void ask(uint64_t client, enum urgency urgency, double turn)
     ask_sized(client, urgency, turn, still ? 2400 : 320, still ? 1600 : 180);
 }
 
-/* The value of a counter now. */
+/* Returns the counter's current value. */
 static int64_t count_of(const char *name)
 {
     return *counters_add(counters, name, "counter", "");
@@ -120,7 +120,7 @@ TEST(test_mover_is_served_during_a_refinement)
     assert_true(count_of("plantcast_render_steps_total") > steps + 4);
 }
 
-/* A small picture of another address does not wait for the end of a large one. */
+/* A small frame for another address overtakes a large one. */
 TEST(test_a_small_picture_overtakes_a_large_one_of_another)
 {
     if (hardware)
@@ -192,7 +192,7 @@ TEST(test_refinement_ends_while_others_go_on_moving)
     encoded_frame_destroy(&last);
 }
 
-/* True: while one was refined, another got its pictures as when it is alone, but for a step in between now and then. */
+/* Returns whether a client got its frames during another's refinement as fast as alone, except for an occasional refinement step. */
 static bool refining_costs_little(int attempt)
 {
     enum { PICTURES = 40 };
@@ -219,7 +219,7 @@ static bool refining_costs_little(int attempt)
     }
     print_message("# %d pictures: %.1f ms alone, %.1f ms beside a refinement\n", PICTURES, (double)took_ns[0] / NS_PER_MS,
                   (double)took_ns[1] / NS_PER_MS);
-    /* A step is drawn where there was no moving picture for 150 ms, and at most one between two of them. */
+    /* A refinement step runs after 150 ms without a preview, and at most once between two previews. */
     bool little = count_of("plantcast_render_steps_total") - steps <= 2 + took_ns[1] / (150 * NS_PER_MS);
     while (!refined) {
         struct encoded_frame *encoded = next();
@@ -229,7 +229,7 @@ static bool refining_costs_little(int attempt)
     return little;
 }
 
-/* Where this thread is kept from asking for 150 ms the steps have their turn: once more. */
+/* If this thread is delayed by 150 ms, refinement steps run in between: then the measurement is repeated. */
 TEST(test_refining_one_costs_a_mover_little)
 {
     if (hardware)
@@ -240,7 +240,7 @@ TEST(test_refining_one_costs_a_mover_little)
     assert_true(little);
 }
 
-/* All at one moment, then each after the one before has its picture, in two qualities. */
+/* A hundred clients request the same view at once, then each again after its frame, in two qualities. */
 TEST(test_a_hundred_viewers_cost_one_picture)
 {
     int64_t renders = count_of("plantcast_renders_total"), encodes = count_of(ENCODES);
@@ -266,7 +266,7 @@ TEST(test_a_hundred_viewers_cost_one_picture)
     }
     assert_int_equal(count_of("plantcast_renders_total") - renders, 1);
     assert_int_equal(count_of(ENCODES) - encodes, 1);
-    request.quality.quality = 42; /* of other quality: shares the render */
+    request.quality.quality = 42; /* another quality: shares the rendered frame */
     request.always = true;
     render_service_request(service, 1000, &request);
     render_service_wake(service);
@@ -279,7 +279,7 @@ TEST(test_a_hundred_viewers_cost_one_picture)
         render_service_forget(service, 1000 + i);
 }
 
-/* One draws pictures that cost many times what another's do. True: the other got many more of them. */
+/* One client requests frames that cost many times as much as another's. Returns whether the other got many more frames. */
 static bool shares_time(void)
 {
     enum { LARGE = 2000, SMALL = 2001, LARGES = 5, PICTURES = 5000 };
@@ -302,7 +302,7 @@ static bool shares_time(void)
     return counts[1] > 2 * counts[0];
 }
 
-/* Both get the same time, not the same number. Where this thread is kept from asking for the small ones in time, once more. */
+/* Both clients get equal time, not equal numbers of frames. Repeated if this thread is delayed in requesting the small frames. */
 TEST(test_time_is_shared_not_pictures)
 {
     bool shared = false;
@@ -317,7 +317,7 @@ static void assert_same_bytes(const struct packet *a, const struct packet *b)
     assert_memory_equal(a->bytes, b->bytes, a->count);
 }
 
-/* The picture that this client gets for this camera. */
+/* Returns the frame for this client and camera. */
 static struct encoded_frame *picture_of(uint64_t client, enum urgency urgency, double turn)
 {
     ask(client, urgency, turn);
@@ -327,7 +327,7 @@ static struct encoded_frame *picture_of(uint64_t client, enum urgency urgency, d
     return encoded;
 }
 
-/* Of the refiner; enough of it for a loss to come in its middle. */
+/* Requests a refined frame, large enough for a context loss to happen during it. */
 static void ask_for_still(double turn)
 {
     ask_sized(REFINER, URGENCY_REFINE, turn, sweep(2400, 1200), sweep(1600, 800));
@@ -341,15 +341,14 @@ static struct encoded_frame *refined_of(double turn)
     return encoded;
 }
 
-/* The real context goes, again and again, in the middle of pictures that take long and of short ones: nobody's is lost, and all are
-   what they were before. */
+/* The GL context is lost repeatedly during long and short frames: no frame is lost, and all are the same as before. */
 TEST(test_lost_context_is_made_again_under_load)
 {
     enum { LOSSES = 3, MOVES = 4 };
-    const int tried = sweep(LOSSES, 2); /* while nothing is under way, then in the middle of a refinement */
+    const int tried = sweep(LOSSES, 2); /* the first loss while idle, the second during a refinement */
     int64_t losses = count_of("plantcast_gl_losses_total"), failures = count_of("plantcast_render_failures_total");
     struct encoded_frame *refined[LOSSES], *moved[MOVES];
-    for (int i = 0; i < tried; i++) /* another each time: the same again would be quick */
+    for (int i = 0; i < tried; i++) /* a different view each time, because repeated views are cached */
         refined[i] = refined_of(5 + 0.1 * i);
     for (int i = 0; i < MOVES; i++)
         moved[i] = picture_of(MOVER, URGENCY_INPUT, 6 + i);
@@ -397,11 +396,11 @@ static size_t address_space_bytes(void)
     return pages * (size_t)sysconf(_SC_PAGESIZE);
 }
 
-/* There is room for one more frame in memory, but not for the samples that it is drawn from. */
+/* Memory suffices for one more frame, but not for the samples that it is computed from. */
 TEST(test_no_memory_fails_that_picture_alone)
 {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-    skip(); /* they end the program where there is no memory */
+    skip(); /* sanitizers end the program when memory is exhausted */
 #endif
     enum { BIG_PX = 4096, ROOM_BYTES = 160 << 20 };
     struct rlimit all, tight;
@@ -422,10 +421,10 @@ TEST(test_no_memory_fails_that_picture_alone)
     encoded_frame_destroy(&after);
 }
 
-/* It was not shown: who asks again is not told that nothing has changed. */
+/* A frame that failed to encode was not shown: repeating the request must not be answered with "unchanged". */
 TEST(test_what_could_not_be_encoded_is_drawn_again)
 {
-    const enum wire_codec codecs[] = { WIRE_CODEC_H264, WIRE_CODEC_JPEG }; /* the first has no encoder here */
+    const enum wire_codec codecs[] = { WIRE_CODEC_H264, WIRE_CODEC_JPEG }; /* H.264 has no encoder here */
     for (int i = 0; i < 2; i++) {
         struct frame_request request = {
             .codec = codecs[i], .quality = { .quality = 80 }, .urgency = URGENCY_INPUT, .asked_ns = clock_mono_ns()
@@ -454,7 +453,7 @@ static struct pick_answer *next_pick(void)
     return answer;
 }
 
-/* A question about a pixel does not wait for a picture that takes long, nor hold it up for more than a step. */
+/* A pick does not wait for a slow frame, and delays it by no more than one step. */
 TEST(test_picks_are_answered_between_steps)
 {
     if (hardware)
@@ -478,7 +477,7 @@ TEST(test_picks_are_answered_between_steps)
     encoded_frame_destroy(&refined);
 }
 
-/* Of those that wait only the newest is answered. */
+/* Only the newest pending pick is answered. */
 TEST(test_newest_pick_wins)
 {
     struct pick_query query = { .client = PICKER, .x_px = 320, .y_px = 180 };
@@ -538,7 +537,7 @@ static void change_readings(double value)
     render_service_on_data(service);
 }
 
-static int refined_width_px; /* of refined pictures while readings change */
+static int refined_width_px; /* width of refined frames while readings change */
 
 static void refined_of_look(enum look look, struct view *view)
 {
@@ -558,8 +557,8 @@ static void ask_for_refined(uint64_t client, enum look look)
     render_service_wake(service);
 }
 
-/* As a session does that looks at a refined picture when a reading changes, and has waited that long. Returns how many more pictures will
-   come. */
+/* Requests a frame as a session does that shows a refined frame when a reading changes, after waiting waited_ns. Returns how many more
+   frames will come. */
 static int ask_for_data(uint64_t client, enum look look, int64_t waited_ns)
 {
     struct frame_request request = { .codec = WIRE_CODEC_JPEG,
@@ -575,8 +574,8 @@ static int ask_for_data(uint64_t client, enum look look, int64_t waited_ns)
     return answer == REQUEST_ADDED;
 }
 
-/* Readings change all the time, and those who wait for them wait no longer than a second: the refined picture comes all the same, with the
-   newest of them: none shows older ones than the picture before it. Returns whether none was given up meanwhile. */
+/* Readings change all the time and wait at most one second; the refined frame must still come, and no frame shows older readings than
+   the frame before. Returns whether no frame was abandoned meanwhile. */
 static bool refined_comes(enum look look, int64_t waited_ns)
 {
     int64_t steps = count_of("plantcast_render_steps_total"), abandoned = count_of("plantcast_renders_abandoned_total");
@@ -629,7 +628,7 @@ TEST(test_changing_readings_leave_refined_pictures)
     assert_refined_comes(LOOK_DEFAULT, 0);
 }
 
-/* As where a picture takes longer to refine than readings wait for it. */
+/* Simulates frames whose refinement takes longer than readings may wait. */
 TEST(test_changing_readings_leave_slow_pictures)
 {
     if (hardware)
@@ -638,7 +637,7 @@ TEST(test_changing_readings_leave_slow_pictures)
     assert_refined_comes(LOOK_GLOSSY, 2 * NS_PER_S);
 }
 
-/* What a refined picture is coloured from is more than may be kept. */
+/* The data for recolouring a refined frame exceeds the cache limit. */
 TEST(test_changing_readings_leave_pictures_without_room)
 {
     if (hardware)
@@ -647,7 +646,7 @@ TEST(test_changing_readings_leave_pictures_without_room)
     assert_true(refined_comes(LOOK_GLOSSY, 2 * NS_PER_S));
 }
 
-/* By GL nothing is kept: a picture is given up for readings a few times, each time later, and comes in the end. */
+/* With GL no recolouring data is cached: a frame is abandoned for new readings a few times, each time later, and finally completed. */
 TEST(test_what_takes_long_by_gl_comes_in_the_end)
 {
     if (hardware)
@@ -680,20 +679,20 @@ static void ask_view(uint64_t client, enum urgency urgency, enum tier tier, doub
     render_service_wake(service);
 }
 
-/* A refined frame waits for another client's, and a preview of the same view overtakes it. The client never shows the late frame, so it
-   has to get that picture when it asks again. */
+/* A refined frame waits for another client's frame, and a preview of the same view overtakes it. The client never shows the late frame,
+   so repeating the request must deliver that picture. */
 TEST(test_an_overtaken_refinement_comes_when_it_is_asked_for_again)
 {
     enum { OVERTAKEN = 201, LATER = 202 };
     uint64_t preview_number = 0, refined_number = 0;
     if (hardware)
         skip();
-    remake(true, 0); /* in software a refined frame takes newer readings, and so the newest number */
+    remake(true, 0); /* the software renderer recolours a refined frame with newer readings, and gives it the newest number */
     int64_t steps = count_of("plantcast_render_steps_total");
     ask(REFINER, URGENCY_REFINE, 31);
     await_step(steps + 1);
     ask_view(OVERTAKEN, URGENCY_DATA, TIER_REFINED, 33);
-    ask_view(LATER, URGENCY_DATA, TIER_PREVIEW, 35); /* its answer says that the request before it was begun, and deferred */
+    ask_view(LATER, URGENCY_DATA, TIER_PREVIEW, 35); /* the answer to this request shows that the request before was begun and deferred */
     for (int left = 4; left > 0; left--) {
         struct encoded_frame *encoded = next();
         if (encoded->client == LATER)
@@ -716,7 +715,7 @@ TEST(test_an_overtaken_refinement_comes_when_it_is_asked_for_again)
     remake(false, 0);
 }
 
-/* Bands, which are not quick to colour again: the refined picture is drawn anew, and comes. */
+/* Bands cannot be recoloured quickly: the refined frame is drawn again and delivered. */
 TEST(test_readings_change_pictures_that_are_not_quick)
 {
     int64_t abandoned = count_of("plantcast_renders_abandoned_total");
@@ -739,7 +738,7 @@ TEST(test_readings_change_pictures_that_are_not_quick)
     assert_int_equal(count_of("plantcast_renders_abandoned_total"), abandoned);
 }
 
-/* The daemon goes down in the midst of it. */
+/* The daemon stops during a refinement. */
 TEST(test_stop_waits_for_no_refinement)
 {
     if (hardware)
@@ -751,8 +750,8 @@ TEST(test_stop_waits_for_no_refinement)
     assert_true(count_of("plantcast_renders_total") == renders);
 }
 
-/* With a GPU, or as if there were one: pictures are given to it before others have come. Every one comes, to whom it is for, and shows
-   what was asked for; who asks for the same meanwhile shares it; and a context that is lost meanwhile costs none. */
+/* With a GPU, or simulating one: several frames are in flight at once. Each reaches its client and shows the requested view; equal
+   requests meanwhile share it; and a context loss meanwhile loses no frame. */
 TEST(test_pictures_fly)
 {
     enum { CLIENTS = 8, ROUNDS = 6, FIRST = 100 };
@@ -775,7 +774,7 @@ TEST(test_pictures_fly)
             encoded_frame_destroy(&encoded);
         }
         if (clock_mono_ns() - begin_ns > RECENT_NS / 2)
-            most += CLIENTS / 4; /* what it drew may have been too old to be handed on */
+            most += CLIENTS / 4; /* frames may have become too old to be shared */
     }
     assert_in_range(count_of("plantcast_renders_total") - renders, ROUNDS * CLIENTS / 2, most);
     assert_int_equal(count_of("plantcast_gl_losses_total"), losses + 1);
@@ -785,7 +784,7 @@ TEST(test_pictures_fly)
     remake(false, 0);
 }
 
-/* Another painter, while the first is at work, in one process and on one driver. */
+/* Creates another render service while the first one is running, in the same process and driver. */
 struct service_making {
     struct view first;
     struct render_service *made;

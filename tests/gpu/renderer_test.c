@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What comes with a picture: its content hash, markers, ages; culling; lights; views that are hard. */
+/* What accompanies a frame (content hash, markers, ages); culling; lights; difficult views. */
 #include "tests/support/test.h"
 #include <math.h>
 
@@ -41,7 +41,7 @@ TEST_WITH(test_content_is_that_of_the_frame, reset, NULL)
 /* Each half of a split view is planned before either is drawn. */
 TEST_WITH(test_plan_holds_while_another_is_made, reset, NULL)
 {
-    view.camera.eye_m[1] += 0.3; /* a camera of its own: drawn whole, both times */
+    view.camera.eye_m[1] += 0.3; /* a new camera, so that both frames are drawn completely */
     struct view other = view;
     struct frame *want = stand_draw(&stand, &view);
     other.camera.eye_m[0] += 1;
@@ -110,7 +110,7 @@ TEST_WITH(test_content_counts_what_can_be_seen, reset, NULL)
     assert_true(content() != before);
 }
 
-/* Many steps, each too small to see: together they must be seen. */
+/* Many changes, each too small to be visible, must become visible together. */
 TEST_WITH(test_slow_drift_is_not_lost, reset, NULL)
 {
     uint64_t before = content();
@@ -160,7 +160,7 @@ static void assert_same_picture(const struct frame *a, const struct frame *b)
                     a->markers[i].y_px == b->markers[i].y_px && a->markers[i].occluded == b->markers[i].occluded);
 }
 
-/* The tier may be the moving one too: a snapshot is free to ask for it. */
+/* Cases of progressive rendering; a snapshot may request the preview tier too. */
 static const struct {
     enum tier tier;
     enum look look;
@@ -173,7 +173,7 @@ static const struct {
     { TIER_PREVIEW, LOOK_DEFAULT, 0, -1 },
 };
 
-/* While it is under way, others draw other views, readings change, and its light goes from the cache. */
+/* While a frame is being drawn in steps, other views are drawn, readings change, and its light is evicted from the cache. */
 TEST_WITH(test_bit_by_bit_is_the_same_picture, reset, NULL)
 {
     view.width_px = 801;
@@ -233,7 +233,7 @@ TEST_WITH(test_abandoned_picture_leaves_no_trace, reset, NULL)
     frame_unref(&after);
 }
 
-/* The first sensor of the tank, at (3.5, 0.5, 0.6) and facing south-west, from three sides. */
+/* Returns the marker of the tank's first sensor, which is at (3.5, 0.5, 0.6) and faces south-west. */
 static const struct frame_marker *tank_marker(struct frame *frame)
 {
     for (size_t i = 0; i < frame->marker_count; i++)
@@ -271,7 +271,7 @@ TEST_WITH(test_markers, reset, NULL)
     }
 }
 
-/* 45 degrees from top to bottom: a point 1 m above the target at 1 m / tan(22.5) away lies on the upper edge. */
+/* With a vertical angle of 45 degrees, a point 1 m above the target at a distance of 1 m / tan(22.5) lies on the upper edge. */
 TEST_WITH(test_marker_upward_is_upward, reset, NULL)
 {
     const double *at = stand.toy->scene.assets[1].sensors[0].surface_m;
@@ -306,7 +306,7 @@ static long brightness(const struct frame *frame)
     return sum;
 }
 
-/* More lights than are kept: each comes back as it was. */
+/* More lights than the cache holds: each gives the same frame again. */
 TEST_WITH(test_light_can_be_chosen, reset, NULL)
 {
     long first[5];
@@ -324,7 +324,7 @@ TEST_WITH(test_light_can_be_chosen, reset, NULL)
         }
 }
 
-/* Else every size of window would have its own light baked. */
+/* Otherwise each window size would have its own light baked. */
 TEST_WITH(test_default_light_is_one, reset, NULL)
 {
     struct view wide, tall;
@@ -378,7 +378,7 @@ TEST_WITH(test_camera_within_the_plant, reset, NULL)
     frame_unref(&frame);
 }
 
-/* A picture of each of some views, looks, lights and sizes: all that a renderer keeps something of. */
+/* Draws frames of several views, looks, lights and sizes, to fill all caches of a renderer. */
 static void draw_much(void)
 {
     static const int sizes[][2] = { { 320, 180 }, { 640, 360 }, { 400, 300 } };
@@ -430,7 +430,7 @@ TEST_WITH(test_what_is_kept_can_be_had_anew, reset, NULL)
     frame_unref(&after);
 }
 
-/* Light apart: two sets there are in any case, one to show while the next is baked. */
+/* Lighting is excluded: two sets always exist, one displayed and one being baked. */
 TEST_WITH(test_what_is_kept_has_a_bound, reset, NULL)
 {
     size_t full[RENDER_STORES], bytes[RENDER_STORES], bound = (size_t)1 << 20;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Textures that lie on the surface in two ways, from a GLB to a picture: a material whose base colour lies as TEXCOORD_0 says and whose
-   other four textures lie mirrored must look as one whose four images are mirrored instead. */
+/* Textures with two mappings, from a GLB to a frame: a material whose base colour uses TEXCOORD_0 and whose other four textures are
+   mapped mirrored must look like one whose four images are mirrored instead. */
 #include "tests/support/test.h"
 #include <math.h>
 
@@ -17,8 +17,8 @@
 
 enum { SIDE = 32, TEXELS = SIDE * SIDE, WIDTH = 320, HEIGHT = 180 };
 enum map { BASE, METAL, NORMAL, OCCLUSION, GLOW, MAPS };
-/* How the file says that the other four lie mirrored: by a second set, or by a transform that names that set over another number, or by a
-   transform of the first set. Or their images are mirrored, and all lie alike. Or they are not there. */
+/* How the other four textures are mirrored: by a second coordinate set; by a transform that names this set and overrides another; by a
+   transform of the first set; by mirrored images with equal mapping; or they are absent. */
 enum way { SECOND_SET, NAMED_BY_TRANSFORM, TRANSFORMED, MIRRORED_IMAGES, BASE_ONLY, WAYS };
 static const char *const way_names[WAYS] = { "second set", "named by transform", "transformed", "mirrored images", "base only" };
 static const char PLANT[] = "plant: {name: P, time_zone: UTC}\n"
@@ -30,7 +30,7 @@ static struct rig rig;
 
 /* --- the model ------------------------------------------------------------------------------------------------------------------- */
 
-/* Nothing of it is its own mirror image. */
+/* The pattern is not symmetric under mirroring. */
 static void paint(enum map map, int column, int row, uint8_t rgb[3])
 {
     double x = (column + 0.5) / SIDE, y = (row + 0.5) / SIDE;
@@ -150,7 +150,7 @@ static void save(const struct frame *frame, enum way way)
     mem_free(path);
 }
 
-/* Prepared, with levels of detail and edges cut for its sensors' field. */
+/* Draws the prepared model, with levels of detail and subdivision for its sensors. */
 static struct frame *picture_of(struct prep_case *c, enum way way)
 {
     struct site site;
@@ -172,7 +172,7 @@ static struct frame *picture_of(struct prep_case *c, enum way way)
 
 struct difference {
     int most;            /* levels of 255 */
-    double mean, beyond; /* likewise; share of the pixels that differ by more than 8 */
+    double mean, beyond; /* mean in levels of 255; share of pixels that differ by more than 8 */
 };
 
 static struct difference compare(const struct frame *a, const struct frame *b)
@@ -206,8 +206,8 @@ TEST_WITH(every_way_to_say_it_looks_the_same, prep_case_set_up, prep_case_tear_d
     }
     assert_int_equal(d[NAMED_BY_TRANSFORM].most, 0);
     assert_true(d[TRANSFORMED].most <= 1);
-    assert_true(d[MIRRORED_IMAGES].mean < 0.1 && d[MIRRORED_IMAGES].beyond < 0.001); /* where a texel ends, and rounding decides */
-    assert_true(d[BASE_ONLY].mean > 3);                                              /* or there was nothing to see */
+    assert_true(d[MIRRORED_IMAGES].mean < 0.1 && d[MIRRORED_IMAGES].beyond < 0.001); /* at borders of texels rounding decides */
+    assert_true(d[BASE_ONLY].mean > 3);                                              /* otherwise the textures had no visible effect */
     for (int way = 0; way < WAYS; way++)
         frame_unref(&frames[way]);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shading must not be read as value: an exchanger and a tank, read back from the picture by the nearest colour of the legend. */
+/* Shading must not be read as value: frames of a heat exchanger and a tank are read back by the nearest legend colour. */
 #include "tests/support/test.h"
 #include <math.h>
 
@@ -33,11 +33,12 @@ static int tear_down(void **state)
     return 0;
 }
 
-/* How a picture reaches its reader. */
+/* How a frame reaches its viewer. */
 struct delivery_path {
     const char *name;
     int quality;                             /* of JPEG; 0: none */
-    bool full_chroma, deuteranope, standard; /* standard: by any encoder, with the tables that everybody has */
+    /* full_chroma: no subsampling; deuteranope: colour-blind viewer; standard: another encoder, with the standard JPEG tables */
+    bool full_chroma, deuteranope, standard;
 };
 static const struct delivery_path ways[] = {
     { "as drawn", 0, false, false, false },
@@ -71,7 +72,7 @@ static void through_standard_jpeg(struct frame *frame, const struct delivery_pat
     tjDestroy(turbo);
 }
 
-/* The pixels after a JPEG, as a stream sends it. */
+/* Replaces the pixels with those after JPEG compression as a stream uses it. */
 static void through_jpeg(struct frame *frame, const struct delivery_path *way)
 {
     struct encoder *encoder = encoder_create(rig.log, "jpeg", NULL);
@@ -83,7 +84,7 @@ static void through_jpeg(struct frame *frame, const struct delivery_path *way)
     encoder_destroy(&encoder);
 }
 
-/* 95th percentile of the misreading, in percent of the range. truth: the map's place in the flat look, without edges. */
+/* Returns the 95th percentile of the misreading in percent of the range. truth: the same frame in the flat look, without edges. */
 static double misread(const struct colormap *map, const struct frame *truth, const struct frame *shaded, bool deuteranope)
 {
     double *errors = mem_array(WIDTH * HEIGHT, sizeof(*errors)), p95;
@@ -101,7 +102,7 @@ static double misread(const struct colormap *map, const struct frame *truth, con
     return p95;
 }
 
-/* By each way of getting to the reader. Returns the worst. */
+/* Measures each delivery path in p95[]. Returns the worst of our own paths. */
 static double measure(const struct view *view, double p95[WAYS])
 {
     const struct colormap *map = colormap_at((size_t)view->colormap);
@@ -128,7 +129,7 @@ static double measure(const struct view *view, double p95[WAYS])
     return worst;
 }
 
-/* distance: 1 where the whole plant fills the picture. */
+/* distance: 1 places the camera so that the whole plant fills the image. */
 static void look_from(double distance, struct view *view)
 {
     view_default(&stand.toy->scene, WIDTH, HEIGHT, view);
@@ -136,14 +137,14 @@ static void look_from(double distance, struct view *view)
         view->camera.eye_m[c] = view->camera.target_m[c] + distance * (view->camera.eye_m[c] - view->camera.target_m[c]);
 }
 
-/* Near enough to read values: the assets fill a good part of the picture. */
+/* A camera close enough to read values: the assets fill a good part of the image. */
 static void look_close(struct view *view)
 {
     look_from(0.5, view);
 }
 
-/* So is the whole plant in the picture, and twice as far, where its parts are a few pixels wide. There the standard tables, made for
-   photographs, drop more of the chroma than that, shaded or not. */
+/* Also with the whole plant in view and from twice as far, where its parts are a few pixels wide. There the standard tables, made for
+   photographs, lose more chroma than that, with and without shading. */
 TEST_WITH(test_far_away_it_is_not_either, set_up, tear_down)
 {
     struct view view;
@@ -155,11 +156,11 @@ TEST_WITH(test_far_away_it_is_not_either, set_up, tear_down)
         view.look = LOOK_FLAT;
         measure(&view, flat);
         for (int i = 0; i < WAYS; i++)
-            assert_true(shaded[i] <= (i < OURS ? 3 : flat[i] + 0.8)); /* a step of the map is 0.39 */
+            assert_true(shaded[i] <= (i < OURS ? 3 : flat[i] + 0.8)); /* one step of the map is 0.39 percent */
     }
 }
 
-/* Maps that say they can be read are read right; the others do not say so. */
+/* Maps that declare that they are readable under shading are read right; the others do not declare it. */
 TEST_WITH(test_shading_is_not_read_as_value, set_up, tear_down)
 {
     struct view view;
@@ -183,10 +184,10 @@ TEST_WITH(test_glossy_would_be_misread, set_up, tear_down)
     look_close(&view);
     view.look = LOOK_GLOSSY;
     measure(&view, p95);
-    assert_true(p95[0] > 3); /* or the test above could not fail */
+    assert_true(p95[0] > 3); /* otherwise the test above could never fail */
 }
 
-/* Differences between the tiers, seen as lightness: the change from moving to still must not flash. */
+/* Lightness differences between the tiers: the change from preview to refined must not flash. */
 TEST_WITH(test_tiers_agree, set_up, tear_down)
 {
     struct view view;
@@ -210,7 +211,7 @@ TEST_WITH(test_tiers_agree, set_up, tear_down)
     frame_unref(&moving);
 }
 
-/* Whatever looks other than in the view of values, field or context, is grey while all readings are within their limits. */
+/* Pixels that differ from the view of values, field or context, are grey while all readings are within their limits. */
 TEST_WITH(test_operator_sees_greys, set_up, tear_down)
 {
     struct view values, limits;
@@ -233,7 +234,7 @@ TEST_WITH(test_operator_sees_greys, set_up, tear_down)
         }
         printf("# tier %d: %d pixels look other than as values, %d of them are not grey\n", tier, other, coloured);
         assert_true(other > WIDTH * HEIGHT / 20);
-        assert_true(coloured <= other / 50); /* rims are mixed with the sky */
+        assert_true(coloured <= other / 50); /* antialiased rims mix with the sky */
         frame_unref(&first);
         frame_unref(&second);
     }

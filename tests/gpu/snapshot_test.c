@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast snapshot` on one asset of the demo plant, as a person would call it: exit codes, messages, and what is in the picture. */
+/* `plantcast snapshot` on one asset of the demo plant, as a user runs it: exit codes, messages and the picture's content. */
 #include "tests/support/test.h"
 #include <sys/wait.h>
 #include <unistd.h>
@@ -20,7 +20,7 @@ static const char *from_environment(const char *name, const char *otherwise)
     return value ? value : otherwise;
 }
 
-/* Exit code of `plantcast snapshot ARGS`; what it says goes to FOLDER/said. */
+/* Returns the exit code of `plantcast snapshot ARGS`; its output goes to FOLDER/said. */
 static int snapshot(const char *args)
 {
     char *command = mem_printf("'%s/plantcast' snapshot %s >'%s/said' 2>&1", from_environment("PLANTCAST_BIN", "build"), args, folder);
@@ -66,7 +66,7 @@ static void link_demo(const char *name)
     mem_free(link);
 }
 
-/* The first asset alone, with its tags: each picture lights all that there is. */
+/* Writes a plant with only the first asset and its tags, because each run bakes the light of the whole plant. */
 static void write_plant(void)
 {
     char *text = read_demo("plant.yaml"), *list = read_demo("tags.csv"), *rest = NULL;
@@ -92,7 +92,7 @@ static void write_values(const char *text)
     mem_free(temp_write_text(folder, "values.csv", text));
 }
 
-/* Pixels that are more than a little coloured. */
+/* Counts pixels that are noticeably coloured. */
 static int count_colored(void)
 {
     png_image image = { .version = PNG_IMAGE_VERSION };

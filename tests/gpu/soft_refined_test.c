@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Still pictures without a GPU: lines, slivers and poles against the same ones drawn by GL; pictures coloured again against new ones. */
+/* Refined frames without a GPU: lines, slivers and poles compared with GL, and recoloured frames compared with newly drawn ones. */
 #include "tests/support/test.h"
 #include <math.h>
 
@@ -12,7 +12,7 @@
 static struct rig rig;
 static struct stand stand;
 
-/* Lines, bands and logarithms. Rims of lines differ by the way slopes are measured. */
+/* Isolines, bands and logarithmic scales. Edges of lines differ, because GL measures slopes differently. */
 TEST(test_lines_and_scales)
 {
     for (int i = 0; i < 8; i++) {
@@ -31,7 +31,7 @@ TEST(test_lines_and_scales)
     }
 }
 
-/* A floor of 8 m, cut into strips that share their edges. */
+/* Makes a floor of 8 m cut into strips that share edges. */
 static void make_floor(struct test_shape *shape, uint32_t strips)
 {
     shape->vertex_count = 2 * (strips + 1);
@@ -69,7 +69,7 @@ static struct frame *draw_box_over_floor(uint32_t strips, const double light[3])
     return frame;
 }
 
-/* By one that never drew anything: of two that are under way at a time, one is new. */
+/* Two render jobs are in progress at once, so that the second one is a new job that never drew anything. */
 TEST(test_nothing_in_sight)
 {
     struct view view = soft_view(&stand, TIER_REFINED, 320, 180);
@@ -83,7 +83,7 @@ TEST(test_nothing_in_sight)
     frame_unref(&frame);
 }
 
-/* A pixel's middle may lie beside the sliver that it is told by: it must not slip along it. */
+/* A pixel's centre may lie outside the sliver that represents the pixel; its shadow must not be looked up along the sliver's extension. */
 TEST(test_shadows_on_slivers)
 {
     for (int light = 0; light < sweep(3, 1); light++) {
@@ -107,7 +107,7 @@ static int darkest(const struct frame *frame, int y)
     return level;
 }
 
-/* A leaning pole: here it is 3 pixels wide, there 4, and its lines must not show that. */
+/* A leaning pole is alternately 3 and 4 pixels wide, and its lines must not show that. */
 TEST(test_thin_poles_have_no_beads)
 {
     enum { FIRST = 80, LAST = 220 };
@@ -182,7 +182,7 @@ TEST(test_new_readings_are_a_new_picture)
     frame_unref(&last);
 }
 
-/* With isolines, their labels, ghosts and a cut. */
+/* Recolouring with isolines, their labels, ghosts and a section. */
 TEST(test_lines_again)
 {
     struct view view = soft_view(&stand, TIER_REFINED, 501, 300);
@@ -204,7 +204,7 @@ TEST(test_lines_again)
     toy_fill(stand.snapshot, 0);
 }
 
-/* Colours of the field are mixed with light. */
+/* Recolouring in the glossy look, where field colours are mixed with light. */
 TEST(test_glossy_again)
 {
     for (int i = 0; i < 4; i++) {
@@ -274,7 +274,7 @@ TEST(test_what_else_changes_is_drawn)
     assert_false(is_quick(&other));
 }
 
-/* What is kept of them has a bound, and the oldest goes. */
+/* The cache of large frames is limited, and the oldest frame is evicted. */
 TEST(test_few_large_ones_are_kept)
 {
     struct view views[4];

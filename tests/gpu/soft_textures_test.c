@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Materials with textures, with holes and of glass, drawn in software against the same ones by GL. */
+/* Materials with textures, holes and glass, drawn in software and compared with GL. */
 #include "tests/support/test.h"
 #include <math.h>
 
@@ -76,7 +76,7 @@ static void make_materials(void)
     smoke->base_color_texture = HAZE;
 }
 
-/* A plate across; its texture runs so many times along each side. */
+/* Adds a vertical plate; its texture repeats `times` times along each side. */
 static void add_plate(struct toy *toy, const char *id, uint32_t material, double times, const double at_m[3], int sensors)
 {
     static const double places[4][3] = { { 0.2, 0, 0.2 }, { 2.2, 0.3, 1.6 }, { 1.2, 0.2, 0.9 }, { 0.2, 0.2, 1.6 } };
@@ -120,7 +120,7 @@ static void look(struct view *view, enum tier tier, int i)
                                     .height_m = i % 5 == 4 ? 3.5 : 0 };
 }
 
-/* From before and behind, close by and far away, in every look, with what it takes to cut and to select. */
+/* Compares views from both sides, near and far, in every look, with sections and selections. */
 static void compare_all(enum tier tier, double may_differ)
 {
     for (int i = 0; i < 12; i++) {
@@ -146,10 +146,10 @@ TEST(test_previews)
 
 TEST(test_refined)
 {
-    compare_all(TIER_REFINED, 0.06); /* rims of holes are smooth, and of panes the nearest one is always before the others */
+    compare_all(TIER_REFINED, 0.06); /* GL antialiases holes differently, and here glass panes are sorted per pixel */
 }
 
-/* One at a time, so that nothing else differs. */
+/* Each plate alone, so that nothing else differs. */
 TEST(test_each)
 {
     static const double may_differ[] = { [SIGN] = 0.003, [FENCE] = 0.03, [WINDOW] = 0.002, [CURTAIN] = 0.002 };
@@ -165,7 +165,7 @@ TEST(test_each)
         }
 }
 
-/* What is seen through glass and grating is coloured anew as it would be drawn anew. */
+/* Recolouring what is seen through glass and gratings equals drawing it again. */
 TEST(test_new_readings)
 {
     struct view view;

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a session without a GPU sees of whole plants against the numbers that reference_test holds against the reference: in the flat
-   look each pixel's colour is read back as a value, in previews and in refined frames, over every level that is drawn. They are equal
-   wherever a pixel and its neighbours show one surface. Elsewhere a hair decides what a preview shows; a refined frame has antialiased
-   rims, and a surface smaller than a pixel may have its part in one. */
+/* Software frames of whole plants compared with the values that reference_test verifies: in the flat look each pixel's colour is read
+   back as a value, in previews and in refined frames, on every drawn level. Values are equal where a pixel and its neighbours show one
+   surface. Elsewhere rounding decides in a preview, and a refined frame antialiases rims and surfaces smaller than a pixel. */
 #include "tests/support/test.h"
 #include <math.h>
 
@@ -15,7 +14,7 @@
 #include "tests/support/synthetic.h"
 
 enum { WIDTH_PX = 640, HEIGHT_PX = 360, PIXELS = WIDTH_PX * HEIGHT_PX };
-static const double LEAST_M = 2; /* from the eye to whatever is shown */
+static const double LEAST_M = 2; /* metres from the eye to the nearest visible point */
 
 static struct rig rig;
 
@@ -39,7 +38,7 @@ static bool is_clear(const struct scene *scene, const double eye_m[3])
     return true;
 }
 
-/* From a random side of a random asset with a field, `away` times as far as it is large, or farther where it is cramped. */
+/* Chooses a random camera at a random asset with a field, `away` times the asset's size from it, or farther in confined places. */
 static void look_at_some_asset(struct site *site, double away, struct view *view)
 {
     do {
@@ -55,7 +54,7 @@ static bool has_value(const float number[4])
     return number[1] >= 0 && number[1] < 0.5f && number[2] < 0.5f;
 }
 
-/* A flat surface's depth is linear across the picture, a curved one's nearly. */
+/* Whether depth bends here: it is linear in the image on a flat surface, and nearly linear on a curved one. */
 static bool bends(const float (*numbers)[4], int at, int step)
 {
     double before = (double)numbers[at - step][3], here = (double)numbers[at][3], after = (double)numbers[at + step][3];
@@ -74,8 +73,9 @@ static bool is_within(const float (*numbers)[4], int at)
 }
 
 struct soft_values_tally {
-    int within, off, unreadable; /* pixels of one surface: of another colour, and of none of the map */
-    int rims, rims_off;          /* the others that have a value */
+    int within, off, unreadable; /* pixels within one surface; of them, with another colour than their value's, and with a colour that is
+                                    not in the map */
+    int rims, rims_off;          /* other pixels with a value; of them, those with another colour */
     int most;
 };
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Pictures of both tiers without a GPU against the same ones drawn by GL: every pixel and every marker. */
+/* Frames of both tiers without a GPU compared with GL: every pixel and every marker. */
 #include "tests/support/test.h"
 #include <math.h>
 
@@ -12,7 +12,7 @@
 static struct rig rig;
 static struct stand stand;
 
-/* Repeats what follows for both tiers. */
+/* Runs the following statement for both tiers. */
 #define EACH_TIER(tier) for (enum tier tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++)
 
 TEST(test_home)
@@ -40,7 +40,7 @@ TEST(test_looks)
     struct view view = soft_view(&stand, TIER_PREVIEW, 400, 300);
     view.look = LOOK_FLAT;
     view.colormap = (int)colormap_count() - 1;
-    view.range_min = 30; /* some values lie below, some above */
+    view.range_min = 30; /* some values lie below the range and some above */
     view.range_max = 70;
     soft_assert_like_gl(&stand, &view, 0.002);
     view = soft_view(&stand, TIER_REFINED, 640, 360);
@@ -54,7 +54,7 @@ TEST(test_looks)
     soft_assert_like_gl(&stand, &view, 0.005);
 }
 
-/* All round, from far away, from below and from among the pipes, where triangles pass the eye. */
+/* Cameras all around, far away, from below and among the pipes, where triangles extend behind the eye. */
 TEST(test_cameras)
 {
     EACH_TIER(tier) {
@@ -66,7 +66,7 @@ TEST(test_cameras)
     }
 }
 
-/* Parallel rays: from all round and above, wide and so narrow that the eye stands among the pipes. */
+/* Orthographic cameras all around and above, wide ones and narrow ones that stand among the pipes. */
 TEST(test_orthographic)
 {
     for (int i = 0; i < 24; i++) {
@@ -80,7 +80,7 @@ TEST(test_orthographic)
     }
 }
 
-/* By a level plane, by a slanting one, and by a box. Closed bodies have caps, the inner side of others shows. */
+/* Sections by a horizontal plane, by a slanted plane and by a box. Closed bodies get caps; of open ones the inside is visible. */
 TEST(test_cuts)
 {
     for (int i = 0; i < 36; i++) {
@@ -112,7 +112,7 @@ TEST(test_sun)
     }
 }
 
-/* Lines of a pixel and a half: their rims differ. */
+/* Outlines of 1.5 pixels: their antialiased edges differ from GL's. */
 TEST(test_outlines)
 {
     struct view view;
@@ -139,7 +139,7 @@ TEST(test_hidden_assets)
     }
 }
 
-/* The third picture of a camera that stands still is coloured anew only; hatches have softer rims then. */
+/* From the third frame on, a still camera is only recoloured; hatching then has softer edges. */
 TEST(test_still_camera)
 {
     struct view view = soft_view(&stand, TIER_PREVIEW, 640, 360);
@@ -164,7 +164,7 @@ TEST(test_still_camera)
     toy_fill(stand.snapshot, 0);
 }
 
-/* Places to draw it anew must not be taken for the same. */
+/* After a camera stood still, a moved camera or a hidden asset must not reuse the cached frame. */
 TEST(test_moves_after_standing)
 {
     struct view view = soft_view(&stand, TIER_PREVIEW, 320, 200);
@@ -176,7 +176,7 @@ TEST(test_moves_after_standing)
     soft_assert_like_gl(&stand, &view, 0.01);
 }
 
-/* What is worked out pixel by pixel: lines, bands, logarithms. Rims of lines differ by the way slopes are measured. */
+/* Colouring per pixel: isolines, bands, logarithmic scales. Edges of lines differ, because GL measures slopes differently. */
 TEST(test_lines_and_scales)
 {
     for (int i = 0; i < 5; i++) {
@@ -196,7 +196,7 @@ TEST(test_lines_and_scales)
     }
 }
 
-/* From the side that the surface looks to, at the middle of an edge, so near that its triangles lead far out of the picture. */
+/* Places the camera in front of the middle of an edge, so close that its triangles extend far beyond the image. */
 static void look_closely(const struct scene_asset *asset, uint32_t v, uint32_t w, struct view *view)
 {
     const struct asset_view *file = &asset->file->view;
@@ -218,10 +218,10 @@ static bool is_rim(int a, int b)
     return (a > 127) != (b > 127);
 }
 
-/* Where data end, and where they are uncertain, in triangles that are cut because they lead far out of the picture. */
+/* Borders of data and of uncertainty in triangles that are clipped because they extend far beyond the image. */
 TEST(test_patterns_close_by)
 {
-    enum { TANK = 1 }; /* has a sensor that is bad and one that is uncertain */
+    enum { TANK = 1 }; /* this asset has a bad and an uncertain sensor */
     const struct scene_asset *asset = &stand.toy->scene.assets[TANK];
     int looked = 0, rims = 0;
     struct view view = soft_view(&stand, TIER_PREVIEW, 160, 120);
@@ -256,7 +256,7 @@ static void set_limits(bool set)
             plant->tags[tag].limits[i] = set && tag != 2 ? limits[i] : NAN;
 }
 
-/* One tag without limits: what is near it is plain. What has no field is grey. */
+/* One tag has no limits: the area near it is plain. Assets without a field are grey. */
 TEST(test_operator)
 {
     set_limits(true);
@@ -272,7 +272,7 @@ TEST(test_operator)
     set_limits(false);
 }
 
-/* A still camera is shown again from what was kept; lines of the same view are not. */
+/* A still camera reuses the cached frame, but not for the same view with isolines. */
 TEST(test_lines_of_a_still_camera)
 {
     struct view view, lined;
@@ -285,7 +285,7 @@ TEST(test_lines_of_a_still_camera)
     }
 }
 
-/* Those that the machine's own set is compared with. */
+/* The implementations that are compared with the fastest one of this machine. */
 static const struct soft_kernels *const other_kernels[] = {
     &soft_kernels_plain,
 #ifdef __x86_64__
@@ -299,18 +299,19 @@ static void compare_kernels(const struct view *view, const struct soft_kernels *
     const struct soft_kernels **kernels = &stand.renderer->by_soft->kernels, *widest = *kernels;
     struct frame *wide = stand_draw(&stand, view);
     *kernels = other;
-    struct frame *same = stand_draw(&stand, view); /* the second of its view: drawn, and kept to be coloured again */
+    struct frame *same = stand_draw(&stand, view); /* the second frame of this view is cached for recolouring */
     *kernels = widest;
     assert_memory_equal(wide->bgrx, same->bgrx, (size_t)wide->stride_bytes * (size_t)wide->height_px);
     frame_unref(&wide);
     frame_unref(&same);
 }
 
-/* The loops for wider registers leave the same bits as those for any machine. */
+/* The vectorised loops give the same bits as the portable ones. */
 TEST(test_kernels)
 {
     const struct soft_kernels *widest = stand.renderer->by_soft->kernels;
-    static const int widths_px[] = { 640, 333, 37, 322, 330 }; /* the last tile is 16 or 8 columns wide, and a row high */
+    /* widths whose last tile is 16 or 8 columns wide, and heights whose last tile has one row */
+    static const int widths_px[] = { 640, 333, 37, 322, 330 };
     struct view view;
     if (widest == &soft_kernels_plain) {
         print_message("SKIP: this machine has no wider registers\n");
@@ -330,7 +331,7 @@ TEST(test_kernels)
     }
 }
 
-/* Nothing but sky: wide and high pictures, narrow and wide angles, level and leaning. */
+/* Only sky: wide and tall images, narrow and wide angles, level and tilted cameras. */
 TEST(test_sky)
 {
     static const int sizes_px[][2] = { { 640, 360 }, { 1600, 40 }, { 40, 600 }, { 320, 240 } };
@@ -341,7 +342,7 @@ TEST(test_sky)
         double lean = i / 16 * 0.7;
         view = soft_view(&stand, TIER_PREVIEW, sizes_px[i % 4][0], sizes_px[i % 4][1]);
         view.camera.fov_deg = fovs_deg[i / 4 % 4];
-        for (int c = 0; c < 3; c++) { /* away from the plant, and up */
+        for (int c = 0; c < 3; c++) { /* the camera turns away from the plant and upwards */
             view.camera.eye_m[c] = stand.toy->scene.bounds_max_m[c] + 5;
             view.camera.target_m[c] = view.camera.eye_m[c] + (c < 2 ? 1 : 1.2);
             view.camera.up[c] = c < 2 ? sin(lean) * (c ? 1 : -1) : cos(lean);
@@ -361,7 +362,7 @@ TEST(test_sky)
     assert_in_range(worst, 0, 2);
 }
 
-/* Before and behind others, cut, and, in previews, of a camera that stands still. */
+/* Ghosts before and behind other assets, with sections and, in previews, with a still camera. */
 TEST(test_ghosts)
 {
     for (int i = 0; i < 24; i++) {
@@ -380,7 +381,7 @@ TEST(test_ghosts)
     }
 }
 
-/* The other looks: steps of light are as fine as colours are. */
+/* The other looks: light has as fine steps as colours. */
 TEST(test_gloss_and_materials)
 {
     for (int i = 0; i < 8; i++) {
@@ -389,7 +390,7 @@ TEST(test_gloss_and_materials)
         view.look = i % 2 ? LOOK_GLOSSY : LOOK_MATERIALS;
         view.dark = i % 4 == 3;
         for (int again = 0; again < (i < 2 ? 3 : 1); again++)
-            soft_assert_like_gl(&stand, &view, again < 2 ? 0.012 : 0.03); /* coloured anew, patterns have softer rims */
+            soft_assert_like_gl(&stand, &view, again < 2 ? 0.012 : 0.03); /* recoloured hatching has softer edges */
         view.look = LOOK_DEFAULT;
         soft_assert_like_gl(&stand, &view, 0.01);
     }

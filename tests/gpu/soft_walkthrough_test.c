@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Who walks through a plant: pictures without a GPU against those that GL draws, with surfaces before the eye, beside it and behind it. */
+/* A walk through a plant: frames without a GPU compared with GL, with surfaces in front of the eye, next to it and behind it. */
 #include "tests/support/test.h"
 #include <math.h>
 
@@ -42,7 +42,7 @@ static int compare(struct site *site, const struct view *view)
     return count;
 }
 
-/* A place among the assets, as high as eyes are, and a look ahead or somewhat down. */
+/* Chooses a random place among the assets at eye height, looking ahead or slightly down. */
 static void stand_somewhere(struct site *site, double height_m, struct view *view)
 {
     double turn = 2 * M_PI * synthetic_random_unit(&site->random), down = 0.6 * synthetic_random_unit(&site->random);

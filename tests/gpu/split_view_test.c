@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Split views: each half is the picture that it would be by itself, markers and labels stand in their own half, and what is drawn bit by
-   bit is what is drawn at once. */
+/* Split views: each half equals the frame of its own view, markers and labels stay in their half, and progressive rendering equals
+   drawing at once. */
 #include "tests/support/test.h"
 
 
@@ -30,7 +30,7 @@ static int tear_down(void **state)
     return 0;
 }
 
-/* Values to the left, bands and isolines in other colours to the right. */
+/* Left: values; right: bands and isolines in other colours. */
 static void make_view(struct view *view)
 {
     struct view right;
@@ -68,7 +68,7 @@ TEST_WITH(test_halves_are_pictures, set_up, tear_down)
             assert_true(same_row(whole, parts[1], y, LEFT + DIVIDER_PX / 2, DIVIDER_PX / 2, WIDTH - LEFT - DIVIDER_PX / 2));
         }
         assert_true(memcmp(parts[0]->bgrx, parts[1]->bgrx, (size_t)LEFT * 4 * HEIGHT) != 0);
-        assert_in_range(whole->marker_count, 8, markers); /* those outside their half are left out */
+        assert_in_range(whole->marker_count, 8, markers); /* markers outside their half are dropped */
         for (size_t i = 0; i < whole->marker_count; i++)
             assert_true(whole->markers[i].half == (whole->markers[i].x_px >= LEFT));
         assert_true(whole->label_count > 0 && whole->label_count == parts[1]->label_count);
@@ -76,7 +76,7 @@ TEST_WITH(test_halves_are_pictures, set_up, tear_down)
             assert_true(whole->labels[i].half == 1 && whole->labels[i].x_px == parts[1]->labels[i].x_px + LEFT);
         assert_true(whole->content == planned_content(stand.renderer, &view, stand.snapshot));
         frame_read_markers(whole, stand.snapshot, NULL);
-        overlay_draw(whole, &stand.toy->scene, stand.snapshot, NULL); /* two legends; that it ends is what can be said here */
+        overlay_draw(whole, &stand.toy->scene, stand.snapshot, NULL); /* both legends; asserts only that drawing them ends */
         frame_unref(&parts[0]);
         frame_unref(&parts[1]);
         frame_unref(&whole);
@@ -104,7 +104,7 @@ TEST_WITH(test_bit_by_bit, set_up, tear_down)
     assert_null(canvas);
 }
 
-/* Two of them at once come as each does alone. */
+/* Two split views in progress at once give the same frames as each alone. */
 TEST_WITH(test_launched_together, set_up, tear_down)
 {
     struct view views[2];
@@ -136,7 +136,7 @@ TEST_WITH(test_launched_together, set_up, tear_down)
     renderer_use_gl(stand.renderer, false);
 }
 
-/* A view that was split may become narrow. */
+/* A split view may become too narrow to be split. */
 TEST_WITH(test_narrow, set_up, tear_down)
 {
     struct view view;

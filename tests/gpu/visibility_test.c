@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What is hidden, isolated, ghosted or cut away: colours, markers and content of the pictures; and orthographic ones. As a session without
-   a GPU has them: some are left to GL then, and what is the same in two pictures must be so across that border; and all by GL. */
+/* Visibility: hidden, isolated, ghosted and clipped assets, their colours, markers and content hashes, and orthographic cameras. Runs as
+   a session without a GPU does, where some views are left to GL and must match across that border, and then with GL only. */
 #include "tests/support/test.h"
 #include <math.h>
 
@@ -23,7 +23,7 @@ static void set_up(struct stand *own, struct toy *toy)
     renderer_use_gl(own->renderer, by_gl);
 }
 
-/* The exchanger is 30 degrees all over, the tank 80: each has one colour of its own. */
+/* Sets all sensors of the exchanger to 30 degrees and of the tank to 80, so that each asset has one colour. */
 static int reset(void **state)
 {
     (void)state;
@@ -35,7 +35,7 @@ static int reset(void **state)
     return 0;
 }
 
-/* Pixels with exactly the colour of that value. */
+/* Counts the pixels with exactly the colour of this value. */
 static int count_value(const struct frame *frame, double value)
 {
     const struct colormap *map = colormap_at((size_t)view.colormap);
@@ -46,7 +46,7 @@ static int count_value(const struct frame *frame, double value)
     return count;
 }
 
-enum { ROUNDING = 3 }; /* between a picture by GL and one that is not (draft_test.c) */
+enum { ROUNDING = 3 }; /* largest difference between a GL frame and a software frame */
 
 static int count_farther(const struct frame *a, const struct frame *b, int most)
 {
@@ -125,7 +125,7 @@ TEST_WITH(test_content_sees_what_is_shown, reset, NULL)
     view.visibility = (struct visibility){ 0 };
     assert_true(content() == whole);
     view.visibility.isolated = (struct asset_set){ 0 };
-    for (int i = 0; i < 5; i++) /* all of them: the same picture as none */
+    for (int i = 0; i < 5; i++) /* selecting all assets equals selecting none */
         asset_set_add(&view.visibility.isolated, i);
     struct frame *all = stand_draw(&stand, &view);
     view.visibility = (struct visibility){ 0 };
@@ -135,7 +135,8 @@ TEST_WITH(test_content_sees_what_is_shown, reset, NULL)
     frame_unref(&none);
 }
 
-/* The tank stands before the exchanger's end, or not at all: what is seen through it keeps its colours but for lines and dots. */
+/* The tank stands in front of the exchanger's end, or is hidden: the part seen through the ghost keeps its colours except for lines and
+   dots. */
 TEST_WITH(test_ghosts_change_few_colours, reset, NULL)
 {
     view.camera = (struct camera){ .eye_m = { 11, 2.5, 2 }, .target_m = { 0, 0, 1.2 }, .up = { 0, 0, 1 }, .fov_deg = 30 };
@@ -150,7 +151,7 @@ TEST_WITH(test_ghosts_change_few_colours, reset, NULL)
         struct frame *hidden = stand_draw(&stand, &view);
         int behind = count_value(hidden, 30), before = count_value(solid, 30), seen = count_value(ghost, 30);
         assert_true(before < 0.7 * behind);
-        assert_true(seen > (by_gl ? 0.75 : 0.7) * behind && seen < behind); /* plates mix fewer colours along edges than GL does */
+        assert_true(seen > (by_gl ? 0.75 : 0.7) * behind && seen < behind); /* software frames mix fewer colours along edges than GL */
         assert_int_equal(count_value(ghost, 80), 0);
         int changed = count_farther(ghost, hidden, ROUNDING), covered = count_value(solid, 80);
         assert_true(changed > 0.04 * covered && changed < 0.35 * covered);
@@ -161,7 +162,7 @@ TEST_WITH(test_ghosts_change_few_colours, reset, NULL)
     }
 }
 
-/* A plane that runs away from the eye falls far from pixel to pixel; that is no line. */
+/* On a plane seen at a grazing angle, depth changes fast from pixel to pixel; that is no outline. */
 TEST_WITH(test_a_steep_ghost_is_seen_through, reset, NULL)
 {
     view.camera = (struct camera){ .eye_m = { -8, -1, 1.5 }, .target_m = { 0, 0.5, 0 }, .up = { 0, 0, 1 }, .fov_deg = 30 };
@@ -197,7 +198,8 @@ static bool is_neutral(const uint8_t *bgrx)
     return abs(bgrx[0] - bgrx[1]) < 12 && abs(bgrx[1] - bgrx[2]) < 12 && bgrx[1] > 60 && bgrx[1] < 120;
 }
 
-/* The exchanger lies along x, its axis at y = 0, z = 1.2. Seen from the south with the southern half cut away: its inner side. */
+/* The exchanger lies along x with its axis at y = 0, z = 1.2. The camera in the south sees its inside, because the southern half is
+   clipped away. */
 TEST_WITH(test_a_cut_opens_a_neutral_inside, reset, NULL)
 {
     view.camera = (struct camera){ .eye_m = { 0, -8, 1.2 }, .target_m = { 0, 0, 1.2 }, .up = { 0, 0, 1 }, .fov_deg = 40 };
@@ -213,20 +215,21 @@ TEST_WITH(test_a_cut_opens_a_neutral_inside, reset, NULL)
             for (int x = -60; x <= 60; x += 7)
                 for (int y = -12; y <= 12; y += 3)
                     assert_true(is_neutral(frame_pixel(cut, 240 + x, 135 + y)));
-            int darkest = 255, brightest = 0; /* it is seen to be hollow */
+            int darkest = 255, brightest = 0; /* the inside is shaded, so that it looks hollow */
             for (int y = -12; y <= 12; y++) {
                 darkest = frame_pixel(cut, 240, 135 + y)[1] < darkest ? frame_pixel(cut, 240, 135 + y)[1] : darkest;
                 brightest = frame_pixel(cut, 240, 135 + y)[1] > brightest ? frame_pixel(cut, 240, 135 + y)[1] : brightest;
             }
             assert_true(brightest > darkest + 5);
             assert_int_equal(whole->marker_count, 8);
-            assert_int_equal(cut->marker_count, 5); /* two on top of the exchanger, and those of the tank */
+            assert_int_equal(cut->marker_count, 5); /* two markers on top of the exchanger, and those of the tank */
             frame_unref(&whole);
             frame_unref(&cut);
         }
 }
 
-/* A body from -1 to 1 with another asset within, both with a sensor. hollow: it has a wall of 0.2; open: it lacks one of many triangles. */
+/* Makes a body from -1 to 1 with another asset inside, both with a sensor. hollow: its walls are 0.2 thick; open: one of many triangles
+   is missing. */
 static struct toy *nested(bool hollow, bool open)
 {
     static const double sensors[2][1][3] = { { { 1, 0, 0 } }, { { 0, 0, 0.5 } } };
@@ -250,8 +253,8 @@ static struct toy *nested(bool hollow, bool open)
     return toy;
 }
 
-/* By the width of what is neutral in the picture's middle row, in metres to the right of the middle. box: what is behind is cut off, too,
-   and rays leave what is left within the body. */
+/* Measures where neutral pixels in the middle row begin and end, in metres to the right of the centre. box: clips the back too, so that
+   rays leave the kept part inside the body. */
 static void cut_through(struct stand *from, enum tier tier, bool core_cut, bool box, double *first_m, double *last_m, struct pick *pick)
 {
     enum { SIDE = 200 };
@@ -275,7 +278,7 @@ static void cut_through(struct stand *from, enum tier tier, bool core_cut, bool 
     frame_unref(&frame);
 }
 
-/* Solid: a plane hides what is within. Hollow: only its walls are closed. Open: what is within is seen as ever. */
+/* Solid: the cap hides the inside. Hollow: only the walls have caps. Open: the inside is visible as without caps. */
 TEST_WITH(test_a_cut_closes_bodies, reset, NULL)
 {
     double first_m, last_m;
@@ -303,7 +306,7 @@ TEST_WITH(test_a_cut_closes_bodies, reset, NULL)
     }
 }
 
-/* What is cut away is no obstacle; what is behind the cut is where it was. */
+/* Clipped parts hide nothing, and the parts behind the plane stay where they are. */
 TEST_WITH(test_a_cut_leaves_the_rest_alone, reset, NULL)
 {
     view.visibility.clip = (struct clip){ .plane_count = 1, .planes = { { -1, 0, 0, 50 } } };
@@ -324,7 +327,7 @@ TEST_WITH(test_a_cut_leaves_the_rest_alone, reset, NULL)
     frame_unref(&box);
 }
 
-/* Bit by bit, a cut with ghosts is the same picture. */
+/* Progressive rendering of a section with ghosts gives the same frame. */
 TEST_WITH(test_bit_by_bit_is_the_same, reset, NULL)
 {
     view.tier = TIER_REFINED;
@@ -340,7 +343,7 @@ TEST_WITH(test_bit_by_bit_is_the_same, reset, NULL)
     frame_unref(&bits);
 }
 
-/* In an orthographic picture each metre has its pixels, wherever it lies; depth still hides. */
+/* In an orthographic view a metre has the same number of pixels everywhere, and depth still hides. */
 TEST_WITH(test_orthographic_markers_stand_where_they_should, reset, NULL)
 {
     view.camera = (struct camera){ .eye_m = { 1.3, -8, 1.2 }, .target_m = { 1.3, 0, 1.2 }, .up = { 0, 0, 1 }, .height_m = 5 };
@@ -359,7 +362,7 @@ TEST_WITH(test_orthographic_markers_stand_where_they_should, reset, NULL)
         assert_int_equal(frame->markers[0].occluded, 0); /* on the exchanger's southern side */
         assert_true(count_value(frame, 30) > 3000);
         frame_unref(&frame);
-        view.camera.eye_m[1] = -0.1; /* in the middle of the plant: nothing is cut off */
+        view.camera.eye_m[1] = -0.1; /* the eye is in the middle of the plant: nothing is cut off in front */
         frame = stand_draw(&stand, &view);
         assert_int_equal(frame->markers[0].occluded, 0);
         frame_unref(&frame);
@@ -367,7 +370,7 @@ TEST_WITH(test_orthographic_markers_stand_where_they_should, reset, NULL)
     }
 }
 
-/* What is hidden or cut away throws no shadow: the slab under the exchanger is lit where it was dark. */
+/* Hidden or clipped assets cast no shadow: the slab under the exchanger becomes lit. */
 TEST_WITH(test_what_is_not_shown_throws_no_shadow, reset, NULL)
 {
     view.look = LOOK_DEFAULT;
@@ -389,7 +392,7 @@ TEST_WITH(test_what_is_not_shown_throws_no_shadow, reset, NULL)
     assert_true(abs(shaded[1] - shaded[2]) < 12);
 }
 
-/* A ball in a closed room. */
+/* Sets up a ball in a closed room. */
 static void stand_room(struct stand *room, struct view *of)
 {
     struct toy *toy = toy_create();
@@ -404,7 +407,7 @@ static void stand_room(struct stand *room, struct view *of)
     of->look = LOOK_MATERIALS;
 }
 
-/* With the walls hidden the ball is not as dark as within them; and they themselves are as they were. */
+/* With hidden walls the ball is brighter than inside the room, and the walls, when shown, look as before. */
 TEST_WITH(test_what_is_hidden_leaves_no_dark, reset, NULL)
 {
     struct stand room;

@@ -41,8 +41,8 @@ const hold = async (tag, value) => {
     });
 };
 
-// A value of PI-1 that it never had before, which history has to have in the end: exact, whatever it passes through, and above or below
-// all that is read before and after it, since what lies on the way from one reading to another is not kept.
+// A unique value of PI-1 that the history must contain exactly in the end. It lies above or below all readings before and after it, because
+// history drops values on the line between two readings.
 const mark = async () => {
     const n = marked++, value = (n % 2 ? -2.375 : 12.375) + n / 1024;
     const from_s = Math.floor(clock.now() / 1000) - 1;
@@ -66,7 +66,7 @@ const crowd = () => new Promise((done, fail) => {
     child.on('exit', () => done(JSON.parse(out)));
 });
 
-// What happens to a plant, one a round, while people look.
+// Events in the plant while clients watch, one per round.
 const events = [
     async function reload() {
         const text = readFileSync(plant.file, 'utf8'), turn = /description: warm/.test(text);
@@ -110,8 +110,9 @@ const events = [
     },
 ];
 
-// At places of both boxes: the daemon's field, after all that it has been through, and that of a program which begins with these readings.
-// Both say by which readings of which quality. Where these differ, as when the device answers late on a busy machine, they are asked again.
+// Compares, at points on both boxes, the daemon's field after all these events with that of a program that starts with the current
+// readings. Both report the readings and qualities used. If those differ, as when the device answers late on a busy machine, both are asked
+// again.
 async function drift(round) {
     for (const [i, tag] of ['TI-1', 'TI-2', 'PI-1'].entries())
         await hold(tag, [20 + round % 50, 70 - round % 50, round % 10][i]);
@@ -172,8 +173,8 @@ test(`a day's life in ${MINUTES} minutes`, { skip, timeout: (MINUTES + 20) * 600
     for (const key of ['memory_mb', 'descriptors', 'threads', 'p95_ms'])
         console.log(`# ${key}: ${rows[0][key].toFixed(1)} at first, ${rows.at(-1)[key].toFixed(1)} at last, ` +
             `${slope(rows, key).toFixed(2)} an hour`);
-    // The median of each third: while nobody looks, before a month's end, memory is given back; a connection that is closing has a
-    // descriptor for a moment. Another month has its file, read and written.
+    // Compares the medians of the first and the last third, because descriptors of closing connections exist for a moment and memory is
+    // released before the end of a month when no client watches. Each further month adds its file, read and written.
     const third = Math.ceil(rows.length / 3), median = (part, key) => part.map((row) => row[key]).sort((a, b) => a - b)[third >> 1];
     for (const [key, growth, more] of [['descriptors', 1, MONTH_DESCRIPTORS], ['threads', 1, 0], ['memory_mb', GROWTH, 0]]) {
         const early = median(rows.slice(0, third), key), late = median(rows.slice(-third), key);

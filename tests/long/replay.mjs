@@ -10,8 +10,9 @@ import { missing, TinyPlant } from '../e2e/support/tiny_plant.mjs';
 const SERIES = resolve('../shared/data/sensors/hydraulic/hydraulic_ts_1hz.csv');
 const absent = missing();
 const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : existsSync(SERIES) ? false : `${SERIES} is not there`;
-const SPEED = 60, WALL_S = 60, WITHIN = 0.2, FAR_S = 0.35; // how far a read may lie from its time, of the wall clock
-const BACK_S = 4; // a device that answers again is asked again within
+// FAR_S: largest distance, in seconds of wall clock, between a read and its nominal time
+const SPEED = 60, WALL_S = 60, WITHIN = 0.2, FAR_S = 0.35;
+const BACK_S = 4; // seconds until a device that answers again is polled again
 const CODES = { Bad_CommunicationError: 0x80050000, Uncertain_NoCommunicationLastUsableValue: 0x408f0000, Bad_NoCommunication: 0x80310000 };
 const TAGS = `Tag Name,Address,Data Type,Eng Units,Description,Group,Asset,X,Y,Z,Stale s,Deadband
 TI-1,400001,Float,°C,left,temperature,E-101,0.5,0,0,1,${WITHIN}
@@ -58,7 +59,7 @@ const history = async (tag, from, to) => {
     return series.points.map(([us, value, quality]) => ({ t: us / 1e6, value, quality }));
 };
 
-// Its value at a time: on the line between its points; null: none.
+// Returns the value at time t on the line between two points, or null.
 function at(points, t) {
     const i = points.findLastIndex((point) => point.t <= t), a = points[i], b = points[i + 1];
     if (!a || a.value === null || a.quality !== 0)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* CGAL behind plain C: shortest paths on polyhedra, and the union of two. */
+/* C interface to CGAL: shortest paths on polyhedra, and the union of two polyhedra. */
 #include "tests/oracle/geodesic.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -40,7 +40,7 @@ bool measure(const oracle_mesh *from, size_t triangle, const double weights[3], 
     std::vector<Mesh::Face_index> faces;
     if (!read(from, &mesh, &faces))
         return false;
-    auto edge = halfedge(faces[triangle], mesh); /* its corners begin where CGAL likes */
+    auto edge = halfedge(faces[triangle], mesh); /* CGAL chooses the first corner of a face */
     const Mesh::Vertex_index corners[3] = { source(edge, mesh), target(edge, mesh), target(next(edge, mesh), mesh) };
     double turned[3] = { 0, 0, 0 };
     for (int i = 0; i < 3; i++)

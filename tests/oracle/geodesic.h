@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Exact distances on polyhedra, and the union of two closed ones, by CGAL. Slow; for tests only. */
+/* Exact distances on polyhedra and the union of two closed ones, computed by CGAL. Slow; for tests only. */
 #ifndef TESTS_ORACLE_GEODESIC_H
 #define TESTS_ORACLE_GEODESIC_H
 #include <stdbool.h>
@@ -10,16 +10,17 @@
 extern "C" {
 #endif
 
-struct oracle_mesh { /* a manifold; triangles: 3 indices each */
+struct oracle_mesh { /* a manifold mesh; triangles: 3 indices each */
     const float (*positions)[3];
     const uint32_t *triangles;
     size_t vertex_count, triangle_count;
 };
 
-/* From the place with these weights on a triangle to every vertex (Xin & Wang 2009). False: not a manifold, or CGAL failed. */
+/* Computes distances from the point with these weights on a triangle to every vertex (Xin & Wang 2009). Returns false if the mesh is not
+   a manifold or CGAL failed. */
 bool oracle_distances(const struct oracle_mesh *mesh, size_t triangle, const double weights[3], double *distances);
 
-/* The outer surface of two closed meshes together. positions and triangles of the result: free() them. */
+/* Computes the outer surface of two closed meshes. The caller frees positions and triangles of the result with free(). */
 bool oracle_union(const struct oracle_mesh *a, const struct oracle_mesh *b, struct oracle_mesh *result);
 
 #ifdef __cplusplus

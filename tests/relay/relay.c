@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A slow link: hands TCP connections on to a port of this machine, at so many bytes a second from there, and later by so much each way.
-   Its socket buffers are small, so that what it does not take waits where it would on a real link: at the sender. Until its standard
-   input ends.
+/* A slow link: forwards TCP connections to a port of this machine, limits the bytes per second from there and delays both directions.
+   Its socket buffers are small, so that excess data waits at the sender, as on a real link. Runs until its standard input ends.
 
    usage: relay PORT BYTES_PER_S DELAY_MS   (prints "relay: listening PORT") */
 #include <arpa/inet.h>
@@ -25,10 +24,10 @@ struct relay_chunk {
     char bytes[CHUNK_BYTES];
 };
 
-struct relay_direction { /* one direction; chunks in a ring */
+struct relay_direction { /* one direction of a connection; a ring buffer of chunks */
     int from, to;
     double bytes_per_s; /* 0: no limit */
-    int64_t free_ns;    /* when the next byte may be taken */
+    int64_t free_ns;    /* time from which the next byte may be read */
     unsigned first, count;
     struct relay_chunk *chunks;
 };
@@ -162,7 +161,7 @@ int main(int argc, char **argv)
     fflush(stdout);
     for (char byte = 1; byte;) {
         struct pollfd waits[2] = { { .fd = listener, .events = POLLIN }, { .fd = STDIN_FILENO, .events = POLLIN } };
-        poll(waits, 2, 1); /* a millisecond is fine enough, for all links */
+        poll(waits, 2, 1); /* 1 ms is fine enough for all links */
         if (waits[0].revents)
             accept_one(listener, links, atoi(argv[1]), atof(argv[2]));
         if (waits[1].revents && read(STDIN_FILENO, &byte, 1) <= 0)

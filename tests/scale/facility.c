@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Makes a synthetic facility: one GLB of tanks, pipe runs and flanges, a plant file and a tag list; the same for the same seed. */
+/* Generates a synthetic facility: one GLB of tanks, pipe runs and flanges, a plant file and a tag list. The same seed gives the same
+   files. */
 #include <getopt.h>
 #include <math.h>
 #include <stdint.h>
@@ -15,7 +16,7 @@
 
 #define FLANGE_AROUND 24
 #define FLANGE_ROWS 8
-#define SPACING_M 8.0 /* between assets, on a square grid */
+#define SPACING_M 8.0 /* distance between assets on a square grid */
 
 static const char usage[] = "usage: facility --output DIR [--assets N] [--triangles N] [--sensors EVERY] [--seed N]\n"
                             "  --assets N       default 2000\n"
@@ -43,7 +44,7 @@ struct facility {
     long flange; /* its mesh, shared by all */
 };
 
-struct pipe_mesh { /* a grid of rows x around, closed around */
+struct pipe_mesh { /* a tube of rows x around vertices, closed in the second direction */
     float (*places)[3], (*normals)[3];
     uint32_t *indices;
     size_t vertices, corners;
@@ -89,7 +90,7 @@ static long add_mesh(struct facility *f, const struct pipe_mesh *mesh)
 
 /* --- shapes: a circle that is swept ------------------------------------------------------------------------------------------------ */
 
-struct pipe_ring { /* where it is, which way it looks, one direction in its plane */
+struct pipe_ring { /* centre, direction, and one direction in the ring's plane */
     double centre[3], along[3], side[3], radius;
 };
 
@@ -150,7 +151,7 @@ static void make_tank(struct pipe_mesh *mesh, int rows, int around, double radiu
     mem_free(rings);
 }
 
-/* A run in the plane z = 1 m with quarter bends left and right in turn. */
+/* Makes a pipe run in the plane z = 1 m with quarter bends to the left and right alternately. */
 static void make_run(struct pipe_mesh *mesh, int rows, int around, double radius, double length)
 {
     struct pipe_ring *rings = mem_array((size_t)rows, sizeof(*rings));
@@ -173,7 +174,7 @@ static void make_run(struct pipe_mesh *mesh, int rows, int around, double radius
     mem_free(rings);
 }
 
-/* About the z axis, 1 m in radius outside, with a hole. */
+/* Makes a flange about the z axis with an outer radius of 1 m and a hole. */
 static void make_flange(struct pipe_mesh *mesh)
 {
     static const double profile[FLANGE_ROWS][2] = { { 0.6, 0 }, { 0.6, 0.3 }, { 0.7, 0.3 }, { 0.75, 0.2 },
@@ -207,7 +208,7 @@ static void add_sensors(struct facility *f, long asset, const struct pipe_mesh *
     }
 }
 
-/* Tags 0, 1, 2, ... go to assets 0, 1, 2, ... and begin again: each time round with the next group. */
+/* Distributes tags to assets in turn; each further round uses the next group. */
 static void add_singles(struct facility *f, long asset, const struct pipe_mesh *body, const double at[3])
 {
     for (long tag = asset, group = 0; tag < f->options.singles; tag += f->options.assets, group++) {

@@ -204,7 +204,7 @@ CASE(wrong_lines_let_in_nobody_and_leave_the_others)
     tokens_destroy(&tokens);
 }
 
-/* Looks twice, as a changed file is accepted only when two looks agree. Returns whether the second look read the file. */
+/* Looks twice, because a changed file is read only once it has stopped changing. Returns whether exactly the second look read it. */
 static bool look_until_read(struct tokens *tokens)
 {
     bool first = tokens_look(tokens);

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The field of a plant of one asset held against a solution on its surface.
-   usage: compare numbers PLANT.yaml SOLUTION VALUES.csv   one JSON line for each interpolation and distance
-          compare pictures PLANT.yaml SOLUTION <LIST       a line each: field, solution or error; file; what `plantcast snapshot` is told;
-                                                            between tabs
-   SOLUTION is what parts.py: write_solution() wrote. Errors are |field - solution| at the asset's finest vertices, weighed by the area
-   around them; the solution there is that of the nearest point of its skin. */
+/* Compares the field of a plant with one asset with a solution on its surface.
+   usage: compare numbers PLANT.yaml SOLUTION VALUES.csv   prints one JSON line per interpolation and distance
+          compare pictures PLANT.yaml SOLUTION <LIST       each line of LIST: field, solution or error; a file to write; the
+                                                           arguments of `plantcast snapshot`; separated by tabs
+   parts.py: write_solution() writes SOLUTION. Errors are |field - solution| at the asset's finest vertices, weighted by the surrounding
+   area; the solution there is taken at the nearest point of its skin. */
 #include <getopt.h>
 #include <math.h>
 #include <stdio.h>
@@ -27,7 +27,7 @@ struct solution {
     bool *outside;  /* by triangle */
 };
 
-struct heat_truth { /* by vertex of the asset file */
+struct heat_truth { /* solution by vertex of the asset file */
     double *values, *area_m2, *outside_m2;
     size_t count;
 };
@@ -80,7 +80,7 @@ static double triangle_m2(const float a[3], const float b[3], const float c[3])
     return sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) / 2;
 }
 
-/* Brings the solution to the asset's vertices; an asset's triangle is outside if the skin's nearest to its middle is. */
+/* Interpolates the solution at the asset's vertices. A triangle counts as outside if the skin triangle nearest to its centre does. */
 static void find_truth(const struct solution *solution, const struct asset_view *view, struct heat_truth *truth)
 {
     struct bvh *bvh = bvh_create(&solution->skin);
@@ -128,7 +128,7 @@ static int by_error(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Mean, 95th percentile and worst error, and the share of the area where the field says that it does not know. */
+/* Prints the mean, the 95th percentile and the largest error, and the share of the area where the field is unknown. */
 static void print_errors(const char *where, const struct scalars *scalars, const struct heat_truth *truth, const double *area_m2)
 {
     struct error *errors = mem_try_array(truth->count, sizeof(*errors));
