@@ -14,12 +14,14 @@
 
 #define PACKING 0.7    /* number of Poisson-disc points per square of the spacing */
 #define HEAT_TIME 2.25 /* diffusion time t, in squares of the spacing */
-#define LONGEST 400.0 /* largest extent of the part in units of sqrt(t): heat decays by e per unit, and underflows (DBL_MIN) at 708 units */
-#define REGULARISATION 1e-9       /* added to the matrix's diagonal, relative to the diagonal entry */
-enum { PITCHES = 3, PLACES = 4 }; /* PITCHES: candidates along a spacing; PLACES: points that a position is interpolated from */
+/* largest extent of a connected component in units of sqrt(t): heat falls by the factor e per unit and underflows (DBL_MIN) at 708 units */
+#define LONGEST 400.0
+#define REGULARISATION 1e-9 /* added to the matrix's diagonal, relative to the diagonal entry */
+/* PITCHES: candidate sample points per spacing; PLACES: nearest sample points used to interpolate at a position */
+enum { PITCHES = 3, PLACES = 4 };
 
 struct heat_link {
-    uint32_t from, to; /* indices of two neighbouring points, from < to */
+    uint32_t from, to; /* indices of two neighbouring sample points, from < to */
     double weight;
 };
 
@@ -35,7 +37,7 @@ struct cloud_heat {
     int k;
     cholmod_factor *diffusion, *poisson;
     cholmod_common common;
-    /* A grid of cells one spacing wide, to find the points near a position: */
+    /* Hash grid with cells one spacing wide, to find the sample points near a position: */
     uint32_t *cells, *next;
     size_t cell_count, next_capacity;
 };
@@ -134,8 +136,8 @@ static uint32_t other_end(const struct heat_link *link, size_t point)
     return link->from == point ? link->to : link->from;
 }
 
-/* Breadth-first search over neighbours from a point. Returns the number of points reached; queue[] lists them, the farthest last, and
- * hops[] their hop counts. */
+/* Walks from a point to all points connected to it, breadth first. Returns the number of points reached; queue[] lists them, the farthest
+ * last, and hops[] their hop counts. */
 static size_t spread(const struct cloud_heat *cloud, uint32_t from, uint32_t *queue, uint32_t *hops)
 {
     size_t count = 1;
@@ -152,8 +154,8 @@ static size_t spread(const struct cloud_heat *cloud, uint32_t from, uint32_t *qu
     return count;
 }
 
-/* Numbers the connected components of the point cloud. Returns the approximate length of the longest component: from any point to the
- * farthest one, and from there to the farthest again. */
+/* Numbers the connected components of the point cloud. Returns the approximate length of the longest component: finds the point farthest
+ * from an arbitrary one, then the largest distance from that point. */
 static double find_pieces(struct cloud_heat *cloud)
 {
     uint32_t *queue = mem_array(cloud->count + 1, sizeof(*queue)), *hops = mem_array(cloud->count + 1, sizeof(*hops)), pieces = 0, most = 0;
@@ -220,7 +222,7 @@ static void find_plane(struct cloud_heat *cloud, size_t point)
 
 /* --- systems ---------------------------------------------------------------------------------------------------------------- */
 
-/* Assembles the lower triangle of diagonal + scale * L. */
+/* Assembles the sparse matrix diagonal + scale * L (L: Laplacian); only its lower triangle. */
 static cholmod_sparse *assemble(struct cloud_heat *cloud, const double *diagonal, double scale)
 {
     cholmod_triplet *t =
@@ -377,8 +379,8 @@ struct nearby {
     int count;
 };
 
-/* Finds the points nearest to a position, nearest first. There is always one within two spacings, because the candidates cover the
- * surface. */
+/* Finds the PLACES sample points nearest to a position, nearest first. At least one lies within two spacings, because the candidates cover
+ * the surface. */
 static void find_nearby(const struct cloud_heat *cloud, const double p[3], struct nearby *near)
 {
     near->count = 0;
@@ -403,8 +405,8 @@ static void find_nearby(const struct cloud_heat *cloud, const double p[3], struc
 }
 
 /* Interpolates at a position: each of the nearest points extrapolates its value along its gradient, weighted by proximity. */
-static double value_at(const struct cloud_heat *cloud, const double *values, const double (*slopes)[3], const double p[3],
-                       uint32_t piece, const struct nearby *near)
+static double value_at(const struct cloud_heat *cloud, const double *values, const double (*slopes)[3], const double p[3], uint32_t piece,
+                       const struct nearby *near)
 {
     double sum = 0, total = 0;
     for (int k = 0; k < near->count; k++) {
@@ -427,7 +429,8 @@ static cholmod_dense *solve(const struct cloud_heat *cloud, cholmod_factor *fact
     return x;
 }
 
-/* Converts heat u to unit directions away from the source (slopes), and writes the right-hand side of the distance system to b. */
+/* Converts heat u to unit vectors in the tangent planes that point away from the source, and writes the right-hand side of the distance
+ * system to b. */
 static void flow(const struct cloud_heat *cloud, double *u, double (*slopes)[3], double *b)
 {
     for (size_t i = 0; i < cloud->count; i++)
@@ -449,8 +452,7 @@ static void flow(const struct cloud_heat *cloud, double *u, double (*slopes)[3],
     }
 }
 
-bool cloud_heat_distances(const struct cloud_heat *cloud, const double source_m[3], const float (*positions_m)[3], size_t count,
-                          float *out)
+bool cloud_heat_distances(const struct cloud_heat *cloud, const double source_m[3], const float (*positions_m)[3], size_t count, float *out)
 {
     cholmod_common common;
     struct nearby near;

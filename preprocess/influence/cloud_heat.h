@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Computes distances with the method of Kim & Suh (Electronics 2025, 14(15), 2938), to compare them with our mesh distances: the heat
  * method (Crane, Weischedel, Wardetzky 2013) on points sampled from the surface, with neighbours by distance instead of mesh connectivity.
- * Therefore these distances leak through thin walls and across gaps narrower than CLOUD_REACH spacings; that error of the method is meant
- * to show. Points: about CLOUD_POINTS Poisson-disc samples, at least one spacing apart. Neighbours: all points within CLOUD_REACH spacings,
- * found with FLANN. Tangent plane: least-squares plane through a point's neighbours. Laplacian: Belkin, Sun & Wang (2009), made symmetric:
- * w_ij = A_i A_j exp(-|p_i - p_j|^2 / 4 tau) / (4 pi tau^2), A_i = pi r^2 / (neighbours + 1). Heat u solves (A + t L) u = source. X is the
- * unit direction of the heat flow in each tangent plane, by weighted least squares. Distances d minimise sum w_ij (d_j - d_i - (X_i + X_j)
- * (p_j - p_i) / 2)^2. */
+ * Therefore these distances cut through thin walls and across gaps narrower than CLOUD_REACH spacings. This error of the method is kept on
+ * purpose, because the comparison should show it. Points: about CLOUD_POINTS Poisson-disc samples, at least one spacing apart. Neighbours:
+ * all points within CLOUD_REACH spacings, found with FLANN. Tangent plane: least-squares plane through a point's neighbours. Laplacian:
+ * Belkin, Sun & Wang (2009), made symmetric: w_ij = A_i A_j exp(-|p_i - p_j|^2 / 4 tau) / (4 pi tau^2), A_i = pi r^2 / (neighbours + 1).
+ * Heat u solves (A + t L) u = source. X is the unit direction of the heat flow in each tangent plane, by weighted least squares. Distances
+ * d minimise sum w_ij (d_j - d_i - (X_i + X_j) (p_j - p_i) / 2)^2. */
 #ifndef PREPROCESS_INFLUENCE_CLOUD_HEAT_H
 #define PREPROCESS_INFLUENCE_CLOUD_HEAT_H
 #include "base/log/log.h"

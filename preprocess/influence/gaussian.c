@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Solves the Gaussian process: one sparse factor of k^2 C + G, two solves for each sensor and one for each sample; the rest is dense
- * algebra. */
+/* Solves the Gaussian process with one sparse factorisation of k^2 C + G, two solves for each sensor and one for each random sample. All
+ * else is dense algebra. */
 #include "preprocess/influence/gaussian.h"
 
 #include <cblas.h>
@@ -18,7 +18,8 @@
 #define BLOCK 32 /* number of right-hand sides per solve; fixed, so that random samples do not depend on the thread count */
 #define TILE 256 /* number of mesh points that one thread processes at a time */
 #define STRIP 64 /* number of vertices that one thread processes at a time */
-#define FIXED 1e9 /* fixed-point scale of squares, relative to the squared deviation: integer sums do not depend on their order */
+/* fixed-point scale of sums of squared errors (in squared deviations): integer sums do not depend on the order of addition */
+#define FIXED 1e9
 #define FIXED_MAX 1e7
 
 struct solving {
@@ -30,14 +31,15 @@ struct solving {
     struct laplacian laplacian;
     cholmod_factor *factor;
     struct gaussian_bodies bodies;
-    double *covariance;        /* [sensor][sensor]; unscaled */
-    double *root_mass_m;       /* by row: square root of the point's area */
-    double *root_scale;        /* by component: square root of `scale` */
-    double *scale;             /* by component: factor from the system's variance to the stated one; 0: no sensor */
+    double *covariance;  /* [sensor][sensor]; unscaled */
+    double *root_mass_m; /* by row of the sparse system: square root of the point's area */
+    double *root_scale;  /* by component: square root of `scale` */
+    /* by component: factor from the variance that the sparse system gives to the stated one; 0: the component has no sensor */
+    double *scale;
     double *means;             /* by sensor: its weight in the estimated mean of its body */
     double *levels;            /* by sensor: the smallest variance of a weighted mean of its body's readings (mean_variance()) */
     float *at_points;          /* [mesh point][sensor]: kernels, later H */
-    float *taken;              /* by vertex: variance that the sensors remove */
+    float *taken;              /* by vertex: part of the prior variance that the sensors' readings remove */
     _Atomic uint64_t *squares; /* by vertex: sum of squared sample errors, fixed point */
     atomic_bool failed;
 };
@@ -105,7 +107,7 @@ static uint32_t body_of_vertex(const struct solving *solving, size_t vertex)
 
 /* --- kernels ----------------------------------------------------------------------------------------------------------------- */
 
-/* Returns the constant part of a body's covariance. Subtracting it before anything else avoids cancellation later. */
+/* Returns the constant part of a body's covariance. Subtracted from solutions first, because subtracting it later would cancel digits. */
 static double constant_of(const struct solving *solving, uint32_t body)
 {
     const double k2 = 8 / (solving->params.range_m * solving->params.range_m);
@@ -174,14 +176,15 @@ static void over(struct workers *workers, size_t count, size_t grain, void (*bod
         body(arg, 0, count);
 }
 
-/* --- from kernels to influence ----------------------------------------------------------------------------------------------- */
+/* --- influence H at mesh points, from covariance kernels ----------------------------------------------------------------------- */
 
 static double variance_of(const struct solving *solving, size_t sensor)
 {
     return solving->params.deviation * solving->params.deviation * solving->scale[solving->bodies.of_sensor[sensor]];
 }
 
-/* Returns S m of a sensor, which is equal for all sensors of its body: the smallest variance of a weighted mean of the body's readings. */
+/* Returns S m of a sensor (S: covariance of the readings, m: mean weights): the smallest variance of a weighted mean of the readings of its
+ * body. Equal for all sensors of a body. */
 static double mean_variance(const struct solving *solving, size_t sensor)
 {
     const size_t n = solving->influence->count;
@@ -192,7 +195,7 @@ static double mean_variance(const struct solving *solving, size_t sensor)
     return sum;
 }
 
-/* Replaces kernels k by H = P k + mean weights, for tiles [begin, end) of mesh points. */
+/* Replaces kernels k (covariances with the readings) by the influence H = P k + mean weights, for tiles [begin, end) of mesh points. */
 static void weigh_tiles(void *arg, size_t begin, size_t end)
 {
     struct solving *solving = arg;
@@ -224,7 +227,7 @@ static void add_bends(void *arg, size_t begin, size_t end)
         influence_bend_add(solving->bend, solving->at_points + first, n, end - first < BEND_WIDTH ? end - first : BEND_WIDTH);
 }
 
-/* --- mesh points to vertices ------------------------------------------------------------------------------------------------- */
+/* --- influence and standard deviation at vertices, from mesh points ------------------------------------------------------------ */
 
 static void at_vertex(const struct solving *solving, size_t vertex, float *out)
 {
@@ -244,7 +247,7 @@ static void turn_to_shares(const struct solving *solving, size_t first, size_t w
             solving->influence->shares[i * vertices + first + v] = strip[v * n + i];
 }
 
-/* Stores the kernels of vertex strips [begin, end) in `shares` until H is known. */
+/* Writes the kernels at the vertices of strips [begin, end) to `shares`, which later receives H. */
 static void keep_kernels(void *arg, size_t begin, size_t end)
 {
     struct solving *solving = arg;
@@ -301,8 +304,8 @@ static bool find_precision(struct solving *solving)
 
 /* --- standard error ---------------------------------------------------------------------------------------------------------- */
 
-/* SplitMix64 (Steele, Lea & Flood, 2014), used as a source of random signs. Sums with random signs have the same variance as with normal
- * numbers, and an error no larger (Hutchinson, 1990). */
+/* SplitMix64 (Steele, Lea & Flood, 2014), used as a source of random signs. Random signs in place of normal numbers give the same variance,
+ * with an estimation error no larger (Hutchinson, 1990). */
 struct signs {
     uint64_t state, bits;
     int left;
@@ -323,8 +326,8 @@ static double next_sign(struct signs *signs)
     return sign;
 }
 
-/* Takes a field u drawn from the prior (in units of the deviation) and computes the negative readings of all sensors. The constant of each
- * body is irrelevant: the value at its first sensor is subtracted (written to levels, by component), which avoids cancellation later. */
+/* Computes the negative readings of all sensors for a field u drawn from the prior (in units of the deviation). A constant per body is
+ * irrelevant, so the value at the body's first sensor is subtracted, which avoids cancellation later; levels[component] receives it. */
 static void take_readings(const struct solving *solving, const double *u, struct signs *signs, double *levels, float *readings)
 {
     const size_t n = solving->mesh->source_count;
@@ -339,8 +342,8 @@ static void take_readings(const struct solving *solving, const double *u, struct
 
 struct gaussian_samples { /* one thread's buffers for a block of samples */
     float *missed;        /* [mesh point][sample]: field minus prediction */
-    float *readings; /* [sample][sensor] */
-    double *levels;  /* by component */
+    float *readings;      /* [sample][sensor] */
+    double *levels;       /* by component */
     struct solver solver;
 };
 
@@ -381,7 +384,7 @@ static void add_squares(const struct solving *solving, const float *missed)
     }
 }
 
-/* Processes blocks [begin, end) of samples. */
+/* Processes the blocks [begin, end) of BLOCK random samples each. */
 static void sample_blocks(void *arg, size_t begin, size_t end)
 {
     struct solving *solving = arg;

@@ -12,18 +12,19 @@
 #define PREPROCESS_INFLUENCE_GAUSSIAN_H
 #include "preprocess/influence/influence.h"
 
-/* minimum sensor noise as a share of the deviation; with less, two sensors at one position make the system singular */
+/* minimum sensor noise as a share of the deviation; with less noise, two sensors at one position make the system singular */
 #define GAUSSIAN_LEAST_NOISE 0.005
-#define GAUSSIAN_SAMPLES 256 /* number of random samples for the deviation, whose relative error is at most 1 / sqrt(2 * 256) = 4.4 % */
+/* number of random samples from which the standard deviation is estimated, with a relative error of at most 1 / sqrt(2 * 256) = 4.4 % */
+#define GAUSSIAN_SAMPLES 256
 
 struct gaussian_params {
     double range_m, noise, deviation; /* range in metres; noise and deviation (standard deviations) in the unit of the readings */
 };
 
 /* Computes H, P and the standard deviation at each vertex, the latter from random samples with a fixed seed. anchors: positions on the mesh
- * of the vertex_count vertices. bend: receives the shares of all sensors, to measure the error between corners of drawn triangles; may be
- * NULL. workers may be NULL. Returns false after logging if out of memory or if the system is singular. Call influence_finish() in both
- * cases. */
+ * of the vertex_count vertices. bend: receives the weights of all sensors at mesh points, to measure the interpolation error inside drawn
+ * triangles; may be NULL. workers may be NULL. Returns false after logging if out of memory or if the system is singular. Call
+ * influence_finish() in both cases. */
 bool gaussian_solve(struct influence *influence, struct log *log, struct workers *workers, const struct influence_mesh *mesh,
                     const struct gaussian_params *params, const struct influence_anchor *anchors, size_t vertex_count,
                     struct influence_bend *bend);

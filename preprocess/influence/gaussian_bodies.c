@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes areas and the component of each sensor. */
+/* Computes the area of each connected component, and the component that each sensor is on. */
 #include "preprocess/influence/gaussian_bodies.h"
 
 #include "base/mem.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes the derivative as a central difference between k^2 one STEP below and above. */
+/* Computes the derivative with respect to k^2 as a central difference, from values one STEP below and above log k^2. */
 #include "preprocess/influence/gaussian_covariance.h"
 
 #include <math.h>
@@ -9,9 +9,10 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-#define STEP 0.02 /* in log k^2; the relative error of the difference is STEP^2 / 6, and a smaller step would lose digits to cancellation */
+/* step of log k^2; the relative error of the central difference is STEP^2 / 6; a smaller step would lose digits to cancellation */
+#define STEP 0.02
 
-/* --- shared by all ranges ---------------------------------------------------------------------------------------------------- */
+/* --- preparation that does not depend on the range ----------------------------------------------------------------------------- */
 
 /* Lists for each mesh point the sensors that touch it, sorted. */
 static void list_sensors(const struct influence_mesh *mesh, const struct laplacian *laplacian, size_t *first, uint32_t *sensors,
@@ -52,7 +53,7 @@ static double find_bound(size_t rows, const size_t *first, const uint32_t *senso
     return bound;
 }
 
-/* Extends the matrix G by the sensors' rows below it and the sensors' columns, which have only a diagonal. */
+/* Builds the bordered matrix: G, the sensors' rows D' below it, and the sensors' columns, of which only the diagonal is stored. */
 static cholmod_sparse *add_border(const cholmod_sparse *inner, size_t count, const size_t *first, const uint32_t *sensors,
                                   const double *shares, cholmod_common *common)
 {
@@ -163,7 +164,7 @@ void gaussian_covariance_finish(struct gaussian_covariance *covariance)
 struct slope {
     const struct gaussian_covariance *covariance;
     double k2[2];
-    double *between[2]; /* [sensor][sensor], lower triangle: D' A^-1 D minus its constant part */
+    double *between[2]; /* [sensor][sensor], lower triangle: D' A^-1 D minus its constant part, for the lower and the upper k2 */
     atomic_int status;  /* first CHOLMOD status other than CHOLMOD_OK */
 };
 
@@ -172,7 +173,7 @@ static size_t sensor_of(const struct gaussian_covariance *covariance, const chol
     return (size_t)((int *)factor->Perm)[row] - covariance->row_count;
 }
 
-/* Subtracts l l' for each column l of the sensors' block of the factor. */
+/* Subtracts l l' from the matrix for each column l in the sensors' block of the factor. */
 static void take_columns(const struct gaussian_covariance *covariance, const cholmod_factor *factor, double *from)
 {
     const size_t count = covariance->count;

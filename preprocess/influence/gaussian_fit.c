@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Searches a grid of ranges with a subset of the sensors, then refines the best by parabolas with all sensors. For each range, searches a
- * grid of noise shares and a finer one around the best. The deviation follows from range and noise. */
+/* Searches a grid of ranges with a subset of the sensors, then refines the best range by parabolas with all sensors. For each range,
+ * searches a grid of noise shares and a finer one around the best. The deviation follows from range and noise. */
 #include "preprocess/influence/gaussian_fit.h"
 
 #include <math.h>
@@ -14,13 +14,13 @@
 #include "preprocess/influence/gaussian_contrast.h"
 #include "preprocess/influence/gaussian_covariance.h"
 
-#define RANGES 9 /* number of ranges in the search grid, evenly spaced in logarithms */
+#define RANGES 9  /* number of ranges in the search grid, evenly spaced in logarithms */
 #define FEW 96    /* maximum number of sensors in the grid search */
 #define CLOSER 3  /* number of parabola steps */
 #define SHARES 13 /* number of noise shares in the search grid, from GAUSSIAN_LEAST_NOISE to MAX_SHARE of the deviation */
 #define MAX_SHARE 3.0
-#define SAME 0.02      /* ranges whose logarithms differ by less are equal: readings cannot distinguish them */
-#define MIN_INSTANTS 8 /* minimum number of instants; fewer cannot determine three parameters */
+#define SAME 0.02      /* ranges whose logarithms differ by less than this count as equal, because readings cannot distinguish them */
+#define MIN_INSTANTS 8 /* minimum number of instants (lines of readings); fewer cannot determine three parameters */
 #define MIN_SENSORS 3
 
 /* --- the table --------------------------------------------------------------------------------------------------------------- */
@@ -112,7 +112,8 @@ static void find_scatter(struct gaussian_fit *fit)
     const struct readings_table *table = fit->table;
     const size_t n = table->count;
     double *less = mem_array(n, sizeof(*less)), level = 0;
-    for (size_t i = 0; i < n; i++) /* the precision matrix removes any constant; subtracting the mean avoids cancellation */
+    /* subtract the mean to avoid cancellation; the result is unchanged, because the precision matrix removes any constant */
+    for (size_t i = 0; i < n; i++)
         level += table->values[i] / (double)n;
     for (size_t t = 0; t < table->instants; t++) {
         for (size_t i = 0; i < n; i++)
@@ -158,8 +159,8 @@ static void try_share(struct gaussian_fit *fit, double range_m, double share, do
     fit->best = (struct gaussian_params){ range_m, share * sqrt(variance), sqrt(variance) };
 }
 
-/* Finds the best noise share for a range. Stated parameters stay fixed: with a stated noise, the deviation is searched and the share
- * follows from it. */
+/* Finds the best noise share for a range. Parameters stated in the plant file stay fixed. With a stated noise, the search varies the
+ * deviation, and the share is noise / deviation. */
 static void try_range(struct gaussian_fit *fit, double range_m)
 {
     const struct gaussian_params *stated = fit->stated;
@@ -186,7 +187,7 @@ struct range_trial { /* result of one range */
     double log_range, likelihood;
 };
 
-/* Evaluates one range. Returns false after logging if out of memory. */
+/* Finds the best parameters for one range and keeps them if they are the best so far. Returns false after logging if out of memory. */
 static bool try_one(struct gaussian_fit *fit, double log_range, struct range_trial *trial)
 {
     const struct gaussian_params best = fit->best;
@@ -226,7 +227,7 @@ static void finish_fit(struct gaussian_fit *fit)
     mem_free(fit->means);
 }
 
-/* Selects at most FEW sensors, evenly spaced by index. */
+/* Writes the subset for the grid search: at most FEW sensors, evenly spaced by index. */
 static void pick_few(const struct influence_mesh *mesh, const struct readings_table *table, struct influence_mesh *few_of_mesh,
                      struct readings_table *few_of_table)
 {

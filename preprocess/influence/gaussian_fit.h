@@ -5,14 +5,14 @@
 #define PREPROCESS_INFLUENCE_GAUSSIAN_FIT_H
 #include "preprocess/influence/gaussian.h"
 
-struct readings_table {     /* the instants at which all sensors have a number */
+struct readings_table {     /* readings at the instants at which every sensor has a number */
     size_t count, instants; /* count: number of sensors */
     double *values;         /* [instant][sensor] */
     size_t left_out;        /* instants dropped because some sensor has no number */
 };
 
-/* Reads a CSV file: a header line of names, of which the columns of the `count` sensors are used, then a line per instant. Returns false
- * with file, line and name in why. The caller calls readings_table_finish() in both cases. */
+/* Reads a CSV file: a header line of names, then one line of readings per instant; only the columns of the `count` named sensors are used.
+ * Returns false with file, line and name in why. The caller calls readings_table_finish() in both cases. */
 bool readings_table_read(struct readings_table *table, const char *path, const char *const *names, size_t count, char why[300]);
 void readings_table_finish(struct readings_table *table);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Solves conduction between sensor discs: one sparse Cholesky factor, solved for blocks of sensors. */
+/* Solves conduction between sensor discs: one sparse Cholesky factorisation, and solves for blocks of sensors. */
 #include "preprocess/influence/influence.h"
 
 #include <math.h>
@@ -11,12 +11,15 @@
 #include "surface/geodesic/laplacian.h"
 #include "surface/geodesic/solver.h"
 
-/* contact conductance of a disc relative to the surface; readings are met within about 1e-5 of the difference between neighbours */
+/* contact conductance between a disc and the surface, relative to the surface's conductance; at this value, the field deviates from a
+ * reading by about 1e-5 of the difference between neighbouring readings */
 #define CONTACT 1e5
-#define REGULARISATION 1e-9 /* share of a body's area added to the diagonal, so that rounding does not make it singular */
-#define MIN_BLOCK 8         /* minimum number of right-hand sides per solve; with more, the sparse factor is read less often */
+/* share of a body's area added to the diagonal, of the matrix, so that rounding does not make the matrix singular */
+#define REGULARISATION 1e-9
+/* minimum number of right-hand sides per solve; with more per solve, the sparse factor is read from memory less often */
+#define MIN_BLOCK 8
 #define MAX_BLOCK BEND_WIDTH
-#define BLOCK_BYTES (64 << 20) /* memory limit of a block above the minimum size; each thread has three such blocks */
+#define BLOCK_BYTES (64 << 20) /* memory limit of a block that is larger than MIN_BLOCK; each thread has three such blocks */
 
 struct conduct {
     struct influence *influence;
@@ -48,7 +51,7 @@ static double *diagonal_of(const struct conduct *conduct, double decay_m)
             diagonal[laplacian->row_of[disc->points[i]]] += CONTACT * disc->shares[i];
         touched[component[disc->points[0]]] = 1;
     }
-    /* a body without a sensor has an undetermined temperature: any value will do, since it is not shown */
+    /* the temperature of a body without a sensor is undetermined and not shown; any positive diagonal makes the matrix regular */
     for (size_t p = 0; p < points; p++)
         if (laplacian->row_of[p] != TRIMESH_NONE)
             diagonal[laplacian->row_of[p]] +=

@@ -17,15 +17,15 @@ struct influence {
     size_t count, vertex_count;
     float *shares;     /* H: weight of each sensor at each vertex, [sensor][vertex] */
     double *precision; /* P: precision matrix, [sensor][sensor] */
-    /* by vertex: standard error while all sensors are good (gaussian.h), followed by vertex: standard error without any sensor; NULL: not
-     * computed. Allocated with one more element, 0, as padding */
+    /* by vertex: standard error while all sensors are good (gaussian.h), then by vertex: standard error without any sensor; NULL: not
+     * computed. The array has one more element, 0, so that the file can be padded to 8 bytes */
     float *deviations;
     float *errors; /* by vertex: largest error of linear interpolation in drawn triangles (influence_bend_measure()); NULL: not requested */
 };
 
 /* Computes the influence by conduction. decay_m: decay length, INFINITY for harmonic. anchors: positions on the mesh of the vertex_count
- * vertices. bend: receives the shares of all sensors, to measure the error between corners of drawn triangles; may be NULL. workers may be
- * NULL. Returns false after logging if out of memory. Call influence_finish() in both cases. */
+ * vertices. bend: receives the weights of all sensors at mesh points, to measure the interpolation error inside drawn triangles; may be
+ * NULL. workers may be NULL. Returns false after logging if out of memory. Call influence_finish() in both cases. */
 bool influence_conduct(struct influence *influence, struct log *log, struct workers *workers, const struct influence_mesh *mesh,
                        double decay_m, const struct influence_anchor *anchors, size_t vertex_count, struct influence_bend *bend);
 /* Frees the arrays of a computed or zeroed struct. */

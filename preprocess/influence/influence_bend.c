@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Clips the mesh triangles against each drawn triangle in its plane: first those lying in the plane, then, for the uncovered rest, those
- * near it. */
+/* Clips the mesh triangles against each drawn triangle in the drawn triangle's plane. A first pass takes the mesh triangles lying in that
+ * plane, further passes those near it, for the area that is still uncovered. */
 #include "preprocess/influence/influence_bend.h"
 
 #include <math.h>
@@ -12,13 +12,15 @@
 #include "preprocess/influence/polygons.h"
 #include "surface/mesh/bvh.h"
 
-/* tolerance of the distance from a drawn triangle's plane, relative to the surface's size: drawn corners are single precision */
+/* tolerance of the distance from a drawn triangle's plane, relative to the surface's size: drawn corners are stored in single precision */
 #define OFF_PLANE 1e-5
-#define LEAST 1e-7     /* overlaps of at most this share of the drawn triangle's squared size are ignored */
-#define COVERED 1e-3   /* share of a triangle's area that may stay uncovered, because small overlaps are ignored */
-#define SAME 1e-7      /* places closer than this share of a triangle's size are equal */
+#define LEAST 1e-7 /* overlaps with an area of at most this share of the drawn triangle's squared size are ignored */
+/* share of a drawn triangle's area that may stay uncovered without counting as unknown, because small overlaps are ignored */
+#define COVERED 1e-3
+#define SAME 1e-7 /* places (corners of overlaps) closer than this share of a triangle's size count as equal */
 #define LEAST_FACING 0.5
-enum { LOOK_BACK = 64 }; /* recent places compared: duplicates come from mesh triangles that are visited shortly after each other */
+/* number of recent places that a new one is compared with: duplicates come from mesh triangles visited shortly after each other */
+enum { LOOK_BACK = 64 };
 
 struct finding {
     struct influence_bend *bend;
@@ -28,12 +30,13 @@ struct finding {
     struct bvh *visible_bvh, *hidden_bvh;
     /* State of the current drawn triangle: */
     uint32_t tri;
-    double origin[3], axes[3][3]; /* origin; axes: two in the drawn triangle's plane, and its normal */
+    double origin[3], axes[3][3]; /* origin of the plane's coordinates; axes: two in the drawn triangle's plane, and its normal */
     double corners[3][2], size_m;
     struct extent extent;
-    size_t first;              /* index of its first place */
-    uint32_t *taken_by;        /* by mesh point: 1 + the drawn triangle that last got a place there */
-    struct polygons left, cut; /* left: area not yet covered; cut: the rest of it after the current pass */
+    size_t first;       /* index of its first place */
+    uint32_t *taken_by; /* by mesh point: 1 + index of the last drawn triangle for which a place at this point was added; 0: none */
+    /* polygons; left: area not yet covered before the current pass; cut: the part of `left` that the current pass has not covered */
+    struct polygons left, cut;
     /* State of the current pass: */
     const struct trimesh *mesh;
     double off_m;
@@ -94,7 +97,8 @@ static bool is_single(const struct influence_anchor *anchor)
     return anchor->points[0] == anchor->points[1] && anchor->points[0] == anchor->points[2];
 }
 
-/* Returns whether the place is at a corner of the drawn triangle that has the value of the same mesh point: there the difference is 0. */
+/* Returns whether the place is at a corner of the drawn triangle whose value is that of the same mesh point, so that the difference there
+ * is 0. */
 static bool is_corner(const struct finding *finding, const struct bend_place *place)
 {
     const struct bend_drawn *drawn = &finding->bend->drawn;
@@ -106,7 +110,8 @@ static bool is_corner(const struct finding *finding, const struct bend_place *pl
     return false;
 }
 
-/* Returns whether the place needs no check: it is at such a corner, or the triangle already has it. A few duplicates are missed. */
+/* Returns whether the place needs no check: it is at a corner with difference 0 (is_corner()), or the drawn triangle already has an equal
+ * place. May miss a duplicate, which costs only time. */
 static bool is_known(struct finding *finding, const struct bend_place *place)
 {
     const struct influence_bend *bend = finding->bend;
@@ -145,8 +150,8 @@ static void add_place(struct finding *finding, const double at[2], const double 
 
 /* --- passes -------------------------------------------------------------------------------------------------------------------- */
 
-/* Processes a mesh triangle whose box is near the drawn triangle: removes what it covers from finding->cut. If the triangle belongs to the
- * solved mesh and overlaps finding->left, adds the corners of the overlap as places. */
+/* Processes a mesh triangle whose box is near the drawn triangle: removes the area that it covers from finding->cut. If the triangle
+ * belongs to the solved mesh and overlaps finding->left, adds the corners of the overlap as places. */
 static void visit(void *arg, uint32_t tri)
 {
     struct finding *finding = arg;
@@ -156,7 +161,8 @@ static void visit(void *arg, uint32_t tri)
     double piece[3][2], normal[3], off_m;
     vec_normal(at[points[0]], at[points[1]], at[points[2]], normal);
     double facing = vec_dot(normal, finding->axes[2]), least = LEAST_FACING * vec_length(normal);
-    if (finding->full || !((solved ? facing : fabs(facing)) > least)) /* triangles that hide the drawn one may face either way */
+    /* a solved triangle must face the same way; one that hides the drawn triangle may face either way */
+    if (finding->full || !((solved ? facing : fabs(facing)) > least))
         return;
     uint32_t order[3] = { points[0], points[facing > 0 ? 1 : 2], points[facing > 0 ? 2 : 1] };
     for (int i = 0; i < 3; i++) {
@@ -187,7 +193,8 @@ static void visit(void *arg, uint32_t tri)
     memmove(finding->cut.of, finding->cut.of + before, finding->cut.count * sizeof(*finding->cut.of));
 }
 
-/* Clips finding->left by all mesh triangles within off_m of its plane. Returns the area that they cover. */
+/* Makes one pass: clips finding->left by all mesh triangles within off_m of the drawn triangle's plane. Returns the area that they
+ * cover. */
 static double cover(struct finding *finding, const struct trimesh *mesh, const struct bvh *bvh, double off_m)
 {
     double before_m2 = polygons_area(&finding->left);
@@ -265,11 +272,11 @@ static void find_places(struct finding *finding)
 
 /* --- coarser levels ------------------------------------------------------------------------------------------------------------ */
 
-/* Barycentric samples of a triangle (unnormalised): the thirds of its sides and its centre. */
+/* Barycentric weights (times 3) of the samples of a triangle: two points on each side, at its thirds, and the centre. */
 enum { SAMPLES = 7 };
 static const double samples[SAMPLES][3] = { { 2, 1, 0 }, { 1, 2, 0 }, { 0, 2, 1 }, { 0, 1, 2 }, { 1, 0, 2 }, { 2, 0, 1 }, { 1, 1, 1 } };
 
-/* Adds the samples of a coarse level's triangle; samples take the place of areas. */
+/* Adds the samples of a coarse level's triangle as places. Counts of samples take the role of areas. */
 static void sample_triangle(struct finding *finding, const struct influence_mesh *mesh, const struct surface *surface, size_t tri,
                             double within_m)
 {

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Measures the bend: how far the solved field differs from the linear interpolation drawn between the corners of a triangle. Both are
- * piecewise linear, on different triangulations, so their difference is largest at corners of the overlaps of mesh and drawn triangles. All
- * these corners ("places") are found, and the rest of each drawn triangle's area is recorded as not covered. Where a part lies inside or
- * against another part, nothing is solved. Where crack bridging has moved mesh corners off the drawn triangle, the mesh is projected
- * perpendicularly onto it. */
+/* Measures the bend: the largest difference between the solved field and the linear interpolation drawn between the corners of a triangle.
+ * Both fields are piecewise linear, on different triangulations, so their difference is largest at corners of the overlaps of mesh and
+ * drawn triangles. All these corners ("places") are found, and the rest of each drawn triangle's area is recorded as not covered. The field
+ * is not solved where a part lies inside or against another part. Where crack bridging has moved mesh corners off the drawn triangle, the
+ * mesh is projected perpendicularly onto it. */
 #ifndef PREPROCESS_INFLUENCE_INFLUENCE_BEND_H
 #define PREPROCESS_INFLUENCE_INFLUENCE_BEND_H
 #include <stdatomic.h>
@@ -27,20 +27,21 @@ struct bend_drawn { /* the drawn triangles */
     const uint32_t *triangles; /* indices of the drawn triangles, 3 each, level by level, finest first */
     size_t vertex_count, triangle_count;
     const struct influence_anchor *anchors; /* position on the mesh of each vertex */
-    /* All overlap corners are found for the finest level. Triangles of coarser levels do not lie on the surface: a few samples of each are
-     * taken. */
+    /* All overlap corners are found for the finest level. Triangles of coarser levels do not lie on the surface: the bend is measured at a
+     * few points of each. */
     const struct bend_level *levels;
-    size_t level_count; /* number of levels; 0: all triangles are of the finest level */
+    size_t level_count; /* count of levels; 0: all triangles belong to the finest level */
 };
 
 struct influence_bend {
     struct bend_drawn drawn;
     struct bend_place *places; /* grouped by drawn triangle */
     size_t count, capacity;
-    /* by drawn triangle: its area; its area hidden inside other parts; its area without a bound. Coarse levels count samples instead of
-     * areas */
+    /* by drawn triangle: its area; the area hidden inside other parts; the area where the bend is unknown. For coarse levels: counts of
+     * samples instead of areas */
     double *area_m2, *hidden_m2, *unknown_m2;
-    _Atomic int64_t *plus, *minus; /* by place: sum over sensors of the positive and of the negative errors of the shares, in fixed point */
+    /* by place: sums over sensors of the positive and of the negative errors of their weights, in fixed point */
+    _Atomic int64_t *plus, *minus;
     struct mesh_error *mesh_error; /* sums for the discretisation error of the solution */
     size_t point_count;            /* number of points of the mesh */
 };
@@ -51,23 +52,26 @@ bool influence_bend_init(struct influence_bend *bend, const struct influence_mes
                          const struct bend_drawn *drawn, size_t most);
 void influence_bend_finish(struct influence_bend *bend);
 
-/* Adds the errors of the shares of `width` sensors, at most BEND_WIDTH. at_points: `stride` numbers for each point of the mesh, the first
- * `width` of them shares. The sums do not depend on the order of calls. Thread: any number of concurrent calls. */
+/* Adds the interpolation errors of the weights ("shares") of `width` sensors, at most BEND_WIDTH. at_points: `stride` numbers for each
+ * point of the mesh, of which the first `width` are weights. The sums do not depend on the order of calls. Thread: any number of concurrent
+ * calls. */
 void influence_bend_add(struct influence_bend *bend, const float *at_points, size_t stride, size_t width);
 
-struct bend_report {             /* all zero: no bend was measured */
-    /* number of (group, interpolation) pairs whose bend is bounded, and of pairs with too many places to measure */
+struct bend_report { /* all zero: no bend was measured */
+    /* measured: count of (group, interpolation) pairs whose bend was measured; unmeasured: count of pairs with too many places to
+     * measure */
     size_t measured, unmeasured;
-    double steps;                /* bound of the bend anywhere, in steps of (MAX - MIN) / 255, for any good readings between MIN and MAX */
-    double over_share;           /* share of the area covered by triangles in which the bend may exceed one step */
-    double hidden_share;         /* share of the area inside or against another part, where nothing is solved */
-    double unknown_share; /* share of the area that is not on the solved surface; like hidden_share, not part of `steps` and `over_share` */
+    double steps;         /* bound of the bend anywhere, in steps of (MAX - MIN) / 255, for any good readings between MIN and MAX */
+    double over_share;    /* share of the area covered by triangles in which the bend may exceed one step */
+    double hidden_share;  /* share of the area inside or against another part, where nothing is solved */
+    double unknown_share; /* share of the area that is not on the solved surface; `steps` and `over_share` exclude it and the hidden area */
 };
 /* Computes the error of one interpolation after the shares of all sensors were added, and resets the sums for the next one. Merges the
- * finest level's result into the report, which keeps the worst. Writes the steps of each drawn triangle to `steps` (may be NULL). Writes to
- * `errors` (may be NULL), for each vertex, the largest difference to the exact solution in the triangles around it: bend plus
- * discretisation error, as a share of the spread of readings (fin: spread of readings and ambient); 1 where it is unknown. around: value
- * far from all sensors, as (value - MIN) / (MAX - MIN); 0 where shares sum to 1. Thread: one. */
+ * finest level's result into the report, which keeps the maximum of each number. steps (may be NULL): receives the bend of each drawn
+ * triangle in colour steps. errors (may be NULL): receives, for each vertex, the largest difference to the exact solution in the triangles
+ * around it: bend plus discretisation error, as a share of the spread of readings (fin: spread of readings and ambient); 1 where it is
+ * unknown. around: the field's value far from all sensors, as (value - MIN) / (MAX - MIN); 0 for interpolations whose weights sum to 1.
+ * Thread: one. */
 void influence_bend_measure(struct influence_bend *bend, double around, float *steps, float *errors, struct bend_report *report);
 
 #endif

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sums the errors of all sensors' shares at each measured position, for the worst readings there. */
+/* Sums the interpolation errors of all sensors' weights at each place (corner of an overlap, influence_bend.h), and finds the largest error
+ * for any readings. */
 #include <math.h>
 #include <string.h>
 
@@ -9,11 +10,11 @@
 #include "preprocess/influence/influence_bend.h"
 
 #define STEPS 255.0
-#define FIXED 0x1p40 /* fixed-point scale of a share: integer sums do not depend on their order */
+#define FIXED 0x1p40 /* fixed-point scale of a weight: integer sums do not depend on the order of addition */
 
 typedef float shares_of[BEND_WIDTH];
 
-/* Interpolates the shares of `width` sensors at an anchor. Sensors beyond `width` get 0. */
+/* Interpolates the weights of `width` sensors at an anchor. The remaining elements of the BEND_WIDTH results are set to 0. */
 SIMD_BODY void gather(const struct influence_anchor *anchor, const float *at_points, size_t stride, size_t width, shares_of out)
 {
     const float *a = at_points + anchor->points[0] * stride, *b = at_points + anchor->points[1] * stride;
@@ -57,7 +58,8 @@ void influence_bend_add(struct influence_bend *bend, const float *at_points, siz
     }
 }
 
-/* Returns the error for the worst readings, in steps: all sensors with positive share error at MAX and the others at MIN, or vice versa. */
+/* Returns the largest error for any readings, in colour steps. The worst readings are MAX for all sensors whose weight error is positive
+ * and MIN for the others, or vice versa. */
 static double worst_of(double plus, double minus, double around)
 {
     double level = around * (plus + minus);
@@ -66,10 +68,11 @@ static double worst_of(double plus, double minus, double around)
 
 /* --- vertex errors ----------------------------------------------------------------------------------------------------------- */
 
-/* Whether the error of a drawn triangle is known. */
+/* States of the error of a drawn triangle: bounded, hidden (does not count), unknown. */
 enum triangle_state { TRIANGLE_BOUNDED, TRIANGLE_HIDDEN, TRIANGLE_UNKNOWN };
-#define ALL_OF_IT 0.999    /* share of a triangle's area that counts as all of it, because of rounding */
-#define COARSE_UNKNOWN 0.5 /* share that may be unknown in a triangle of a coarse level, which does not lie on the surface */
+/* a triangle with more than this share of its area hidden counts as wholly hidden; below 1 because of rounding */
+#define ALL_OF_IT 0.999
+#define COARSE_UNKNOWN 0.5 /* share of samples that may be unknown in a coarse level's triangle, which does not lie on the surface */
 
 static enum triangle_state state_of(const struct influence_bend *bend, size_t tri)
 {
@@ -88,8 +91,8 @@ static float mesh_error_at(const struct influence_anchor *anchor, const float *b
     return most;
 }
 
-/* Writes the error of each vertex. bends: by triangle, as a share of the spread of readings. Triangles hidden inside other parts are
- * visible only in sections and do not count; vertices of hidden triangles only have an unknown error. */
+/* Writes the error of each vertex. bends: bend of each triangle as a share of the spread of readings. Triangles hidden inside other parts
+ * are visible only in sections and do not count. A vertex that only hidden triangles use gets the error 1 (unknown). */
 static void write_errors(struct influence_bend *bend, const float *bends, float *errors)
 {
     const struct bend_drawn *drawn = &bend->drawn;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes interpolations group by group and writes all of them to one file. */
+/* Computes the interpolations that each group requests, and writes all results to one file. */
 #include "preprocess/influence/influence_file.h"
 
 #include <math.h>
@@ -18,19 +18,21 @@
 #include "preprocess/influence/transport.h"
 #include "protocol/influence_format.h"
 
-#define EDGES 5.0     /* requested number of mesh edges per range; more make no visible difference */
-#define MIN_EDGES 2.0 /* minimum mesh edges per range; fewer would make the field seem more certain than it is */
-#define LONGEST 10.0  /* limit of the range, in sizes of the surface; longer ranges look the same */
+#define EDGES 5.0     /* requested number of mesh edges along one correlation range; more make no visible difference */
+/* minimum number of mesh edges along one correlation range; fewer would make the field seem more certain than it is */
+#define MIN_EDGES 2.0
+#define LONGEST 10.0  /* maximum correlation range, in sizes of the surface; longer ranges look the same */
 #define FIT_MIN 0.05  /* smallest fitted range, in sizes of the surface */
 #define FIT_MAX 3.0
-enum { BEND_PLACES = 8000000 }; /* maximum number of places at which the bend is measured; more would take too long */
+/* maximum number of places where the bend is measured (influence_bend.h); with more, it is not measured, because it would take too long */
+enum { BEND_PLACES = 8000000 };
 
 struct influence_making {
     struct log *log;
     struct workers *workers;
     const struct influence_input *input;
     struct vertex_embedding *embedding;
-    struct cloud_heat *cloud; /* created when the first group asks for it; NULL: not yet */
+    struct cloud_heat *cloud; /* created for the first group that requests distances by heat; NULL: not created yet */
     struct influence_header header;
     struct influence_entry *entries;
     struct influence *found; /* result of each entry */
@@ -114,7 +116,7 @@ static bool find_params(struct influence_making *making, int group, const double
     return good;
 }
 
-/* Returns whether the mesh is fine enough for the range; prints an error otherwise. */
+/* Returns whether the mesh has MIN_EDGES edges per range; otherwise logs an error. */
 static bool range_good(const struct influence_making *making, int group, const struct influence_mesh *mesh,
                        const struct gaussian_params *gp)
 {
@@ -140,7 +142,7 @@ static bool solve(struct influence_making *making, struct influence *found, enum
                : influence_conduct(found, making->log, making->workers, mesh, decay_m, anchors, count, bend);
 }
 
-/* Computes found->errors. Without a measurement, errors are unbounded. Returns false if out of memory. */
+/* Computes found->errors. If the bend was not measured, writes 1 (unknown) for all vertices. Returns false if out of memory. */
 static bool bound_errors(const struct influence_making *making, const struct plant_group *group, enum interpolation interpolation,
                          struct influence_bend *bend, struct influence *found)
 {
@@ -158,7 +160,7 @@ static bool bound_errors(const struct influence_making *making, const struct pla
     return true;
 }
 
-/* Computes one interpolation of a group and adds it to the file's entries. bend: NULL if there are too many places to measure. */
+/* Computes one interpolation of a group and adds it to the file's entries. bend: NULL if it has too many places to measure. */
 static bool add_entry(struct influence_making *making, int group, enum interpolation interpolation, const struct influence_mesh *mesh,
                       const struct gaussian_params *gp, const struct influence_anchor *anchors, struct influence_bend *bend)
 {
@@ -237,7 +239,8 @@ static void find_by_heat(void *arg, size_t begin, size_t end)
             work->failed = true;
 }
 
-/* Computes distances by heat for a group. Compares those of the first CLOUD_CHECKED sensors with ours for the report. */
+/* Computes distances by heat for a group. For the report, compares the distances of the first CLOUD_CHECKED sensors with our mesh
+ * distances. */
 static bool add_heat(struct influence_making *making, int group, const double (*places_m)[3], size_t count)
 {
     const struct influence_input *input = making->input;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Halves edges near sensors until they are short enough, and finds the points covered by each sensor's disc. */
+/* Halves edges near sensors until the edges are short enough, and finds the points covered by each sensor's disc. */
 #include "preprocess/influence/influence_mesh.h"
 
 #include <math.h>
@@ -8,10 +8,11 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-/* an edge at distance D from the nearest sensor is at most this times D long, or half the disc's radius if that is more */
+/* an edge at distance D from the nearest sensor may be GRADING * D long, or half the disc's radius if that is longer */
 #define GRADING 0.7
-#define MAX_ADDED 1000          /* maximum number of points added per sensor; a radius far smaller than the triangles is not resolved */
-#define MAX_ADDED_EVENLY 400000 /* maximum number of points added where edges must be short everywhere */
+/* maximum number of points added per sensor; if the disc's radius is far smaller than the triangles, edges there stay too long */
+#define MAX_ADDED 1000
+#define MAX_ADDED_EVENLY 400000 /* maximum number of points added to make edges short everywhere (edge_m below INFINITY) */
 
 /* --- refinement near sensors ------------------------------------------------------------------------------------------------- */
 
@@ -189,7 +190,7 @@ static uint32_t piece_of(const struct influence_mesh *mesh, uint32_t tri, const 
 
 /* --- discs ------------------------------------------------------------------------------------------------------------------- */
 
-/* Collects the points of a sensor's disc. Spreads along the surface from the nearest corner, so that the other side of a thin wall is not
+/* Collects the points of a sensor's disc. Walks along the surface from the nearest corner, so that the other side of a thin wall is not
  * touched. */
 static void spread_disc(struct influence_mesh *mesh, size_t sensor, double radius_m, char *seen)
 {

@@ -7,7 +7,8 @@
 #include "surface/surface.h"
 #include "surface/vertex_embedding.h"
 
-struct influence_disc { /* the mesh points under a sensor; shares: part of the disc's area belonging to each point, in sum 1 */
+/* the mesh points under a sensor's disc; shares: fraction of the disc's area that belongs to each point; their sum is 1 */
+struct influence_disc {
     uint32_t *points;
     double *shares;
     size_t count;
@@ -19,7 +20,7 @@ struct influence_mesh {
     double (*sources_m)[3]; /* positions of the sensors on the surface */
     uint32_t *source_tris;
     size_t source_count;
-    double size_m;                  /* metres; diagonal of the surface's main part */
+    double size_m;                  /* length of the diagonal of the surface's main part (gap_split.h), metres */
     double longest_m;               /* metres; longest edge */
     uint32_t *piece_first, *pieces; /* mesh triangles grouped by tri_source */
     uint32_t *fan_first, *fans;     /* mesh triangles grouped by point */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Expresses the flux imbalance at each edge as a linear form of point values and sums it over sensors. */
+/* Expresses the flux imbalance at each edge as a linear form of the field's values at mesh points, and sums the imbalance over sensors. */
 #include "preprocess/influence/mesh_error.h"
 
 #include <math.h>
@@ -9,13 +9,14 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-#define SAFETY 2.0   /* safety factor: values at mesh points have an error too, about as large as the error between them */
-#define FIXED 0x1p40 /* fixed-point scale of a share: integer sums do not depend on their order */
+#define SAFETY 2.0   /* safety factor 2, because the values at mesh points have an error about as large as the error between points */
+#define FIXED 0x1p40 /* fixed-point scale of an imbalance: integer sums do not depend on the order of addition */
 
-/* Flux imbalance of an edge times the height of its lowest triangle: the distance of that triangle's tip from the plane of the others. */
+/* Flux imbalance of an edge times the height of its lowest triangle. Equals the amount by which the field at that triangle's tip differs
+ * from the linear field of the other triangles at the edge. */
 struct edge_form {
     uint32_t first, count; /* range of the terms */
-    float low_m, sum_m;    /* heights of the edge's triangles above it: the lowest, and their sum */
+    float low_m, sum_m;    /* heights of the triangles at the edge, measured from the edge: the smallest height, and their sum */
 };
 struct edge_term {
     uint32_t point;
@@ -27,14 +28,14 @@ struct mesh_error {
     struct edge_form *edges;
     struct edge_term *terms;
     size_t edge_count;
-    uint32_t (*edges_of)[3];       /* by triangle: edge from each corner to the next */
-    float (*heights_m)[3];         /* by triangle: height above each edge; 0: no area */
+    uint32_t (*edges_of)[3];       /* by triangle: index of the edge from each corner to the next */
+    float (*heights_m)[3];         /* by triangle: its height above each of its edges; 0: the triangle has no area */
     _Atomic int64_t *plus, *minus; /* by edge: sums over sensors of the positive and of the negative imbalances, fixed point */
 };
 
 /* --- the mesh ----------------------------------------------------------------------------------------------------------------- */
 
-/* Returns the height of a triangle's tip above the edge a-b. *foot receives the tip's projection: 0 at a, 1 at b. */
+/* Returns the height of a triangle's tip above the edge a-b. *foot receives where the tip projects onto the edge: 0 at a, 1 at b. */
 static double height_m(const double a[3], const double b[3], const double tip[3], double *foot)
 {
     double along[3], to[3];
@@ -96,7 +97,7 @@ static void add_term(struct mesh_error *error, struct edge_form *edge, uint32_t 
     error->terms[edge->first + edge->count++] = (struct edge_term){ point, (float)factor };
 }
 
-/* Reserves the terms of each edge: its two ends, and the tip of each adjacent triangle. */
+/* Reserves space for the terms of each edge's linear form: one per end of the edge, and one per tip of an adjacent triangle. */
 static bool reserve_terms(struct mesh_error *error)
 {
     uint32_t *faces = mem_array(error->edge_count, sizeof(*faces)), next = 0;
@@ -198,8 +199,8 @@ void mesh_error_add(struct mesh_error *error, const float *at_points, size_t str
     }
 }
 
-/* Returns the error across one edge of a triangle. If a much lower triangle is on the other side, the distance of that triangle's tip from
- * the plane limits it. */
+/* Returns the discretisation error that one edge contributes to a triangle. It is at most the deviation at the tip of the edge's
+ * lowest triangle (struct edge_form). */
 static double across(const struct mesh_error *error, size_t tri, int i)
 {
     const struct edge_form *edge = &error->edges[error->edges_of[tri][i]];

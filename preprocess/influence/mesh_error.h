@@ -14,11 +14,11 @@ struct mesh_error;
 struct mesh_error *mesh_error_create(const struct influence_mesh *mesh);
 /* Frees the sums and sets *error to NULL. *error may be NULL. */
 void mesh_error_destroy(struct mesh_error **error);
-/* Adds the shares of `width` sensors, at most BEND_WIDTH. at_points: as for influence_bend_add(). Thread: any number of concurrent
- * calls. */
+/* Adds the weights ("shares") of `width` sensors, at most BEND_WIDTH. at_points: as for influence_bend_add(). Thread: any number of
+ * concurrent calls. */
 void mesh_error_add(struct mesh_error *error, const float *at_points, size_t stride, size_t width);
-/* Writes for each mesh point the largest error in the triangles around it for the worst readings, as a share of the spread of readings.
- * Resets the sums to zero. */
+/* Writes for each mesh point the largest error in the triangles around it, for the worst possible readings, as a fraction of the spread of
+ * readings. Resets the sums to zero. */
 void mesh_error_take(struct mesh_error *error, float *by_point);
 
 #endif

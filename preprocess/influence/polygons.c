@@ -22,7 +22,7 @@ double polygons_area(const struct polygons *polygons)
     return sum;
 }
 
-/* Writes the part of the polygon left of the line from a to b (side 1), or right of it (side -1). */
+/* Writes the part of the polygon to the left of the line from a to b (side 1), or to the right of the line (side -1). */
 static bool half_of(const struct polygon *polygon, const double a[2], const double b[2], double side, struct polygon *out)
 {
     out->count = 0;
@@ -75,7 +75,8 @@ void polygons_add_outside(struct polygons *polygons, const struct polygon *polyg
                half_of(&inside, triangle[i], triangle[(i + 1) % 3], 1, &next);
         inside = next;
     }
-    if (!good || !(polygon_area(&inside) > least_m2)) { /* no relevant overlap: keep the polygon whole instead of splitting it */
+    /* the overlap is at most least_m2: keep the polygon whole instead of splitting it */
+    if (!good || !(polygon_area(&inside) > least_m2)) {
         polygons_add(polygons, polygon);
         return;
     }

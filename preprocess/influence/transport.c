@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Solves the connection Laplacian: one sparse Cholesky factor with two unknowns per point, solved for each sensor. */
+/* Solves a system with the connection Laplacian: one sparse Cholesky factorisation with two unknowns per point, and one solve per
+ * sensor. */
 #include "preprocess/influence/transport.h"
 
 #include <math.h>
@@ -11,9 +12,10 @@
 #include "surface/geodesic/solver.h"
 
 #define LENGTHS 150.0 /* the diffusion length sqrt(t) is at least the surface's size divided by this, because heat underflows at e^-709 */
-/* the diffusion length sqrt(t) is at least the longest path along the surface divided by this; folded parts have long paths */
+/* the diffusion length sqrt(t) is at least the longest path along the surface divided by this; on folded parts, paths are much longer than
+ * the size */
 #define LONGEST 400.0
-#define LEAST 1e-280 /* vectors shorter than this have lost their direction to rounding */
+#define LEAST 1e-280 /* minimum length of a solved vector; a shorter one has lost its direction to rounding */
 
 struct vector_heat {
     struct influence *influence;
@@ -28,8 +30,8 @@ struct vector_heat {
 
 /* --- the surface ------------------------------------------------------------------------------------------------------------ */
 
-/* Computes point normals: area-weighted mean of the triangles around a point, or the largest triangle's normal where they cancel out, as on
- * a two-sided sheet. */
+/* Computes point normals: area-weighted mean of the triangles around a point, or the largest triangle's normal where the normals cancel
+ * out, as on a two-sided sheet. */
 static void find_normals(struct vector_heat *transport)
 {
     const struct trimesh *mesh = &transport->mesh->mesh;
@@ -65,7 +67,7 @@ struct ways {
         double length_m;
     } * at;
     uint32_t *queue;
-    double *gone_m; /* by point: distance travelled in metres; < 0: not reached yet */
+    double *gone_m; /* by point: length of the path from the start to the point, metres; < 0: not reached yet */
 };
 
 static void find_ways(const struct intrinsic *in, size_t point_count, struct ways *ways)
@@ -111,8 +113,8 @@ static size_t spread(struct ways *ways, uint32_t from, uint32_t *farthest)
     return count;
 }
 
-/* Returns the approximate length of the longest path on any connected piece: from any point to the farthest one, and from there to the
- * farthest again. */
+/* Returns the approximate length of the longest path on any connected piece: finds the point farthest from an
+ * arbitrary one, then the longest path from that point. */
 static double longest_way_m(const struct intrinsic *in, size_t point_count)
 {
     struct ways ways;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Halves space recursively until the boxes in a cell are few, are one group already, or include one that fills the cell and so meets all
- * others. A sweep along one axis would compare all pairs of boxes along a plate perpendicular to that axis. */
+/* Halves space recursively until the boxes in a cell are few, are one group already, or include a box that fills the cell and so meets all
+ * others. The usual method, a sweep along one axis would compare all pairs of boxes along a plate perpendicular to that axis. */
 #include "preprocess/levels/box_groups.h"
 
 #include <math.h>
@@ -11,7 +11,7 @@
 #include "surface/mesh/trimesh.h"
 
 #define FEW 24       /* number of boxes up to which all pairs are compared */
-#define MAX_DEPTH 96 /* limit of halvings: 24 bits of each axis, plus a margin */
+#define MAX_DEPTH 96 /* maximum depth of halvings: 24 bits of precision on each of three axes, plus a margin */
 
 struct box_cell {
     float low_m[3], high_m[3];
@@ -64,8 +64,8 @@ static bool holds(const struct part_box *box, const float low_m[3], const float 
     return true;
 }
 
-/* Joins boxes without comparing pairs: all of them if one box fills the cell, else those that contain the cell's centre. Returns whether
- * all boxes were joined. */
+/* Joins boxes without comparing pairs. If one box fills the cell, joins all boxes of the cell, otherwise only those that contain the cell's
+ * centre. Returns whether all boxes were joined. */
 static bool join_some(const struct part_box *boxes, const uint32_t *list, size_t count, const struct box_cell *cell, uint32_t *parent)
 {
     float middle_m[3];

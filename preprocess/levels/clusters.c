@@ -21,7 +21,7 @@ struct clusters_making {
 
 /* The vertices of one primitive, numbered from 0: meshoptimizer's run time depends on the number of vertices it is given. */
 struct local {
-    uint32_t *of; /* by vertex of the geometry: its number in the current primitive + 1, or 0 */
+    uint32_t *of; /* by vertex of the geometry: its index in the current primitive + 1; 0: the primitive does not use the vertex */
     uint32_t *indices, *vertices;
     float (*positions_m)[3];
     uint32_t count;

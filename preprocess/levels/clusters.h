@@ -19,8 +19,8 @@ struct clusters_making;
    Returns the job for clusters_end(). */
 struct clusters_making *clusters_begin(struct workers *workers, const struct level *level, const float (*positions_m)[3],
                                        uint32_t vertex_count);
-/* Waits for the job and appends its clusters to *clusters. first_index: number of indices of all finer levels, added to the clusters' index
- * offsets. Frees the job and sets *making to NULL. */
+/* Waits for the job and appends the clusters to *clusters. first_index: position of the level's indices in the asset file, added to each
+ * cluster's index offset. Frees the job and sets *making to NULL. */
 void clusters_end(struct clusters_making **making, uint32_t first_index, struct clusters *clusters);
 /* Frees the array. */
 void clusters_finish(struct clusters *clusters);

@@ -10,8 +10,9 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-#define SMALL 4.0  /* in expected distances; triangles shorter than this are probed at their centre */
-#define LARGE 16.0 /* in expected distances; triangles longer than this are probed at twelve inner points, others at edge midpoints */
+#define SMALL 4.0 /* in expected distances; a triangle whose longest edge is at most this long is probed only at its centre */
+/* in expected distances; a triangle with a longer edge is probed at twelve inner points, one between SMALL and LARGE at edge midpoints */
+#define LARGE 16.0
 
 /* Returns a hash that does not depend on the order of the corners and is never 0. */
 static uint64_t triangle_hash(const uint32_t v[3])
@@ -43,7 +44,7 @@ static void make_room_to_know(struct deviation *surface, size_t triangle_count)
     surface->known = mem_array(surface->known_mask + 1, sizeof(*surface->known));
 }
 
-/* Adds a triangle to the hash set. Returns false if a triangle with the same corners is already there. */
+/* Adds a triangle to the hash set. Returns false if a triangle with the same corners is already in the set. */
 static bool know_triangle(struct deviation *surface, const uint32_t v[3])
 {
     uint64_t hash = triangle_hash(v), *slot = &surface->known[slot_of(surface, hash)];
@@ -53,8 +54,9 @@ static bool know_triangle(struct deviation *surface, const uint32_t v[3])
 }
 
 struct deviation_part {
-    struct trimesh mesh; /* the part's triangles, sharing the arrays of the whole surface; tri_count 0: the part has no triangle here */
-    struct bvh *bvh;     /* hierarchy of the part's triangles; NULL: the part is not measured */
+    /* the part's triangles, sharing the arrays of the whole surface; tri_count 0: this surface has no triangle of the part */
+    struct trimesh mesh;
+    struct bvh *bvh; /* hierarchy of the part's triangles; NULL: the part is not measured */
 };
 
 /* Returns the triangle indices grouped by part. The caller frees them with mem_free. */
@@ -163,16 +165,17 @@ static bool shares_triangle(const struct deviation *surface, const uint32_t indi
 struct probing {
     const struct deviation *from, *to;
     const char *only; /* by part: whether it is probed; NULL: all */
-    bool anywhere;    /* measure against all of `to`, instead of each part against itself */
+    bool anywhere;    /* true: measure the distance to any part of `to`; false: to the same part of `to` */
     double expected_m;
-    const float *known_m; /* by part: distance known so far; only larger distances matter */
+    const float *known_m; /* by part: largest distance found so far; smaller distances need not be exact */
     float *found_m;       /* measured distance of each point or triangle */
 };
 
 #define RECENT 4
-struct near {                    /* cache of one thread */
-    uint32_t part, tris[RECENT]; /* recent nearest triangles of this part of `to`, latest first, or TRIMESH_NONE */
-    double known_m;              /* largest distance of the part known so far */
+struct near { /* cache of one thread */
+    /* triangles of this part of `to` that were nearest to recent points, latest first; TRIMESH_NONE: empty entry */
+    uint32_t part, tris[RECENT];
+    double known_m; /* largest distance of the part found so far */
 };
 
 struct deviation_probe {   /* a probed point and the surface it is measured against */
@@ -232,8 +235,8 @@ static void forget(struct near *near)
         near->tris[i] = TRIMESH_NONE;
 }
 
-/* Returns the point's distance, or 0 if it is not larger than the known one. Searches within the expected distance first, which is enough
- * for most points. */
+/* Returns the point's distance, or 0 if it is not larger than the largest distance found so far. Searches within the expected distance
+ * first, which is enough for most points. */
 static double distance_of(const struct deviation_probe *probe, double expected_m)
 {
     struct bvh_place place;

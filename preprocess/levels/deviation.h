@@ -12,7 +12,7 @@ struct deviation {       /* a surface prepared for measuring distances to it and
     struct deviation_part *parts;
     size_t part_count;
     const uint32_t *part; /* part of each vertex */
-    uint32_t *index;      /* vertex index of each mesh point: the first vertex at its position */
+    uint32_t *index;      /* by vertex: index of the first vertex at its position, which serves as mesh point */
     size_t highest;       /* largest value in index[] */
     char *has;            /* by vertex: the vertex is a corner of this surface */
     uint64_t *known;      /* hash set of the surface's triangles, by their vertex indices */
@@ -24,8 +24,8 @@ struct deviation_params {
     const uint32_t *first_there; /* by vertex: the first vertex of the same part at the same position */
     const uint32_t *part;        /* by vertex; borrowed */
     size_t part_count;
-    const char *only; /* by part: whether it will be measured; NULL: all */
-    bool anywhere;    /* build one hierarchy over all parts, for deviation_measure_lost() */
+    const char *only; /* by part: whether the part will be measured; NULL: all parts */
+    bool anywhere;    /* true: build one hierarchy over all parts, which deviation_measure_lost() needs */
 };
 /* Builds a surface to measure: copies positions and triangles (3 vertices each), removes duplicate triangles, and builds a bounding volume
  * hierarchy for each part, so that distance queries skip other parts around it. Surfaces to be compared must share positions and parts. */
@@ -41,8 +41,8 @@ const struct bvh *deviation_hierarchy(const struct deviation *surface, size_t pa
  * all). expected_m: expected distance, which determines how densely triangles are probed. workers may be NULL. */
 void deviation_measure(const struct deviation *from, const struct deviation *to, const char *only, double expected_m, float *apart_m,
                        struct workers *workers);
-/* Like deviation_measure(), but for the parts marked in `lost`, and to the nearest triangle of any part: where a removed part lay on
- * others, those are visible in its place. `to` must have been built with `anywhere`. */
+/* Like deviation_measure(), but for the parts marked in `lost`, and to the nearest triangle of any part of `to`: where a removed part lay
+ * on other parts, these are visible in its place. `to` must have been built with `anywhere`. */
 void deviation_measure_lost(const struct deviation *from, const struct deviation *to, const char *lost, double expected_m, float *apart_m,
                             struct workers *workers);
 

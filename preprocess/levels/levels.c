@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Assembles levels from versions: each part in the coarsest version that the level's error allows. */
+/* Assembles levels of detail from versions (successively simplified copies of the asset). A level takes each part in the coarsest version
+ * that the level's error allows. Near levels are drawn large; far levels are drawn small, often many instances at once. */
 #include "preprocess/levels/levels.h"
 
 #include <math.h>
@@ -10,34 +11,36 @@
 #include "base/mem.h"
 #include "preprocess/levels/levels_impl.h"
 
-#define NEAR_WORTH 0.5     /* largest share of the previous level's triangles for a near level */
-#define FAR LEVELS_FILLING /* error relative to the asset's size from which on levels may count as far */
-/* number of triangles up to which a level with such an error is a far level; many far levels are drawn in one picture */
+#define NEAR_WORTH 0.5     /* a near level is made only if it has at most this share of the previous level's triangles */
+#define FAR LEVELS_FILLING /* minimum error of a far level, relative to the asset's size */
+/* maximum triangle count of a far level; far levels may follow each other more closely, because many instances are drawn in one picture */
 #define FAR_TRIANGLES 16000
-#define FAR_WORTH 0.9  /* largest share of the previous level's triangles for a far level */
+#define FAR_WORTH 0.9  /* a far level is made only if it has at most this share of the previous level's triangles */
 #define STEP 1.4       /* minimum factor by which the error grows from level to level */
 #define STEP_SMALL 1.7 /* minimum factor by which the error grows after levels with errors above LEVELS_SMALL */
-/* factor on the error: a near level also includes changes up to this much later, and the next try after a rejected level waits as long */
+/* factor on a level's error: a near level also includes events up to this error, and after a rejected level the next attempt has at least
+ * this error */
 #define WAIT 1.1
-#define MISSED 1.05f /* factor on the level's error that limits the error caused by omitted parts */
-#define MAX_TRIES 2  /* attempts to move faces: in all parts, then only in parts whose error this does not increase */
+#define MISSED 1.05f /* maximum error caused by omitting a part, relative to the level's error; a part with more is restored */
+/* attempts to move corners of flattened faces: first in all parts, then only in parts whose error stays within the limit */
+#define MAX_TRIES 2
 
 struct levels_making {
     struct workers *workers;
     struct welds welds;
     struct versions versions;
     struct omission *omissions;
-    char *used;     /* vertices that the previous level uses */
+    char *used;     /* by vertex: the previous level uses the vertex */
     char *contrary; /* by part: see levels_find_contrary() */
     /* Current state: */
-    uint32_t *version; /* version of each part; ABSENT: the part is omitted */
-    uint32_t *shown;   /* version of each part in the last level; ABSENT: the part is omitted */
+    uint32_t *version; /* by part: its version; ABSENT: the part is omitted */
+    uint32_t *shown;   /* by part: its version in the last level; ABSENT: the part is omitted */
     size_t tri_count;
 };
 
 #define ABSENT VERSIONS_MAX
 
-/* --- events with growing error -------------------------------------------------------------------------------------------- */
+/* --- events, by growing error: a part changes to a coarser version or is omitted ---------------------------------------- */
 
 struct event {
     float error_m; /* level error from which on this event is allowed, metres */
@@ -148,7 +151,7 @@ static void measure_lost(const struct levels_making *making, const uint32_t *wel
     mem_free(lost);
 }
 
-/* Returns the largest error of all parts, without the error caused by omitted parts that lay on others. */
+/* Returns the largest error of all parts, metres. Excludes omitted parts that lay on others; measure_lost() measures these. */
 static float error_of_parts(const struct levels_making *making)
 {
     float most_m = 0;
@@ -160,8 +163,8 @@ static float error_of_parts(const struct levels_making *making)
     return most_m;
 }
 
-/* Moves corners of flattened faces. For parts whose error then exceeds the limit, sets most_m to 0. Returns whether there is any such
- * part. */
+/* Moves corners of flattened faces. Sets most_m to 0 for parts whose error then exceeds the limit, so that the next attempt skips them.
+ * Returns whether there is any such part. */
 static bool try_facing(const struct levels_making *making, uint32_t *welds, size_t count, float limit_m, float *most_m)
 {
     const struct welds *of = &making->welds;
@@ -185,7 +188,7 @@ static bool try_facing(const struct levels_making *making, uint32_t *welds, size
     return any;
 }
 
-/* Moves corners of flattened faces, only in parts whose error this does not raise above the level's. */
+/* Moves corners of flattened faces, but only in parts whose error stays within limit_m. */
 static void face_parts(const struct levels_making *making, uint32_t *welds, size_t count, float limit_m)
 {
     float *most_m = mem_array(making->welds.part_count, sizeof(*most_m));
@@ -215,7 +218,7 @@ static uint32_t *list_welds(const struct levels_making *making, size_t *count)
     return welds;
 }
 
-/* Returns the coarsest version of a part within the error, never finer than in the last level. */
+/* Returns the index of the coarsest version of a part whose error is at most error_m, but never one finer than in the last level. */
 static uint32_t version_within(const struct levels_making *making, uint32_t part, float error_m)
 {
     uint32_t best = making->shown[part];
@@ -225,8 +228,8 @@ static uint32_t version_within(const struct levels_making *making, uint32_t part
     return best;
 }
 
-/* Restores omitted parts whose omission exceeds the error of the level, because the surface under them has moved away. Marks them in
- * `back`. Returns whether there are any. */
+/* Restores omitted parts whose omission exceeds the error of the level, because the surface under them has moved away. Marks the restored
+ * parts in `back`. Returns whether any part was restored. */
 static bool bring_back(struct levels_making *making, const float *apart_m, float error_m, char *back)
 {
     bool any = false;
@@ -259,7 +262,8 @@ static bool is_worth(const struct levels_making *making, const struct level *las
     return now <= (is_far(making, last, error_m) ? FAR_WORTH : NEAR_WORTH) * before;
 }
 
-/* Adds a level in the current state. Writes its error. Returns false without adding it if restored parts make it not worthwhile. */
+/* Adds a level in the current state. Writes the level's error. Returns false without adding the level if restored parts make its triangle
+ * count too large. */
 static bool add_level(struct levels_making *making, struct levels *levels, float *error_out_m)
 {
     size_t count, parts = making->welds.part_count;
@@ -308,7 +312,7 @@ static void make_coarse(struct levels_making *making, struct levels *levels)
 {
     struct event *events = mem_array(making->welds.part_count * (making->versions.count + 1), sizeof(*events));
     size_t count = list_events(making, events);
-    float error_m, waited_m = 0; /* waited_m: minimum error after a rejected level */
+    float error_m, waited_m = 0; /* waited_m: minimum error of the next attempt after a rejected level, metres; 0: no level was rejected */
     making->used = mem_array(making->welds.geometry->vertex_count, 1);
     making->version = mem_array(making->welds.part_count, sizeof(*making->version));
     making->shown = mem_array(making->welds.part_count, sizeof(*making->shown));

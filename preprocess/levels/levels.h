@@ -11,8 +11,8 @@
  * short; the distance along the surface jumps there. */
 enum level_limit { LEVEL_LIMIT_TRIANGLES, LEVEL_LIMIT_LENGTH, LEVEL_LIMIT_JUMP, LEVEL_LIMITS };
 
-/* Edges that still have a field error above one colour step after subdivision, and their largest error in steps. In coarser levels, short
- * edges are sampled and extrapolated. */
+/* Edges that still have a field error above one colour step after subdivision: their count, and the largest error in colour steps. In
+ * coarser levels, the count of short edges is extrapolated from a sample. */
 struct level_left {
     uint32_t edges;
     float steps;

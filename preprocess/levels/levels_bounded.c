@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Performs half-edge collapses in order of how far they move the surface. Each triangle keeps a list of the original vertices ("places")
- * nearest to it (Ciampalini et al., Multiresolution decimation based on global error, The Visual Computer 1997). A collapse's exact error
- * is computed only when it reaches the top of the heap: the distance from those places to the new triangles, and from the new triangles to
- * the original surface. */
+/* Collapses edges ("points" are removed by merging them into a neighbour) in order of how far this moves the surface. Each triangle keeps a
+ * list of the original vertices ("places") nearest to it (Ciampalini et al., Multiresolution decimation based on global error, The Visual
+ * Computer 1997). The error of a collapse is the distance from these places to the new triangles, and from the new triangles to the
+ * original surface. It is computed only when the collapse reaches the top of the heap; until then a lower bound is used. */
 #include "preprocess/levels/levels_bounded.h"
 
 #include <string.h>
@@ -10,22 +10,23 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-#define RING 48      /* maximum number of triangles around a point; points with more are not removed */
-#define TURN 0.4     /* minimum cosine between a triangle's old and new normal */
-#define BORDER 0.5   /* share of the allowed error by which open borders and seams may move */
-#define STRETCH 0.05 /* share of an edge's elongation that counts as error, because subdivision would have to split longer edges */
+#define RING 48    /* maximum number of triangles around a point; points with more are not removed */
+#define TURN 0.4   /* minimum cosine between a triangle's old and new normal */
+#define BORDER 0.5 /* maximum movement of open borders and seams, as a share of the allowed error */
+/* factor from the elongation of an edge to the error added for it; longer edges cost triangles later, in subdivision */
+#define STRETCH 0.05
 #define NONE UINT32_MAX
 
 struct bounded_face {
     uint32_t point[3], weld[3]; /* points and welds of the corners; all NONE: the face was removed */
-    uint32_t first;             /* first original vertex ("place") in the face's list */
-    uint32_t near;              /* triangle of the original surface to test first */
-    double normal[3], length;   /* normal with a length of twice the area; `length` is that length */
+    uint32_t first;             /* first original vertex ("place") in the face's list; next_place links the others */
+    uint32_t near;              /* triangle of the original surface that was nearest last, tested first */
+    double normal[3], length;   /* normal, not of unit length; length: its length, twice the triangle's area */
     double longest_m;           /* longest edge */
 };
 
 struct removal_candidate { /* heap entry: a point that may be removed */
-    float error_m;         /* lower bound of the error, or the exact error if is_known */
+    float error_m;         /* error of the collapse: exact if is_known, else a lower bound */
     uint32_t point, stamp, target;
     bool is_known; /* error_m is exact */
 };
@@ -34,10 +35,11 @@ struct bounded {
     const struct welds *welds;
     const struct bvh *first;
     double (*points)[3];
-    float *moved_m;   /* by point: how far the borders and seams at it have moved */
-    uint32_t *corner; /* by point: one of its face corners (3 per face); next: by corner, the next corner of the same point */
+    float *moved_m; /* by point: distance by which the borders and seams at it have moved */
+    /* by point: first corner in its list of face corners (3 per face); next: by corner, the next corner of the same point */
+    uint32_t *corner;
     uint32_t *next;
-    uint32_t *stamp; /* by point: a counter that changes whenever the triangles around the point change */
+    uint32_t *stamp; /* by point: counter of changes to the triangles around it; candidates with an older counter are outdated */
     struct bounded_face *faces;
     size_t point_count, face_count, left;
     double (*places)[3];
@@ -87,10 +89,10 @@ struct ring_wedge {               /* one triangle around a point */
 struct point_ring {
     uint32_t point;
     struct ring_wedge wedges[RING];
-    int count; /* number of wedges; RING + 1: too many triangles */
-    /* end points of the ring's edges; welds of both edge ends in one of the edge's triangles */
+    int count; /* number of wedges; RING + 1: the point has too many triangles */
+    /* by edge from the point: the point at its other end, and the welds of both ends in one of the edge's triangles */
     uint32_t ends[2 * RING], weld_here[2 * RING], weld_there[2 * RING];
-    bool is_feature[2 * RING]; /* the edge to this end is a border or a seam */
+    bool is_feature[2 * RING]; /* by edge: it is an open border or a seam */
     int end_count, feature_count;
     double longest_m; /* longest edge of all triangles */
 };
@@ -113,7 +115,7 @@ static void list_ring(struct bounded *b, uint32_t point, struct point_ring *ring
     while (*link != NONE && ring->count <= RING) {
         uint32_t corner = *link;
         const struct bounded_face *face = &b->faces[corner / 3];
-        if (face->point[corner % 3] != point) { /* skip a corner that was moved or removed */
+        if (face->point[corner % 3] != point) { /* unlink a corner that was moved to another point or removed */
             *link = b->next[corner];
             continue;
         }
@@ -176,7 +178,7 @@ static bool has_end(const struct ring_wedge *wedge, uint32_t end)
 }
 
 /* Returns the new weld of a corner when its point is merged into the target: the target's weld in a triangle that contains both. NONE: no
- * or several welds fit. */
+ * weld fits, or several do. */
 static uint32_t weld_after(const struct point_ring *ring, int target, uint32_t weld)
 {
     uint32_t found = NONE;
@@ -200,7 +202,8 @@ static void moved_face(const struct bounded *b, const struct ring_wedge *wedge, 
     at[(wedge->at + 2) % 3] = b->points[wedge->points[1]];
 }
 
-/* Returns how far a collapse moves borders and seams, or INFINITY if it would break them. */
+/* Returns how far borders and seams would have moved after a collapse, metres: 0 if the point is on none, INFINITY if the collapse would
+ * break one. */
 static double border_of(const struct bounded *b, const struct point_ring *ring, int target)
 {
     int other = -1;
@@ -246,7 +249,7 @@ static double bound_of(const struct bounded *b, const struct point_ring *ring, i
     return max_of(nearest_m, border_m) + STRETCH * longer_m;
 }
 
-/* Returns the larger of error_m and the distance of a point from the original surface. */
+/* Returns the larger of error_m and the distance of the point from the original surface. Starts with the triangle *near. */
 static double raise(const struct bounded *b, const double point[3], double error_m, uint32_t *near)
 {
     struct bvh_place place;
@@ -261,8 +264,8 @@ struct moved { /* a triangle after the collapse */
     const struct ring_wedge *wedge;
 };
 
-/* Returns the distance from a place to the nearest of the moved triangles, or any value below enough_m once one is that near. Tests the
- * place's own triangle first. */
+/* Returns the distance from a place to the nearest of the moved triangles, or any value up to enough_m once a triangle is that near. Tests
+ * the place's own triangle first. */
 static double distance_to_any(const double place[3], const struct moved *moved, int count, int own, double enough_m)
 {
     double nearest_m = INFINITY;
@@ -275,8 +278,8 @@ static double distance_to_any(const double place[3], const struct moved *moved, 
     return nearest_m;
 }
 
-/* Returns the error of a collapse: the distance from the affected places to the new triangles, and from the new triangles to the original
- * surface. Stops once it exceeds enough_m. */
+/* Returns the largest of error_m and the two distances that make up the error of a collapse: from the affected places to the new triangles,
+ * and from the new triangles to the original surface. Stops early once the result exceeds enough_m. */
 static double error_of(struct bounded *b, const struct point_ring *ring, uint32_t to, double error_m, double enough_m)
 {
     struct moved moved[RING];
@@ -291,7 +294,7 @@ static double error_of(struct bounded *b, const struct point_ring *ring, uint32_
     for (int c = 0; c < ring->count && error_m <= enough_m; c++)
         for (uint32_t s = b->faces[ring->wedges[c].face].first; s != NONE && error_m <= enough_m; s = b->next_place[s])
             error_m = max_of(error_m, distance_to_any(b->places[s], moved, count, own[c] < count ? own[c] : 0, error_m));
-    /* probe the centre, and the midpoint of the edge not shared with the next triangle */
+    /* probe each new triangle at its centre, and at the midpoint of the edge that the next new triangle does not share */
     for (int f = 0; f < count && error_m <= enough_m; f++) {
         const double *const *at = moved[f].at;
         uint32_t m = moved[f].wedge->at, *near = &b->faces[moved[f].wedge->face].near;
@@ -342,7 +345,8 @@ static void measure_face(const struct bounded *b, struct bounded_face *face)
     face->longest_m = longest_edge(at);
 }
 
-/* Assigns a place to the nearest of the faces, or the first of equally near ones. Returns that face's index. Tests `last` first. */
+/* Assigns a place to the nearest of the faces (the first of equally near ones). Returns the index of that face in the list. Tests the face
+ * `last` first, because successive places are close together. */
 static int rehome(struct bounded *b, const uint32_t *faces, int count, int last, uint32_t place)
 {
     double nearest_m = INFINITY;
@@ -413,8 +417,8 @@ static int index_of(const struct point_ring *ring, uint32_t end)
     return -1;
 }
 
-/* Returns whether a collapse would make the surface touch itself along an edge: its ends share a neighbour that is in no triangle with both
- * (link condition; Dey et al., Topology preserving edge contraction, Publ. Inst. Math. 1999). */
+/* Returns whether a collapse would make the surface touch itself along an edge: the edge's ends share a neighbour that is in no triangle
+ * with both ends (link condition; Dey et al., Topology preserving edge contraction, Publ. Inst. Math. 1999). */
 static bool would_touch(struct bounded *b, const struct point_ring *ring, int target)
 {
     struct point_ring there;
@@ -466,9 +470,10 @@ static void place_of(const struct welds *welds, uint32_t weld, double place[3])
         place[axis] = (double)welds->positions_m[weld][axis];
 }
 
-/* By weld: the number of its point + 1, or 0. */
+/* Map from welds to the points of one part. */
 struct point_numbers {
-    uint32_t *of, low, high; /* of[weld - low]: number of the weld's point + 1, or 0; covers the welds from low to high */
+    /* by weld, of[weld - low]: index of the weld's point + 1; 0: none; low and high: range of welds that the map covers */
+    uint32_t *of, low, high;
 };
 
 static struct point_numbers number_points(struct bounded *b, const uint32_t *corners, size_t count)
@@ -525,7 +530,7 @@ static void measure_faces(struct bounded *b)
     }
 }
 
-/* Assigns places that are not points of this mesh to the nearest triangle. */
+/* Assigns the places that are not points of the part's triangles to the nearest triangle. */
 static void take_far_places(struct bounded *b, const uint32_t *places, size_t count)
 {
     struct trimesh mesh = { .points = b->points, .point_count = b->point_count, .tri_count = b->face_count };

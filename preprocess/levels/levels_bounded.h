@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Simplifies one part of an asset by edge collapses, those that move the surface least first, and tracks how far the surface has moved.
- * Thread: any, each with its own object. */
+/* Simplifies one part of an asset by edge collapses, starting with those that move the surface least, and tracks how far the surface has
+ * moved. Thread: any, each with its own object. */
 #ifndef PREPROCESS_LEVELS_BOUNDED_H
 #define PREPROCESS_LEVELS_BOUNDED_H
 #include "preprocess/levels/levels_impl.h"
@@ -8,7 +8,7 @@
 struct bounded;
 
 /* Creates a simplifier for a part's triangles (welds, three each). `places` are welds of the original surface whose distance is checked,
- * and `first` is that surface's hierarchy. `first` and `welds` must outlive the object. */
+ * and `first` is the triangle hierarchy of that surface. `first` and `welds` must outlive the object. */
 struct bounded *bounded_create(const struct welds *welds, const uint32_t *corners, size_t count, const uint32_t *places, size_t place_count,
                                const struct bvh *first);
 /* Frees the simplifier and sets *bounded to NULL. *bounded may be NULL. */

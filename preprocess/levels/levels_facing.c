@@ -8,12 +8,14 @@
 #include "base/mem.h"
 #include "preprocess/levels/levels_impl.h"
 
-#define AWAY (-0.5f) /* cosine with the face normal below which a weld's best vertex points away from the face */
-#define ALONG 0.7f   /* cosine with the face normal above which a neighbouring vertex counts as facing the same way */
-#define BESIDE 1.25f /* factor on the allowed error: a slanted sheet has an error smaller than its thickness */
+/* a corner needs a repair if the cosine between the face normal and the best vertex normal of its weld is below this */
+#define AWAY (-0.5f)
+#define ALONG 0.7f /* minimum cosine between the face normal and the normal of a vertex that replaces the corner */
+/* maximum distance of a move, in multiples of the allowed error; above 1, because the thickness of a slanted sheet exceeds its error */
+#define BESIDE 1.25f
 #define NONE UINT32_MAX
 
-struct corner_need { /* a corner that needs a vertex facing its side */
+struct corner_need { /* a face corner that needs a vertex whose normal points to the face's side */
     size_t corner;
     float normal[3]; /* normal of the corner's face */
     float score;     /* score of the best candidate so far */
@@ -139,7 +141,8 @@ static void move_faces(const struct facing_pass *facing, uint32_t *corners)
     }
 }
 
-/* Coarser levels use the welds of this one. A face is restored if a weld it used before is no longer used by any face. */
+/* Restores each face that used a weld before the repair which no face uses any more, because coarser levels need all welds of this
+ * level. */
 static void keep_knots(const struct facing_pass *facing, const uint32_t *before, uint32_t *corners, size_t count)
 {
     char *kept = mem_array(facing->welds->count, 1);

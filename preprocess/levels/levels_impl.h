@@ -5,15 +5,16 @@
 #include "preprocess/levels/deviation.h"
 #include "preprocess/levels/levels.h"
 
-#define LEVELS_FILLING 0.001 /* error relative to the asset's size that is one pixel when the asset fills the picture */
-#define LEVELS_SMALL 0.012   /* error relative to the asset's size that is one pixel when the asset spans a twelfth of the picture */
-/* relative to the asset's size; a level with a larger error would never be drawn larger than a dozen pixels across */
+#define LEVELS_FILLING 0.001 /* error relative to the asset's size that covers one pixel when the asset fills the picture */
+#define LEVELS_SMALL 0.012   /* error relative to the asset's size that covers one pixel when the asset spans a twelfth of the picture */
+/* largest error of a level, relative to the asset's size: a coarser level would be drawn only where the asset is smaller than about a dozen
+ * pixels */
 #define LEVELS_FARTHEST 0.08
 
 /* --- welds and parts (levels_welds.c) --- */
 
-/* A weld is a group of vertices that the simplifier treats as one: equal in all attributes that must be kept. Parts are the connected
- * components of welds, by position. */
+/* A weld is a group of vertices that the simplifier treats as one: equal in all attributes that must be kept. A part is a connected
+ * component of triangles; welds at the same position count as connected. */
 struct welds {
     const struct geometry *geometry;
     size_t count, part_count;
@@ -59,12 +60,12 @@ void versions_finish(struct versions *versions);
 /* --- omitted parts (levels_omissions.c) --- */
 
 struct omission {
-    float from_m; /* the part is omitted from levels with at least this error, metres; INFINITY: from none */
-    bool alone;   /* no other part is near; its group of small parts is no larger than from_m */
+    float from_m; /* the part is omitted from levels with at least this error, metres; INFINITY: the part is never omitted */
+    bool alone;   /* no larger part is near: the part and the small parts around it are together at most from_m large */
 };
 
-/* Decides for each part from which level error on it may be omitted: because it lies on much larger parts, or because it and the small
- * parts around it are together smaller than a pixel. workers may be NULL. */
+/* Writes for each part the level error from which the part may be omitted: because it lies on much larger parts, or because the part and
+ * the small parts around it are together smaller than a pixel. workers may be NULL. */
 void omissions_find(struct omission *omissions, const struct welds *welds, struct workers *workers);
 
 /* --- flattened parts (levels_facing.c) --- */
@@ -74,7 +75,7 @@ void levels_normal(const struct welds *welds, const uint32_t corners[3], float n
 /* Returns the vertex of a weld, among those marked in `used`, whose normal fits the face normal n best, ignoring the normal's sign; with
  * one_side, the one whose normal is closest to n. Returns UINT32_MAX if none is marked. */
 uint32_t levels_vertex(const struct welds *welds, const char *used, uint32_t weld, const float n[3], bool one_side);
-/* Marks the parts that have a face whose winding contradicts its vertices' normals in the model. */
+/* Marks in contrary[part] the parts in which, already in the model, the winding of a face contradicts its vertex normals. */
 void levels_find_contrary(const struct welds *welds, char *contrary);
 /* Repairs the shading of thin parts that have lost their thickness: if a face's corner (welds, three each) has no used vertex facing its
  * side, moves it to a neighbouring weld that has one, at most about most_m (by part) away. Marks changed parts in `moved`. Returns false if

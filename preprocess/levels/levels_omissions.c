@@ -9,19 +9,19 @@
 #include "preprocess/levels/levels_impl.h"
 #include "surface/mesh/bvh.h"
 
-#define MUCH_LARGER 4.0f /* size ratio to a part from which on another part may carry it */
-#define MAX_PX 8.0f      /* pixels; a part lying on another one is omitted when it is no larger than this */
-/* factor from the distance between the parts to the expected error of the omission, since the other parts are inexact too */
+#define MUCH_LARGER 4.0f /* minimum size ratio of a larger part to a small part lying on it */
+#define MAX_PX 8.0f      /* largest size in pixels at which a part lying on another one may be omitted */
+/* factor from the distance between the parts to the expected error of the omission, because the larger parts are simplified too */
 #define OVER 1.1f
-#define SMALL 0.1   /* size relative to the whole asset; larger parts are never omitted */
-#define AROUND 4.0f /* parts nearer to each other than this many times their size are considered together */
-#define PROBES 4    /* probes on each edge of a part's triangles */
+#define SMALL 0.1   /* maximum size of an omitted part, relative to the whole asset */
+#define AROUND 4.0f /* small parts nearer to each other than this many times their size form a group, which is omitted as one */
+#define PROBES 4    /* number of probed points on each edge of a part's triangles */
 
 #define CLASSES_MAX 20
-#define FEWER 0.75 /* largest share of the previous class's triangles; a class with more is not worth its own hierarchy */
+#define FEWER 0.75 /* a size class is made only if it has at most this share of the previous class's triangles */
 
-/* The triangles of all parts larger than than_m, in their own hierarchy: a search for larger parts in a hierarchy of all triangles would
- * first meet the small part itself and its neighbours at every probe. */
+/* Size class: the triangles of all parts larger than than_m, with a hierarchy of their own. A search for larger parts in a hierarchy of all
+ * triangles would first meet the small part itself and its neighbours at every probe. */
 struct size_class {
     float than_m;
     struct trimesh mesh; /* triangles of the class; shares the points of the whole mesh */
@@ -91,7 +91,7 @@ static void add_class(struct omission_search *search, float than_m, size_t count
     class->bvh = bvh_create(&class->mesh);
 }
 
-/* Builds the size classes. The class used for a part is the last whose than_m is at most the part's limit. */
+/* Builds the size classes. To search for parts larger than a limit, the last class with than_m up to that limit is used. */
 static void make_classes(struct omission_search *search)
 {
     const struct welds *welds = search->welds;
@@ -124,7 +124,7 @@ struct larger {
     const struct omission_search *search;
     const struct size_class *class;
     float than_m;
-    uint32_t near; /* triangle of the class that was near the previous probe, or TRIMESH_NONE */
+    uint32_t near; /* triangle found near the previous point, tested first; TRIMESH_NONE: none */
 };
 
 static bool is_larger(const void *arg, uint32_t tri)
@@ -133,7 +133,8 @@ static bool is_larger(const void *arg, uint32_t tri)
     return larger->search->welds->size_m[larger->search->part[larger->class->mesh.tri_source[tri]]] > larger->than_m;
 }
 
-/* Returns the larger of apart_m and the distance of a triangle's edges from larger parts. INFINITY: beyond the limit. */
+/* Returns the larger of apart_m and the largest distance of points on a triangle's edges from larger parts; INFINITY if that distance
+ * exceeds limit_m. */
 static float look_from(struct larger *larger, uint32_t tri, double limit_m, float apart_m)
 {
     const struct trimesh *mesh = &larger->search->mesh;
@@ -171,7 +172,7 @@ static void look_for_larger(void *arg, size_t begin, size_t end)
 
 /* --- isolated parts ------------------------------------------------------------------------------------------------------- */
 
-/* Lists the boxes of small parts that no larger part hides, enlarged by the distance that counts as near. */
+/* Lists the boxes of small parts that no larger part hides, enlarged by the distance up to which another part counts as near. */
 static size_t list_boxes(const struct omission_search *search, struct part_box *boxes)
 {
     const struct welds *welds = search->welds;
@@ -190,7 +191,7 @@ static size_t list_boxes(const struct omission_search *search, struct part_box *
     return count;
 }
 
-/* Groups neighbouring small parts. The size of the whole group determines from which error on its parts are omitted. */
+/* Groups neighbouring small parts. The size of the whole group is the level error from which its parts are omitted. */
 static void look_for_lonely(const struct omission_search *search)
 {
     const struct welds *welds = search->welds;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Simplifies an asset step by step and measures the error of each part. */
+/* Simplifies an asset step by step into versions, and measures the error of each part in each version. Large assets are first halved as a
+ * whole, smaller ones simplified by edge collapses. */
 #include <math.h>
 #include <meshoptimizer.h>
 #include <string.h>
@@ -8,18 +9,20 @@
 #include "preprocess/levels/levels_bounded.h"
 #include "preprocess/levels/levels_impl.h"
 
-#define SHRINK 0.55       /* requested share of the previous version's triangles */
-#define STUCK 0.9         /* halving stops at a version with more than this share of the previous version's triangles */
+#define SHRINK 0.55 /* requested share of the previous version's triangles */
+#define STUCK 0.9   /* halving stops at a version with more than this share of the previous version's triangles */
 /* triangle count above which versions are halved as a whole, which is fast; below it they are simplified edge by edge */
 #define HALVE_ABOVE 40000
-#define MAX_COLLAPSED 100000 /* maximum triangle count for edge-by-edge simplification, also where halving got stuck */
-#define LEAST 0.00025        /* error allowed for the first edge-by-edge version, relative to the asset's size */
-#define STEP 1.3             /* factor between the errors of successive versions where many instances are drawn in one picture */
-/* factor between the errors of successive versions elsewhere; larger, because measuring every version costs the same */
+/* maximum triangle count for edge-by-edge simplification, which is also used if halving makes no more progress */
+#define MAX_COLLAPSED 100000
+#define LEAST 0.00025 /* allowed error of the first version made by edge collapses, relative to the asset's size */
+#define STEP 1.3      /* factor between the errors of successive versions in the range of far levels (levels.c) */
+/* the same factor in the range of near levels; larger, so that fewer versions must be measured */
 #define STEP_ELSE 1.7
-#define ALIKE 0.85           /* a version with more than this share of the previous version's triangles is dropped */
-#define MIN_TRIANGLES 60     /* smaller assets are not simplified */
-#define NEAR 0.01 /* error relative to the asset's size below which versions keep open borders, else hair gaps between patches would open */
+#define ALIKE 0.85       /* a version with more than this share of the previous version's triangles is dropped */
+#define MIN_TRIANGLES 60 /* smaller assets are not simplified */
+/* versions with a smaller error, relative to the asset's size, keep open borders, so that no hair gaps open between patches */
+#define NEAR 0.01
 #define BEYOND 3.0 /* factor from the simplifier's own error, a mean over planes, to the expected real error */
 
 static size_t triangles_of(const struct versions *versions)
@@ -109,7 +112,8 @@ struct collapsing {
     double error_m; /* allowed error */
 };
 
-/* Turns counts at [p + 2] into start offsets at [p + 1]; filling then advances them to the offsets at [p]. */
+/* Counting sort: turns the count of part p at [p + 2] into its start offset at [p + 1]. Filling then advances each offset at [p + 1] to the
+ * start of the next part, so that [p] is the start of part p. */
 static void add_up(size_t *first, size_t parts)
 {
     for (size_t p = 2; p < parts + 2; p++)
@@ -175,8 +179,8 @@ static void read_parts(const struct collapsing *collapsing, struct version *vers
         }
 }
 
-/* Lists allowed errors from the largest useful one down to the smallest, or until `room` is used up. Returns their number; the list is
- * ascending. */
+/* Lists allowed errors from the largest useful one down to the smallest, but at most `room` errors. Returns the count of errors; sorts the
+ * list in ascending order. */
 static size_t list_errors(double whole_m, size_t room, double errors_m[VERSIONS_MAX])
 {
     size_t count = 0;

@@ -10,7 +10,8 @@
 #include "preprocess/geometry/welded_positions.h"
 #include "surface/mesh/trimesh.h"
 
-/* vertices that differ in any of these stay separate: the simplifier preserves borders of materials and textures as seams */
+/* attributes of a vertex; vertices that differ in any attribute get different welds, so that the simplifier preserves borders of materials
+ * and textures as seams */
 struct weld_key {
     float position[3], texcoord[2], second_texcoord[2];
     uint32_t primitive;
