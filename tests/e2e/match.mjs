@@ -426,7 +426,7 @@ test('from exports of two systems to a live picture', { skip: noData, timeout: 2
         assert.equal(bare.status, 200, await (bare.status === 200 ? '' : bare.text()));
         const refused = await fetch(`${url}snapshot.png?width=160&height=100&group=temperature&show=distance&sensor=TT-1101`);
         assert.equal(refused.status, 400);
-        assert.match(await refused.text(), /nobody has said where on -ART1101PO- this sensor is/);
+        assert.match(await refused.text(), /the location of this sensor on -ART1101PO- is not given/);
         if (process.env.PLANTCAST_SHOTS) {
             await page.waitForTimeout(2500);
             await page.screenshot({ path: join(BIN, 'screenshots/match_page.png') });

@@ -168,7 +168,7 @@ test('a server that dies or hangs: a card within 3 s, and pictures again by them
     plant.sim.child.kill('SIGSTOP'); // values are stale after 1 s
     const begun = Date.now(), { at } = await reader.until(({ card }) => card);
     promise(t, 'from the last value to the card', at - begun, 5000);
-    assert.match(video.said, /no sensor that is shown tells a value/);
+    assert.match(video.said, /no sensor shown delivers a value/);
     plant.sim.child.kill('SIGCONT');
     await reader.until(({ card }) => !card);
     await reader.stop();
@@ -207,7 +207,7 @@ test('a token that is none, or is revoked, and a view that is not there: a card 
     assert.equal(runProgram('plantcast', ['token', 'revoke', tokens, 'video']).code, 0);
     const { at } = await reader.until(({ card }) => card);
     promise(t, 'to the card', at - begun, 5400); // limit: 3 s for the server's message, 1 s to the next picture, and the reader's buffers
-    assert.match(program.said, /does not take this token/);
+    assert.match(program.said, /rejects this token/);
     await reader.stop();
     await program.stop();
     await plant.daemon.stop();
@@ -292,7 +292,7 @@ test('a token for one view shows that view, and no other; losing it ends the pic
         if (shown)
             await reader.until(({ card }) => !card);
         else
-            await program.line(/does not take this token: .*view=second: this token is for the views first/);
+            await program.line(/rejects this token: .*view=second: this token is for the views first/);
         assert.equal(reader.frames.some(({ card }) => !card), shown);
         if (shown) {
             const refused = readFileSync(join(folder, 'audit'), 'utf8').split('/api/v1/views').length - 1;
