@@ -27,7 +27,8 @@ enum { FEW_SENSORS = 5, MANY_SENSORS = 512 }; /* frames with MANY_SENSORS should
 enum { IN_FLIGHT = 3, FLOW_FRAMES = 960 };    /* frames given to the GPU ahead, and frames per run, of the throughput measurement */
 enum { CAMERAS = 48, MOST_FRAMES = 96, LEAST_FRAMES = 2, HULL_POINTS = 96 };
 static const int64_t CHANGE_NS = 100 * NS_PER_MS, LONGEST_NS = 3 * NS_PER_S; /* of a row */
-static const double LONGEST_BRUTE_MS = 20e3;                                 /* slower frames are drawn only once */
+/* milliseconds; slower brute-force frames are drawn only once */
+static const double LONGEST_BRUTE_MS = 20e3;
 static const double SWING_RAD = 6 * M_PI / 180, FOV_DEG = 15, WANTED_COVERAGE = 0.6;
 
 struct paper_model {
@@ -59,7 +60,7 @@ struct timing_series { /* times of one row */
     double seconds;
 };
 
-/* --- cameras that have everything in view --------------------------------------------------------------------------------- */
+/* --- cameras with the whole scene in view --------------------------------------------------------------------------------- */
 
 /* Finds points of the model that are extreme in many directions, in the plant frame without the instance's offset. */
 static void find_hull(struct paper_bench *bench)

@@ -10,7 +10,7 @@ const toThree = ([x, y, z]) => new THREE.Vector3(x, z, -y);
 const toPlant = ({ x, y, z }) => [x, -z, y];
 
 const renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true });
-renderer.toneMapping = THREE.NeutralToneMapping; // the Khronos tone mapping, as in shaders/light.glsl
+renderer.toneMapping = THREE.NeutralToneMapping; // Khronos neutral tone mapping, as in shaders/light.glsl
 renderer.setClearColor(0, 0);
 renderer.shadowMap.enabled = true;
 document.body.append(renderer.domElement);

@@ -219,7 +219,7 @@ TEST(test_needles)
     struct drawn_error_tally tally;
     tally_plates(SIDE_M, &tally);
     expect_truth("needles", &tally);
-    assert_true(tally.marked > tally.compared / 4 && tally.worst_marked > STEP); /* a good part of the pixels is marked */
+    assert_true(tally.marked > tally.compared / 4 && tally.worst_marked > STEP); /* a good part of the pixels is marked uncertain */
 }
 
 /* Small triangles, whose field is right, stay unmarked next to marked needles. */
@@ -232,7 +232,7 @@ TEST(test_half_of_needles)
     assert_true(tally.marked_right < tally.marked / 4);
 }
 
-/* Sets up a plate of needles. resolved_levels: levels that preparation declares free of error, one bit each. */
+/* Sets up a plate of needles. resolved_levels: bit per level that preparation subdivided until it shows the field exactly. */
 static void stand_on_plate(struct stand *stand, struct view *view, uint64_t resolved_levels)
 {
     struct toy *toy = toy_create();

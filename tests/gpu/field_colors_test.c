@@ -167,7 +167,7 @@ TEST_WITH(test_isolines_run_where_the_value_is, set_up, tear_down)
                 dark += is_dark;
                 assert_true(!is_dark || near_line(&view, scalars, x, y));
             }
-        assert_true(dark > near / 12 && dark < near / 2); /* one or two of five pixels across a line */
+        assert_true(dark > near / 12 && dark < near / 2); /* an isoline covers one or two of five pixels across */
         frame_unref(&frame);
     }
     view.color_scale.lines[0] = 300; /* beyond the range */
@@ -370,7 +370,7 @@ static void check_alarms(const struct view *view)
         overlay_draw(frame, &stand.toy->scene, stand.snapshot, NULL);
         int x0 = 400 + (int)(200 * 10 / 14.0), y0 = 200 + (int)(100 * 10 / 14.0), around = 0, left = 0;
         for (int y = 0; y < 400; y++)
-            for (int x = 0; x < 600; x++) { /* the legend lies to the right of column 600 */
+            for (int x = 0; x < 600; x++) { /* excludes the legend, which lies to the right of column 600 */
                 bool near = hypot(x - x0, y - y0) < 14;
                 around += near && is_alarm_color(frame_pixel(frame, x, y));
                 left += !near && is_alarm_color(frame_pixel(frame, x, y));

@@ -130,7 +130,7 @@ TEST_WITH(test_bit_by_bit_too, set_up, tear_down)
     view.field.power = 9;
     fault = NO_WEIGHTS;
     struct render_job *job = planned_begin(stand.renderer, &view, stand.snapshot);
-    fault = ALL_WELL; /* other arrays of the drawing have the same size */
+    fault = ALL_WELL; /* allocations work again, because other arrays of the drawing have the same size */
     assert_non_null(job);
     while (!renderer_step(stand.renderer, job, 1000000)) {
     }

@@ -152,7 +152,7 @@ static pid_t try_without_drivers(void)
     struct log *log = log_create(LOG_INFO);
     setenv("LIBGL_DRIVERS_PATH", "/nowhere", 1);
     struct gl *gl = gl_create(log, GL_EGL_SURFACELESS, NULL);
-    _exit(gl && gl->software); /* drivers of a GPU are not Mesa's */
+    _exit(gl && gl->software); /* exit code 1 for a software context: drivers of a GPU do not come from Mesa */
 }
 
 static pid_t without_drivers;
@@ -165,7 +165,7 @@ TEST(test_no_drivers)
     assert_int_equal(WEXITSTATUS(status), 0);
 }
 
-/* --- devices by index and by address, in a process of its own, too -------------------------------------------------------------- */
+/* --- selecting a GPU by index and by PCI address, also in a child process ------------------------------------------------------- */
 
 enum { NO_DEVICES = 77 };
 

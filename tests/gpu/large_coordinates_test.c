@@ -11,7 +11,7 @@
 enum { WIDTH_PX = 320, HEIGHT_PX = 240, PIXELS = WIDTH_PX * HEIGHT_PX };
 
 static const double FAR_OFF_M[3] = { 412345, 5512345, 120 };
-static const double SAME_M = 1e-6; /* metres; at 5.5e6 m a double resolves 1e-9 */
+static const double SAME_M = 1e-6; /* metres; a double resolves 1e-9 at 5.5e6 m */
 
 static struct rig rig;
 static struct stand near, far;

@@ -125,7 +125,7 @@ static struct frame *draw_sphere(struct scene_of *scene, int i, const double sun
     return stand_draw(&scene->stand, &view);
 }
 
-/* --- what it should look like ---------------------------------------------------------------------------------------------------- */
+/* --- reference: the expected colour of a sphere ---------------------------------------------------------------------------------- */
 
 static double dot(const double a[3], const double b[3])
 {
@@ -267,7 +267,8 @@ static double compare(struct scene_of *scene, int i, const double sun[3])
     for (int y = 2; y < SIDE_PX; y += 4)
         for (int x = 2; x < SIDE_PX; x += 4) {
             double n[3], want[3];
-            if (!normal_at(x, y, n) || fabs(dot(n, sun)) < 0.12) /* shadows are soft where the sun grazes the surface */
+            /* pixels are skipped where the sun grazes, because shadows are soft there */
+            if (!normal_at(x, y, n) || fabs(dot(n, sun)) < 0.12)
                 continue;
             reflected_sky(scene, &scene->materials[i], n, v, want);
             reflected_sun(&scene->materials[i], n, v, sun, want);

@@ -110,7 +110,7 @@ TEST(test_the_demo_plant)
     site_finish(&site);
 }
 
-/* --- assets that fill their boxes, side by side -------------------------------------------------------------------------------- */
+/* --- a city of cubes that fill their bounding boxes, side by side -------------------------------------------------------------- */
 
 enum { ROW = 3, SIDE = 6 }; /* assets per side; squares per side of a face */
 

@@ -62,7 +62,7 @@ static const struct asset_view *file(void)
 
 /* --- slow truth --------------------------------------------------------------------------------------------------------------- */
 
-struct plate_spot { /* a point on the plate and its triangle */
+struct plate_spot { /* a point on the plate, given by its triangle and weights */
     double at_m[2], parts[3];
     const uint32_t *corners;
 };
@@ -106,7 +106,7 @@ static double largest_m(void)
 
 struct fragment_truth {
     double value;        /* place in the range */
-    bool no_data, a_tie; /* a_tie: within rounding of a decision */
+    bool no_data, a_tie; /* a_tie: rounding decides between two results */
 };
 
 static struct fragment_truth truth_at(const struct plate_spot *spot, enum interpolation interpolation, enum distance_mode mode,
@@ -128,7 +128,7 @@ static struct fragment_truth truth_at(const struct plate_spot *spot, enum interp
     return (struct fragment_truth){ sum / weights, lost_m < near_m, fabs(lost_m - near_m) < 1e-4 };
 }
 
-/* --- against what is drawn -------------------------------------------------------------------------------------------------- */
+/* --- comparison with the drawn frame ---------------------------------------------------------------------------------------- */
 
 static void look_down(struct view *view, enum interpolation interpolation, enum distance_mode distance)
 {

@@ -135,7 +135,7 @@ static void compare_pixel(struct pick_case *site, const struct view *view, const
         tally->marked_right += marked && error <= 1.0 / 255;
         tally->worst_value = fmax(tally->worst_value, marked ? 0 : error);
         tally->over += !marked && error > 1.0 / 255;
-        if (pick.nearest_count < PICK_NEAREST) /* otherwise there may be more sensors than reported */
+        if (pick.nearest_count < PICK_NEAREST) /* with more sensors in reach, the pick reports only the nearest */
             tally->worst_sum = fmax(tally->worst_sum, fabs(slow_value(site, view, &pick) - pick.value) / range);
     }
 }
@@ -168,7 +168,7 @@ static void assert_exact(const struct pick_tally *tally)
     assert_true(tally->worst_value <= 1.0 / 255);
     assert_true(tally->worst_px < 1e-3);
     assert_in_range(tally->differ, 0, tally->compared / 200); /* rims of hatching */
-    assert_in_range(tally->moved, 0, tally->compared / 50);   /* silhouettes, and railings thinner than a pixel */
+    assert_in_range(tally->moved, 0, tally->compared / 50);   /* picks may differ at silhouettes and at railings thinner than a pixel */
     assert_true(tally->longest_ms < 10);
 }
 
@@ -230,7 +230,7 @@ TEST(test_demo_plant)
         say(&tally);
         assert_true(tally.worst_px < 1e-3 && tally.longest_ms < 10);
         assert_in_range(tally.over, 0, tally.compared / 300);                /* GPUs and our code differ at silhouettes */
-        assert_in_range(tally.moved + tally.differ, 0, tally.compared / 10); /* much of the plant is thinner than a pixel */
+        assert_in_range(tally.moved + tally.differ, 0, tally.compared / 10); /* much of the demo plant is thinner than a pixel */
     }
     renderer_destroy(&site.renderer);
     field_destroy(&site.field);

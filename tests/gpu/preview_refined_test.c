@@ -15,7 +15,7 @@
 
 static struct rig rig;
 
-/* --- how far the tiers are from one another ---------------------------------------------------------------------------------------- */
+/* --- difference between the preview and the refined tier --------------------------------------------------------------------------- */
 
 struct gap {
     double mean, far_part; /* mean difference of all channels, in levels of 255; share of pixels that differ by more than 32 in a channel */

@@ -19,7 +19,7 @@
 /* Image size: the default run uses a quarter of the pixels and compares as many points. */
 static int width_px, height_px;
 enum { VIEWS = 14, SAMPLES = 715 }; /* samples: of a view */
-enum { CLOSE_PX = 32 };             /* samples across two pixels, in each direction */
+enum { CLOSE_PX = 32 };             /* number of samples across two pixels, in each direction */
 static const double TOLERANCE = 1.0 / 255;
 
 static struct rig rig;
@@ -38,9 +38,9 @@ static bool has_value(const float pixel[4])
     return pixel[1] >= 0 && pixel[1] < 0.5f;
 }
 
-struct pixels_seen { /* values by pixel of one camera */
+struct pixels_seen { /* values of all pixels, as one camera sees them */
     const struct view *view;
-    float (*shown)[4], (*here)[4], (*finest)[4]; /* here: the reference on the displayed level */
+    float (*shown)[4], (*here)[4], (*finest)[4]; /* here: the reference values on the displayed level */
     bool shown_is_finest;
 };
 
@@ -112,7 +112,7 @@ static void compare(struct site *site, const struct pixels_seen *seen, size_t sa
         double beyond = error_within_a_pixel(site, seen, at, value);
         tally->compared++;
         tally->over += error > TOLERANCE;
-        tally->beyond += beyond > TOLERANCE; /* counted also where the finest level has nothing nearby */
+        tally->beyond += beyond > TOLERANCE; /* counts points where the finest level has nothing nearby, too */
         tally->worst_beyond = isinf(beyond) ? tally->worst_beyond : fmax(tally->worst_beyond, beyond);
         if (error > tally->worst) {
             tally->worst = error;

@@ -266,7 +266,7 @@ TEST(test_a_hundred_viewers_cost_one_picture)
     }
     assert_int_equal(count_of("plantcast_renders_total") - renders, 1);
     assert_int_equal(count_of(ENCODES) - encodes, 1);
-    request.quality.quality = 42; /* another quality: shares the rendered frame */
+    request.quality.quality = 42; /* a request with another quality shares the rendered frame */
     request.always = true;
     render_service_request(service, 1000, &request);
     render_service_wake(service);
@@ -537,7 +537,7 @@ static void change_readings(double value)
     render_service_on_data(service);
 }
 
-static int refined_width_px; /* width of refined frames while readings change */
+static int refined_width_px; /* width in pixels of refined frames while readings change */
 
 static void refined_of_look(enum look look, struct view *view)
 {
@@ -774,7 +774,7 @@ TEST(test_pictures_fly)
             encoded_frame_destroy(&encoded);
         }
         if (clock_mono_ns() - begin_ns > RECENT_NS / 2)
-            most += CLIENTS / 4; /* frames may have become too old to be shared */
+            most += CLIENTS / 4; /* tolerates that frames became too old to be shared */
     }
     assert_in_range(count_of("plantcast_renders_total") - renders, ROUNDS * CLIENTS / 2, most);
     assert_int_equal(count_of("plantcast_gl_losses_total"), losses + 1);

@@ -102,7 +102,7 @@ static double misread(const struct colormap *map, const struct frame *truth, con
     return p95;
 }
 
-/* Measures each delivery path in p95[]. Returns the worst of our own paths. */
+/* Measures each delivery path in p95[]. Returns the worst of them. */
 static double measure(const struct view *view, double p95[WAYS])
 {
     const struct colormap *map = colormap_at((size_t)view->colormap);
@@ -156,7 +156,7 @@ TEST_WITH(test_far_away_it_is_not_either, set_up, tear_down)
         view.look = LOOK_FLAT;
         measure(&view, flat);
         for (int i = 0; i < WAYS; i++)
-            assert_true(shaded[i] <= (i < OURS ? 3 : flat[i] + 0.8)); /* one step of the map is 0.39 percent */
+            assert_true(shaded[i] <= (i < OURS ? 3 : flat[i] + 0.8)); /* one step of the map is 0.39 percent of the range */
     }
 }
 
@@ -184,7 +184,7 @@ TEST_WITH(test_glossy_would_be_misread, set_up, tear_down)
     look_close(&view);
     view.look = LOOK_GLOSSY;
     measure(&view, p95);
-    assert_true(p95[0] > 3); /* otherwise the test above could never fail */
+    assert_true(p95[0] > 3); /* the limits of the test above would detect a map that misreads */
 }
 
 /* Lightness differences between the tiers: the change from preview to refined must not flash. */
@@ -234,7 +234,7 @@ TEST_WITH(test_operator_sees_greys, set_up, tear_down)
         }
         printf("# tier %d: %d pixels look other than as values, %d of them are not grey\n", tier, other, coloured);
         assert_true(other > WIDTH * HEIGHT / 20);
-        assert_true(coloured <= other / 50); /* antialiased rims mix with the sky */
+        assert_true(coloured <= other / 50); /* silhouettes are antialiased and mix with the sky */
         frame_unref(&first);
         frame_unref(&second);
     }

@@ -146,7 +146,7 @@ TEST(test_previews)
 
 TEST(test_refined)
 {
-    compare_all(TIER_REFINED, 0.06); /* GL antialiases holes differently, and here glass panes are sorted per pixel */
+    compare_all(TIER_REFINED, 0.06); /* rims of holes are smooth here, and the nearest pane is always drawn in front */
 }
 
 /* Each plate alone, so that nothing else differs. */

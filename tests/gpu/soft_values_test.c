@@ -14,7 +14,7 @@
 #include "tests/support/synthetic.h"
 
 enum { WIDTH_PX = 640, HEIGHT_PX = 360, PIXELS = WIDTH_PX * HEIGHT_PX };
-static const double LEAST_M = 2; /* metres from the eye to the nearest visible point */
+static const double LEAST_M = 2; /* minimum distance in metres between the eye and the nearest visible point */
 
 static struct rig rig;
 

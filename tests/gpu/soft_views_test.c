@@ -221,7 +221,7 @@ static bool is_rim(int a, int b)
 /* Borders of data and of uncertainty in triangles that are clipped because they extend far beyond the image. */
 TEST(test_patterns_close_by)
 {
-    enum { TANK = 1 }; /* this asset has a bad and an uncertain sensor */
+    enum { TANK = 1 }; /* the tank has a bad and an uncertain sensor */
     const struct scene_asset *asset = &stand.toy->scene.assets[TANK];
     int looked = 0, rims = 0;
     struct view view = soft_view(&stand, TIER_PREVIEW, 160, 120);
@@ -342,7 +342,7 @@ TEST(test_sky)
         double lean = i / 16 * 0.7;
         view = soft_view(&stand, TIER_PREVIEW, sizes_px[i % 4][0], sizes_px[i % 4][1]);
         view.camera.fov_deg = fovs_deg[i / 4 % 4];
-        for (int c = 0; c < 3; c++) { /* the camera turns away from the plant and upwards */
+        for (int c = 0; c < 3; c++) { /* turns the camera away from the plant and upwards */
             view.camera.eye_m[c] = stand.toy->scene.bounds_max_m[c] + 5;
             view.camera.target_m[c] = view.camera.eye_m[c] + (c < 2 ? 1 : 1.2);
             view.camera.up[c] = c < 2 ? sin(lean) * (c ? 1 : -1) : cos(lean);

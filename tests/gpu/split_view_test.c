@@ -68,7 +68,7 @@ TEST_WITH(test_halves_are_pictures, set_up, tear_down)
             assert_true(same_row(whole, parts[1], y, LEFT + DIVIDER_PX / 2, DIVIDER_PX / 2, WIDTH - LEFT - DIVIDER_PX / 2));
         }
         assert_true(memcmp(parts[0]->bgrx, parts[1]->bgrx, (size_t)LEFT * 4 * HEIGHT) != 0);
-        assert_in_range(whole->marker_count, 8, markers); /* markers outside their half are dropped */
+        assert_in_range(whole->marker_count, 8, markers); /* counts fewer markers, because those outside their half are dropped */
         for (size_t i = 0; i < whole->marker_count; i++)
             assert_true(whole->markers[i].half == (whole->markers[i].x_px >= LEFT));
         assert_true(whole->label_count > 0 && whole->label_count == parts[1]->label_count);
@@ -76,7 +76,7 @@ TEST_WITH(test_halves_are_pictures, set_up, tear_down)
             assert_true(whole->labels[i].half == 1 && whole->labels[i].x_px == parts[1]->labels[i].x_px + LEFT);
         assert_true(whole->content == planned_content(stand.renderer, &view, stand.snapshot));
         frame_read_markers(whole, stand.snapshot, NULL);
-        overlay_draw(whole, &stand.toy->scene, stand.snapshot, NULL); /* both legends; asserts only that drawing them ends */
+        overlay_draw(whole, &stand.toy->scene, stand.snapshot, NULL); /* draws both legends; the test only asserts that this ends */
         frame_unref(&parts[0]);
         frame_unref(&parts[1]);
         frame_unref(&whole);

@@ -125,7 +125,7 @@ TEST_WITH(test_content_sees_what_is_shown, reset, NULL)
     view.visibility = (struct visibility){ 0 };
     assert_true(content() == whole);
     view.visibility.isolated = (struct asset_set){ 0 };
-    for (int i = 0; i < 5; i++) /* selecting all assets equals selecting none */
+    for (int i = 0; i < 5; i++) /* isolating all assets equals isolating none */
         asset_set_add(&view.visibility.isolated, i);
     struct frame *all = stand_draw(&stand, &view);
     view.visibility = (struct visibility){ 0 };
@@ -215,7 +215,7 @@ TEST_WITH(test_a_cut_opens_a_neutral_inside, reset, NULL)
             for (int x = -60; x <= 60; x += 7)
                 for (int y = -12; y <= 12; y += 3)
                     assert_true(is_neutral(frame_pixel(cut, 240 + x, 135 + y)));
-            int darkest = 255, brightest = 0; /* the inside is shaded, so that it looks hollow */
+            int darkest = 255, brightest = 0; /* the exchanger's inside is shaded, so that it looks hollow */
             for (int y = -12; y <= 12; y++) {
                 darkest = frame_pixel(cut, 240, 135 + y)[1] < darkest ? frame_pixel(cut, 240, 135 + y)[1] : darkest;
                 brightest = frame_pixel(cut, 240, 135 + y)[1] > brightest ? frame_pixel(cut, 240, 135 + y)[1] : brightest;

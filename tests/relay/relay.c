@@ -27,7 +27,7 @@ struct relay_chunk {
 struct relay_direction { /* one direction of a connection; a ring buffer of chunks */
     int from, to;
     double bytes_per_s; /* 0: no limit */
-    int64_t free_ns;    /* time from which the next byte may be read */
+    int64_t free_ns;    /* nanoseconds; time from which the next byte may be read */
     unsigned first, count;
     struct relay_chunk *chunks;
 };
@@ -161,7 +161,7 @@ int main(int argc, char **argv)
     fflush(stdout);
     for (char byte = 1; byte;) {
         struct pollfd waits[2] = { { .fd = listener, .events = POLLIN }, { .fd = STDIN_FILENO, .events = POLLIN } };
-        poll(waits, 2, 1); /* 1 ms is fine enough for all links */
+        poll(waits, 2, 1); /* waiting in steps of 1 ms is fine enough for all links */
         if (waits[0].revents)
             accept_one(listener, links, atoi(argv[1]), atof(argv[2]));
         if (waits[1].revents && read(STDIN_FILENO, &byte, 1) <= 0)

@@ -16,7 +16,7 @@
 
 #define FLANGE_AROUND 24
 #define FLANGE_ROWS 8
-#define SPACING_M 8.0 /* distance between assets on a square grid */
+#define SPACING_M 8.0 /* metres between assets on a square grid */
 
 static const char usage[] = "usage: facility --output DIR [--assets N] [--triangles N] [--sensors EVERY] [--seed N]\n"
                             "  --assets N       default 2000\n"
@@ -88,7 +88,7 @@ static long add_mesh(struct facility *f, const struct pipe_mesh *mesh)
     return f->meshes++;
 }
 
-/* --- shapes: a circle that is swept ------------------------------------------------------------------------------------------------ */
+/* --- shapes made by sweeping a circle ---------------------------------------------------------------------------------------------- */
 
 struct pipe_ring { /* centre, direction, and one direction in the ring's plane */
     double centre[3], along[3], side[3], radius;

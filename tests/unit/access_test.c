@@ -102,7 +102,8 @@ TEST(where_a_daemon_may_listen)
     assert_false(access_allowed_at(&params, true, &why)); /* by which name? */
     params.host_count = 1;
     assert_true(access_allowed_at(&params, true, &why));
-    assert_false(access_allowed_at(&params, false, &why)); /* credentials from the proxy would cross the network unencrypted */
+    /* refused, because credentials from the proxy would cross the network unencrypted */
+    assert_false(access_allowed_at(&params, false, &why));
 }
 
 TEST(hosts_are_names_without_ports)

@@ -176,14 +176,14 @@ TEST_WITH(one_address_keeps_no_other_out, set_up, NULL)
     struct address_share shares[2] = { { .moving = 30 }, { .moving = 0 } };
     admission_join(&admission, &shares[0]);
     for (int i = 0; i < ADMISSION_WINDOWS; i++)
-        a_second_of(&admission, shares, 1, 1, 30); /* 30 sessions with one frame per second each */
+        a_second_of(&admission, shares, 1, 1, 30); /* one address has 30 sessions with one frame per second each */
     assert_non_null(admission_refuses(&admission, &shares[0], 1000));
     assert_null(admission_refuses(&admission, &shares[1], 1000));
     admission_join(&admission, &shares[1]);
     shares[1].moving = 1;
     for (int i = 0; i < ADMISSION_WINDOWS; i++)
         a_second_of(&admission, shares, 2, 1, 30);
-    assert_null(admission_refuses(&admission, &shares[1], 1000)); /* 31 frames per second, shared by two addresses */
+    assert_null(admission_refuses(&admission, &shares[1], 1000)); /* the render thread's 31 frames per second are shared by two addresses */
     shares[1].moving = 3;
     assert_non_null(admission_refuses(&admission, &shares[1], 1000)); /* but not for four */
     struct address_share third = { 0 };

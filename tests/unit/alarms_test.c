@@ -170,7 +170,7 @@ TEST(what_is_bad_is_held_and_says_so)
     s.log[0] = 0;
     hear(&s, 2, 0, 0, QUALITY_BAD_SENSOR_FAILURE);
     assert_told(&s, "2 TT.BAD raise: normal > unacknowledged\n");
-    hear(&s, 2, 2, 0, QUALITY_GOOD); /* a tag of the same device, which still answers */
+    hear(&s, 2, 2, 0, QUALITY_GOOD); /* this tag's device still answers, because another of its tags has a reading */
     assert_string_equal(word(&s, 0, ALARM_H), "acknowledged");
     assert_true(alarms_at(s.alarms, alarms_find(s.alarms, 0, ALARM_H))->held);
     hear(&s, 3, 0, 50, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE);
@@ -250,7 +250,7 @@ TEST(a_mirror_shows_what_the_other_system_says)
     struct stage s;
     begin(&s, ALARMS_MIRROR);
     assert_int_equal(alarms_count(s.alarms), 4); /* alarms: one limit, two bits that may turn bad, and their device */
-    hear(&s, 1, 0, 95, QUALITY_GOOD);            /* the DCS watches this limit, not we */
+    hear(&s, 1, 0, 95, QUALITY_GOOD);            /* in this mode the DCS watches the limit, so we raise no alarm */
     assert_told(&s, "");
     hear(&s, 2, 3, 1, QUALITY_GOOD);
     hear(&s, 3, 4, 1, QUALITY_GOOD);
@@ -276,7 +276,7 @@ TEST(what_was_kept_is_taken_up)
     for (int kind = ALARM_H; kind <= ALARM_HH; kind++)
         alarms_restore(next.alarms, alarms_find(next.alarms, 0, (enum alarm_kind)kind),
                        alarms_at(s.alarms, alarms_find(s.alarms, 0, (enum alarm_kind)kind)), (struct instant){ 5 * S, UTC + 40 * S });
-    assert_told(&next, ""); /* no known event happened between the two runs */
+    assert_told(&next, ""); /* restoring reports no transition, because no event is known between the two runs */
     assert_string_equal(word(&next, 0, ALARM_HH), "unacknowledged");
     assert_string_equal(word(&next, 0, ALARM_H), "shelved");
     assert_true(alarms_at(next.alarms, alarms_find(next.alarms, 0, ALARM_HH))->held);
@@ -292,7 +292,7 @@ TEST(what_was_kept_is_taken_up)
         alarms_restore(next.alarms, alarms_find(next.alarms, 0, (enum alarm_kind)kind),
                        alarms_at(s.alarms, alarms_find(s.alarms, 0, (enum alarm_kind)kind)), at(5));
     assert_string_equal(word(&next, 0, ALARM_HH), "active");
-    assert_string_equal(word(&next, 0, ALARM_H), "active"); /* in this mode no user could unshelve it */
+    assert_string_equal(word(&next, 0, ALARM_H), "active"); /* in display mode alarms cannot be unshelved, so shelving is dropped */
     end(&next);
     end(&s);
 }
@@ -438,7 +438,7 @@ TEST(a_lost_device_is_one_alarm)
     hear_all(&s, 1, 50, QUALITY_GOOD);
     hear(&s, 1, 1, 1, QUALITY_GOOD);
     s.log[0] = 0;
-    hear(&s, 1, 2, 0, QUALITY_GOOD); /* PT is not suppressed by design: SD is 0 */
+    hear(&s, 1, 2, 0, QUALITY_GOOD); /* SD is 0, so PT's alarms are not suppressed by design */
     s.log[0] = 0;
     hear_all(&s, 10, 50, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE);
     hear(&s, 10, 1, 1, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE);

@@ -15,15 +15,15 @@
 #include "tests/support/temp.h"
 
 #define STEP (1 / 255.0)
-#define POINTS 20000      /* random points that are checked per distance method */
-#define FEW 4             /* points that may err by more than one step */
+#define POINTS 20000      /* number of random points that are checked per distance method */
+#define FEW 4             /* number of points that may err by more than one colour step */
 #define FEW_AT_RIMS 1000  /* where reaches end, */
 #define MOST_STEPS 4.0    /* largest allowed error of any point, in colour steps */
 #define ROUNDING 1.1      /* steps: distances are floats */
 #define NAMED 2.0         /* the report's error was found at samples; between them the error may be this many times as large */
 #define LEAST_M 1e-5      /* metres; a sensor nearer than this has all the weight, see server/field */
 #define RIM_OF_REACH 0.05 /* no comparison within this share of the distance to where the data ends */
-#define MOST 4096         /* maximum of sensors, vertices and triangles of a case */
+#define MOST 4096         /* maximum number of sensors, vertices and triangles of a case */
 
 struct awkward {
     struct prep_case *files;

@@ -170,7 +170,7 @@ static void check_point(const struct trimesh *mesh, const struct bvh *bvh, const
     check_any(mesh, bvh, point, third, distance_m - near_m, tri, false);
 }
 
-/* --- what a ray and a box meet --------------------------------------------------------------------------------------------------- */
+/* --- intersections of a ray and of a box with triangles -------------------------------------------------------------------------- */
 
 static void mark(void *arg, uint32_t tri)
 {

@@ -34,7 +34,7 @@ TEST(nobody_keeps_it_right)
     }
     timex.status = STA_PLL;
     assert_false(clock_state_of(&timex, TIME_ERROR).set);
-    assert_false(clock_state_of(&timex, -1).set); /* the system call is not permitted here */
+    assert_false(clock_state_of(&timex, -1).set); /* adjtimex fails, because the system call is not permitted */
 }
 
 TEST(errors_are_told_in_steps)

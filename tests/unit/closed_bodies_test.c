@@ -32,7 +32,7 @@ static uint32_t closed_triangles(struct test_shape *shape)
 TEST(test_a_box_is_closed)
 {
     struct test_shape shape = { 0 };
-    shape_box(&shape, TOY_STEEL, low, high); /* each side of the box has its own vertices */
+    shape_box(&shape, TOY_STEEL, low, high); /* each side of a box has its own vertices */
     assert_int_equal(closed_triangles(&shape), BOX);
 }
 

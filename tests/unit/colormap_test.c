@@ -85,7 +85,7 @@ TEST(test_tables_are_whole)
     assert_memory_equal(colormap_at(2)->rgb[0], viridis_first, 3);
     assert_memory_equal(colormap_at(2)->rgb[255], viridis_last, 3);
     assert_memory_equal(colormap_at(5)->rgb[255], turbo_last, 3);
-    for (size_t i = 0; i < colormap_count(); i++) /* rows are complete and in order: neighbours differ little */
+    for (size_t i = 0; i < colormap_count(); i++) /* the rows of a map are complete and in order: neighbouring colours differ little */
         for (int row = 1; row < 256; row++)
             for (int k = 0; k < 3; k++)
                 assert_true(abs(colormap_at(i)->rgb[row][k] - colormap_at(i)->rgb[row - 1][k]) <= 8);
@@ -136,7 +136,7 @@ TEST(test_maps_for_relief_leave_room_for_shading)
             lab[0] += 7 * step;
             linear_from_lab(lab, c);
             for (int k = 0; k < 3; k++)
-                assert_true(c[k] > -0.004 && c[k] < 1.01); /* rounding error of an 8-bit table */
+                assert_true(c[k] > -0.004 && c[k] < 1.01); /* tolerance for the rounding of an 8-bit table */
         }
 }
 

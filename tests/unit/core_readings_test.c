@@ -28,7 +28,7 @@ static struct snapshot *make_snapshot(void)
 struct readings_path {
     struct snapshot *snapshot;
     struct core_sent sent;
-    struct text text; /* text of the message that was written last */
+    struct text text; /* text of the last written message */
     struct mirrored got[TAGS];
     struct core_readings readings;
 };
@@ -103,7 +103,7 @@ TEST(nonsense_is_refused)
 }
 
 /* Asserts that a reading delayed on its way arrives older by late_ns. */
-#define DRIFT_NS (S / 500) /* nanoseconds that two clocks may drift apart between messages */
+#define DRIFT_NS (S / 500) /* nanoseconds that two clocks may drift apart between two messages */
 
 static void assert_late(struct readings_path *way, int64_t core_ns, int64_t now_ns, int64_t late_ns)
 {

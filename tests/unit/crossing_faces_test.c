@@ -97,7 +97,7 @@ TEST(a_pipe_that_winds_past_itself_has_none)
 TEST(a_pipe_that_winds_into_itself_has_some)
 {
     struct crossing_model *model = mem_new(sizeof(*model));
-    make_coil(model, 0.2, 0.3, 1.25); /* the last quarter turn overlaps the first */
+    make_coil(model, 0.2, 0.3, 1.25); /* the coil's last quarter turn overlaps its first */
     char *crosses = crossing_faces_find(&model->parts);
     assert_in_range(count_flagged(model, crosses), 20, model->triangle_count / 2);
     for (size_t t = model->triangle_count * 2 / 5; t < model->triangle_count * 3 / 5; t++)

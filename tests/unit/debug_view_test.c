@@ -218,7 +218,7 @@ CASE(bridges_and_points_are_those_of_the_report)
     assert_float_equal(prep_case_number(positions, "min.0"), 0, 1e-6);
     assert_float_equal(prep_case_number(positions, "max.0"), 0.0002, 1e-6);
     assert_null(node_shape(&glb, "unreachable"));
-    assert_non_null(node_shape(&glb, "hidden")); /* the boxes cover each other at this place */
+    assert_non_null(node_shape(&glb, "hidden")); /* faces where the two boxes cover each other are hidden */
     glb_close(&glb);
     json_decref(report);
 }

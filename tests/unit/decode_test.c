@@ -180,7 +180,7 @@ TEST(square_root_scaling)
     check_scaled(&tag, 2500, 25, QUALITY_GOOD);
     check_scaled(&tag, 10000, 50, QUALITY_GOOD);
     check_scaled(&tag, 12100, 55, QUALITY_UNCERTAIN_UNITS_EXCEEDED);
-    check_scaled(&tag, -5, 0, QUALITY_UNCERTAIN_UNITS_EXCEEDED); /* the square root of a negative number: 0, Uncertain */
+    check_scaled(&tag, -5, 0, QUALITY_UNCERTAIN_UNITS_EXCEEDED); /* the square root of a negative number gives 0 with quality Uncertain */
 }
 
 TEST(unscaled_negation)

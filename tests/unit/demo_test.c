@@ -150,7 +150,7 @@ TEST(test_faults)
     body_finish(&body);
 }
 
-/* --- the process against the limits ----------------------------------------------------------------------------------------- */
+/* --- simulated process compared with the alarm limits ----------------------------------------------------------------------- */
 
 enum { CALM, UPSET_KINDS = 3, CYCLE_S = 690, MACHINES = 5, RECOVERY_S = 60 };
 

@@ -104,7 +104,7 @@ TEST(test_fit_is_least_squares)
     }
 }
 
-/* --- jumps, where the plant was changed ------------------------------------------------------------------------------------------ */
+/* --- jumps: a sensor is moved or replaced ---------------------------------------------------------------------------------------- */
 
 struct jump { /* a jump by `after` times the noise from hour `begins` on, and by `left` times the noise from hour `ends` on */
     double after, left;

@@ -29,7 +29,7 @@ struct encode_streams_fixture {
     enum wire_codec codec;
 };
 
-struct chain_head { /* the state that the clients of a stream show */
+struct chain_head { /* decoder state of the clients that share a stream */
     uint64_t state;
 };
 
@@ -209,7 +209,7 @@ CASE(who_looks_elsewhere_gets_a_stream_of_its_own)
 CASE(a_slow_one_does_not_cost_the_others_key_frames)
 {
     int before = 0;
-    for (int i = 0; i < 2000; i++) { /* 100 s in which one key frame follows another */
+    for (int i = 0; i < 2000; i++) { /* 100 s at 20 frames per second; the slow client (bit 0) gets every 50th frame */
         show(f, i % 50 == 49 ? 0xfff : 0xffe, i, (uint64_t)i + 1, false);
         before = i == 999 ? f->keys : before;
     }

@@ -198,7 +198,7 @@ TEST(jpeg_sends_only_what_changed)
     assert_int_equal(encoder_receive(encoder, &change), 0);
     assert_true(change->key);
     packet_unref(&change);
-    now->view.camera.fov_deg = 33; /* another view: no comparison with the frame before */
+    now->view.camera.fov_deg = 33; /* another view has no predecessor to compare with */
     params.key = false;
     assert_int_equal(encoder_send(encoder, now, &params), 0);
     assert_int_equal(encoder_receive(encoder, &change), 0);

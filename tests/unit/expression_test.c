@@ -122,7 +122,7 @@ TEST_WITH(quality_and_age_are_carried_through, plant_case_set_up, plant_case_tea
     plant_case_assert_loaded(c, 0);
     const struct plant *plant = c->plant;
     assert_true(plant->tags[0].source == -1 && plant->derived_count == 2 && plant->derived[0] == 3 && plant->derived[1] == 0);
-    assert_true(plant->tags[3].stale_s == 60 && plant->tags[0].stale_s == 60); /* a derived tag is not stale before its inputs */
+    assert_true(plant->tags[3].stale_s == 60 && plant->tags[0].stale_s == 60); /* a derived tag's stale time is that of its inputs */
     struct store *store = store_create(plant);
     struct snapshot *snapshot = snapshot_create(plant->tag_count);
     struct derived_state *derived = derived_create(plant);
@@ -137,11 +137,11 @@ TEST_WITH(quality_and_age_are_carried_through, plant_case_set_up, plant_case_tea
         { 0, 1, 10, QUALITY_GOOD, QUALITY_BAD_WAITING, 0, 0, -1 },
         { 1, 2, 4, QUALITY_GOOD, QUALITY_GOOD, 6, 5, 0 },
         { 3, 1, 11, QUALITY_GOOD, QUALITY_GOOD, 7, 5.5, 0 },
-        { 5, -1, 0, 0, QUALITY_GOOD, 7, 5.5, 2 }, /* computing again does not make the value younger */
+        { 5, -1, 0, 0, QUALITY_GOOD, 7, 5.5, 2 }, /* computing the value again does not refresh its age */
         { 6, 1, 12, QUALITY_UNCERTAIN_UNITS_EXCEEDED, QUALITY_UNCERTAIN_UNITS_EXCEEDED, 8, 6, 0 },
         { 7, 1, 12, QUALITY_BAD_SENSOR_FAILURE, QUALITY_BAD_SENSOR_FAILURE, 0, 0, -1 },
         { 8, 1, 12, QUALITY_GOOD, QUALITY_GOOD, 8, 6, 0 },
-        { 29, -1, 0, 0, QUALITY_BAD_COMMUNICATION_ERROR, 0, 0, -1 }, /* a is stale, so the derived value is stale */
+        { 29, -1, 0, 0, QUALITY_BAD_COMMUNICATION_ERROR, 0, 0, -1 }, /* tag a is stale, so the derived value is stale */
     };
     for (size_t i = 0; i < sizeof(steps) / sizeof(*steps); i++) {
         int64_t now_ns = steps[i].at_s * S;

@@ -366,7 +366,8 @@ TEST(test_losing_the_hottest_is_not_painted_over)
             size_t nearest = 0;
             for (size_t i = 1; i < 5; i++) {
                 float least_m = asset_distance_m(&rig.plant->file.view, nearest, j), m = asset_distance_m(&rig.plant->file.view, i, j);
-                if (m < least_m || (m == least_m && nearest == 2)) /* as near as the lost sensor: at its position */
+                /* a vertex equally near to the lost sensor is at the lost sensor's position */
+                if (m < least_m || (m == least_m && nearest == 2))
                     nearest = i;
             }
             lost += nearest == 2;
@@ -503,7 +504,7 @@ TEST(test_beside_a_known_place_an_assumed_one_paints_nothing)
     set(&with, 2, 99, QUALITY_GOOD);
     without.plant = synthetic_create(.vertices = 700, .sensors = 3);
     without.field = field_create(workers, &without.plant->scene);
-    without.plant->plant.tags[2].group = -1; /* as if this sensor did not exist */
+    without.plant->plant.tags[2].group = -1; /* reference: tag 2 has no group, as if its sensor did not exist */
     const struct scalars *got = show(&with), *want = show(&without);
     assert_memory_equal(got->at, want->at, want->count * sizeof(*want->at));
     assert_false(field_is_assumed(with.field, 0, &with.params));
@@ -647,7 +648,7 @@ TEST(test_reach_ends_the_field)
     const struct scalars *scalars = show(&rig);
     for (size_t k = 0; k < 4; k++) {
         assert_int_equal(scalars->at[20 + k].no_data, k < 2 ? 0 : 255);
-        assert_true(scalars->at[20 + k].value == 30); /* the value continues beyond the edge, for interpolation */
+        assert_true(scalars->at[20 + k].value == 30); /* values continue beyond the border of the data, for interpolation */
     }
     assert_int_equal(scalars->at[21].lacking, 127); /* the rim lies 2 m away wherever the vertices are */
     assert_int_equal(scalars->at[22].lacking, 128);
@@ -666,13 +667,13 @@ TEST(test_a_sensor_fades_towards_its_reach)
         rig.params.reach_m = 4;
         set(&rig, 0, 20, QUALITY_GOOD);
         set(&rig, 1, 80, QUALITY_GOOD);
-        for (size_t k = 0; k < 200; k++) { /* the second sensor's reach ends at vertex 150 */
+        for (size_t k = 0; k < 200; k++) { /* vertex 150 is where the second sensor's reach ends */
             synthetic_set_distance(rig.plant, 0, 20 + k, 2);
             synthetic_set_distance(rig.plant, 1, 20 + k, 2.5f + 0.01f * (float)k);
         }
         synthetic_set_distance(rig.plant, 0, 20, 4);
         synthetic_set_distance(rig.plant, 1, 20, 4);      /* as far as both sensors reach, the value mixes both */
-        synthetic_set_distance(rig.plant, 0, 21, 3.999f); /* a lone sensor does not fade */
+        synthetic_set_distance(rig.plant, 0, 21, 3.999f); /* a vertex reached by one sensor alone shows no fading */
         synthetic_set_distance(rig.plant, 1, 21, 4.001f);
         const struct scalar *at = show(&rig)->at + 20;
         /* at 3 m the second sensor has half of the weight that the nearest one leaves */
@@ -730,7 +731,7 @@ TEST(test_an_asset_without_sensors_of_the_group_has_no_field)
     rig_finish(&rig);
 }
 
-/* --- what does not drift -------------------------------------------------------------------------------------------------- */
+/* --- no drift of the sums accumulates ------------------------------------------------------------------------------------- */
 
 TEST(test_an_hour_of_flicker_leaves_no_drift)
 {
@@ -811,7 +812,7 @@ TEST(test_an_hour_of_changes_leaves_no_drift)
 TEST(test_sums_are_made_anew_now_and_then)
 {
     struct field_rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 12));
-    for (size_t i = 0; i < 12; i++) /* rounding that remains after adding and subtracting */
+    for (size_t i = 0; i < 12; i++) /* error bound: rounding left by adding and subtracting weights */
         set(&rig, i, 33.3 + (double)i, QUALITY_GOOD);
     for (int tick = 0; tick <= 2 * 4096; tick++) {
         set(&rig, 5, tick % 2 ? 1e7 : 0.1, QUALITY_GOOD);
@@ -911,7 +912,7 @@ TEST(test_a_reading_without_weight_changes_nothing)
     rig_finish(&rig);
 }
 
-/* --- sharing and the bound ------------------------------------------------------------------------------------------------ */
+/* --- sharing between sessions and the memory limit ------------------------------------------------------------------------ */
 
 TEST(test_equal_parameters_share)
 {
@@ -941,7 +942,7 @@ TEST(test_instances_share_their_weights)
         bytes[1 + (round > 0)] = field_bytes(rig.field);
     }
     size_t columns = (size_t)3 * 256 * 16 * sizeof(float), state_bytes = (bytes[2] - columns - bytes[0]) / 9;
-    assert_int_equal(bytes[1], bytes[2]); /* columns are cached once, from the second sum on */
+    assert_int_equal(bytes[1], bytes[2]); /* columns are cached once, from the second sum with their weights on */
     assert_true(state_bytes < bytes[0] && state_bytes >= 700 * 16);
     for (int asset = 0; asset < 10; asset++)
         assert_true(field_scalars(rig.field, asset, &rig.params, rig.plant->snapshot)->at[0].value == 7);
@@ -956,7 +957,7 @@ static size_t bytes_allocated(void)
 
 TEST(test_dragging_stays_under_the_bound)
 {
-    const size_t slack = 256 << 10; /* layouts, and memory that exists only during a call */
+    const size_t slack = 256 << 10; /* bytes for layouts and for memory that exists only during a call */
     struct field_rig rig = rig_create(synthetic_create(.vertices = 5000, .sensors = 20, .assets = 2));
     size_t bound = 3 << 20;
     field_set_cache_limit(rig.field, bound);
@@ -984,7 +985,7 @@ TEST(test_without_room_for_columns_the_bits_are_the_same)
     const size_t columns = (size_t)3000 * 37 * sizeof(float);
     field_set_cache_limit(tight, 1);
     for (int tick = 0; tick < 60; tick++) {
-        size_t bound = tick % 20 < 15 ? columns / 2 + 500000 : 4 * columns; /* everything but columns takes some 450,000 bytes */
+        size_t bound = tick % 20 < 15 ? columns / 2 + 500000 : 4 * columns; /* bytes; everything but the columns takes some 450,000 */
         field_set_cache_limit(half, bound);
         rig.params.interpolation = tick / 20 == 1 ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
         rig.params.power = tick / 20 == 2 ? 3.1 : 2;
@@ -1219,7 +1220,7 @@ TEST(test_in_pieces_it_is_the_same)
         set(&rig, 8, 5, round % 2 ? QUALITY_GOOD : QUALITY_BAD_SENSOR_FAILURE);
         while (!field_advance(rig.field, 0, &rig.params, rig.plant->snapshot, 5000, 10000)) {
             if (pieces++ == 2)
-                set(&rig, 3, first + 1, QUALITY_GOOD); /* this change arrives too late for this frame */
+                set(&rig, 3, first + 1, QUALITY_GOOD); /* too late for this pass, whose pieces are being computed */
         }
         assert_in_range(pieces, 3, 100);
         assert_true(show(&rig)->at[3].value == (float)(first + 1));
@@ -1315,7 +1316,7 @@ TEST(test_distance_from_one_sensor)
     field_default_range(&rig.plant->scene, &rig.params, &low, &high);
     assert_true(low == 0 && high >= (double)most * (1 - 1e-6) && high < 1.06 * (double)most);
     uint64_t version = way->version;
-    set(&rig, 4, 7, QUALITY_BAD_SENSOR_FAILURE); /* the Bad reading keeps its place */
+    set(&rig, 4, 7, QUALITY_BAD_SENSOR_FAILURE); /* distances do not depend on readings: a Bad sensor keeps its position */
     assert_int_equal(field_scalars(rig.field, 1, &rig.params, rig.plant->snapshot)->version, version);
     rig_finish(&rig);
 }

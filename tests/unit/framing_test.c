@@ -148,7 +148,7 @@ TEST(a_sensor_is_seen_from_outside)
     for (int i = 0; i < 3; i++)
         assert_float_equal(camera.target_m[i], at[i], 0.3);
     forward_of(&camera, forward);
-    assert_true(forward[0] > 0.9 && forward[2] < -0.2); /* the camera stands at the west end */
+    assert_true(forward[0] > 0.9 && forward[2] < -0.2); /* the camera looks east and down, from the west end */
     double away = hypot(hypot(camera.eye_m[0] - at[0], camera.eye_m[1] - at[1]), camera.eye_m[2] - at[2]);
     assert_true(away > 1 && away < 8);
 }
@@ -185,8 +185,8 @@ static void expect_framed(struct toy *toy, int outside)
 
 TEST(a_stray_piece_is_left_out)
 {
-    static const double sizes[] = { 0.001, 0.1, 1 }; /* assets up to a third of the area count as stray only if they are extremely far
-                                                        away */
+    static const double sizes[] = { 0.001, 0.1, 1 }; /* sizes up to a third of the whole area are stray if
+                                                        extremely far away */
     for (int i = 0; i < 3; i++) {
         struct toy *toy = toy_create();
         double size = sizes[i];

@@ -266,7 +266,7 @@ TEST(test_agrees_with_a_dense_one)
             double with = (double)s.influence.deviations[v], without = (double)s.influence.deviations[s.shape.vertex_count + v];
             double prior = cases[c].deviation * cases[c].deviation * covariance(&d, place, place), taken = fmax(prior - variance, 0);
             assert_true(fabs(without * without - with * with - taken) < 1e-3 * prior);
-            double less = krige(&d, &cases[c], some, place, weights); /* lost sensors are left out of the dense system */
+            double less = krige(&d, &cases[c], some, place, weights); /* the dense reference leaves lost sensors out */
             for (size_t i = 0; i < FEW; i++)
                 wanted += readings[i] * weights[i];
             influence_fill_values(fill, readings);
@@ -277,7 +277,7 @@ TEST(test_agrees_with_a_dense_one)
         }
         print_message("range %g: weights differ by %.1e, deviations by up to %.1f %%\n", cases[c].range_m, worst_share, 100 * worst);
         assert_true(worst_share < 1e-4);
-        assert_true(worst < 4 * 0.044); /* four standard deviations of an estimate from 256 samples */
+        assert_true(worst < 4 * 0.044); /* tolerance: four standard deviations of an estimate from 256 samples */
         influence_fill_destroy(&fill);
         mem_free(d.kernel);
         mem_free(d.sensing);

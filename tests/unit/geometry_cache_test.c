@@ -36,7 +36,7 @@ static const char first_tags[] = "a,,,,t,A,,1.3,0,0\nb,,,,t,A,,-1.3,0,0\nc,,,,p,
 /* Prepared data that several tests start from or compare with, made once: of first_tags, and fresh folders by tag list. */
 static struct {
     struct prep_case *c; /* the plant of all tests */
-    json_t *first;       /* report of the asset in FOLDER/first */
+    json_t *first;       /* report of the asset that was prepared into FOLDER/first */
     struct {
         char *tags, *bytes;
         size_t size;
@@ -444,7 +444,7 @@ struct prepared {
     struct folder_file file;
     struct trimesh mesh; /* of the finest level */
     struct bvh *bvh;
-    float *values; /* values at the asset's vertices, for some readings */
+    float *values; /* field values at the asset's vertices, for some readings */
 };
 
 static float value_at(const struct asset_view *view, uint32_t vertex)
@@ -568,7 +568,7 @@ CASE(one_of_many_sensors_is_split_for_alone)
         print_message("# move %d: %d findings, %d of them kept\n", move, measured + kept, kept);
         first_found = move == 0 ? measured + kept : first_found;
         assert_true(measured > 0);
-        if (move > 0) /* levels that were rejected before are not tried again */
+        if (move > 0) /* levels that an earlier run rejected are not tried again */
             assert_true(measured + kept < 0.97 * first_found);
         assert_true(move == 0 ? kept == 0 : kept > measured / 2);
         if (move == moves - 1) { /* in a full sweep the uncertainties of two moves have added up */

@@ -149,7 +149,7 @@ CASE(nodes_are_put_in_place)
     assert_string_equal(l->model.nodes[1].name, "b");
     assert_int_equal(l->model.nodes[1].parent, 0);
     assert_float_equal(l->model.nodes[1].world[13], 4, 1e-12);
-    assert_float_equal(l->model.nodes[2].world[1], 2, 1e-6); /* the x axis is turned to y and doubled */
+    assert_float_equal(l->model.nodes[2].world[1], 2, 1e-6); /* the node's matrix turns the x axis to y and doubles it */
     good(l, HEAD "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"name\":\"i\",\"mesh\":0,\"extensions\":{\"EXT_mesh_gpu_instancing\":"
                  "{\"attributes\":{\"TRANSLATION\":11}}}}]," MESH(SQUARE) ACCESSORS "}");
     assert_int_equal(l->model.node_count, 3);
@@ -323,12 +323,12 @@ CASE(nodes_are_chosen_by_pattern_and_taken_once)
 {
     good(l, FACILITY);
     struct geometry g = cut(l, &(struct geometry_params){ .nodes = "P-101*", .unit_m = 1, .up = AXIS_Z });
-    assert_int_equal(g.primitive_count, 3); /* the node "seal" matches too and is taken once */
+    assert_int_equal(g.primitive_count, 3); /* a node "seal" matches two patterns and is taken once */
     assert_string_equal(g.names.at + g.primitives[2].name, "P-101B/seal");
     geometry_finish(&g);
     g = cut(l, &(struct geometry_params){ .nodes = "E-7", .unit_m = 1, .up = AXIS_Z });
     assert_float_equal(g.origin_m[0], 1000000.5, 0);
-    assert_float_equal(g.positions_m[0][0], -0.5, 0); /* a million metres away, yet exact */
+    assert_float_equal(g.positions_m[0][0], -0.5, 0); /* the model is a million metres away, but its vertices are exact */
     geometry_finish(&g);
     char why[MODEL_WHY_BYTES];
     assert_false(geometry_cut(&g, &l->model, &(struct geometry_params){ .nodes = "X*", .unit_m = 1 }, why));
@@ -359,7 +359,7 @@ CASE(mirrored_nodes_keep_their_outside)
         assert_true(n[2] > 0);
     }
     for (uint32_t v = 0; v < g.vertex_count; v++)
-        assert_float_equal(g.normals[v][2], 1, 1e-6); /* also where the model's own normal has no length */
+        assert_float_equal(g.normals[v][2], 1, 1e-6); /* normals are valid even where the model's own normal has length zero */
     geometry_finish(&g);
 }
 
@@ -409,7 +409,7 @@ CASE(a_name_that_is_there_several_times_is_refused)
     assert_float_equal(place[0], 10.5, 1e-9);
     assert_true(geometry_node_place(&l->model, &params, "south/pump", place, why));
     assert_float_equal(place[0], 20.5, 1e-9);
-    params.nodes = "south"; /* only one of the three is in the asset */
+    params.nodes = "south"; /* only one of the three pumps is in the asset */
     assert_true(geometry_node_place(&l->model, &params, "pump", place, why));
     assert_float_equal(place[0], 20.5, 1e-9);
     assert_true(geometry_node_place(&l->model, &params, "south/", place, why)); /* without a name */

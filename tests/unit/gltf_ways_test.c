@@ -246,7 +246,7 @@ CASE(what_draco_writes_is_read)
     try_packed(l, "draco_transcoder", "", "KHR_draco_mesh_compression", 1e-3);
 }
 
-/* --- what is broken in them ---------------------------------------------------------------------------------------------- */
+/* --- damaged compressed data --------------------------------------------------------------------------------------------- */
 
 /* Changes every byte of the compressed data in turn: never a crash, and an accepted model is consistent. */
 CASE(broken_compression_is_refused_or_harmless)
@@ -380,7 +380,7 @@ CASE(false_claims_of_draco_are_refused)
     sheet_finish(&sheet);
 }
 
-/* --- what the seeds do not say ------------------------------------------------------------------------------------------- */
+/* --- models that the seeds do not cover ---------------------------------------------------------------------------------- */
 
 CASE(vertices_that_are_not_used_are_left_out)
 {
@@ -410,7 +410,7 @@ CASE(what_a_small_file_claims_is_bounded)
     try_model(l, &maker);
     assert_refused(l, "accessor 0: 4000000000 elements, but not a byte of them in the file");
 
-    maker_init(&maker); /* the same million indices, used by a thousand primitives */
+    maker_init(&maker); /* a thousand primitives use the same million indices */
     at = maker_accessor(&maker, -1, FLOAT, 3, "VEC3");
     int list = maker_accessor(&maker, -1, UBYTE, 999999, "SCALAR"), mesh = maker_mesh(&maker, json_null());
     json_array_clear(json_object_get(maker_get(&maker, "meshes", mesh), "primitives"));
@@ -421,7 +421,7 @@ CASE(what_a_small_file_claims_is_bounded)
     try_model(l, &maker);
     assert_refused(l, "elements are more than a file of");
 
-    maker_init(&maker); /* a million instances of a tiny mesh */
+    maker_init(&maker); /* a million nodes instantiate a tiny mesh */
     mesh = maker_mesh(&maker, json_pack("{s:{s:i}}", "attributes", "POSITION", maker_accessor(&maker, -1, FLOAT, 3, "VEC3")));
     at = maker_accessor(&maker, -1, BYTE, 5000000, "VEC3");
     maker_node(&maker, "n", mesh, json_pack("{s:{s:{s:{s:i}}}}", "extensions", "EXT_mesh_gpu_instancing", "attributes", "TRANSLATION", at));
@@ -580,7 +580,7 @@ static void second_texcoords_are_read(struct gltf_case *l, const struct wavy_she
     assert_true(g.second_texcoords && g.materials[0].second == m->second);
     geometry_finish(&g);
 
-    maker = seed_open(15, "textured.glb", sheet); /* the primitive has no such coordinate set */
+    maker = seed_open(15, "textured.glb", sheet); /* the primitive lacks the coordinate set that the texture uses */
     json_object_set_new(maker_get(&maker, "materials", 0), "occlusionTexture", json_pack("{s:i,s:i}", "index", 0, "texCoord", 7));
     try_model(l, &maker);
     assert_good(l);
@@ -625,7 +625,8 @@ CASE(textures_lie_where_their_transform_puts_them)
     assert_good(l);
     assert_true(l->model.primitives[0].texcoords[1][0] != l->model.primitives[0].texcoords[0][0]);
 
-    maker = seed_open(15, "textured.glb", &sheet); /* mirrored beyond 0..1, a range that this sheet uses */
+    /* mirrored repetition is unsupported for coordinates outside 0..1, which the sheet has */
+    maker = seed_open(15, "textured.glb", &sheet);
     json_object_set_new(maker_get(&maker, "samplers", 0), "wrapS", json_integer(33648));
     try_model(l, &maker);
     assert_good(l);
@@ -714,7 +715,7 @@ CASE(assets_are_cut_from_a_tree)
     try_model(l, &maker);
     assert_good(l);
 
-    struct geometry g = cut(l, "far", 1, AXIS_Z); /* 6,000 km away: the sheet loses no digit */
+    struct geometry g = cut(l, "far", 1, AXIS_Z); /* an asset 6,000 km away: the sheet's coordinates lose no digit */
     assert_float_equal(g.origin_m[0], 500001, 1e-9);
     assert_float_equal(g.origin_m[1], 6000000.5, 1e-9);
     double step = 1;

@@ -255,7 +255,7 @@ CASE(what_moves_leaves_nothing_behind)
 CASE(encoders_that_do_not_work_here_are_known)
 {
     assert_true(encoder_works(f->log, "h264", ENCODER_H264_LIBRARY));
-    assert_false(encoder_works(f->log, "h264", "mjpeg")); /* codecs of libavcodec, but not for H.264 */
+    assert_false(encoder_works(f->log, "h264", "mjpeg")); /* libavcodec has this encoder, but it does not produce H.264 */
     assert_false(encoder_works(f->log, "h264", "h264_nothing"));
     assert_true(encoder_is_stream("h264") && !encoder_is_stream("jpeg"));
 }

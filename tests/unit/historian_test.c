@@ -97,7 +97,7 @@ static int tear_down(void **state)
     plant_by_hand_destroy(&s->plant);
     counters_destroy(&s->counters);
     log_destroy(&s->log);
-    char *disk = temp_path(s->folder, "history"); /* still mounted if a test failed */
+    char *disk = temp_path(s->folder, "history"); /* a failed test leaves this disk mounted */
     (void)umount2(disk, MNT_DETACH);
     mem_free(disk);
     temp_folder_destroy(&s->folder);
@@ -376,7 +376,8 @@ CASE(a_clock_set_forward_leaves_its_hour_empty)
     int64_t second_ns = write_all(s, 2);
     atomic_fetch_add(&clock_off_ns, 3600 * NS_PER_S);
     int64_t after_ns = write_all(s, 9);
-    wait_until_counted(s, "plantcast_history_samples_total", 3 * TAGS); /* recorded before the clock is set again */
+    /* waits until these samples are recorded before the clock is set again */
+    wait_until_counted(s, "plantcast_history_samples_total", 3 * TAGS);
     historian_stop(&s->historian);
     assert_true(points_of(s, 3, &series) >= 4);
     assert_true(has_point(&series, before_ns, 4) && has_point(&series, second_ns, 5) && has_point(&series, after_ns, 12));
@@ -426,7 +427,7 @@ TEST_WITH(summer_time_comes_and_goes, set_up, tear_down)
         struct historian_setup *s = *state;
         int64_t times_ns[10], change_ns = changes_s[k] * NS_PER_S;
         struct history_series series;
-        atomic_store(&clock_off_ns, change_ns - NS_PER_S - __real_clock_utc_ns()); /* a second before: enough to start */
+        atomic_store(&clock_off_ns, change_ns - NS_PER_S - __real_clock_utc_ns()); /* the clock starts one second before the change */
         start(s);
         for (int i = 0; i < 10; i++) {
             while (i == 5 && clock_utc_ns() <= change_ns)

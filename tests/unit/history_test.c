@@ -373,7 +373,7 @@ CASE(damage_inside_is_noticed)
     fseek(file, 0, SEEK_END);
     long pages = ftell(file) / 4096;
     assert_true(pages > 20);
-    for (long page = 12; page < pages; page++) { /* the first pages hold the roots of tables */
+    for (long page = 12; page < pages; page++) { /* the first pages hold the roots of tables, whose damage is noticed earlier */
         fseek(file, page * 4096, SEEK_SET);
         assert_int_equal(fwrite(rubbish, sizeof(rubbish), 1, file), 1);
     }
@@ -551,7 +551,7 @@ CASE(old_and_large_months_go)
     mem_free(months);
 }
 
-/* --- one month alone is too large ---------------------------------------------------------------------------------------------- */
+/* --- deleting the beginning of a month that alone is too large ----------------------------------------------------------------- */
 
 enum { LOT = 60000 };
 static const int64_t LIMIT = 5000000;
@@ -612,11 +612,11 @@ CASE(a_month_that_is_too_large_loses_its_beginning)
         record_a_lot(s, from_us);
         printf("# %.1f MB\n", (double)size_of_month(s, NOVEMBER) / 1e6);
         if (day > 0)
-            assert_true(size_of_month(s, NOVEMBER) < LIMIT * 3); /* one simulated day takes twice the allowed size */
+            assert_true(size_of_month(s, NOVEMBER) < LIMIT * 3); /* a simulated day takes twice the allowed size */
         apply_for_some_minutes(s, LIMIT, from_us);
     }
     int64_t large = size_of_month(s, NOVEMBER);
-    record_a_lot(s, from_us); /* fills the space freed in the file */
+    record_a_lot(s, from_us); /* new points reuse the space that deletion freed in the file */
     assert_true(size_of_month(s, NOVEMBER) < large + LIMIT);
     apply_for_some_minutes(s, LIMIT, from_us);
     check_what_is_left(s, from_us + (LOT - 1) * US_PER_S);
@@ -642,7 +642,7 @@ CASE(a_month_that_is_over_shrinks)
     }
 }
 
-/* --- what waits for another database -------------------------------------------------------------------------------------------- */
+/* --- samples waiting to be sent to another database ----------------------------------------------------------------------------- */
 
 static int64_t waiting_in(const struct history_setup *s, int month)
 {

@@ -18,7 +18,7 @@
 
 #define STRIP_M 10.0
 #define WIDTH_M 0.1
-#define SENSORS 12 /* more sensors than the field recomputes in one pass */
+#define SENSORS 12 /* more sensors than the field sums in one pass */
 
 static struct log *the_log;
 
@@ -186,7 +186,7 @@ CASE(test_lost_sensor_is_bridged_and_its_place_unknown)
     assert_int_equal(look(&u, place_of(4))->no_data, 255);
     assert_true(fabs((double)look(&u, place_of(3) + 0.2)->value - 31.7) < 0.4); /* linear from sensor 3 to sensor 5, outside their discs */
     assert_true(look(&u, place_of(3) + 0.3)->uncertain < 128);
-    u.snapshot->readings[5].quality = QUALITY_UNCERTAIN; /* half of the weight that replaces the lost sensor */
+    u.snapshot->readings[5].quality = QUALITY_UNCERTAIN; /* the Uncertain tag contributes half of the value at the lost sensor */
     assert_true(look(&u, place_of(4) - 0.3)->uncertain > 127);
     u.snapshot->readings[5].quality = QUALITY_GOOD;
     u.params.fill = FILL_NEIGHBOURS;
@@ -644,7 +644,7 @@ CASE(test_gp_bad_input)
     }
     assert_true(fabs((double)look(&u, place_of(1))->value - 80) < 2);
     finish(&u);
-    write_plant(c, "", ", prepare: [gp], gp: { range_m: 90000, noise: 0 }", 3); /* the existing file with other parameters is not used */
+    write_plant(c, "", ", prepare: [gp], gp: { range_m: 90000, noise: 0 }", 3); /* a prepared file for other parameters is not used */
     assert_false(use(&u, c));
 }
 
@@ -749,7 +749,7 @@ CASE(test_damaged_file)
         assert_true(use(&u, c));
         finish(&u);
     }
-    write_plant(c, "", "", 2); /* the plant file no longer asks for it */
+    write_plant(c, "", "", 2); /* the plant file no longer asks for the prepared interpolation */
     prep_case_expect(c, "$PLANT", 0);
     assert_int_not_equal(access(path, F_OK), 0);
     mem_free(path);

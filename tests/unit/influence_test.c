@@ -135,7 +135,7 @@ TEST(test_sphere_between_caps)
     finish(&s);
 }
 
-/* --- errors of what is drawn ---------------------------------------------------------------------------------------------------- */
+/* --- errors of the field drawn inside triangles --------------------------------------------------------------------------------- */
 
 struct tally {
     double worst, beyond; /* colour steps: largest error; largest excess over the error that the corners report */

@@ -9,7 +9,7 @@
 #define MS INT64_C(1000000)
 #define S (1000 * MS)
 enum { NODES = 3, FLIGHTS = 512, STEP_MS = 10 };
-#define PATIENCE_NS S /* timeout for an answer of the database */
+#define PATIENCE_NS S /* nanoseconds after which a node stops waiting for the database */
 
 enum what { LOOK, BID, RENEW, RELEASE, ROW, DONE, ASK, PROMISE };
 struct flight { /* a message on its way */
@@ -197,7 +197,7 @@ static void ask_database(struct lease_world *world, struct lease_node *node, int
     struct flight *flight = send(world, what, i, NODES);
     node->waits = true;
     node->waits_since_ns = world->now_ns;
-    node->sent_ns = clock_of(world, node) + (int64_t)node->life % 7; /* so that the value differs for each incarnation */
+    node->sent_ns = clock_of(world, node) + (int64_t)node->life % 7; /* the time of sending differs between incarnations of a node */
     if (!flight)
         return;
     flight->row = node->lease.row;
@@ -267,7 +267,7 @@ static void deliver(struct lease_world *world, struct flight *flight)
         on_database(world, flight);
         return;
     }
-    bool asks = flight->what == ASK; /* the message is for whatever incarnation runs there */
+    bool asks = flight->what == ASK; /* requests for a promise reach whatever incarnation runs on the node */
     if (node->life && world->now_ns < node->wakes_ns) {
         flight->at_ns = node->wakes_ns + 1;
         return;
@@ -347,7 +347,7 @@ TEST(never_two_and_one_in_the_end)
     assert_true(terms > 150);
 }
 
-/* --- the rule, line by line ----------------------------------------------------------------------------------------------------- */
+/* --- the rules of the lease, one by one ----------------------------------------------------------------------------------------- */
 
 static struct lease follower(const char *node, const struct lease_row *row, int64_t now_ns)
 {
@@ -397,7 +397,7 @@ TEST(a_leader_counts_the_standby_that_the_row_names)
     lease_promised(&a, "b", 3 * S);
     assert_true(lease_acts(&a, 5 * S - 1));
     lease_renew(&a, "");
-    lease_promised(&a, "b", 4 * S); /* by now the row may name no follower */
+    lease_promised(&a, "b", 4 * S); /* the row that binds the leader may name no follower by now */
     assert_false(lease_acts(&a, 5 * S));
     struct lease_row other = a.row;
     other.epoch++;

@@ -34,7 +34,7 @@ TEST(levels_change_within_a_pixel)
     assert_int_equal(chosen(9, 1000), 1);
     assert_int_equal(chosen(20, 1000), 2);
     assert_int_equal(chosen(200, 1000), 3);
-    assert_int_equal(chosen(200, 10000), 2);            /* an image with ten times the pixels per radian */
+    assert_int_equal(chosen(200, 10000), 2);            /* an image with ten times as many pixels per radian */
     assert_int_equal(chosen_within(0.5, 1.5, 1000), 0); /* 0.67 pixels are too much */
     assert_int_equal(chosen_within(0.7, 1.5, 1000), 1);
     for (double away_m = 0.01; away_m < 1000; away_m *= 1.1) {
@@ -73,7 +73,7 @@ static double error_among(size_t assets, int fewer, enum tier tier)
 
 TEST(pictures_with_room_are_drawn_finer)
 {
-    assert_float_equal(error_among(3, 1, TIER_REFINED), 0, 0);       /* the triangles just fit the budget */
+    assert_float_equal(error_among(3, 1, TIER_REFINED), 0, 0);       /* three assets of 1,000,000 triangles just fit the budget */
     assert_float_equal(error_among(4, 1, TIER_REFINED), 0.35, 1e-9); /* 2 mm */
     assert_float_equal(error_among(10, 1, TIER_REFINED), 0.35, 1e-9);
     assert_float_equal(error_among(11, 1, TIER_REFINED), 0.7, 1e-9);

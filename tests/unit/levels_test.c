@@ -9,7 +9,7 @@
 #include "preprocess/geometry/welded_positions.h"
 #include "surface/mesh/bvh.h"
 
-#define AROUND 120u /* squares around the torus; around its tube */
+#define AROUND 120u /* AROUND: number of squares around the torus; TUBE: around its tube */
 #define TUBE 48u
 #define MAJOR_M 2.0
 #define MINOR_M 0.5
@@ -232,7 +232,7 @@ TEST_WITH(error_is_a_bound, set_up, tear_down)
     }
 }
 
-enum { LONE = 3 }; /* extra vertices that no level uses */
+enum { LONE = 3 }; /* number of additional vertices that no level uses */
 
 static void add_lone(struct geometry *g)
 {

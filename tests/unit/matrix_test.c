@@ -86,7 +86,7 @@ TEST(test_parallel_view)
     matrix_texture_from_clip(clip, texture);
     matrix_point(texture, center, out);
     assert_close(out, (double[]){ 0.5, 0.5, 0.5, 1 }, 4, 1e-12);
-    matrix_parallel(center, 10, (double[]){ 0, 0, 1 }, clip); /* a straight downward view has no natural "up" direction */
+    matrix_parallel(center, 10, (double[]){ 0, 0, 1 }, clip); /* a camera looking straight down has no natural "up" direction */
     matrix_point(clip, (double[]){ 5, -3, 12 }, out);
     assert_close(out, (double[]){ 0, 0, 1, 1 }, 4, 1e-12);
 }

@@ -15,11 +15,11 @@
 #include "tests/support/gltf_case.h"
 #include "tests/support/sweep.h"
 
-#define PLATE 12 /* squares along a side of 4 m */
+#define PLATE 12 /* number of squares along a side of 4 m */
 
 /* --- open edges --------------------------------------------------------------------------------------------------------------- */
 
-struct open_edges { /* edges of only one triangle, compared by exact positions */
+struct open_edges { /* edges that belong to only one triangle; equal means bit-identical positions */
     float (*ends_m)[2][3];
     size_t count;
 };
@@ -292,7 +292,7 @@ TEST_WITH(splitting_opens_nothing, gltf_case_set_up, gltf_case_tear_down)
             fail_msg("%s: %zu of %zu open edges are not the model's", asset->id, others, drawn.count);
         mem_free(own.ends_m);
         mem_free(drawn.ends_m);
-        if (strcmp(asset->id, "E-101") == 0) { /* this model has cracks and flipped faces on purpose */
+        if (strcmp(asset->id, "E-101") == 0) { /* the model of E-101 has cracks and flipped faces on purpose */
             assert_true(g.closed_gaps > 100 && g.turned_triangles > 10);
             assert_open_at_ends(view, "E-101 shell");
         }

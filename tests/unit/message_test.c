@@ -365,7 +365,7 @@ TEST(what_is_not_drawn_truly_on_whole_triangles_is_refused)
     assert_false(query(split, 1, &view, &error));
     assert_false(query(far, 2, &view, &error));
     assert_int_equal(error.refusal.code, REFUSAL_FAR_UNCUT);
-    assert_true(query(other, 1, &view, &error)); /* the plant file configures paper for this group */
+    assert_true(query(other, 1, &view, &error)); /* the plant file sets interpolation "paper" for this group */
     assert_int_equal(view.field.interpolation, INTERPOLATION_PAPER);
     group->cuts_singles = true;
 }
@@ -415,7 +415,7 @@ TEST(halves_show_what_the_plants_own_view_does)
     assert_true(farther > 1.5 * nearer); /* it steps back */
     for (int i = 0; i < 3; i++)          /* and looks the same way */
         assert_float_equal(after[i] / sqrt(farther), before[i] / sqrt(nearer), 1e-6);
-    assert_true(query(args, 2, &given, &error) && given.camera.eye_m[1] == -9); /* a camera that the client states is not moved */
+    assert_true(query(args, 2, &given, &error) && given.camera.eye_m[1] == -9); /* a camera stated by the client is not moved */
     plant->view = (struct plant_view){ 0 };
 }
 
@@ -468,7 +468,7 @@ TEST(what_no_query_says_is_refused)
     assert_non_null(strstr(error.text, "has no name"));
     view_address_finish(&said);
     assert_true(query(&(const char *){ "split=colormap=viridis" }, 1, &view, &error));
-    view.right.field.strength = -1; /* a value that no client can request */
+    view.right.field.strength = -1; /* a strength of -1 cannot be requested by any client */
     assert_false(view_query_write(&of_query, &view, &said, &error));
     assert_string_equal(error.code, "not_signed");
     view_address_finish(&said);

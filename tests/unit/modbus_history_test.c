@@ -146,7 +146,7 @@ static void check_history(const struct modbus_replay *r, struct history_reader *
         assert_true(fabs(value - told->at[i].value) <= tag->within * 1.0001 + 1e-6);
     }
     assert_true(gap);
-    assert_true(index != r->mapped[0] || fabs(most - 1000) <= tag->within); /* the spike is present with its full height */
+    assert_true(index != r->mapped[0] || fabs(most - 1000) <= tag->within); /* the recorded spike has its full height */
     history_series_finish(&series);
 }
 

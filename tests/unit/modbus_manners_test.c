@@ -12,7 +12,7 @@
 
 enum { POLL_MS = 100, BLOCKS = 3 };
 
-/* --- what the log says ------------------------------------------------------------------------------------------------------- */
+/* --- capturing what the log writes ------------------------------------------------------------------------------------------- */
 
 static FILE *said;
 static int kept_stderr;
@@ -59,7 +59,7 @@ static void await_line(const char *words, double timeout_s)
         fail_msg("%d lines with: %s", lines_with(words), words);
 }
 
-/* --- three blocks, at 0, 500 and 1000 ---------------------------------------------------------------------------------------- */
+/* --- a device with three blocks, at registers 0, 500 and 1000 ---------------------------------------------------------------- */
 
 static void add_blocks(struct modbus_case *s)
 {
@@ -259,7 +259,7 @@ CASE(unit_0_is_nobody_s_where_several_units_are_read)
         sleep_ns(10 * NS_PER_MS);
     for (int i = 0; i < BLOCKS; i++)
         assert_true(quality_is_bad(modbus_case_look(s, i)->quality));
-    assert_int_equal(lines_with("no readings"), 1); /* one line, however many attempts fail */
+    assert_int_equal(lines_with("no readings"), 1); /* one log line, however many attempts fail */
 }
 
 CASE(an_address_that_is_never_answered_leaves_the_others_alone)

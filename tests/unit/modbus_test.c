@@ -118,7 +118,7 @@ CASE(silent_device_loses_the_link_though_it_accepts)
     modbus_case_expect(s, 1, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE, 3);
     assert_false(store_link_is_up(s->store, 0));
     sleep_ns(2 * NS_PER_S);
-    assert_false(store_link_is_up(s->store, 0)); /* a connection alone does not make the link up */
+    assert_false(store_link_is_up(s->store, 0)); /* an open connection alone does not make the link up */
     s->device.manner = DEVICE_GOOD;
     modbus_case_expect(s, 1, QUALITY_GOOD, 8);
 }
@@ -139,7 +139,7 @@ CASE(resets_do_no_harm)
 CASE(dripping_device_holds_no_longer_than_the_deadline)
 {
     modbus_case_add_registers(s, 20);
-    s->plant->sources[0].timeout_ms = 1000; /* a full answer would take 49 x 0.3 s */
+    s->plant->sources[0].timeout_ms = 1000; /* a complete answer would take 49 x 0.3 s */
     s->device.manner = DEVICE_DRIPPING;
     device_start(&s->device);
     int64_t begin_ns = clock_mono_ns();
@@ -154,7 +154,8 @@ CASE(late_reply_does_not_poison)
 {
     modbus_case_be_impatient(s);
     modbus_case_add_registers(s, 1);
-    plant_by_hand_tag(s->plant, "far", TABLE_HOLDING, 500, DATA_INT16); /* makes a second request of the same shape */
+    /* a second block, so that there are two requests of the same shape */
+    plant_by_hand_tag(s->plant, "far", TABLE_HOLDING, 500, DATA_INT16);
     s->device.late_ms = 400;                                            /* the timeout is 300 */
     device_start(&s->device);
     modbus_case_start(s);
@@ -482,7 +483,7 @@ CASE(reconnects_with_a_thousand_files_open)
         files[i] = dup(2);
     assert_true(files[FILES - 1] >= 1024);
     device_start(&s->device);
-    for (int i = 0; i < LOW; i++) /* the device's libmodbus needs low descriptors too */
+    for (int i = 0; i < LOW; i++) /* the test device's libmodbus needs a descriptor below 1024 too */
         close(files[i]);
     modbus_case_expect(s, 0, QUALITY_GOOD, 8);
     for (int i = LOW; i < FILES; i++)

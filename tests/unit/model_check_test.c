@@ -82,7 +82,8 @@ TEST_WITH(what_no_memory_holds_is_refused, plant_case_set_up, plant_case_tear_do
           "Tag Name\n", NULL);
     FOUND(c, { "plant.yaml", 0, 0, "3000000000.00 million triangles are too many: " }); /* in memory once */
     mem_free(huge);
-    huge = mem_printf("%.*s00000000%s", (int)(count + 8 - more), more, count + 9); /* 4.67 million triangles; measured: 1.03 GB of memory */
+    /* a model of 4.67 million triangles; measured: 1.03 GB of memory */
+    huge = mem_printf("%.*s00000000%s", (int)(count + 8 - more), more, count + 9);
     memcpy(strstr(huge, "\"count\":") + 8, "14000000", 8);
     mem_free(temp_write_text(c->folder, "h.gltf", huge));
     for (memory_bytes = 1100000000; memory_bytes >= 1000000000; memory_bytes -= 100000000) {

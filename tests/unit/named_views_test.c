@@ -160,7 +160,7 @@ CASE(without_a_folder_none_is_saved)
     struct named_view_edit edit = { .id = "a", .title = "A", .address = "group=t", .at = -1 };
     assert_int_not_equal(named_views_save(views, &edit, "kim", 1), REFUSAL_NONE);
     named_views_close(&views);
-    edit.title[0] = (char)0xff; /* invalid UTF-8: refused without any change */
+    edit.title[0] = (char)0xff; /* a title of invalid UTF-8 is refused without any change */
     assert_int_not_equal(named_views_save(f->views, &edit, "kim", 1), REFUSAL_NONE);
     assert_order(f, "all");
 }

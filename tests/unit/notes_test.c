@@ -99,7 +99,7 @@ CASE(there_is_a_limit)
         for (int i = 0; i < NOTES; i++)
             assert_int_equal(add(f, "n", NOON + round * 100 * S, NOON + (round * 100 + 60) * S), REFUSAL_NONE);
     assert_int_equal(add(f, "last", NOON + 1000 * S, 0), REFUSAL_NONE);
-    open_again(f); /* reopening a file with the maximum number of notes */
+    open_again(f); /* the file holds the maximum number of notes when it is opened again */
     char *text = notes_text_between(f->notes, 0, INT64_MAX);
     json_t *message = json_loads(text, 0, NULL);
     assert_int_equal(json_array_size(json_object_get(message, "list")), NOTES_ENDED + 1);

@@ -177,7 +177,8 @@ CASE(test_claims)
                   { "aud", "\"other\"", "another audience" },
                   { "aud", "[\"other\"]", "another audience" },
                   { "aud", "[\"plant\"]", NULL },
-                  { "aud", "[\"plant\",\"other\"]", "another audience" }, /* without azp the token may belong to another client */
+                  /* a token with two audiences and no azp may belong to another client */
+                  { "aud", "[\"plant\",\"other\"]", "another audience" },
                   { "azp", "\"other\"", "another audience" },
                   { "azp", "\"plant\"", NULL },
                   { "sub", "\"\"", "somebody else" },
@@ -266,7 +267,7 @@ TEST(test_log_ins)
     for (int i = 0; i < 3 * SIGN_INS; i++)
         assert_non_null(sign_ins_begin(table, there, "/", 2 * NS_PER_S));
     assert_true(sign_ins_take(table, first.state, first.binding, 3 * NS_PER_S, &taken));
-    for (int i = 0; i < 2 * SIGN_INS; i++) { /* many addresses together do not exceed the table either */
+    for (int i = 0; i < 2 * SIGN_INS; i++) { /* many addresses together do not exceed the table's size either */
         memcpy(there, &i, sizeof(i));
         assert_non_null(sign_ins_begin(table, there, "/", 2 * NS_PER_S));
     }
@@ -309,7 +310,7 @@ TEST(test_people)
     }
     assert_int_equal(sign_ins_count(table), 1 + PEOPLE_SAME);
     struct person more = person_of("lee");
-    assert_true(sign_ins_add_person(table, &more, cookie, &left)); /* Lee's oldest login ends, and Kim's stays */
+    assert_true(sign_ins_add_person(table, &more, cookie, &left)); /* one more login of Lee's ends his oldest one, and Kim's stays */
     assert_string_equal(left, "of lee");
     mem_free(left);
     assert_int_equal(sign_ins_count(table), 1 + PEOPLE_SAME);

@@ -43,7 +43,7 @@ TEST(test_limits_that_are_missing)
     expect(&high, -50, 0); /* there is no low side */
     expect(&alone, 80, 1);
     expect(&alone, 120, 1.5);
-    expect(&alone, 500, 2); /* just below HH, so HH was not passed */
+    expect(&alone, 500, 2); /* a value just below HH has not passed HH */
     assert_true(limit_place(&range_0_100, &alone, 500) < 2);
     expect(&last, 40, 0.5);
     assert_true(limit_place(&range_0_100, &last, 79.999) < 1); /* beyond no limit */
@@ -105,7 +105,7 @@ TEST(test_alarms_need_usable_readings)
     assert_null(alarm_kind_name(ALARM_NONE));
 }
 
-/* --- the field of places ------------------------------------------------------------------------------------------------------ */
+/* --- the field of the positions between limits -------------------------------------------------------------------------------- */
 
 enum { SENSORS = 6, VERTICES = 400 };
 
@@ -151,7 +151,7 @@ static void compare(enum interpolation interpolation, double least_place, double
 TEST(test_places_are_interpolated_with_the_same_weights)
 {
     compare(INTERPOLATION_SHEPARD, -2.5, 2.5);
-    compare(INTERPOLATION_PAPER, 0, 1); /* the other plant would clamp values beyond its range */
+    compare(INTERPOLATION_PAPER, 0, 1); /* positions beyond the limits are left out, because the other plant would clamp them */
 }
 
 TEST(test_tags_without_limits_have_no_place)
@@ -180,7 +180,7 @@ TEST(test_tags_without_limits_have_no_place)
     plant->snapshot->readings[1].quality = QUALITY_BAD_SENSOR_FAILURE; /* now nothing is known there */
     scalars = field_scalars(field, 0, &params, plant->snapshot);
     assert_true(scalars->at[1].no_data && !scalars->at[1].no_limits);
-    params.show = SHOW_VALUE; /* with SHOW_VALUE limits have no effect */
+    params.show = SHOW_VALUE; /* limits have no effect on a field of values */
     plant->snapshot->readings[1].quality = QUALITY_GOOD;
     scalars = field_scalars(field, 0, &params, plant->snapshot);
     assert_true(!scalars->at[1].no_limits && fabsf(scalars->at[1].value - 1e6f) < 1);

@@ -164,9 +164,9 @@ CASE(shifts_keep_to_the_wall_clock)
     assert_true(on(&friday_night, "2026-11-20T21:00"));
     assert_true(on(&friday_night, "2026-11-21T04:59"));
     assert_false(on(&friday_night, "2026-11-21T05:00"));
-    assert_false(on(&friday_night, "2026-11-20T04:00")); /* part of the night shift that began on Thursday */
+    assert_false(on(&friday_night, "2026-11-20T04:00")); /* 04:00 on Friday belongs to the night shift that began on Thursday */
     const struct notify_shift sunday_night = { .days = 1 << 5, .from_min = 22 * 60, .to_min = 6 * 60 };
-    assert_true(on(&sunday_night, "2026-10-25T04:59")); /* clocks were set back at 01:00 UTC */
+    assert_true(on(&sunday_night, "2026-10-25T04:59")); /* clocks were set back at 01:00 UTC that night, so the shift is an hour longer */
     assert_false(on(&sunday_night, "2026-10-25T05:00"));
     const struct notify_shift all_day = { .days = 1 << 6 };
     assert_true(on(&all_day, "2026-11-22T10:00"));
@@ -180,7 +180,7 @@ CASE(it_escalates_until_acknowledged)
     put(f, 1, LOCAL, true, true, T0, T0);
     assert_int_equal(deliver(f, OPS, T0 + 3 * S), 2);
     put(f, 1, LOCAL, true, false, T0, T0 + 5 * MIN);  /* acknowledged */
-    put(f, 0, LOCAL, false, true, T0, T0 + 6 * MIN);  /* returned to normal but not acknowledged */
+    put(f, 0, LOCAL, false, true, T0, T0 + 6 * MIN);  /* the alarm returned to normal but is not acknowledged */
     assert_int_equal(deliver(f, BOSS, T0 + 10 * MIN - S), 0);
     restart(f);
     assert_int_equal(deliver(f, BOSS, T0 + 10 * MIN), 0);
@@ -208,7 +208,7 @@ CASE(nobody_is_told_twice_after_a_restart)
     struct alarm old = alarm_of(f, 0, LOCAL, true, true, T0), settled = alarm_of(f, 1, LOCAL, true, false, T0 - S);
     struct alarm missed = alarm_of(f, 2, LOCAL, true, true, T0 + 4 * S);
     outbox_put(f->outbox, &old, true, T0 + 10 * S);
-    outbox_put(f->outbox, &settled, true, T0 + 10 * S); /* acknowledged before any notification was due */
+    outbox_put(f->outbox, &settled, true, T0 + 10 * S); /* this alarm was acknowledged before any notification was due */
     outbox_put(f->outbox, &missed, true, T0 + 10 * S);  /* raised just before the daemon ended: only the journal has it */
     assert_true(outbox_next(f->outbox, BOSS, T0 + 10 * S, &message));
     assert_int_equal(message.count, 1);
@@ -259,7 +259,7 @@ CASE(what_waits_is_bounded_and_said)
     assert_int_equal(message.left_out, 999);
     outbox_sent(f->outbox, OPS, T0 + 60 * S);
     assert_int_equal(deliver(f, OPS, T0 + 200 * S), OUTBOX_ITEMS - 1);
-    put(f, 5998, LOCAL, true, true, T0 + 300 * S, T0 + 300 * S); /* a mail server that stays unreachable for a day */
+    put(f, 5998, LOCAL, true, true, T0 + 300 * S, T0 + 300 * S); /* sending fails for more than a day, so the message is dropped */
     assert_true(outbox_next(f->outbox, OPS, T0 + 303 * S, &message));
     outbox_failed(f->outbox, OPS, T0 + 303 * S);
     outbox_tick(f->outbox, T0 + 303 * S + OUTBOX_KEEP_US + S);
@@ -337,11 +337,11 @@ CASE(what_ended_while_nobody_looked_is_over)
     assert_int_equal(deliver(f, AM, T0 + 3 * S), 2);
     restart(f);
     struct alarm stands = alarm_of(f, 1, LOCAL, true, true, T0);
-    outbox_put(f->outbox, &stands, true, T0 + 60 * S); /* the other alarm's limit no longer exists */
+    outbox_put(f->outbox, &stands, true, T0 + 60 * S); /* alarm 0 is missing, because its limit no longer exists */
     outbox_end_unseen(f->outbox, T0 + 60 * S);
     assert_int_equal(deliver(f, BOSS, T0 + 10 * MIN), 0);
     assert_int_equal(deliver(f, BOSS, T0 + 10 * MIN + 3 * S), 1);
-    assert_int_equal(deliver(f, AM, T0 + 10 * MIN + 3 * S), 2); /* the recipient is told that one alarm has ended */
+    assert_int_equal(deliver(f, AM, T0 + 10 * MIN + 3 * S), 2); /* Alertmanager is also told that alarm 0 has ended */
     assert_int_equal(deliver(f, AM, T0 + 30 * MIN), 1);
 }
 
@@ -443,7 +443,7 @@ CASE(it_rests_when_time_changes_nothing)
     deliver(f, OPS, T0 + 4 * S);
     assert_false(outbox_rests(f->outbox)); /* it may escalate */
     put(f, 0, LOCAL, false, false, T0, T0 + 5 * S);
-    assert_false(outbox_rests(f->outbox)); /* a message to Alertmanager is due */
+    assert_false(outbox_rests(f->outbox)); /* a message to Alertmanager is still due */
     deliver(f, AM, T0 + 9 * S);
     outbox_tick(f->outbox, T0 + 24 * 60 * MIN);
     assert_true(outbox_rests(f->outbox));

@@ -79,7 +79,7 @@ TEST(alarms_out_of_sight_are_listed)
         reading->alarm_status = ALARM_ACTIVE;
         assert_false(lists(2, false, split));
         assert_true(lists(2, true, split));
-        assert_true(lists(1, false, split)); /* the tag's marker is outside the frame */
+        assert_true(lists(1, false, split)); /* the tag's marker is outside the frame, so its alarm is listed */
     }
     reading->alarm = ALARM_NONE;
 }
@@ -140,7 +140,7 @@ TEST(the_window_is_what_is_left_free)
     overlay_window(&stand.toy->scene, &view, &whole);
     assert_true(whole.left == -1 && whole.bottom == -1 && whole.right > 0.6 && whole.right < 0.85 && whole.top > 0.8 && whole.top < 0.9);
     struct frame *frame = draw(0, false, false);
-    for (int y = (int)((1 - whole.top) / 2 * HEIGHT) + 1; y < HEIGHT; y++) /* only the marker and its label are drawn there */
+    for (int y = (int)((1 - whole.top) / 2 * HEIGHT) + 1; y < HEIGHT; y++) /* checks that only the marker and its label are drawn there */
         for (int x = 600; x < (int)((1 + whole.right) / 2 * WIDTH); x++)
             assert_int_equal(frame->bgrx[y * frame->stride_bytes + 4 * x], 255);
     frame_unref(&frame);

@@ -267,7 +267,7 @@ TEST(a_client_that_is_busy_for_a_moment_keeps_its_quality)
 {
     struct pacer pacer = fresh();
     struct pacer_world world = { .bytes_per_s = 100e6, .rtt_ns = MS, .decode_ns = 4 * MS, .pixels = 1280 * 720, .now_ns = NS_PER_S };
-    channel_on_bytes(&pacer.channel, 1000000, 2500 * MS); /* the first text messages while the page starts */
+    channel_on_bytes(&pacer.channel, 1000000, 2500 * MS); /* the first text messages, sent while the page starts */
     quality_ladder_begin(&pacer.ladder, &pacer.channel, world.pixels);
     run_busy(&world, &pacer, 700 * MS, 0.75);
     run_world(&world, &pacer, 0.1); /* two or three pictures */
@@ -321,10 +321,10 @@ TEST(who_see_the_same_take_one_step)
     struct quality_ladder ladder = { .step = 1 }, seen = { 0 };
     assert_int_equal(quality_ladder_common(&seen, (int[QUALITY_LADDER_STEPS]){ 1, 0, 1 }), -1);
     int common = quality_ladder_common(&seen, (int[QUALITY_LADDER_STEPS]){ 60, 30, 5, 0, 0, 5 });
-    assert_int_equal(common, 1); /* the few slow clients do not count */
+    assert_int_equal(common, 1); /* the slowest few clients do not pull down the common quality step */
     assert_int_equal(quality_ladder_common(&seen, (int[QUALITY_LADDER_STEPS]){ [QUALITY_LADDER_STEPS - 1] = 10 }),
                      QUALITY_LADDER_STEPS - 1);
-    seen.unit_bytes = 90e3; /* too much for 500 clients, not for 100 */
+    seen.unit_bytes = 90e3; /* bytes per frame: too many for 500 clients, not for 100 */
     assert_int_equal(quality_ladder_common(&seen, (int[QUALITY_LADDER_STEPS]){ 100 }), 0);
     int crowd = quality_ladder_common(&seen, (int[QUALITY_LADDER_STEPS]){ 500 });
     assert_true(crowd > 0 && quality_ladder_rung(&seen, crowd).scale == 1);

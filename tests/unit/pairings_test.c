@@ -122,7 +122,8 @@ CASE(digits_expire)
 {
     char digits[PAIRING_DIGITS + 1], others[PAIRING_DIGITS + 1];
     ask(f, 1, 0, digits);
-    assert_int_not_equal(approve(f, digits, PAIRING_QUIET_S * NS_PER_S), REFUSAL_NONE); /* the display has not polled since */
+    /* approval fails, because the display has stopped polling */
+    assert_int_not_equal(approve(f, digits, PAIRING_QUIET_S * NS_PER_S), REFUSAL_NONE);
     int64_t now_ns = 1000 * NS_PER_S, begun_ns = now_ns;
     ask(f, 1, now_ns, digits);
     for (; now_ns < begun_ns + PAIRING_S * NS_PER_S; now_ns += 2 * NS_PER_S)

@@ -128,7 +128,7 @@ TEST_WITH(test_a_move_is_a_trial_at_once_and_a_better_one_later, set_up, tear_do
         const float *at_m = view->positions_m[v];
         double straight_m = hypot(hypot(at_m[0] - 0.5, at_m[1] - 0.5), at_m[2] - 1.0), along_m = (double)trial_distances(sensor)[v];
         farthest_m = fmax(farthest_m, along_m);
-        assert_true(along_m > 0.94 * straight_m - 0.05); /* the path along the surface is not a shortcut */
+        assert_true(along_m > 0.94 * straight_m - 0.05); /* no path along the surface is much shorter than the straight line */
     }
     assert_true(farthest_m > 1.85 && farthest_m < 2.4); /* path to the middle of the bottom: 0.5 + 1 + 0.5 */
     trials_give(placing_trials(f->placing), &trial);

@@ -29,7 +29,7 @@ static int set_up(void **state)
     assert_int_equal(atomic_file_put(left, "x", 1), 0);
     f->import = plant_import_create(f->plant);
     assert_non_null(f->import);
-    assert_int_not_equal(access(left, F_OK), 0); /* file left by an upload that never finished */
+    assert_int_not_equal(access(left, F_OK), 0); /* an upload that never finished leaves no file */
     mem_free(left);
     *state = f;
     return 0;
@@ -92,7 +92,7 @@ TEST_WITH(test_uploads, set_up, tear_down)
     struct export_list list = { 0 };
     assert_int_equal(put(f, "b.csv", "1", true), 0);
     assert_int_equal(put(f, "a.rvm", "12", true), 0);
-    assert_int_equal(put(f, "a.rvm", "123", true), 0); /* replaces the previous upload of this name */
+    assert_int_equal(put(f, "a.rvm", "123", true), 0); /* a second upload of this name replaces the first */
     assert_int_equal(put(f, "gone.glb", "1", false), 0);
     int error;
     struct export_upload *upload = export_upload_begin(f->exports, "under way.glb", &error);
@@ -151,7 +151,7 @@ TEST_WITH(test_orders, set_up, tear_down)
     assert_false(plant_import_next(f->import, &taken));
     plant_import_cancel(f->import);
     assert_true(plant_import_order(f->import, &order));
-    assert_false(plant_import_cancelled(f->import)); /* the earlier cancellation no longer applies */
+    assert_false(plant_import_cancelled(f->import)); /* a new run is not affected by the earlier cancellation */
     assert_false(plant_import_order(f->import, &order));
     assert_true(plant_import_busy(f->import));
     assert_true(plant_import_next(f->import, &taken));

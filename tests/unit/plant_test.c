@@ -186,7 +186,7 @@ CASE(sensors_are_given_in_the_asset_frame)
     assert_int_equal(plant_sensors(f->plant, 0, &s), 2);
     /* Rotation about x: (x, y, z) -> (x, -z, y), then about z: (x, y, z) -> (-y, x, z), together (a, b, c) -> (c, a, b). The expected
        positions apply the inverse to points relative to (0, 2, 3). */
-    assert_point(s[0].position_m, 2, 3, 0); /* enlarged by the asset's scale, in metres */
+    assert_point(s[0].position_m, 2, 3, 0); /* positions are enlarged by the asset's scale, still in metres */
     assert_true(s[0].tag == 0 && s[0].node_hash == 0 && !s[0].node);
     assert_float_equal(f->plant->assets[0].unit_m, 2e-3, 1e-15);
     assert_true(s[1].tag == 2 && s[1].node_hash != 0);

@@ -37,7 +37,7 @@ TEST(neighbours_go_together_and_gaps_part)
     assert_int_equal(plan.block_count, 2);
     assert_block(&plan, 0, 10, 6, 3);
     assert_block(&plan, 1, 18, 6, 3);
-    assert_int_equal(plan.tags[0], 1); /* sorted by register; entries are tag indices */
+    assert_int_equal(plan.tags[0], 1); /* plan.tags is sorted by register and holds tag indices */
     assert_int_equal(plan.tags[5], 4);
     read_plan_finish(&plan);
     plant_by_hand_destroy(&plant);
@@ -102,7 +102,7 @@ TEST(gaps_are_bridged_up_to_the_device_s_limit)
     assert_block(&plan, 0, 0, 15, 3); /* gaps of 4 and 5 */
     assert_block(&plan, 1, 23, 2, 1); /* of 8 */
     read_plan_split(&plan, plant, 0);
-    assert_block(&plan, 0, 0, 2, 1); /* the gap is dropped together with the tag */
+    assert_block(&plan, 0, 0, 2, 1); /* splitting a block drops the gap at which it is split */
     assert_block(&plan, 1, 6, 9, 2);
     read_plan_finish(&plan);
     plant->sources[0].max_registers = 8;

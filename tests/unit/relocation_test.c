@@ -21,7 +21,7 @@
 #include "tests/support/temp.h"
 
 #define FAR 3e-3  /* of the largest distance */
-#define ON 1e-3   /* metres; bridging moves the surface by less */
+#define ON 1e-3   /* metres; points closer than this are on the surface (bridging moves it by less) */
 #define SEEN 1e-5 /* metres; distance of a vertex from the visible surface */
 #define NEAR 0.05 /* metres; the same for vertices that only coarser levels have */
 
@@ -288,7 +288,7 @@ TEST(an_asset_without_surface_is_said_to_be_broken)
         box_init(&box);
         struct relocation *relocation = relocation_create(the_log, workers, &shapes[i]);
         uint64_t ticket = relocation_request(relocation, (const double[3]){ 0.5, 0.1, 0 }, put_into_box, &box);
-        assert_true((ticket > 0) == (i == 0)); /* a degenerate triangle is a valid position too */
+        assert_true((ticket > 0) == (i == 0)); /* sensors may be placed on a degenerate triangle too */
         assert_true(relocation_place(relocation, (const double[3]){ 0.5, 0.1, 0 }, &place, NULL) == (i == 0));
         if (ticket) {
             wait_for(&box, 1);
@@ -300,7 +300,7 @@ TEST(an_asset_without_surface_is_said_to_be_broken)
     }
 }
 
-/* --- where memory runs out ----------------------------------------------------------------------------------------------------- */
+/* --- failing allocations ------------------------------------------------------------------------------------------------------- */
 
 static atomic_int until_fault; /* the n-th allocation that may fail does fail; 0: none fails */
 void *__real_mem_try_array(size_t count, size_t bytes_each);
@@ -434,7 +434,7 @@ TEST(what_waits_is_cancelled)
     workers_submit(one, hold, &gate);
     relocation_request(relocation, (const double[3]){ 0.5, 0.5, 0 }, put_into_box, &dropped);
     pthread_mutex_unlock(&gate);
-    relocation_destroy(&relocation); /* answers every pending request before it returns */
+    relocation_destroy(&relocation); /* destroying answers every pending request before it returns */
     assert_int_equal(dropped.count, 1);
     assert_int_equal(cancelled.count, 1);
     workers_destroy(&one);

@@ -61,7 +61,7 @@ static void on_sample_event(void *arg, const struct sample_event *event)
     if (all->count == MOST)
         return;
     all->at[all->count] = *event;
-    all->count++; /* published last, so that readers see a complete entry */
+    all->count++; /* the count is raised last, so that readers see a complete entry */
 }
 
 static void play(struct replay_setup *s, const char *keys, const char *csv, const char *tags)
@@ -110,14 +110,14 @@ CASE(every_sample_comes_at_its_time)
     play(s, "speed: 100", "time_s,shell,TT 2\n0,1,5\n10,2.5,\n20,-3,\n50,0,6\n60,4,7\n", "Tag Name,Address\nTT-1,shell\nTT 2,\n");
     wait_for_heard(s, 8);
     size_t count = of_tag(s, 0, got, 20);
-    assert_int_equal(count, 6); /* the last event is the lost link */
+    assert_int_equal(count, 6); /* five samples, and an event for the lost link */
     for (size_t i = 0; i < 5; i++) {
         assert_true(got[i].value == values[i] && got[i].quality == QUALITY_GOOD);
         assert_true(llabs(got[i].mono_ns - got[0].mono_ns - (int64_t)(at_s[i] * 1e7)) < 1000);
         assert_true(llabs(got[i].utc_ns - got[0].utc_ns - (int64_t)(at_s[i] * 1e7)) < NS_PER_MS);
     }
     assert_int_equal(of_tag(s, 1, got, 20), 4); /* blank cells are no samples */
-    wait_for_link(s, false);                    /* the replay has ended: no value may look live */
+    wait_for_link(s, false);                    /* after the end of the replay no value looks live */
 }
 
 CASE(a_loop_goes_on)

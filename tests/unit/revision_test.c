@@ -17,7 +17,7 @@
 #include "preprocess/import/revision/asset_edit.h"
 #include "tests/support/temp.h"
 
-/* --- a file system that fails ------------------------------------------------------------------------------------------------ */
+/* --- a file system whose renames fail ---------------------------------------------------------------------------------------- */
 
 static int steps_left = -1; /* -1: none fails */
 static bool kills;
@@ -216,7 +216,7 @@ static void sweep(bool killed)
             bool new = all(folder, true);
             assert_true(new || all(folder, false));
             assert_true(!ended || new == !undoing);
-            if (new) { /* the applied revision can still be undone */
+            if (new) { /* a revision that was applied can still be undone */
                 assert_int_equal(undo(folder, false), 0);
                 assert_true(all(folder, false));
             }

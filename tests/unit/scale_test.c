@@ -58,7 +58,7 @@ TEST(test_bands_of_an_interval)
     expect_row(12, 9.99, 0, 100, 10);
     expect_row(38, 10, 0, 100, 10);
     expect_row(243, 99, 0, 100, 10);
-    expect_row(243, 100, 0, 100, 10); /* MAX belongs to the last band */
+    expect_row(243, 100, 0, 100, 10); /* a value of exactly MAX belongs to the last band */
     expect_row(243, (double)0.3f, 0, 0.3, 0.03);
     expect_row(249, 100, 0, 100, 19);   /* bands at 0, 19, ... 95; the last one ends at 100, so its centre is 97.5 */
     expect_row(128, 3, 0, 100, 1e6);    /* one band only */
@@ -109,7 +109,7 @@ TEST(test_logarithmic)
     for (double place = 0; place <= 1; place += 0.125)
         assert_true(fabs(scale_place(&scale, scale_value(&scale, place)) - place) < 1e-12);
     assert_true(fabs(scale_value(&scale, 0.5) - 10) < 1e-9);
-    assert_true(scale_step(&scale) < 0.1 * log(1e4) / 255); /* the smallest visible difference at the low end */
+    assert_true(scale_step(&scale) < 0.1 * log(1e4) / 255); /* the step is the smallest visible difference at the low end of the range */
     memcpy(scale.breaks, (double[]){ 1, 10 }, 2 * sizeof(double));
     scale.break_count = 2;
     assert_int_equal(scale_index(&scale, 0.9), 42);

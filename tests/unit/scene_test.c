@@ -169,7 +169,7 @@ CASE(everything_is_in_its_place)
     assert_point(b->sensors[1].position_m, 8, 24, 30);
     assert_point(b->sensors[0].surface_m, 8, 21, 32.5);
     assert_float_equal(b->sensors[0].surface_distance_m, 0.5, 1e-6);
-    assert_point(c->sensors[0].position_m, -4, -3, 2); /* rotated about x: y to z, z to -y */
+    assert_point(c->sensors[0].position_m, -4, -3, 2); /* placement turns y to z and z to -y */
     assert_point(a->bounds_min_m, 0, 1, 1);
     assert_point(a->bounds_max_m, 4, 2, 3);
     assert_point(b->bounds_min_m, 8, 20, 31);

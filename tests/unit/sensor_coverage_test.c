@@ -112,7 +112,8 @@ TEST_WITH(test_a_sensor_that_is_tried_out_counts, set_up, tear_down)
     trial.sensors[0].vertex = CELLS * (CELLS + 1);
     trial.sensors[0].place_m[0] = 100;
     assert_true(sensor_coverage_find(&order, &gaps));
-    assert_true(fabs(gaps.farthest_m - 4) < 1e-6 && fabs(gaps.farthest_at_m[0] - 104) < 1e-5); /* the corner that the moved sensor left */
+    /* the farthest point is the corner that the moved sensor left */
+    assert_true(fabs(gaps.farthest_m - 4) < 1e-6 && fabs(gaps.farthest_at_m[0] - 104) < 1e-5);
     trial.sensors[0].asset = 1; /* the sensor moves to the other asset, which has no sensor */
     order.asset = 1;
     trial.sensors[0].vertex = 0;

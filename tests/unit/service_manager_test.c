@@ -73,7 +73,7 @@ CASE(it_asks_while_it_works_and_not_while_it_hangs)
     struct service_patience *patience = service_patience_begin("working", LIMIT_S);
     work_ms(5 * EVERY_MS);
     assert_true(asked(s) >= 3);
-    rest_ms(EVERY_MS + EVERY_MS / 2); /* work done before this pause causes one more request */
+    rest_ms(EVERY_MS + EVERY_MS / 2); /* work done before this pause may cause one more request */
     asked(s);
     rest_ms(3 * EVERY_MS);
     assert_int_equal(asked(s), 0);
@@ -105,10 +105,10 @@ CASE(one_step_may_not_last_for_ever)
     int asks = asked(s);
     if (clock_work_ns() - before_ns > 1500 * NS_PER_MS)
         assert_true(asks >= 5);
-    else /* without processor time there was no progress */
+    else /* without processor time the thread made no progress, so the count proves nothing */
         print_message("# not judged: asked %d times in %lld ms of a processor\n", asks,
                       (long long)((clock_work_ns() - before_ns) / NS_PER_MS));
-    rest_ms(200); /* one request was waiting for space in the socket */
+    rest_ms(200); /* one more request may have been waiting for space in the socket */
     asked(s);
     work_ms(1000);
     assert_int_equal(asked(s), 0);

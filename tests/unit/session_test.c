@@ -179,7 +179,7 @@ CASE(refined_frames_are_asked_for_signed)
     preview = show(f);
     assert_true(!preview.record && preview.codec == WIRE_CODEC_JPEG);
     say(f, "{\"type\":\"sign\",\"frames\":\"all\"}");
-    say(f, "{\"type\":\"codecs\",\"codecs\":[\"jpeg\"]}"); /* without PNG, which signed frames need */
+    say(f, "{\"type\":\"codecs\",\"codecs\":[\"jpeg\"]}"); /* the client decodes no PNG, which signed frames need */
     assert_false(show(f).record);
 }
 
@@ -297,7 +297,7 @@ CASE(readings_that_are_rare_do_not_make_what_is_shown_old)
     show(f);
     f->now_ns += 250 * MS;
     show(f);
-    for (int s = 0; s < 60; s++) { /* no data for a minute, while the client pings */
+    for (int s = 0; s < 60; s++) { /* no new data for a minute, while the client pings */
         f->now_ns += NS_PER_S;
         say(f, "{\"type\":\"ping\",\"t\":1}");
         expect(f, "pong ");
@@ -755,7 +755,7 @@ CASE(views_shown_again_and_again_are_admitted_as_new_ones)
     f->now_ns += NS_PER_S;
     say(f, HIDE);
     say(f, SHOW);
-    assert_true(ask(f, &request)); /* hiding the view for a moment keeps its admission */
+    assert_true(ask(f, &request)); /* a view that was hidden only for a moment keeps its admission */
     assert_true(session_has_pixels(f->session));
     say(f, HIDE);
     say(f, SHOW);
@@ -778,7 +778,7 @@ CASE(tags_come_whole_then_by_change_then_nothing)
     assert_int_equal(json_array_size(values), 1);
     assert_int_equal(json_integer_value(json_array_get(row, 0)), 1);
     assert_true(json_number_value(json_array_get(row, 1)) == 3.25);
-    assert_int_equal(json_array_size(row), 2); /* a good reading without alarm has two members only */
+    assert_int_equal(json_array_size(row), 2); /* a good reading without an alarm has two members only */
     assert_int_equal(json_integer_value(json_object_get(tags, "age_ms")), 40);
     json_decref(tags);
     f->now_ns += 3600 * NS_PER_S;
@@ -972,7 +972,7 @@ CASE(a_follower_is_shown_its_leaders_view)
     session_on_leader(f->session, f->now_ns);
     request = show(f);
     assert_true(request.view.camera.eye_m[0] == 3 && request.view.field.group == leader->view.field.group);
-    assert_int_equal(request.view.camera_seq, 1); /* the client itself requested no other camera */
+    assert_int_equal(request.view.camera_seq, 1); /* camera_seq: this client itself requested no other camera */
     following = hear(f);
     assert_string_equal(json_string_value(json_object_get(following, "group")), "pressure");
     json_decref(following);

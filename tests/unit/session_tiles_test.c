@@ -123,7 +123,7 @@ static void check_moves(int width_px, int height_px)
 TEST(test_tiles_are_moved_within_the_picture)
 {
     check_moves(320, 180);
-    check_moves(4096, 2160); /* three such displays exceed the largest picture, so they start smaller */
+    check_moves(4096, 2160); /* three such displays exceed the largest picture and so start smaller */
     check_moves(8192, 8192);
 }
 
@@ -200,7 +200,7 @@ TEST(test_a_server_that_takes_long_makes_smaller_pictures)
     assert_int_equal(size_after(&ladder, 220, 10000, 10400), 0);
     assert_int_equal(size_after(&ladder, 220, 10450, 10600), 1); /* half a second too long */
     assert_int_equal(size_after(&ladder, 125, 11000, 19000), 1); /* the current cost is right: the size neither grows nor shrinks */
-    assert_int_equal(size_after(&ladder, 60, 20000, 29000), 1);  /* the next larger size would take 107 ms */
+    assert_int_equal(size_after(&ladder, 60, 20000, 29000), 1);  /* frames of the next larger size would take 107 ms, so the size stays */
     assert_int_equal(size_after(&ladder, 40, 30000, 32900), 1);
     assert_int_equal(size_after(&ladder, 40, 32950, 33100), 0);
     assert_int_equal(size_after(&ladder, 900, 40000, 60000), QUALITY_LADDER_SIZES - 1);

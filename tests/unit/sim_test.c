@@ -176,7 +176,7 @@ static const struct process_tag unit[] = {
 };
 enum { TAGS = sizeof(unit) / sizeof(unit[0]), CYCLE_TICKS = 6900 };
 
-struct course { /* behaviour of one tag during a cycle of upsets */
+struct course { /* observed behaviour of one tag during a cycle of upsets */
     double least, most, calm_sum, jump;
     int calm_count;
 };
@@ -220,7 +220,7 @@ TEST(process_behaves)
         const struct course *course = cycles[c];
         for (size_t i = 0; i < TAGS; i++) {
             assert_true(fabs(course[i].calm_sum / course[i].calm_count - unit[i].normal) <= 0.05 * unit[i].span); /* comes back to normal */
-            assert_true(course[i].jump <= 0.04 * unit[i].span); /* no sensor jumps within 0.1 s */
+            assert_true(course[i].jump <= 0.04 * unit[i].span); /* no tag changes by more than this within 0.1 s */
         }
         assert_true(course[0].most - unit[0].normal > 8); /* overhead warms up */
         assert_true(course[1].most - unit[1].normal > 0.5);
@@ -281,7 +281,7 @@ TEST(wide_series)
     assert_true(series_at(&series, 541, true) == 1.5);
     series_finish(&series);
     assert_true(series_read(&series, path, "b", &found, why) && found);
-    assert_int_equal(series.count, 2); /* an empty cell gives no value */
+    assert_int_equal(series.count, 2); /* an empty CSV cell gives no value */
     assert_true(series_at(&series, 200, false) == -2);
     series_finish(&series);
     assert_false(series_read(&series, path, "d", &found, why));

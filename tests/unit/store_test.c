@@ -107,11 +107,11 @@ CASE(goes_stale)
     assert_quality(look(s, 0, 15 * S - 1)->quality, QUALITY_GOOD);
     uint32_t before = look(s, 0, 15 * S - 1)->changes;
     assert_quality(look(s, 0, 15 * S)->quality, QUALITY_BAD_COMMUNICATION_ERROR);
-    assert_int_equal(look(s, 0, 16 * S)->changes, before + 1); /* counted once, however often snapshots are taken */
+    assert_int_equal(look(s, 0, 16 * S)->changes, before + 1); /* turning stale counts as one change, however often snapshots are taken */
     write_one(s, 0, 7, QUALITY_GOOD, 20 * S);
     const struct reading *r = look(s, 0, 20 * S);
     assert_quality(r->quality, QUALITY_GOOD);
-    assert_int_equal(r->changes, before + 2); /* the same value, but usable again */
+    assert_int_equal(r->changes, before + 2); /* the value is the same, but it became usable again */
 }
 
 CASE(uncertain_stays_uncertain)
@@ -198,16 +198,16 @@ CASE(counts_every_change)
     write_one(s, 0, 7.5, QUALITY_UNCERTAIN_UNITS_EXCEEDED, 12 * S);
     assert_int_equal(look(s, 0, 12 * S)->changes, ++wanted);
     write_one(s, 0, 8, QUALITY_GOOD, 12 * S);
-    write_one(s, 0, 9, QUALITY_GOOD, 12 * S); /* two changes without a snapshot in between */
+    write_one(s, 0, 9, QUALITY_GOOD, 12 * S); /* two changes without a snapshot in between count as two */
     wanted += 2;
     assert_int_equal(look(s, 0, 12 * S)->changes, wanted);
     store_link_lost(s->store, 0, 13 * S);
     store_link_lost(s->store, 0, 13 * S);
     assert_int_equal(look(s, 0, 13 * S)->changes, ++wanted);
-    assert_int_equal(look(s, 0, 17 * S)->changes, ++wanted); /* from Uncertain to Bad by age alone */
+    assert_int_equal(look(s, 0, 17 * S)->changes, ++wanted); /* quality falls from Uncertain to Bad by age alone */
     write_one(s, 0, 0, QUALITY_BAD_DEVICE_FAILURE, 18 * S);
     assert_int_equal(look(s, 0, 18 * S)->changes, ++wanted);
-    write_one(s, 0, 5, QUALITY_BAD_DEVICE_FAILURE, 19 * S); /* a Bad sample carries no value */
+    write_one(s, 0, 5, QUALITY_BAD_DEVICE_FAILURE, 19 * S); /* the value of a Bad sample is ignored */
     assert_int_equal(look(s, 0, 19 * S)->changes, wanted);
 }
 
@@ -250,7 +250,7 @@ CASE(readings_go_on_in_another_plant)
     store_adopt(store, s->store);
     store_snapshot(store, 30 * S, 1030 * S, snapshot);
     assert_true(snapshot->readings[1].value == 42);
-    assert_int_equal(snapshot->readings[1].alarm, ALARM_NONE); /* no alarm until the new plant's alarms report it */
+    assert_int_equal(snapshot->readings[1].alarm, ALARM_NONE); /* no alarm is shown until the new plant's alarms report one */
     assert_quality(snapshot->readings[1].quality, QUALITY_GOOD); /* by its new patience */
     assert_true(snapshot->readings[1].age_ns == 20 * S);
     assert_quality(snapshot->readings[0].quality, QUALITY_BAD_WAITING);
@@ -404,7 +404,7 @@ CASE(other_tags_vouch)
                   { -1, QUALITY_BAD_SENSOR_FAILURE, QUALITY_GOOD } };
     for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
         write_one(s, 1, cases[i].word, QUALITY_GOOD, S);
-        assert_quality(heard[0], cases[i].pattern); /* immediately, not only with this tag's next sample */
+        assert_quality(heard[0], cases[i].pattern); /* the event comes immediately, not with this tag's own next sample */
         assert_quality(heard[2], cases[i].any);
         assert_quality(look(s, 0, S)->quality, cases[i].pattern);
         assert_quality(look(s, 2, S)->quality, cases[i].any);

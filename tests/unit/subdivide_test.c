@@ -30,7 +30,7 @@ struct prepared_body { /* a surface with sensors of two groups, prepared by the 
     double (*distance)(const double a[3], const double b[3]); /* along the surface */
     size_t own_triangles;
     double radius_m[2][2]; /* paper's: [group][geodesic] */
-    double reach_m[2];     /* reach of each group in metres; 0: no limit */
+    double reach_m[2];     /* metres by which each group's sensors reach; 0: no limit */
 };
 
 static double random_unit(uint32_t *seed)
@@ -327,7 +327,7 @@ static double error_somewhere(const struct prepared_body *body, const struct lev
     return fabs(shown_field(body, &showing, v, w) - true_field(body, &showing, p));
 }
 
-/* --- coarser levels, as they are seen ------------------------------------------------------------------------------------------ */
+/* --- coarser levels compared along rays, as a camera sees them ----------------------------------------------------------------- */
 
 struct sight_target { /* triangles and their BVH, for casting rays */
     struct trimesh mesh;
@@ -507,7 +507,7 @@ static void assert_pixels(const struct prepared_body *body, size_t number, const
     say_errors(body, number, name, "at the outline", errors[1], counts[1]);
     assert_true(counts[0] + counts[1] > PIXELS * 9 / 10);
     bool large = counts[0] > PIXELS / 2; /* otherwise the body is a few pixels wide, most of them at its outline */
-    bool some = counts[0] > PIXELS / 50; /* otherwise there are too few pixels for a percentage */
+    bool some = counts[0] > PIXELS / 50; /* with fewer pixels inside the outline, percentages mean nothing */
     size_t most_of_1000 = large ? 995 : counts[0] > PIXELS / 10 ? 980 : 950;
     assert_true(!some || errors[0][counts[0] * most_of_1000 / 1000] <= 1 / 255.0);
     assert_true(!large || errors[0][counts[0] * 999 / 1000] <= most / 255.0);
@@ -894,7 +894,7 @@ TEST(random_rings_show_the_field_on_every_level)
         prepare(&body, (const double(*)[3])points);
         assert_sensors(&body);
         assert_true(body.levels.count >= 3);
-        assert_field(&body, "ring", NULL, 3); /* subdivision samples only a few points of a triangle */
+        assert_field(&body, "ring", NULL, 3); /* errors of up to 3 steps: subdivision samples only a few points of a triangle */
         for (size_t l = 1; l < body.levels.count; l++)
             assert_pixels(&body, l, "ring", 4);
         finish(&body);

@@ -230,7 +230,7 @@ TEST(shapes_with_every_fault_are_exact_enough)
         test_shape(&shapes[i]);
 }
 
-/* --- what is joined, and what is not ------------------------------------------------------------------------------------------ */
+/* --- which parts are joined and which are kept apart -------------------------------------------------------------------------- */
 
 /* Appends a moved copy of a shape. */
 static void append(struct cad *cad, const struct cad *other, double dx, double dy, double dz)
@@ -280,7 +280,7 @@ static bool second_plate_reached(double dx, double dz)
 
 TEST(gaps_are_closed_and_walls_are_not_passed)
 {
-    assert_true(second_plate_reached(1.0003, 0));   /* a hairline gap of 0.3 mm */
+    assert_true(second_plate_reached(1.0003, 0));   /* plates 0.3 mm apart are joined */
     assert_false(second_plate_reached(1.02, 0));    /* a slot of 20 mm */
     assert_false(second_plate_reached(0, 0.01));    /* two sheets 10 mm apart */
     assert_true(second_plate_reached(0.5, 0.0002)); /* one lying on the other */
@@ -325,7 +325,7 @@ TEST(a_pipe_that_ends_inside_a_shell_is_joined_to_it)
     struct cad pipe = { 0 }, both = { 0 };
     cad_sphere(&both, &chance, 40);
     cad_cylinder(&pipe, &chance, 48, 60, 3, 0);
-    for (size_t v = 0; v < pipe.vertex_count; v++) { /* radius 0.2, leading from inside the sphere outwards */
+    for (size_t v = 0; v < pipe.vertex_count; v++) { /* the pipe has radius 0.2 and leads from inside the sphere outwards */
         pipe.positions[v][0] *= 0.2f;
         pipe.positions[v][1] *= 0.2f;
         pipe.positions[v][2] += 0.5f;
@@ -357,7 +357,7 @@ TEST(nothing_leads_through_a_closed_part)
     cad_closed_pipe(&pipes, &chance, 0.3, 4, 60, 120, 8, M_PI / 2, (const double[3]){ 0, 0, 0 }); /* right through the first one */
     struct surface *surface = surface_of(&pipes);
     const struct surface_report *report = surface_report(surface);
-    float *distances = distances_from(surface, &pipes, 2, 0, 0); /* source at one end of the second pipe */
+    float *distances = distances_from(surface, &pipes, 2, 0, 0); /* the source is at one end of the second pipe */
     assert_int_equal(report->components_after, 1);
     assert_true(report->hidden_vertices > 60 * 20);
     /* The other end is reached along 1.5 m of pipe, half around the first pipe (at best straight over its side), and another 1.5 m. */
@@ -453,7 +453,7 @@ TEST(a_sensor_is_dropped_onto_the_surface)
     float *distances = distances_from(surface, &plate, 0.4, 0.7, 0.05);
     for (size_t v = 0; v < plate.vertex_count; v++) {
         double truth = hypot((double)plate.positions[v][0] - 0.4, (double)plate.positions[v][1] - 0.7);
-        assert_float_equal(distances[v], truth, 1e-4); /* 0 at its own position, growing from there */
+        assert_float_equal(distances[v], truth, 1e-4); /* the distance is 0 at the source's own vertex and grows from there */
     }
     surface_destroy(&surface);
     cad_finish(&plate);
@@ -593,7 +593,7 @@ TEST(short_ways_are_exact_whatever_edges_are_flipped)
         uint64_t state;
     } hard[HARD] = {
         { 1, 5, 1558015352152668877u },  /* a corner lies behind an end of the opposite side */
-        { 5, 5, 12376468115645539828u }, /* a source exactly on an edge */
+        { 5, 5, 12376468115645539828u }, /* the source lies exactly on an edge */
         { 1, 6, 15378426302762057891u }, /* an edge whose farther end is reached before the nearer one */
     };
     struct cad_random usual;

@@ -373,7 +373,7 @@ CASE(units_agree_with_the_group)
                     "C,40001,temp,E-101,N,°c\n"
                     "D,40001,temp,E-101,N,°F\n"
                     "E,40001,temp,E-101,N,\n");
-    plant_case_assert_loaded(c, 0); /* units_test covers which units are converted and refused */
+    plant_case_assert_loaded(c, 0); /* conversions and refused units are tested in units_test */
 }
 
 /* A plant file without valid groups gives one error, not one per row. */

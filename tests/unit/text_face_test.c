@@ -45,7 +45,7 @@ static bool has_hangul(void)
 
 TEST(korean_has_its_letters)
 {
-    static const char text[] = "\uc628\ub3c4 TE-171 \uc2dc\ud5d8"; /* 4 Korean characters, 6 Latin ones and 2 blanks */
+    static const char text[] = "\uc628\ub3c4 TE-171 \uc2dc\ud5d8"; /* the text has 4 Korean characters, 6 Latin ones and 2 blanks */
     if (!has_hangul()) {
         print_message("no font for Korean: package fonts-nanum\n");
         skip();

@@ -154,7 +154,7 @@ TEST(test_sphere)
         if (cosine < cos(0.9 * M_PI) || sine < 1e-6)
             continue;
         vec_cross(axis, first, turned);
-        for (int i = 0; i < 3; i++) /* Rodrigues' rotation about the axis of the great circle */
+        for (int i = 0; i < 3; i++) /* Rodrigues' rotation formula about the axis of the great circle */
             want[i] = cosine * first[i] + sine * turned[i] + (1 - cosine) * vec_dot(axis, first) * axis[i];
         vector_at(&c, v, here);
         double error = 2 * asin(fmin(1, 0.5 * vec_distance(want, here)));

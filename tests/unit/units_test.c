@@ -114,7 +114,7 @@ TEST(what_is_not_the_same_is_kept_apart)
     assert_null(unit_kind(longest));
 }
 
-/* --- a plant with such tags ------------------------------------------------------------------------------------------------- */
+/* --- a plant whose tags have various units ---------------------------------------------------------------------------------- */
 
 static const char yaml[] = "plant: { name: P }\nassets: [{ id: A, model: m.glb }]\n"
                            "groups:\n"
@@ -147,7 +147,7 @@ CASE(rows_are_in_their_own_unit)
     assert_true(!t[3].change.converts && !t[5].change.converts);
     assert_string_equal(t[3].unit, "°F");
     struct history_tag *kept = history_tags(c->plant);
-    assert_true(fabs(kept[1].within - 0.2 / 100 * 200) < 1e-9); /* 360 °F are a span of 200 °C */
+    assert_true(fabs(kept[1].within - 0.2 / 100 * 200) < 1e-9); /* a span of 360 °F is a span of 200 °C */
     assert_string_equal(kept[0].unit, "°C");
     mem_free(kept);
     static const struct {

@@ -16,7 +16,7 @@
 #include "tests/support/prep_case.h"
 #include "tests/support/temp.h"
 
-#define CELL 0.02 /* metres; also the thickness of the plate */
+#define CELL 0.02 /* metres; size of a cell, and thickness of the plate */
 #define ACROSS 80
 #define UP 60
 #define RADIUS 0.8 /* to its inner side */
@@ -77,7 +77,7 @@ static struct surface *kept_surface(const struct prep_case *c)
     return surface;
 }
 
-/* --- places off the surface ------------------------------------------------------------------------------------------------- */
+/* --- points off the surface ------------------------------------------------------------------------------------------------- */
 
 static void on_side(double turn, double y, double radius, float out[3])
 {

@@ -38,7 +38,7 @@ TEST(test_bound)
     assert_non_null(make(&store, 1, 400));
     assert_non_null(make(&store, 2, 400));
     assert_non_null(visibility_store_find(&store, 1));
-    assert_non_null(make(&store, 3, 600)); /* the second buffer is the least recently used one */
+    assert_non_null(make(&store, 3, 600)); /* the second visibility buffer is evicted as the least recently used one */
     assert_non_null(visibility_store_find(&store, 1));
     assert_null(visibility_store_find(&store, 2));
     assert_int_equal(store.bytes, 1000);

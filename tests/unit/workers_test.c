@@ -35,7 +35,7 @@ struct ordered {
 static void note_order(void *arg)
 {
     struct ordered *job = arg;
-    job->order[(*job->next)++] = job->number; /* with one worker no two jobs run at once */
+    job->order[(*job->next)++] = job->number; /* with one worker no two jobs run at once, so `next` needs no lock */
 }
 
 TEST(one_worker_keeps_the_order)

@@ -202,7 +202,7 @@ static bool print_numbers(char **words, const struct solution *solution)
     return good;
 }
 
-/* --- pictures: the linker puts these in place of the field's own (Makefile) ---------------------------------------------------- */
+/* --- pictures: the linker replaces the field's functions with these (Makefile) ------------------------------------------------- */
 
 enum paint { PAINT_FIELD, PAINT_SOLUTION, PAINT_ERROR };
 static struct {
