@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Two tiles on two screens, in two browsers: how far apart in time they show the same picture, by a number in the
-// pixels. Boxes that are hidden or not are the digits of that number; both tiles have it. Screens are looked at, not what programs say.
+// Measures the delay between two tiles of a wall, in two browsers on two screens, that show the same picture. The picture encodes a number:
+// each box, visible or hidden, is one digit, and both tiles show it. Pixels are grabbed from the screens instead of asking the programs.
 import assert from 'node:assert/strict';
 import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';

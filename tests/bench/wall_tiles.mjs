@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The demo plant as one picture over 3 x 2 displays of 1920x1080 whose camera moves. Prints a JSON object per row: how many pictures all
-// six tiles showed, what one cost of a processor, how even they came, and in which quality.
-// SECONDS=10 by default. REALTIME=1: daemon and clients go before whatever else runs (as root; with a few SECONDS only).
+// The demo plant as one picture on 3 x 2 displays of 1920x1080 with a moving camera. Prints one JSON object per row: the number of pictures
+// that all six tiles showed, processor time per picture, regularity, and quality.
+// SECONDS: duration, 10 by default. REALTIME=1: daemon and clients get real-time priority (needs root; use a few SECONDS only).
 import { spawnSync } from 'node:child_process';
 import { PlainClient } from '../e2e/support/plain_client.mjs';
 import { missing, startPlant } from '../e2e/support/plant.mjs';

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Real models in their materials, by Plantcast and by three.js, under the same camera, sun, surroundings and tone mapping: side by side,
-// with their difference in CIELAB. usage: node tests/gallery/viewer.mjs BIN FOLDER
-// Writes FOLDER/viewer_MODEL.png and viewer.json; ends with 1 where they differ by more than they may.
+// Draws real models with their materials by Plantcast and by three.js, with the same camera, sun, surroundings and tone mapping: side by
+// side, with their difference in CIELAB. usage: node tests/gallery/viewer.mjs BIN FOLDER
+// Writes FOLDER/viewer_MODEL.png and viewer.json; the exit code is 1 if the difference exceeds its limit.
 //
-// What light and materials make of a surface is judged where nothing stands in the way: three.js knows no ambient occlusion, and other
-// shadows. Which pixels these are, it says itself, from pictures lit from all sides.
+// Light and materials are compared only at pixels without occlusion, because three.js has no ambient occlusion and different shadows.
+// three.js finds these pixels itself, from pictures lit from all directions.
 import { execFileSync } from 'node:child_process';
 import { createServer } from 'node:http';
 import { createRequire } from 'node:module';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A glTF model drawn by three.js, and how another picture of it differs. The plant's axes: x, -z and y of glTF's.
+// Draws a glTF model with three.js and compares another picture with it. The plant's axes are x, -z and y of glTF.
 import * as THREE from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { HDRLoader } from 'three/addons/loaders/HDRLoader.js';

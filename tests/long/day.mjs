@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A day of a plant's life in an hour: temperatures that were measured on a rig, 24 times as fast; twenty people who drag the model about;
-// the plant file changed and read again, devices that stop answering, a tag that is refused, a disk that takes nothing, a clock that is set
-// an hour ahead and back, a month that ends. MINUTES: how long.
-// Stated: memory, descriptors, threads and latency, and how they grow. Held to: a field that is that of a fresh computation to the last
-// bit, a history without a hole, descriptors and threads that do not grow.
+// A day of a plant in one hour: temperatures recorded on a rig, 24 times as fast; twenty users who move their cameras; the plant file
+// changed and reloaded; devices that stop answering; a refused tag; a full disk; a clock set forward and back by an hour; the end of a
+// month. MINUTES: duration.
+// Prints memory, descriptors, threads and latency, and their growth. Requires a field equal to a fresh computation to the last bit, a
+// history without gaps, and no growth of descriptors and threads.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { appendFileSync, existsSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An hour of temperatures that were measured on a rig, replayed at 60 times its speed through Modbus, and what history gives back of it:
-// each tag within its deviation, and a spike, a gap and the changes of quality exactly.
+// Replays an hour of temperatures recorded on a rig through Modbus at 60 times the speed. The history must return each tag within its
+// deviation, and a spike, a gap and the changes of quality exactly.
 import assert from 'node:assert/strict';
 import { existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';

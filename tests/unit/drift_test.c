@@ -185,7 +185,7 @@ TEST(test_what_cannot_be_told_is_unknown)
     }
     drift_fit(values, predicted, NULL, 0, DRIFT_HOURS, 0.2, &drift);
     assert_int_equal(drift.verdict, DRIFT_UNKNOWN);
-    for (int h = 0; h < DRIFT_HOURS; h++) /* stuck like all others: no drift, but a drift would have been detected */
+    for (int h = 0; h < DRIFT_HOURS; h++) /* all sensors are stuck: no drift, although a drift would be detected */
         values[h] = predicted[h] = 50;
     drift_fit(values, predicted, NULL, 0, DRIFT_HOURS, 0.2, &drift);
     assert_int_equal(drift.verdict, DRIFT_NONE);

@@ -591,7 +591,7 @@ TEST(test_half_the_weight_uncertain)
         set(&rig, 0, 10, QUALITY_GOOD);
         set(&rig, 1, 20, QUALITY_UNCERTAIN_LAST_USABLE);
         const struct scalars *scalars = show(&rig);
-        assert_in_range(scalars->at[10].uncertain, 1, 127); /* encodes by how much, so that the rim can lie between vertices */
+        assert_in_range(scalars->at[10].uncertain, 1, 127); /* `uncertain` is graded, so that the rim can lie between vertices */
         assert_int_equal(scalars->at[11].uncertain, 128);
         assert_in_range(scalars->at[12].uncertain, 129, 254);
         assert_int_equal(scalars->at[11].no_data, 0);
@@ -1323,7 +1323,7 @@ TEST(test_distance_from_one_sensor)
 
 /* --- difference, overrides ------------------------------------------------------------------------------------------------ */
 
-/* Computes what a field of its own would show. */
+/* Returns the scalars of a separate field for these parameters, to compare with the shared one. */
 static struct scalar *shown_alone(const struct field_rig *rig, const struct field_params *params, const struct snapshot *snapshot)
 {
     struct field *alone = field_create(workers, &rig->plant->scene);

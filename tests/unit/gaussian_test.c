@@ -327,7 +327,7 @@ TEST(test_readings_are_met_within_noise)
     enum { MANY = 40 };
     struct gaussian_case s = { 0 };
     double places[MANY][3], readings[MANY], ones[MANY];
-    for (size_t i = 0; i < MANY; i++) { /* positions on a spiral from pole to pole */
+    for (size_t i = 0; i < MANY; i++) { /* sensor positions on a spiral from pole to pole */
         double z = 1 - (2 * (double)i + 1) / MANY, turn = 2.4 * (double)i, across = sqrt(1 - z * z);
         memcpy(places[i], (const double[3]){ across * cos(turn), across * sin(turn), z }, sizeof(places[i]));
         readings[i] = 50 + 20 * z + 10 * places[i][0];

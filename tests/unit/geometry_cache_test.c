@@ -571,7 +571,7 @@ CASE(one_of_many_sensors_is_split_for_alone)
         if (move > 0) /* levels that an earlier run rejected are not tried again */
             assert_true(measured + kept < 0.97 * first_found);
         assert_true(move == 0 ? kept == 0 : kept > measured / 2);
-        if (move == moves - 1) { /* in a full sweep the uncertainties of two moves have added up */
+        if (move == moves - 1) { /* here the uncertainties of all moves have added up (two in a full sweep) */
             open_prepared(&moved, c, "kept", found);
             assert_on_vertices(&moved);
             assert_shows_as_anew(c, &moved, tags, "kept");

@@ -431,7 +431,7 @@ TEST(a_bid_whose_answer_is_lost_is_found_in_the_row)
     struct lease_row won = { .epoch = 1, .beat = 1, .instance = 7, .leader = "a" };
     lease_saw(&a, &won, 2 * S);
     assert_true(a.leads);
-    assert_false(lease_acts(&a, 2 * S)); /* nobody knows when it was won, so the lease needs a renewal first */
+    assert_false(lease_acts(&a, 2 * S)); /* the time of winning is unknown, so the lease needs a renewal first */
     lease_renewed(&a, "", 2 * S);
     assert_true(lease_acts(&a, 2 * S));
 }

@@ -41,7 +41,7 @@ CASE(ten_wrong_tokens_within_a_minute_slow_an_address)
     assert_int_equal(login_throttle_judge(throttle, HERE, NULL, 60 * S), LOGIN_HELD);
     assert_int_equal(login_throttle_judge(throttle, THERE, NULL, 60 * S), LOGIN_WRONG);
     assert_int_equal(login_throttle_judge(throttle, HERE, DESK, 64 * S), LOGIN_GOOD_NEW);
-    assert_int_equal(login_throttle_slowed(throttle, 118 * S), 1); /* the throttle ends one minute after the last wrong token */
+    assert_int_equal(login_throttle_slowed(throttle, 118 * S), 1); /* slowed until one minute after the last wrong token */
     assert_int_equal(login_throttle_slowed(throttle, 119 * S), 0);
     assert_int_equal(login_throttle_judge(throttle, HERE, NULL, 119 * S), LOGIN_WRONG);
 }

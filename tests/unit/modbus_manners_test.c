@@ -132,7 +132,7 @@ CASE(a_device_that_closes_after_each_answer)
     await_line(
         "closes the connection after each answer: reading one block per connection; `close_between_polls: yes` says so from the start", 5);
     assert_int_equal(lines_with("no readings"), 0);
-    assert_int_equal(lines_with("reading"), 2); /* this line, and the one that says that reading works again */
+    assert_int_equal(lines_with("reading"), 2); /* two lines: the detected limit, and that reading works again */
 }
 
 CASE(a_device_that_resets_after_each_answer)

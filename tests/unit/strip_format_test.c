@@ -69,7 +69,7 @@ TEST(test_long_names_and_nonsense)
     uint8_t code[STRIP_BYTES];
     struct strip strip, odd = { .min = 1, .max = 2, .log = true, .group = "" };
     int mended;
-    memcpy(odd.group, "temperaturtemperatur12°", 22); /* as much as fits: the last character is cut in two */
+    memcpy(odd.group, "temperaturtemperatur12°", 22); /* the name is cut to 22 bytes, in the middle of its last character */
     odd.group[21] = "°"[0];
     memcpy(odd.unit, "kJ/(kg K)", 10);
     strip_encode(&odd, code);

@@ -339,7 +339,7 @@ TEST(a_pipe_that_ends_inside_a_shell_is_joined_to_it)
     assert_int_equal(report->components_after, 1);
     assert_bridges_are_shown(surface, -0.25, 0.25);
     assert_true(report->hidden_vertices >= 48 * 8);                   /* the pipe's rings inside the sphere are hidden */
-    double seam = asin(0.2), truth = M_PI - seam + (3.5 - cos(seam)); /* over the sphere to the pipe, then along the pipe */
+    double seam = asin(0.2), truth = M_PI - seam + (3.5 - cos(seam)); /* true distance: over the sphere to the pipe, then along the pipe */
     assert_float_equal(distances[both.vertex_count - 1], truth, 0.01 * truth);
     for (size_t v = sphere_count; v < both.vertex_count; v++)
         assert_true(isfinite(distances[v])); /* hidden ends have distances too, for the triangles that cross the shell */
