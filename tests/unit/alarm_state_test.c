@@ -140,7 +140,7 @@ TEST(no_sequence_breaks_what_must_hold)
 
 TEST(a_deadband_lies_inside_its_limit)
 {
-    assert_int_equal(condition_side(ALARM_H, 85, 2, 85), CONDITION_BEYOND); /* at it is beyond it */
+    assert_int_equal(condition_side(ALARM_H, 85, 2, 85), CONDITION_BEYOND); /* a value equal to the limit is beyond it */
     assert_int_equal(condition_side(ALARM_H, 85, 2, 83), CONDITION_BETWEEN);
     assert_int_equal(condition_side(ALARM_H, 85, 2, 82.999), CONDITION_CLEAR);
     assert_int_equal(condition_side(ALARM_HH, 85, 0, 84.999), CONDITION_CLEAR);

@@ -139,7 +139,7 @@ TEST(a_life_of_local_alarms)
     hear(&s, 6, 0, 50, QUALITY_GOOD);
     assert_told(&s, "3 TT.H acknowledge: unacknowledged > acknowledged by kim\n"
                     "5 TT.HH clear: unacknowledged > returned\n6 TT.H clear: acknowledged > normal\n");
-    assert_int_equal(s.told[0], ALARM_HH); /* nobody has seen it yet */
+    assert_int_equal(s.told[0], ALARM_HH); /* HH is still unacknowledged */
     assert_int_equal(act(&s, 7, 0, ALARM_HH, ALARM_ACKNOWLEDGE, 0), REFUSAL_NONE);
     assert_told(&s, "7 TT.HH acknowledge: returned > normal by kim\n");
     assert_int_equal(s.told[0], ALARM_NONE);
@@ -224,7 +224,7 @@ TEST(design_suppresses)
     tick(&s, 5);
     assert_string_equal(word(&s, 1, ALARM_H), "suppressed");
     assert_int_equal(s.told[1], ALARM_NONE);
-    hear(&s, 6, 2, 1, QUALITY_BAD_SENSOR_FAILURE); /* nothing is known: it stays */
+    hear(&s, 6, 2, 1, QUALITY_BAD_SENSOR_FAILURE); /* an unknown suppressing bit keeps its last state */
     assert_string_equal(word(&s, 1, ALARM_H), "suppressed");
     hear(&s, 7, 2, 0, QUALITY_GOOD);
     assert_string_equal(word(&s, 1, ALARM_H), "active");
@@ -281,7 +281,7 @@ TEST(what_was_kept_is_taken_up)
     assert_string_equal(word(&next, 0, ALARM_H), "shelved");
     assert_true(alarms_at(next.alarms, alarms_find(next.alarms, 0, ALARM_HH))->held);
     hear(&next, 6, 0, 95, QUALITY_GOOD);
-    assert_told(&next, "");                /* still there: not anew */
+    assert_told(&next, "");                /* the alarm is still active and not raised again */
     next.snapshot->taken_mono_ns = 27 * S; /* 22 s were left */
     next.snapshot->taken_utc_ns = UTC + 62 * S;
     alarms_tick(next.alarms, next.snapshot);
@@ -343,7 +343,7 @@ TEST(counts_are_what_there_is)
     assert_int_equal(counts.statuses[ALARM_UNACKNOWLEDGED], 1);
     assert_int_equal(counts.statuses[ALARM_RETURNED], 1);
     assert_int_equal(counts.statuses[ALARM_NORMAL], (int)alarms_count(s.alarms) - 2);
-    assert_int_equal(counts.active, 1); /* what has returned is not */
+    assert_int_equal(counts.active, 1); /* returned alarms are not counted as active */
     assert_int_equal(counts.chattering, 1);
     assert_int_equal(counts.priorities[0] + counts.priorities[1] + counts.priorities[2] + counts.priorities[3], 2);
     assert_int_equal(counts.priorities[alarms_at(s.alarms, alarms_find(s.alarms, 0, ALARM_L))->priority - 1], 2); /* H and L */

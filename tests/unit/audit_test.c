@@ -217,19 +217,19 @@ TEST(test_rotation)
     assert_int_equal(audit_file_append(&file, &ENTRY, AT_US, &lines, &later), 0);
     assert_null(later);
     expect_good(path, 4, 13);
-    /* cut, while it is open */
+    /* truncated by another program while it is open */
     assert_int_equal(truncate(path, 0), 0);
     assert_int_equal(audit_file_append(&file, &ENTRY, AT_US, &lines, &later), 0);
     assert_non_null(strstr(later, "somebody else changed it"));
     mem_free(later);
     expect_fault(path, NULL, "lines before it are missing");
-    /* removed, while it is open */
+    /* removed by another program while it is open */
     unlink(path);
     assert_int_equal(audit_file_append(&file, &ENTRY, AT_US, &lines, &later), 0);
     assert_non_null(strstr(later, "was removed"));
     mem_free(later);
     audit_file_close(&file);
-    /* one of the full ones */
+    /* removes a full, rotated file */
     unlink(full);
     unlink(moved);
     expect_fault(path, NULL, "lines before it are missing");

@@ -259,7 +259,7 @@ static int use_cgroup(const char *service)
         for (;;)
             pause();
     cgroup_add(path, pid);
-    cgroup_destroy(&path); /* ends what is left */
+    cgroup_destroy(&path); /* ends processes left in the cgroup */
     return waitpid(pid, &status, 0) == pid && WIFSIGNALED(status) && !path ? 0 : 7;
 }
 

@@ -72,7 +72,7 @@ TEST(test_tube)
     const float *at = made.cad.positions[0];
     const double source_m[3] = { (double)at[0], (double)at[1], (double)at[2] };
     make(&made, source_m);
-    int axis = 0; /* along which it lies */
+    int axis = 0; /* axis along which the shape lies */
     double spread[3] = { 0 };
     for (size_t v = 0; v < made.cad.vertex_count; v++)
         for (int k = 0; k < 3; k++)

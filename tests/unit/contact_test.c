@@ -275,7 +275,7 @@ struct contact_case {
     uint64_t shape, faults;
 };
 
-/* By default every third one. */
+/* Tries the drawn cases; the default run takes every third. */
 static void score_drawn(const char *name, int row, const struct contact_case *drawn, size_t count, enum cad_fault fault)
 {
     const struct cad_random was = chance;

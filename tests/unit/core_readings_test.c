@@ -108,7 +108,7 @@ TEST(nonsense_is_refused)
 static void assert_late(struct readings_path *way, int64_t core_ns, int64_t now_ns, int64_t late_ns)
 {
     way->snapshot->taken_mono_ns = core_ns;
-    core_sent_finish(&way->sent); /* all of them again */
+    core_sent_finish(&way->sent); /* a new connection gets all readings again */
     core_sent_init(&way->sent, TAGS);
     write_message(way);
     assert_null(read_message(way, now_ns));

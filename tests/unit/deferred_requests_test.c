@@ -30,7 +30,7 @@ TEST(test_the_oldest_comes_first)
             assert_int_equal(group.count, 0);
         }
         for (uint64_t i = 0; i < 3; i++) {
-            fill(&group, 7, 2); /* what was there goes */
+            fill(&group, 7, 2); /* pop() replaces the group's content */
             deferred_requests_pop(&deferred, &group);
             assert_batch(&group, 100 * round + 10 * i, 1 + (round + i) % 4);
         }

@@ -346,7 +346,7 @@ static struct recorded_series all_series[] = {
     { RIG, 0, 1464 / 2205., { { 0 } } },
     { RIG, 732 / 2205., 1, { { 0 } } },
     { RIG, 0, 0.5, { { 0 } } }, /* this half served to tune how neighbours and fast hours are weighted */
-    { RIG, 0.5, 1, { { 0 } } }, /* this one was held out */
+    { RIG, 0.5, 1, { { 0 } } }, /* held out: not used for tuning */
 };
 
 TEST_WITH(test_false_accusations_are_counted, prep_case_set_up, prep_case_tear_down)

@@ -886,7 +886,7 @@ TEST(test_version_grows_with_real_changes_only)
     rig.params.interpolation = INTERPOLATION_PAPER;
     set(&rig, 1, 300, QUALITY_GOOD);
     uint64_t paper = show(&rig)->version;
-    assert_true(paper > version); /* one count for all */
+    assert_true(paper > version); /* all parameters share one version counter */
     set(&rig, 1, 400, QUALITY_GOOD);
     assert_int_equal(show(&rig)->version, paper); /* both are clamped to MAX */
     rig_finish(&rig);
@@ -1126,7 +1126,7 @@ static void check_many_at_once(size_t sensors)
 
 TEST(test_many_at_once_are_as_one_by_one)
 {
-    check_many_at_once(5); /* summed anew each time */
+    check_many_at_once(5); /* few sensors: sums are recomputed each time */
     check_many_at_once(12);
 }
 

@@ -141,7 +141,7 @@ struct dense {
     double *sensing; /* [sensor][row] */
 };
 
-/* All in one body. */
+/* Makes the dense reference; all sensors are on one body. */
 static void make_dense(struct dense *d, const struct influence_mesh *mesh, double range_m)
 {
     struct laplacian laplacian;

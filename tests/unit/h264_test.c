@@ -14,7 +14,7 @@
 
 struct h264_fixture {
     struct log *log;
-    struct workers *workers; /* that help; NULL: none */
+    struct workers *workers; /* helper threads; NULL: none */
     struct encoder *encoder;
     AVCodecContext *decoder;
     AVFrame *picture;
@@ -109,7 +109,7 @@ static int worst(const struct h264_fixture *f, const struct frame *frame)
 static void check_size(struct h264_fixture *f, int w, int h)
 {
     struct frame *frame = picture(w, h, 0);
-    assert_true(pass(f, frame, 92, false, NULL)); /* another size: it starts anew */
+    assert_true(pass(f, frame, 92, false, NULL)); /* a new frame size restarts the encoder */
     assert_true(f->key);
     assert_in_range(worst(f, frame), 0, 6);
     frame_unref(&frame);

@@ -103,7 +103,7 @@ TEST(test_fin_falls_by_its_decay_length)
     for (size_t v = 0; v < s.shape.vertex_count; v++) {
         double x = (double)s.shape.positions[v][0], gap = 4 - 2 * covered_m, expected = 80;
         double from = fmod(x - 1, 4) - covered_m;
-        if (x < 1 - covered_m) /* an end that loses nothing */
+        if (x < 1 - covered_m) /* the strip's end is insulated */
             expected = 80 * cosh(x / decay_m) / cosh((1 - covered_m) / decay_m);
         else if (x > 9 + covered_m)
             expected = 80 * cosh((STRIP_M - x) / decay_m) / cosh((1 - covered_m) / decay_m);

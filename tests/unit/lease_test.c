@@ -17,7 +17,7 @@ struct flight { /* a message on its way */
     enum what what;
     int from, to;  /* nodes; NODES: the database */
     uint64_t life; /* incarnation of the node that sends or receives the message */
-    struct lease_row row; /* what it says, or expects */
+    struct lease_row row; /* row that the message states or expects */
     char standby[LEASE_NODE_BYTES];
     bool good;
     int64_t sent_ns; /* time of sending on the node's clock */
@@ -44,7 +44,7 @@ struct lease_world {
     uint64_t lives;
     unsigned seed;
     bool calm;
-    int most, changes; /* most that led at once */
+    int most, changes; /* most: largest number of nodes that led at once */
 };
 
 static int chance(struct lease_world *world, int n)
@@ -122,7 +122,7 @@ static void change(struct lease_world *world, struct flight *flight)
 static void on_database(struct lease_world *world, struct flight *flight)
 {
     struct flight asked = *flight;
-    if (world->now_ns < world->frozen_ns) { /* it does it later */
+    if (world->now_ns < world->frozen_ns) { /* a paused node acts when it wakes */
         flight->at_ns = world->frozen_ns + 1;
         return;
     }
@@ -243,7 +243,8 @@ static void run_node(struct lease_world *world, int i)
         start(world, i);
     if (!node->life)
         return;
-    if (node->lease.leads && !lease_acts(&node->lease, clock_of(world, node)) && node->lease.until_ns) { /* the kernel ends it */
+    /* the kernel ends a node whose lease has run out */
+    if (node->lease.leads && !lease_acts(&node->lease, clock_of(world, node)) && node->lease.until_ns) {
         end(world, node);
         return;
     }

@@ -14,7 +14,7 @@
 #define MAJOR_M 2.0
 #define MINOR_M 0.5
 
-struct set_of { /* what the tests look at */
+struct set_of { /* fixture: geometry and its levels */
     struct geometry g;
     struct levels levels;
     struct welded_positions places;

@@ -15,7 +15,7 @@
 #define WIDE (ACROSS * CELL) /* of the sheet, m */
 #define HIGH (UP * CELL)
 #define TOLERANCE 5.5e-4    /* metres; lower bound of the tolerance chosen for these shapes */
-#define TOLERANCE_MOST 1e-3 /* as they are turned */
+#define TOLERANCE_MOST 1e-3 /* upper bound of the tolerance, which depends on the rotation */
 #define ALONG 16            /* cells of the rod */
 #define OFF 0.02            /* metres; error allowed for distances of 0.5 m or more; a rod joined to the wrong side exceeds it */
 

@@ -37,7 +37,7 @@ CASE(ten_wrong_tokens_within_a_minute_slow_an_address)
     assert_int_equal(login_throttle_judge(throttle, HERE, NULL, 55 * S), LOGIN_HELD);
     /* while slowed, a valid token gets the same answer as a wrong one */
     assert_int_equal(login_throttle_judge(throttle, HERE, DESK, 58 * S), LOGIN_HELD);
-    assert_int_equal(login_throttle_judge(throttle, HERE, NULL, 59 * S), LOGIN_WRONG); /* one in five seconds */
+    assert_int_equal(login_throttle_judge(throttle, HERE, NULL, 59 * S), LOGIN_WRONG); /* one attempt per five seconds is judged */
     assert_int_equal(login_throttle_judge(throttle, HERE, NULL, 60 * S), LOGIN_HELD);
     assert_int_equal(login_throttle_judge(throttle, THERE, NULL, 60 * S), LOGIN_WRONG);
     assert_int_equal(login_throttle_judge(throttle, HERE, DESK, 64 * S), LOGIN_GOOD_NEW);
@@ -94,7 +94,7 @@ CASE(what_is_judged_elsewhere_counts_alike)
     assert_int_equal(login_throttle_begin(throttle, HERE, 9 * S), LOGIN_NONE); /* asking alone counts nothing */
     assert_int_equal(login_throttle_fail(throttle, HERE, 9 * S), LOGIN_WRONG_SLOWS);
     assert_int_equal(login_throttle_begin(throttle, HERE, 10 * S), LOGIN_HELD);
-    assert_int_equal(login_throttle_judge(throttle, HERE, DESK, 10 * S), LOGIN_HELD); /* tokens and answers share it */
+    assert_int_equal(login_throttle_judge(throttle, HERE, DESK, 10 * S), LOGIN_HELD); /* tokens and identity providers share one throttle */
     assert_int_equal(login_throttle_begin(throttle, THERE, 10 * S), LOGIN_NONE);
     assert_int_equal(login_throttle_begin(throttle, HERE, 14 * S), LOGIN_NONE);
     assert_int_equal(login_throttle_begin(throttle, HERE, 15 * S), LOGIN_HELD);

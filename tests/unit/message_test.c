@@ -603,7 +603,7 @@ TEST(no_number_is_minus_nought)
 }
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-enum { MOST_MESSAGE_MS = 50 }; /* they make it slower */
+enum { MOST_MESSAGE_MS = 50 }; /* sanitizers make parsing slower */
 #else
 enum { MOST_MESSAGE_MS = 5 };
 #endif

@@ -131,7 +131,7 @@ CASE(resets_do_no_harm)
     modbus_case_start(s);
     modbus_case_expect(s, 1, QUALITY_BAD_NO_COMMUNICATION, 3);
     sleep_ns(NS_PER_S);
-    assert_in_range(s->device.connections, 1, 5); /* no storm: it backs off */
+    assert_in_range(s->device.connections, 1, 5); /* reconnecting backs off */
     s->device.manner = DEVICE_GOOD;
     modbus_case_expect(s, 1, QUALITY_GOOD, 8);
 }

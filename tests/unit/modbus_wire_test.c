@@ -111,7 +111,7 @@ CASE(the_second_host_stands_in)
     device_start(&second);
     modbus_case_start(s);
     modbus_case_expect(s, 0, QUALITY_GOOD, 3);
-    assert_int_equal(second.connections, 0); /* one connection, to the first */
+    assert_int_equal(second.connections, 0); /* the only connection is to the first host */
     assert_int_equal(host_of(s), 1);
     device_stop(&s->device);
     int first_asked = s->device.requests;

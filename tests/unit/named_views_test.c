@@ -86,7 +86,7 @@ CASE(they_are_kept_in_order)
     assert_order(f, "all a b c");
     assert_int_equal(save(f, "a", "A", 2), REFUSAL_NONE);
     assert_order(f, "all b c a");
-    assert_int_equal(save(f, "b", "Other", -1), REFUSAL_NONE); /* stays where it is */
+    assert_int_equal(save(f, "b", "Other", -1), REFUSAL_NONE); /* a replaced view keeps its position */
     assert_true(named_views_number(f->views) == number + 5);
     open_again(f);
     assert_order(f, "all b c a");

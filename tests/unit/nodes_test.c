@@ -73,7 +73,7 @@ TEST(single_nodes_are_found_however_they_are_named)
     assert_string_equal(found("P-1/motor"), "d");
     assert_string_equal(found("#25"), "f");
     assert_string_equal(found("mesh:vessel"), "h");
-    assert_string_equal(found("P-3"), "j"); /* instances are one node */
+    assert_string_equal(found("P-3"), "j"); /* both instances belong to one node */
     assert_string_equal(found("motr"), "the model has no node 'motr': did you mean 'motor'?");
     assert_string_equal(found("!P-1"), "the model has no node '!P-1': did you mean 'P-1'?");
 }

@@ -75,7 +75,7 @@ CASE(they_end_by_their_time_or_by_hand)
     assert_string_not_equal(first, f->id);
     assert_int_not_equal(add(f, "over", NOON, NOON - S), REFUSAL_NONE);
     assert_notes(notes_text(f->notes, NOON + S), "stays hour");
-    assert_notes(notes_text_between(f->notes, NOON - S, NOON - S), ""); /* before they were written */
+    assert_notes(notes_text_between(f->notes, NOON - S, NOON - S), ""); /* before the notes were written there are none */
     assert_true(notes_differ(f->notes, NOON - S, NOON + S) && notes_differ(f->notes, NOON + 3600 * S, NOON + S));
     assert_false(notes_differ(f->notes, NOON + S, NOON + 2 * S));
     assert_notes(notes_text(f->notes, NOON + 3600 * S), "stays");

@@ -212,7 +212,7 @@ CASE(nobody_is_told_twice_after_a_restart)
     outbox_put(f->outbox, &missed, true, T0 + 10 * S);  /* raised just before the daemon ended: only the journal has it */
     assert_true(outbox_next(f->outbox, BOSS, T0 + 10 * S, &message));
     assert_int_equal(message.count, 1);
-    assert_string_equal(message.id, id); /* the receiver knows it */
+    assert_string_equal(message.id, id); /* Alertmanager can recognise the repeated message */
     outbox_sent(f->outbox, BOSS, T0 + 10 * S);
     assert_int_equal(deliver(f, OPS, T0 + 70 * S), 1);
     assert_int_equal(deliver(f, BOSS, T0 + 70 * S), 1);
@@ -308,7 +308,7 @@ CASE(alertmanager_hears_what_stands_and_what_has_ended)
     put(f, 0, LOCAL, true, true, T0, T0);
     put(f, 1, LOCAL, true, true, T0, T0);
     assert_int_equal(deliver(f, AM, T0 + 3 * S), 2);
-    put(f, 1, LOCAL, true, false, T0, T0 + 10 * S); /* acknowledged: it still stands */
+    put(f, 1, LOCAL, true, false, T0, T0 + 10 * S); /* acknowledged, but still active */
     assert_int_equal(deliver(f, AM, T0 + 13 * S), 2);
     put(f, 1, LOCAL, false, false, T0, T0 + 20 * S);
     assert_true(outbox_next(f->outbox, AM, T0 + 23 * S, &message));
@@ -319,7 +319,8 @@ CASE(alertmanager_hears_what_stands_and_what_has_ended)
     assert_string_equal(json_string_value(json_object_get(json_object_get(one, "labels"), "tag")), "T0000");
     assert_string_equal(json_string_value(json_object_get(json_object_get(one, "labels"), "area")), "Tank farm");
     assert_string_equal(json_string_value(json_object_get(one, "startsAt")), "2026-11-18T11:06:40.000Z");
-    assert_string_equal(json_string_value(json_object_get(one, "endsAt")), "2026-11-18T11:12:03.000Z"); /* unless it hears more */
+    /* Alertmanager ends the alert then, unless it gets an update */
+    assert_string_equal(json_string_value(json_object_get(one, "endsAt")), "2026-11-18T11:12:03.000Z");
     assert_string_equal(json_string_value(json_object_get(two, "endsAt")), "2026-11-18T11:07:00.000Z");
     json_decref(alerts);
     mem_free(text);
@@ -366,7 +367,7 @@ CASE(a_clock_that_jumps_ahead_loses_nothing_later)
     assert_true(outbox_next(f->outbox, AM, T0 + 3 * S, &message));
     outbox_failed(f->outbox, AM, T0 + 4 * S);
     assert_true(outbox_next(f->outbox, AM, T0 + 2 * MIN, &message));
-    outbox_tick(f->outbox, later); /* while it is sent again */
+    outbox_tick(f->outbox, later); /* while the message is being sent again */
     put(f, 1, LOCAL, true, true, later, later);
     assert_int_equal(deliver(f, OPS, later + 3 * S), 1);
     assert_int_equal(outbox_counts(f->outbox, OPS).lost, 0);

@@ -344,7 +344,7 @@ TEST(all_speaks_the_language)
 /* A wider legend also leaves a smaller area for the plant. */
 TEST(a_longer_legend_takes_more_room)
 {
-    struct view view; /* whose title is a sentence */
+    struct view view; /* the legend's title is a sentence */
     struct camera_window english, german;
     view_default(&stand.toy->scene, WIDTH, HEIGHT, &view);
     view.field.show = SHOW_DISTANCE;

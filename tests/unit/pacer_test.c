@@ -136,7 +136,7 @@ struct pacer_world {
         int64_t at_ns, decode_ns;
     } acks[PACER_MOST];
     int ack_count;
-    /* what was seen since measure() */
+    /* counts since the last measure() */
     int frames;
     int64_t begin_ns, oldest_ns;
     size_t most_bytes;

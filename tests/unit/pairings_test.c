@@ -145,7 +145,7 @@ CASE(few_wait_and_few_guesses_are_judged)
         assert_int_equal(ask(f, PAIRINGS + i, 0, more), PAIRING_WAITS);
     assert_int_equal(ask(f, PAIRINGS + PAIRINGS_FROM - 1, 0, more), PAIRING_FULL);
     assert_int_equal(ask(f, 0, 0, more), PAIRING_FULL); /* the first address lost one request and now has as many as the others */
-    assert_int_equal(ask(f, PAIRINGS, PAIRING_QUIET_S * NS_PER_S, more), PAIRING_WAITS); /* the others have gone */
+    assert_int_equal(ask(f, PAIRINGS, PAIRING_QUIET_S * NS_PER_S, more), PAIRING_WAITS); /* all other requests have expired */
     for (int i = 0; i < PAIRINGS_FROM - 1; i++)
         assert_int_equal(ask(f, PAIRINGS + 1 + i, PAIRING_QUIET_S * NS_PER_S, digits), PAIRING_WAITS);
     assert_string_not_equal(digits, more);
@@ -155,7 +155,7 @@ CASE(few_wait_and_few_guesses_are_judged)
     const uint8_t address[16] = { PAIRINGS / PAIRINGS_FROM };
     assert_int_equal(pairings_ask(f->pairings, &(struct pairing_request){ secret, ROOM, address, "" }, PAIRING_QUIET_S * NS_PER_S, digits,
                                   &left_s),
-                     PAIRING_FULL); /* eight from that address */
+                     PAIRING_FULL); /* that address already has eight requests */
     for (int i = 0, now_s = PAIRING_QUIET_S; i < PAIRING_WRONG; i++)
         assert_int_not_equal(approve(f, "abcdef", now_s * NS_PER_S), REFUSAL_NONE);
     assert_int_not_equal(approve(f, more, (PAIRING_QUIET_S + 1) * NS_PER_S), REFUSAL_NONE); /* right, and not judged */

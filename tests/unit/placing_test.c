@@ -168,7 +168,7 @@ CASE(test_what_cannot_be_is_refused_and_nothing_moves)
 
 CASE(test_gaps_are_of_what_the_set_has_moved)
 {
-    move(f, &(struct place_move){ .tag = 0, .position_m = { 11, 0.5, 0.4 } }, 1, REFUSAL_NONE); /* beside the other one */
+    move(f, &(struct place_move){ .tag = 0, .position_m = { 11, 0.5, 0.4 } }, 1, REFUSAL_NONE); /* next to the other asset */
     collect(f, false);
     for (int moved = 0; moved < 2; moved++) {
         placing_request_coverage(f->placing, moved ? f->set : NULL, 0, 0.8, f->snapshot, 7, 3 + (uint32_t)moved);

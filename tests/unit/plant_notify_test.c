@@ -24,7 +24,7 @@ CASE(all_keys_are_read)
     load(c, "sources: [{ id: a, type: modbus, host: h }]\n"
             "notify:\n"
             "  link: https://p.example/\n  gather_s: 2\n  pause_s: 30\n  timeout_s: 5\n"
-            "  rules:\n" /* before what it refers to */
+            "  rules:\n" /* a rule may come before the recipient that it names */
             "  - { id: all, to: [ops, hook] }\n"
             "  - { id: nights, priority: 2, areas: [\"Tank*\", E-1], days: [fri-mon], hours: \"22:00-06:00\", to: ops,"
             " escalate: [{ after_min: 10, to: boss }, { after_min: 30, to: [boss, hook] }] }\n"

@@ -190,7 +190,7 @@ CASE(only_what_changed_is_made_anew)
     char *old = file_of(s, 0);
     prep_case_tags(s, "T1,400001,Float,plc,temperature,A,,0.5,0,0\nT5,400009,Float,plc,temperature,C,,1,0.5,0.4\n");
     assert_states(s, "built", "built", "unchanged");
-    assert_int_not_equal(access(old, F_OK), 0); /* nothing names it any more */
+    assert_int_not_equal(access(old, F_OK), 0); /* no asset uses the old file any more */
     mem_free(old);
 }
 
@@ -434,7 +434,7 @@ CASE(what_is_wrong_is_said_with_its_place)
     assert_non_null(strstr(json_string_value(json_object_get(asset_of(root, 3), "missing")), "no node's name matches 'tank*'"));
     json_decref(root);
     text_finish(&manifest);
-    prep_case_expect(s, "$PLANT --report json", 1); /* what was good is there */
+    prep_case_expect(s, "$PLANT --report json", 1); /* the valid assets are built */
     json_t *report = prep_case_json(&s->out);
     assert_string_equal(state_of(report, 0), "unchanged");
     assert_string_equal(state_of(report, 3), "failed");

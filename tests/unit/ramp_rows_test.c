@@ -50,7 +50,7 @@ TEST(equal_ones_are_kept_once)
     begin(&s, 5000);
     for (size_t i = 0; i < s.count; i++) {
         uint32_t shade = (uint32_t)(i * 7919 % 50);
-        set(&s, i, 0x102030 + shade, 0x808080 + (shade == 7 && i > 2500)); /* one looks different as context */
+        set(&s, i, 0x102030 + shade, 0x808080 + (shade == 7 && i > 2500)); /* one material differs only as context */
     }
     assert_int_equal(pack(&s), 51);
     for (size_t i = 0; i < s.count; i++) {

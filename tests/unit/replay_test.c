@@ -153,7 +153,7 @@ CASE(what_is_not_in_the_file_is_bad)
     assert_true(s->events.at[1].tag == 0 && s->events.at[1].value == 0);
     wait_for_link(s, true);
     int64_t begin_ns = clock_mono_ns();
-    source_stop(&s->source); /* long before it ends */
+    source_stop(&s->source); /* stopped long before the recording ends */
     assert_true(clock_mono_ns() - begin_ns < 2 * NS_PER_S);
 }
 

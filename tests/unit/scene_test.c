@@ -346,7 +346,7 @@ CASE(home_is_of_what_is_shown_at_the_start)
     for (size_t n = 0; n < scene->extreme_count; n++)
         assert_true(scene->extremes_m[n][0] < scene->assets[1].bounds_min_m[0]);
     scene_destroy(&scene);
-    f->plant->assets[0].start = f->plant->assets[2].start = PLANT_START_HIDDEN; /* somewhere one has to look */
+    f->plant->assets[0].start = f->plant->assets[2].start = PLANT_START_HIDDEN; /* without visible assets the home view covers all */
     scene = scene_create(f->log, f->plant, f->prepared);
     assert_non_null(scene);
     assert_true(scene->extreme_count >= 4);

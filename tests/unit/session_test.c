@@ -1048,7 +1048,7 @@ CASE(codecs_are_chosen_and_chosen_again)
     assert_true(ask(f, &request) && request.alone && request.always);
     paint_nothing(f, &request);
     f->context.codecs = 0;
-    say(f, "{\"type\":\"codecs\",\"codecs\":[\"h264\"]}"); /* of a server without it */
+    say(f, "{\"type\":\"codecs\",\"codecs\":[\"h264\"]}"); /* refused: this server has no H.264 encoder */
     expect_error(f, "bad_field");
     assert_int_equal(f->session->codec.current, WIRE_CODEC_H264);
 }

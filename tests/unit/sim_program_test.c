@@ -101,7 +101,7 @@ static int set_up(void **state)
     s.plant_path = mem_printf("%s/sim-test.yaml", s.folder);
     s.tags_path = mem_printf("%s/sim-test.csv", s.folder);
     s.model_path = mem_printf("%s/none.glb", s.folder);
-    assert_int_equal(atomic_file_put(s.model_path, "glTF", 4), 0); /* nobody opens it here */
+    assert_int_equal(atomic_file_put(s.model_path, "glTF", 4), 0); /* the simulator does not open the model */
     char *text = mem_printf(plant_text, s.port);
     assert_int_equal(atomic_file_put(s.plant_path, text, strlen(text)), 0);
     assert_int_equal(atomic_file_put(s.tags_path, tags_text, strlen(tags_text)), 0);

@@ -103,7 +103,7 @@ TEST(bits_leave_their_neighbours_alone)
                 check_there_and_back(&tag, 0, 0);
                 assert_true(sim_encode(&tag, 1, &word) && sim_encode(&tag, 0, &word));
                 int changed = word ^ 0xA5C3;
-                assert_true((changed & (changed - 1)) == 0); /* one bit at most */
+                assert_true((changed & (changed - 1)) == 0); /* at most one bit changes */
             }
     struct plant_tag coil = { .table = TABLE_COIL, .bit = -1, .type = DATA_BIT };
     check_there_and_back(&coil, 1, 0);

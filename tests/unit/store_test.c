@@ -271,7 +271,7 @@ CASE(a_value_told_again_is_good_again)
     store_tags_dead(s->store, &(int){ 0 }, 1, 20 * S);
     assert_true(quality_is_bad(look(s, 0, 21 * S)->quality));
     store_write(s->store, &(struct sample){ .tag = 0, .value = 9, .quality = QUALITY_GOOD }, 1, 10 * S - 1, 1009 * S);
-    assert_true(quality_is_bad(look(s, 0, 21 * S)->quality)); /* older than what is known */
+    assert_true(quality_is_bad(look(s, 0, 21 * S)->quality)); /* the sample is older than the known value */
     store_write(s->store, &(struct sample){ .tag = 0, .value = 42, .quality = QUALITY_GOOD }, 1, 10 * S - 1, 1010 * S);
     assert_true(look(s, 0, 21 * S)->value == 42);
     assert_false(quality_is_bad(look(s, 0, 11 * S)->quality));
@@ -296,7 +296,7 @@ CASE(what_is_lost_at_first_is_not_told_at_a_wrong_time)
     store_listen(s->store, count_events, &heard);
     store_link_lost(s->store, 0, 10);
     assert_int_equal(heard, 0);
-    assert_int_equal(look(s, 0, 10)->quality, QUALITY_BAD_NO_COMMUNICATION); /* whoever looks has it */
+    assert_int_equal(look(s, 0, 10)->quality, QUALITY_BAD_NO_COMMUNICATION); /* every snapshot shows the loss */
     write_one(s, 0, 1, QUALITY_GOOD, 13);
     store_link_lost(s->store, 0, 20);
     assert_true(heard > 13);

@@ -126,7 +126,7 @@ TEST(a_sample_is_not_sure_of_what_one_triangle_needs)
     release(&part);
     take_in_hand(&part, &sample, errors);
     for (uint32_t t = 0; t < part.mesh.tri_count; t++)
-        part.mesh.tris[t].origin = 0; /* all are pieces of it */
+        part.mesh.tris[t].origin = 0; /* all triangles are pieces of triangle 0 */
     assert_false(comes_to(&part, 0.9 * TRIANGLES));
     release(&part);
     level_finish(&level);

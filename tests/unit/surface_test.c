@@ -283,7 +283,7 @@ TEST(gaps_are_closed_and_walls_are_not_passed)
     assert_true(second_plate_reached(1.0003, 0));   /* plates 0.3 mm apart are joined */
     assert_false(second_plate_reached(1.02, 0));    /* a slot of 20 mm */
     assert_false(second_plate_reached(0, 0.01));    /* two sheets 10 mm apart */
-    assert_true(second_plate_reached(0.5, 0.0002)); /* one lying on the other */
+    assert_true(second_plate_reached(0.5, 0.0002)); /* one plate lies on the other */
 }
 
 /* Asserts that every counted bridge is in the debug mesh: across the gap, or where the pipe passes through the shell. */
@@ -354,7 +354,8 @@ TEST(nothing_leads_through_a_closed_part)
     struct cad pipes = { 0 };
     cad_closed_pipe(&pipes, &chance, 0.5, 2, 80, 60, 12, 0, (const double[3]){ 0, 0, 0 });
     size_t first = pipes.vertex_count;
-    cad_closed_pipe(&pipes, &chance, 0.3, 4, 60, 120, 8, M_PI / 2, (const double[3]){ 0, 0, 0 }); /* right through the first one */
+    /* the second pipe passes right through the first */
+    cad_closed_pipe(&pipes, &chance, 0.3, 4, 60, 120, 8, M_PI / 2, (const double[3]){ 0, 0, 0 });
     struct surface *surface = surface_of(&pipes);
     const struct surface_report *report = surface_report(surface);
     float *distances = distances_from(surface, &pipes, 2, 0, 0); /* the source is at one end of the second pipe */

@@ -68,7 +68,7 @@ CASE(test_every_list_stays_beside_the_next)
     }
     struct stat st;
     assert_int_equal(stat(f->path, &st), 0);
-    assert_int_equal(st.st_mode & 0777, 0640); /* who may read it stays */
+    assert_int_equal(st.st_mode & 0777, 0640); /* permissions are kept */
     expect_text(f->folder, "tags.csv.2", "somebody's own\n");
     mem_free(taken);
 }

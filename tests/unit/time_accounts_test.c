@@ -27,7 +27,7 @@ TEST(each_address_has_half_of_the_time)
     struct time_account *large = time_accounts_join(&accounts, 1), *small = time_accounts_join(&accounts, 2);
     int64_t had_ns[2] = { 0 };
     for (int i = 0; i < 29; i++)
-        assert_ptr_equal(time_accounts_join(&accounts, 1), large); /* however many sessions it has */
+        assert_ptr_equal(time_accounts_join(&accounts, 1), large); /* an address has one account for all its sessions */
     while (had_ns[0] + had_ns[1] < 60 * NS_PER_S) {
         struct time_account *next = who_has_had_less(large, small);
         int64_t cost_ns = next == large ? 300 * NS_PER_MS : 20 * NS_PER_MS;

@@ -133,7 +133,8 @@ CASE(test_it_may_go_to_another_asset)
     uint32_t id = put(f, sensor_at(f, MOVED, 1, TO, true));
     struct scalar *left = copy_of(f, 0, id), *there = copy_of(f, 1, id), *was = copy_of(f, 0, 0);
     assert_true(fabs((double)there[TO].value - f->plant->snapshot->readings[MOVED].value) < 1e-4);
-    assert_true(fabsf(was[MOVED].value - (float)f->plant->snapshot->readings[MOVED].value) < 1e-3f); /* it stood at its vertex */
+    /* the sensor's original vertex shows its reading */
+    assert_true(fabsf(was[MOVED].value - (float)f->plant->snapshot->readings[MOVED].value) < 1e-3f);
     size_t changed = 0;
     for (size_t i = 0; i < VERTICES; i++)
         changed += left[i].value != was[i].value;

@@ -6,7 +6,7 @@
 #include "base/mem.h"
 #include "render/soft/visibility_store.h"
 
-/* NULL: it was not taken. */
+/* Returns NULL if the store did not accept the buffer. */
 static void *make(struct visibility_store *store, uint64_t shape, size_t bytes)
 {
     visibility_store_give(store, shape, mem_new(bytes), bytes, mem_free);
