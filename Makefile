@@ -138,14 +138,15 @@ $(bin)/plantcast-prep: $(call objects,preprocess/main.c) $(out)/lib/prep.a $(arc
 # Reads what strangers' programs wrote: neither the daemon nor plantcast-prep links it.
 $(bin)/plantcast-import: $(call objects,preprocess/import/main.c) $(out)/lib/import.a $(out)/lib/match.a $(out)/lib/prep.a $(archives)
 	$(link) -lGLU -lminizip -lz
-by_occt := $(call objects,$(basename $(filter-out %/assimp.cc,$(wildcard preprocess/import/readers/*.cc))))
+by_occt := $(call objects,$(basename $(filter-out preprocess/import/readers/assimp%,$(wildcard preprocess/import/readers/*.cc))))
 by_reader := $(call objects,preprocess/import/encoding)
 $(by_occt): CXXFLAGS += -isystem $(occt)
 $(bin)/plantcast-import-occt: $(by_occt) $(by_reader) $(out)/lib/prep.a $(out)/lib/base.a
 	@mkdir -p $(@D); echo "  LINK $@"
 	@$(CXX) $(ldflags) -pie -o $@ $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group \
 	    $(occt_libs) -luchardet -ljansson
-$(bin)/plantcast-import-assimp: $(call objects,preprocess/import/readers/assimp) $(by_reader) $(out)/lib/prep.a $(out)/lib/base.a
+by_assimp := $(call objects,$(wildcard preprocess/import/readers/assimp*.cc))
+$(bin)/plantcast-import-assimp: $(by_assimp) $(by_reader) $(out)/lib/prep.a $(out)/lib/base.a
 	@mkdir -p $(@D); echo "  LINK $@"
 	@$(CXX) $(ldflags) -pie -o $@ $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group -lassimp -luchardet -ljansson -lm
 $(bin)/plantcast-match: $(call objects,preprocess/match/main.c) $(out)/lib/match.a $(out)/lib/prep.a $(archives)

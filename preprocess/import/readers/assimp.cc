@@ -5,12 +5,12 @@
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/DefaultLogger.hpp>
 #include <assimp/Importer.hpp>
-#include <assimp/LogStream.hpp>
 #include <assimp/MemoryIOWrapper.h>
 #include <assimp/material.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
@@ -25,11 +25,13 @@ extern "C" {
 #include "base/image/srgb.h"
 }
 #include "preprocess/glb/glb_scene.h"
+#include "preprocess/import/readers/assimp_losses.hh"
 #include "preprocess/import/readers/reader.hh"
 
 namespace
 {
 
+constexpr size_t MOST_NAMED = 20;
 constexpr double LONGEST_IN_METRES = 300; /* metres; a model that would be longer is assumed to be in millimetres */
 
 struct format {
@@ -51,6 +53,7 @@ struct assimp_reader {
     /* index of the output mesh by list of Assimp meshes, so that nodes with the same list share a mesh */
     std::map<std::vector<unsigned>, int> meshes;
     size_t triangles = 0, lost = 0; /* lost: triangles left out because a corner is not finite */
+    std::vector<std::string> lines; /* names of nodes that are only lines or points */
 };
 
 /* --- files ---------------------------------------------------------------------------------------------------- */
@@ -133,27 +136,12 @@ Assimp::IOStream *of_text(const std::string &text)
     return new Assimp::MemoryIOStream(copy, text.size(), true);
 }
 
-/* Collects the errors that Assimp logs, with a count for each distinct text. */
-struct errors : Assimp::LogStream {
-    std::map<std::string, size_t> &counts;
-
-    explicit errors(std::map<std::string, size_t> &into) : counts(into)
-    {
-    }
-    void write(const char *message) override
-    {
-        std::string text(message);
-        while (!text.empty() && isspace(static_cast<unsigned char>(text.back())))
-            text.pop_back();
-        counts[text]++;
-    }
-};
-
 /* Gives Assimp file contents converted to UTF-8, with blanks in OBJ names replaced. The encoding found for the first file (the model)
  * applies to all others: names in material files must match those in the model. */
 struct files : Assimp::DefaultIOSystem {
     text_encoding *encoding;
     const char *asked;
+    bool searched = false; /* for lost shapes: Assimp opens a file several times */
 
     files(text_encoding *encoding_of_all, const char *asked_for) : encoding(encoding_of_all), asked(asked_for)
     {
@@ -181,6 +169,11 @@ struct files : Assimp::DefaultIOSystem {
             encoding->say();
         }
         text = encoding->utf8(text);
+        if (dae && !searched)
+            assimp_losses_of_dae(text);
+        if (obj && !searched)
+            assimp_losses_of_obj(text);
+        searched |= dae || obj;
         if (obj)
             keep_blanks(&text[0], text.size(), false);
         return of_text(text);
@@ -206,7 +199,8 @@ void grow(const aiScene *scene, const aiNode *node, const aiMatrix4x4 &above, do
     aiMatrix4x4 world = above * node->mTransformation;
     for (unsigned m = 0; m < node->mNumMeshes; m++) {
         const aiMesh *mesh = scene->mMeshes[node->mMeshes[m]];
-        for (unsigned i = 0; i < mesh->mNumVertices; i++) {
+        const bool shown = (mesh->mPrimitiveTypes & aiPrimitiveType_TRIANGLE) != 0;
+        for (unsigned i = 0; shown && i < mesh->mNumVertices; i++) {
             aiVector3D p = world * mesh->mVertices[i];
             const double at[3] = { static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z) };
             for (int axis = 0; axis < 3; axis++)
@@ -341,6 +335,21 @@ std::string name_of(const assimp_reader *r, const aiString &from)
     return name;
 }
 
+/* Reports a node with meshes that shows nothing. */
+void say_empty(assimp_reader *r, const aiNode *node)
+{
+    std::string name = name_of(r, node->mName);
+    std::replace_if(name.begin(), name.end(), [](unsigned char c) { return c < ' '; }, ' ');
+    unsigned types = 0;
+    for (unsigned m = 0; m < node->mNumMeshes; m++)
+        types |= r->scene->mMeshes[node->mMeshes[m]]->mNumFaces > 0 ? r->scene->mMeshes[node->mMeshes[m]]->mPrimitiveTypes : 0U;
+    if (types != 0 && (types & ~static_cast<unsigned>(aiPrimitiveType_LINE | aiPrimitiveType_POINT)) == 0)
+        r->lines.push_back(name.empty() ? "a node without a name" : name);
+    else
+        printf("lost\t\t%s\tnode\t\t%s\n",
+               name.c_str(), types == 0 ? "its mesh has no triangles" : "no corners of its triangles are finite");
+}
+
 /* Returns the output mesh of a node, creating it if necessary, or -1 if the node has no triangles. */
 int mesh_of(assimp_reader *r, const aiNode *node)
 {
@@ -436,8 +445,11 @@ void add(assimp_reader *r, const aiNode *node, const transform &steps, int paren
     matrix_of(node, place, matrix);
     int number = parent;
     if (!made_up && !step) {
-        number =
-            glb_scene_add_node(r->out, parent, name_of(r, node->mName).c_str(), mesh_of(r, node), place.IsIdentity() ? nullptr : matrix);
+        const int mesh = mesh_of(r, node);
+        if (mesh < 0 && node->mNumMeshes > 0)
+            say_empty(r, node);
+        number = glb_scene_add_node(r->out, parent, name_of(r, node->mName).c_str(), mesh,
+                                    place.IsIdentity() ? nullptr : matrix);
         add_properties(r, number, node->mMetaData);
     }
     for (unsigned i = 0; i < node->mNumChildren; i++)
@@ -469,6 +481,16 @@ void check_end_of_stl(const char *path)
         refuse("it is cut off: it does not end with endsolid");
 }
 
+/* Reports nodes that are only lines or points. */
+void say_lines(const std::vector<std::string> &names)
+{
+    std::string all;
+    for (size_t i = 0; i < names.size() && i < MOST_NAMED; i++)
+        all += (i > 0 ? ", " : "") + names[i];
+    printf("not shown: %zu nodes that are only lines or points: %s%s\n",
+           names.size(), all.c_str(), names.size() > MOST_NAMED ? ", ..." : "");
+}
+
 /* Reports that textures are ignored: only the colours of materials are kept. */
 void say_textures(const aiScene *scene)
 {
@@ -491,7 +513,6 @@ void convert(const char *input, const char *output, const char *units, const cha
     if (strcmp(from.ending, ".stl") == 0)
         check_end_of_stl(input);
     unsigned steps = aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_SortByPType | aiProcess_ValidateDataStructure;
-    importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_LINE | aiPrimitiveType_POINT);
     importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_NORMALS);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, true); /* otherwise children inherit GeometricTranslation */
@@ -499,8 +520,11 @@ void convert(const char *input, const char *output, const char *units, const cha
     importer.SetIOHandler(new files(&of_file, asked)); /* Assimp takes ownership */
     std::map<std::string, size_t> logged;
     Assimp::DefaultLogger::create("", Assimp::Logger::NORMAL, 0);
-    Assimp::DefaultLogger::get()->attachStream(new errors(logged), Assimp::Logger::Err); /* Assimp takes ownership */
-    const aiScene *scene = importer.ReadFile(input, steps | (from.own_normals ? 0U : static_cast<unsigned>(aiProcess_RemoveComponent)));
+    Assimp::DefaultLogger::get()->attachStream(new assimp_log(logged), Assimp::Logger::Err | Assimp::Logger::Warn); /* Assimp owns it */
+    steps |= from.own_normals ? 0U : static_cast<unsigned>(aiProcess_RemoveComponent);
+    const aiScene *scene = importer.ReadFile(input, steps);
+    if (!scene && strstr(importer.GetErrorString(), "contains no ")) /* one empty mesh makes Assimp refuse the whole model */
+        scene = importer.ReadFile(input, steps & ~static_cast<unsigned>(aiProcess_ValidateDataStructure | aiProcess_SortByPType));
     if (!scene || !scene->mRootNode)
         refuse("%.250s", strcmp(importer.GetErrorString(), "std::bad_alloc") ? importer.GetErrorString() : "out of memory");
     Assimp::DefaultLogger::kill();
@@ -521,6 +545,8 @@ void convert(const char *input, const char *output, const char *units, const cha
     root_matrix(scene, from, units, up, matrix);
     int root = glb_scene_add_node(r.out, -1, std::string(base, strlen(base) - strlen(from.ending)).c_str(), -1, matrix);
     add(&r, scene->mRootNode, transform(), root, 0);
+    if (!r.lines.empty())
+        say_lines(r.lines);
     if (r.triangles == 0)
         refuse("there is no surface in it");
     write_scene(&r.out, output, "");

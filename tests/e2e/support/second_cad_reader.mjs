@@ -23,7 +23,7 @@ function sumOcct(occt, name, bytes) {
     return summed(sums, false);
 }
 
-function sumScene(THREE, scene, metres, yUp) {
+function sumScene(THREE, scene, metres) {
     const sums = triangleSums(), v = new THREE.Vector3();
     scene.updateMatrixWorld(true);
     scene.traverse(({ isMesh, geometry, matrixWorld }) => {
@@ -33,7 +33,7 @@ function sumScene(THREE, scene, metres, yUp) {
         for (let i = 0; position && i + 2 < count; i += 3)
             sums.add(at(i), at(i + 1), at(i + 2));
     });
-    return summed(sums, yUp);
+    return summed(sums, true);
 }
 
 // Returns null where it is not installed, else a function that takes a name and the bytes of a STEP or IGES file.
@@ -46,8 +46,8 @@ export async function secondCadReader() {
     }
 }
 
-// Returns null where it is not installed, else a function that takes a name, the bytes of an OBJ, COLLADA or FBX file, and the unit and
-// axis of what its loader hands over: COLLADA's applies those of the file, the others do not.
+// Returns null where it is not installed, else a function that takes a name, the bytes of an OBJ, COLLADA or FBX file, and the unit of OBJ
+// and FBX in metres. COLLADA's loader applies that of the file.
 export async function secondMeshReader() {
     let THREE, loaders, DOMParser;
     try {
@@ -61,15 +61,15 @@ export async function secondMeshReader() {
     const [{ FBXLoader }, { ColladaLoader }, { OBJLoader }] = loaders;
     globalThis.DOMParser ??= DOMParser;
     globalThis.window ??= { innerWidth: 1, innerHeight: 1 }; // of cameras in FBX
-    return (name, bytes, { metres = 1, yUp = true } = {}) => {
+    return (name, bytes, { metres = 1 } = {}) => {
         const { log, warn, error } = console;
         console.log = console.warn = console.error = () => {}; // the loaders print
         try {
             if (/\.fbx$/i.test(name))
-                return sumScene(THREE, new FBXLoader().parse(Uint8Array.from(Buffer.from(bytes)).buffer, ''), metres, yUp);
+                return sumScene(THREE, new FBXLoader().parse(Uint8Array.from(Buffer.from(bytes)).buffer, ''), metres);
             if (/\.dae$/i.test(name))
-                return sumScene(THREE, new ColladaLoader().parse(bytes.toString(), '').scene, metres, yUp);
-            return sumScene(THREE, new OBJLoader().parse(bytes.toString()), metres, yUp);
+                return sumScene(THREE, new ColladaLoader().parse(bytes.toString(), '').scene, metres);
+            return sumScene(THREE, new OBJLoader().parse(bytes.toString()), metres);
         } finally {
             Object.assign(console, { log, warn, error });
         }
