@@ -54,7 +54,7 @@ struct prep_options {
     bool distances, json, all, debug_view, diff, help;
     const char *plant, *output, *asset, *sensor, *views, *revision; /* revision: plant to compare with */
     double tolerance_m;
-    size_t memory_bytes; /* memory in bytes of the machine that will serve the plant; 0: of this machine */
+    size_t memory_bytes; /* memory in bytes of the machine that will serve the plant; 0: the memory of this machine */
 };
 
 static atomic_bool interrupted;
@@ -247,7 +247,7 @@ static bool confine_self(const struct plant *plant, const char *folder, char **a
                                  ".tif .tiff .exr .hdr";
     struct child_paths paths = { 0 };
     bool notifies = getenv("NOTIFY_SOCKET") != NULL;
-    mkdir(folder, 0777); /* errors are ignored here: they show when the first file is written */
+    mkdir(folder, 0777); /* ignore errors here: writing the first file reports them */
     child_paths_add(&paths, "/proc/self/exe", CONFINE_EXECUTE);
     child_paths_add_modules(&paths);
     child_paths_add(&paths, folder, CONFINE_WRITE);
@@ -274,7 +274,7 @@ static bool run_plant(const struct prep_options *options, char **argv, struct di
     struct plant *plant = plant_load(options->plant, diag);
     if (!plant)
         return false;
-    /* asks the service manager for more time while a unit prepares its plant before the daemon starts */
+    /* ask the service manager for more time while a unit prepares its plant before the daemon starts */
     struct service_patience *patience = service_patience_begin("preparing the plant", ASSET_LIMIT_S);
     char *folder = options->output ? mem_strdup(options->output) : plant_prepared_folder(plant);
     bool confined = child_self_confined(), good = confined || convert_run(plant, folder, stderr, diag);

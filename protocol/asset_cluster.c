@@ -5,7 +5,9 @@
 
 #include "protocol/asset_format_impl.h"
 
-#define MIN_CONE_COSINE 0.1 /* cosine of the half angle: wider cones hardly ever face away entirely */
+/* minimum cosine of a normal cone's half angle; wider cones are stored as "normals in all directions", because they hardly ever face
+ * away entirely */
+#define MIN_CONE_COSINE 0.1
 
 double asset_length(const float v[3])
 {

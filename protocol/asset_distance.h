@@ -13,10 +13,10 @@
 
 #define ASSET_DISTANCE_BLOCK 256u       /* vertices; the last block is padded with ASSET_DISTANCE_NONE */
 #define ASSET_DISTANCE_NONE 0xffffu     /* infinity: not reachable */
-#define ASSET_DISTANCE_MOST_M 130000.0f /* longer distances are stored as this one */
+#define ASSET_DISTANCE_MOST_M 130000.0f /* metres; longer distances are stored as this distance */
 
-/* Returns the distance of a code in metres; INFINITY for ASSET_DISTANCE_NONE. Always inlined, so that it becomes part of loops that are
-   built for other processors. */
+/* Returns the distance of a code in metres; INFINITY for ASSET_DISTANCE_NONE. Always inlined, so that loops compiled for several processor
+ * variants contain it. */
 static inline __attribute__((always_inline)) float asset_distance_of(uint16_t code)
 {
     uint32_t bits = (uint32_t)code << 12;
@@ -41,7 +41,7 @@ static inline size_t asset_distance_count(size_t sensor_count, size_t vertex_cou
     return sensor_count * ((vertex_count + ASSET_DISTANCE_BLOCK - 1) / ASSET_DISTANCE_BLOCK) * ASSET_DISTANCE_BLOCK;
 }
 
-/* Returns the codes of one sensor for a block of vertices. vertex: any of the block. Owned by the view. */
+/* Returns the codes of one sensor for a block of vertices. vertex: any vertex of the block. The view owns the codes. */
 static inline const uint16_t *asset_distance_codes(const struct asset_view *view, size_t sensor, size_t vertex)
 {
     size_t block = vertex / ASSET_DISTANCE_BLOCK;

@@ -11,14 +11,14 @@
 #define ASSET_VERSION 5u
 #define ASSET_ALIGN 64u
 #define ASSET_NO_TEXTURE UINT32_MAX
-#define ASSET_SECOND_MASK 0x1eu /* material bits: which bits of asset_material.second may be set */
+#define ASSET_SECOND_MASK 0x1eu /* mask of the bits of asset_material.second that may be set: textures 1 to 4 */
 
 enum asset_section {
     ASSET_POSITIONS,        /* float[3] per vertex: asset frame (metres, Z up) minus header.origin_m */
     ASSET_NORMALS,          /* float[3] per vertex, unit length */
-    ASSET_TEXCOORDS,        /* float[2] per vertex; 0 bytes: no texture anywhere in the asset */
-    ASSET_SECOND_TEXCOORDS, /* float[2] per vertex; 0 bytes: no material uses them */
-    ASSET_COLORS,           /* uint8[4] per vertex, linear RGBA; 0 bytes: none */
+    ASSET_TEXCOORDS,        /* float[2] per vertex; empty section: the asset has no textures */
+    ASSET_SECOND_TEXCOORDS, /* float[2] per vertex; empty section: no material uses a second set */
+    ASSET_COLORS,           /* uint8[4] per vertex, linear RGBA; empty section: no vertex colours */
     ASSET_INDICES,          /* uint32 per corner */
     ASSET_PRIMITIVES,       /* struct asset_primitive */
     ASSET_LEVELS,           /* struct asset_level, finest first */
@@ -33,14 +33,14 @@ enum asset_section {
 };
 
 struct asset_section_entry {
-    uint64_t offset, bytes; /* offset: from the start of the file */
+    uint64_t offset, bytes; /* offset in bytes from the start of the file */
 };
 
 struct asset_header {
     char magic[8];
     uint32_t version, header_bytes;
     uint64_t file_bytes;
-    uint64_t checksum;  /* XXH3-64 of the file with this field 0 */
+    uint64_t checksum;  /* XXH3-64 of the file computed with this field set to 0 */
     uint64_t key;       /* XXH3-64 of all inputs: model bytes, node pattern, units, sensor positions, the program's format version */
     double origin_m[3]; /* in the asset frame */
     float bounds_min_m[3], bounds_max_m[3]; /* bounding box of all positions, relative to origin_m */
@@ -54,10 +54,11 @@ struct asset_primitive {               /* a run of triangles with one material, 
     uint32_t name; /* offset in ASSET_NAMES: the node's name */
 };
 
-struct asset_level { /* a level of detail: its primitives, and the number of vertices, from the first, that it uses */
+struct asset_level { /* a level of detail: its primitives, and its vertex count; it uses the first vertices of the file */
     uint32_t first_primitive, primitive_count, vertex_count;
-    uint32_t added_count; /* vertices that preparation added: the last of those that the next coarser level does not use */
-    float error_m;        /* geometric error; 0 for the finest level */
+    /* count of vertices that preparation added; they are the last of the level's vertices that the next coarser level does not use */
+    uint32_t added_count;
+    float error_m; /* largest distance of the level's surface from the finest level's; 0 for the finest level */
 };
 
 /* Triangles of one primitive that are close together and have similar normals, so that they can be culled together. A primitive's clusters
@@ -76,7 +77,7 @@ struct asset_material { /* glTF 2.0 metallic-roughness; factors linear */
     float emissive[3], alpha_cutoff;
     uint32_t base_color_texture, metallic_roughness_texture, normal_texture, occlusion_texture, emissive_texture; /* or ASSET_NO_TEXTURE */
     uint32_t alpha, double_sided, name;
-    /* material bits: bit n says that the n-th texture of the material uses the second texture coordinates; never the base colour's */
+    /* bit n set: the n-th texture above (0: base colour) uses the second texture coordinates; bit 0 is never set */
     uint32_t second;
 };
 
@@ -86,11 +87,11 @@ struct asset_texture {
 };
 
 struct asset_sensor {
-    float position_m[3];      /* position, relative to origin_m: as configured, or the model node's */
+    float position_m[3];      /* configured position, or that of the configured model node; relative to origin_m */
     float surface_m[3];       /* nearest point of the surface, relative to origin_m */
     float surface_distance_m; /* distance between both */
     uint32_t nearest_vertex;
-    uint64_t node_hash; /* XXH3-64 of the node name that gave the position; 0: X, Y, Z gave it */
+    uint64_t node_hash; /* XXH3-64 of the node name that gave the position; 0: the position was configured as X, Y, Z */
 };
 
 /* A checked asset file in memory. Its pointers point into the bytes, which must outlive the view. */
@@ -113,8 +114,8 @@ struct asset_view {
     const char *names;
 };
 
-/* Checks an asset file completely (magic, version, size, checksum, section bounds, every index, finiteness) and makes a view of it. bytes
-   must be aligned to ASSET_ALIGN and outlive the view. Returns false if the file is invalid, with the reason in `why`. */
+/* Checks an asset file completely (magic, version, size, checksum, section bounds, every index, finiteness) and makes a view. bytes must be
+ * aligned to ASSET_ALIGN and outlive the view. Returns false if the file is invalid, with the reason in `why`. */
 bool asset_view_init(struct asset_view *view, const void *bytes, size_t size, char why[200]);
 /* Makes a view of bytes that asset_build() has just made: checks them like asset_view_init(), but not their checksum. */
 bool asset_view_fresh(struct asset_view *view, const void *bytes, size_t size, char why[200]);
@@ -124,7 +125,7 @@ void asset_cluster_measure(struct asset_cluster *cluster, const float (*position
 /* Returns whether an eye at eye_m (relative to origin_m) sees only back faces of the cluster. */
 bool asset_cluster_turned_away(const struct asset_cluster *cluster, const float eye_m[3]);
 
-/* Inputs of an asset file. Pointers are only read. Zero-initialise. */
+/* Contents of an asset file to build. The caller keeps ownership of all arrays. Zero-initialise. */
 struct asset_parts {
     uint64_t key;
     double origin_m[3];

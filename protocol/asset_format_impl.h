@@ -5,7 +5,7 @@
 #include "protocol/asset_format.h"
 
 uint64_t asset_checksum(const void *bytes, size_t size); /* computes the checksum with the checksum field as 0 */
-/* Returns the required size of a section; UINT64_MAX: any size. *optional: the section may also be empty. */
+/* Returns the required size of a section; UINT64_MAX: any size. *optional receives whether the section may also be empty. */
 uint64_t asset_section_bytes(const struct asset_header *h, int section, bool *optional);
 /* Returns the cosine of the largest angle between the axis and a normal of the cluster's triangles. */
 double asset_cluster_least_dot(const struct asset_cluster *cluster, const float (*positions_m)[3], const uint32_t *indices,

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Checks the bytes of an influence file and makes a view of them. */
+/* Checks the bytes of an influence file and makes a view: pointers to its arrays. */
 #include "protocol/influence_format.h"
 
 #include <math.h>
@@ -16,8 +16,7 @@ static bool entry_good(const struct influence_view *view, const struct influence
     if (sensors == 0 || sensors > UINT16_MAX || !fits(entry->precision, 8 * sensors * sensors, size) ||
         !fits(entry->shares, 4 * sensors * vertices, size) || !isfinite(entry->disc_m) || !isfinite(entry->decay_m) ||
         !isfinite(entry->range_m) || !isfinite(entry->noise) || !isfinite(entry->deviation) ||
-        (entry->deviations && !fits(entry->deviations, 8 * vertices, size)) ||
-        (entry->errors && !fits(entry->errors, 4 * vertices, size)))
+        (entry->deviations && !fits(entry->deviations, 8 * vertices, size)) || (entry->errors && !fits(entry->errors, 4 * vertices, size)))
         return false;
     const double *precision = influence_array(view, entry->precision);
     const float *shares = influence_array(view, entry->shares);

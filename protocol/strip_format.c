@@ -48,7 +48,8 @@ static uint8_t value_at(const uint8_t *polynomial, int count, uint8_t x)
 
 /* --- Reed-Solomon ------------------------------------------------------------------------------------------------------------- */
 
-/* code[0] is the coefficient of the highest power. */
+/* Computes the parity bytes: the remainder of the contents divided by the generator polynomial. code[0] is the coefficient of the highest
+ * power. */
 static void add_parity(uint8_t code[STRIP_BYTES])
 {
     uint8_t generator[STRIP_PARITY + 1] = { 1 }, rest[STRIP_PARITY] = { 0 }; /* highest coefficient first */
@@ -109,7 +110,7 @@ static int find_locator(const uint8_t syndromes[STRIP_PARITY], uint8_t locator[S
     return degree;
 }
 
-/* Corrects errors. Returns the number of corrected bytes; -1: too many errors. */
+/* Corrects errors in the code. Returns the number of corrected bytes; -1: too many errors; the code may then be changed. */
 static int correct_errors(uint8_t code[STRIP_BYTES])
 {
     uint8_t syndromes[STRIP_PARITY], locator[STRIP_PARITY + 1], evaluator[STRIP_PARITY] = { 0 }, slope[STRIP_PARITY] = { 0 };

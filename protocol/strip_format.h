@@ -6,13 +6,15 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Sizes in cells. At the left and right is a finder of dark and light columns (1, 1, 3, 1, 1 between light ones). Between them are three
-   rows of the colours, each two cells high and in a different brightness, then the rows of the code. A light row is above and below. */
+/* Sizes in cells. At the left and right end is a finder, a pattern by which programs find the strip: dark and light columns (1, 1, 3, 1, 1
+ * between light ones). Between the finders are three rows of colours, each two cells high and in a different brightness, then the rows of
+ * the code. A light row is above all rows and one below. */
 enum { STRIP_COLUMNS = 200, STRIP_FINDER = 9, STRIP_INNER = STRIP_COLUMNS - 2 * STRIP_FINDER };
 enum { STRIP_SHADES = 3, STRIP_SHADE_CELLS = 2, STRIP_CODE_ROWS = 3, STRIP_ROWS = 2 + STRIP_SHADES * STRIP_SHADE_CELLS + STRIP_CODE_ROWS };
-enum { STRIP_BEYOND = 4, STRIP_RAMP = STRIP_INNER - 2 * STRIP_BEYOND }; /* colour columns beyond each end of the range, and within it */
-enum { STRIP_LEAST_PX = 3 };                                            /* smallest size of a cell */
-/* The code: STRIP_DATA bytes of contents, then STRIP_PARITY bytes of Reed-Solomon, which correct half as many wrong bytes. */
+/* count of colour columns beyond each end of the range (STRIP_BEYOND), and within the range (STRIP_RAMP) */
+enum { STRIP_BEYOND = 4, STRIP_RAMP = STRIP_INNER - 2 * STRIP_BEYOND };
+enum { STRIP_LEAST_PX = 3 }; /* smallest size of a cell */
+/* The code: STRIP_DATA bytes of contents, then STRIP_PARITY bytes of Reed-Solomon, which can correct up to STRIP_PARITY / 2 wrong bytes. */
 enum { STRIP_DATA = 44, STRIP_PARITY = 24, STRIP_BYTES = STRIP_DATA + STRIP_PARITY };
 enum { STRIP_GROUP = 22, STRIP_UNIT = 10 };
 
@@ -27,12 +29,12 @@ struct strip {
 bool strip_finder_dark(int column);
 /* Writes contents and parity. */
 void strip_encode(const struct strip *strip, uint8_t code[STRIP_BYTES]);
-/* Reads a code and corrects errors. *mended: number of wrong bytes. Returns false if there are too many errors, the version differs, or the
-   contents are invalid. */
+/* Reads a code and corrects errors. *mended receives the number of corrected bytes. Returns false if there are too many errors, the version
+ * differs, or the contents are invalid. */
 bool strip_decode(const uint8_t code[STRIP_BYTES], struct strip *strip, int *mended);
 /* Returns whether a cell of the code is dark; row: 0..STRIP_CODE_ROWS - 1, column: 0..STRIP_INNER - 1. */
 bool strip_cell_dark(const uint8_t code[STRIP_BYTES], int row, int column);
-/* Sets a cell's bit in a code that was zeroed before. */
+/* Sets the bit of one cell of a code; the code must be zeroed before the first call. */
 void strip_set_cell(uint8_t code[STRIP_BYTES], int row, int column, bool dark);
 
 #endif

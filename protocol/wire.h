@@ -31,14 +31,15 @@ struct wire_frame { /* frame header; members are in the order of the bytes on th
     uint32_t payload_bytes;
     uint32_t seq;
     uint32_t camera_seq, params_seq;     /* sequence numbers of the client's newest camera and parameters that this frame shows */
-    uint32_t oldest_age_ms;              /* age of the oldest reading used; WIRE_NO_AGE: none */
+    uint32_t oldest_age_ms;              /* age of the oldest reading that the frame shows; WIRE_NO_AGE: it shows no reading */
     uint64_t data_time_us, sent_time_us; /* UTC microseconds since 1970, by the server's clock */
-    uint32_t wait_us, field_us, render_us, encode_us; /* microseconds from the input to the start of rendering, then of each stage */
-    uint16_t x_px, y_px, width_px, height_px;         /* rectangle of the picture that the payload contains */
+    /* microseconds: from the client's input to the start of rendering, then the duration of each stage */
+    uint32_t wait_us, field_us, render_us, encode_us;
+    uint16_t x_px, y_px, width_px, height_px; /* rectangle of the picture that the payload contains */
     uint16_t full_width_px, full_height_px;
     float eye_m[3], target_m[3], up[3]; /* camera of this frame, in the plant frame */
-    float fov_deg;                      /* vertical, 1..120; 0: orthographic, with height_m */
-    float height_m;                     /* height of an orthographic picture; 0: perspective */
+    float fov_deg;                      /* vertical field of view in degrees, 1..120; 0: orthographic, height_m applies */
+    float height_m;                     /* height of the visible area of an orthographic picture, metres; 0: perspective */
 };
 
 /* Writes a header. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The table of cache entry kinds: file names and formats. */
+/* Table of the kinds of cache entries: ending of the file name, and format. */
 #include "preprocess/cache/build_cache.h"
 
 #include <inttypes.h>
@@ -12,12 +12,9 @@ static const struct {
     const char *magic; /* 8 bytes at the start of the file: format and version; NULL: files of this kind have a format of their own */
     bool needs_sensors;
 } kinds[BUILD_CACHE_KINDS] = {
-    [BUILD_CACHE_MODELS] = { NULL, "PLCCUTS1", false },
-    [BUILD_CACHE_GEOMETRY] = { ".stock", "PLCSTOCK", false },
-    [BUILD_CACHE_SURFACE] = { ".surface", SURFACE_MAGIC, false },
-    [BUILD_CACHE_SAMPLES] = { ".spots", "PLCSPOTS", false },
-    [BUILD_CACHE_DISTANCES] = { ".columns", NULL, true },
-    [BUILD_CACHE_SUBDIVISION] = { ".splitting", "PLCSPLT2", true },
+    [BUILD_CACHE_MODELS] = { NULL, "PLCCUTS1", false },           [BUILD_CACHE_GEOMETRY] = { ".stock", "PLCSTOCK", false },
+    [BUILD_CACHE_SURFACE] = { ".surface", SURFACE_MAGIC, false }, [BUILD_CACHE_SAMPLES] = { ".spots", "PLCSPOTS", false },
+    [BUILD_CACHE_DISTANCES] = { ".columns", NULL, true },         [BUILD_CACHE_SUBDIVISION] = { ".splitting", "PLCSPLT2", true },
 };
 
 char *build_cache_path(const char *folder, enum build_cache_kind kind, uint64_t key)

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Stores columns in file slots of equal size, each with position, checksum and column. */
+/* Stores each column (distances from one sensor to all surface points) in a file slot of fixed size: sensor position, checksum and
+ * distances. */
 #include "preprocess/cache/distance_cache.h"
 
 #include <fcntl.h>
@@ -15,7 +16,7 @@
 
 struct distance_slot { /* header of a slot; the column follows */
     double place_m[3];
-    uint64_t checksum; /* XXH3-64 of key, position and column; does not match in partially written or foreign slots */
+    uint64_t checksum; /* XXH3-64 of key, position and column; wrong if the slot was only partially written or belongs to another key */
 };
 
 static size_t slot_bytes(const struct distance_cache *cache)
@@ -70,7 +71,7 @@ void distance_cache_open(struct distance_cache *cache, const char *folder, uint6
     cache->slots = mem_array(count, sizeof(*cache->slots));
     for (size_t p = 0; p < count; p++)
         cache->slots[p] = SIZE_MAX;
-    deal_slots(cache); /* finds no slots if the cache file could not be opened */
+    deal_slots(cache); /* if the cache file could not be opened, no position has a slot */
     mem_free(path);
 }
 
@@ -118,7 +119,7 @@ static void keep(void *arg, size_t source, float *distances_m)
     memcpy(slot.place_m, cache->places_m[source], sizeof(slot.place_m));
     if (!cache->may_write || !file_write(cache->fd, &slot, sizeof(slot), at) ||
         !file_write(cache->fd, codes, cache->length * sizeof(*codes), at + (off_t)sizeof(slot)))
-        cache->may_write = false; /* the partially written slot has no valid checksum */
+        cache->may_write = false; /* write no more; the partially written slot has no valid checksum, so it counts as absent */
     mem_free(codes);
 }
 

@@ -17,7 +17,7 @@ struct distance_cache {
     size_t length; /* numbers per column */
     const double (*places_m)[3];
     size_t count;
-    size_t *slots;      /* by sensor position: index of its entry in the file; SIZE_MAX: none */
+    size_t *slots;      /* by sensor position: index of its slot in the file; SIZE_MAX: no slot */
     atomic_size_t kept; /* positions whose column was found in the file */
 };
 

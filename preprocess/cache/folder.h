@@ -44,7 +44,7 @@ struct folder_draft {
 };
 /* Creates an unnamed file of `size` bytes for KEY.asset, with its disk space reserved, and maps it for writing. Returns 0 or -errno. */
 int folder_draft(struct folder_draft *draft, const char *folder, uint64_t key, size_t size);
-/* Starts writing the draft's current contents to disk and returns at once; folder_put() waits for the rest. */
+/* Starts writing the draft's current contents to disk without waiting; folder_put() waits until all contents are written. */
 void folder_draft_send(const struct folder_draft *draft);
 /* Writes KEY.report.json (unless report is NULL), then gives the draft its name KEY.asset, so that every asset file has its report. The
  * draft stays mapped until it is closed. Returns 0 or -errno. */

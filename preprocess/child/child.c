@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Forks, sets limits and connects pipes. The parent waits for output, the child's end, a signal or the time limit, whichever is first. */
+/* Forks, sets limits and connects pipes. The parent reads output until the child ends, a signal arrives or the time limit is reached. */
 #include "preprocess/child/child.h"
 
 #include <errno.h>
@@ -61,7 +61,8 @@ static void limit_all(const struct child_params *params)
     limit(RLIMIT_CORE, 0);
     limit(RLIMIT_NOFILE, MAX_FILES);
     limit(RLIMIT_FSIZE, (rlim_t)8 << 30);
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) /* with a sanitizer, its shadow memory would count as data */
+/* with a sanitizer, set no memory limit, because its shadow memory would count as data */
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
     /* limits data instead of address space, because WebAssembly reserves far more address space than it uses */
     limit(RLIMIT_DATA, params->memory_bytes);
 #else
@@ -142,8 +143,8 @@ static bool take(int fd, struct text *text)
     return count > 0 || (count < 0 && (errno == EINTR || errno == EAGAIN));
 }
 
-/* Reads the remaining output after the child's end, without blocking: a process it left behind may hold the pipe open and write for
- * ever. */
+/* Reads the output that is still in the pipe after the child's end. Never blocks, because a surviving process of the child may hold the
+ * pipe open or write without end. */
 static void drain(int fd, struct text *text)
 {
     char bytes[4096];

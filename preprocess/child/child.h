@@ -18,13 +18,14 @@ struct child_params {
     const char *name;        /* subject of error messages: "the STEP reader" */
     const char *folder;      /* working directory of the child; also its TMPDIR and HOME */
     int timeout_s;
-    size_t memory_bytes;                        /* limit of data memory, for the child and for each process it starts */
-    const char *timeout_option, *memory_option; /* settings named in messages about exceeded limits; memory_option may be NULL */
+    size_t memory_bytes; /* limit of data memory, for the child and for each process it starts */
+    /* options that messages name when a limit is exceeded, such as "--timeout"; memory_option may be NULL */
+    const char *timeout_option, *memory_option;
     enum confine_role role;
     const struct confine_path *paths; /* files and folders that the child may use; the working directory only if it is listed */
     size_t path_count;
     int result; /* a descriptor that stays open besides stdin (/dev/null), stdout and stderr; 0: none */
-    /* receives everything the child wrote to stderr, at most 8 MB; then `why` stays empty if the child exited by itself */
+    /* receives the child's stderr, at most 8 MB; `why` then stays empty if the child exited without a signal; NULL: not wanted */
     struct text *errors;
 };
 

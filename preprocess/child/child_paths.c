@@ -88,7 +88,8 @@ static void add_settings(struct child_paths *paths)
         closedir(dir);
 }
 
-/* Adds the files that programs in a folder such as ~/.venv/bin load: certain folders and files next to it, but not all of ~/.local. */
+/* Adds the files that programs in a folder such as ~/.venv/bin load: certain folders and files next to it, but not all of the parent
+ * folder, such as ~/.local. */
 static void add_installation(struct child_paths *paths, const char *programs)
 {
     static const char *const parts[] = { "lib", "lib64", "libexec", "versions", "version", "pyvenv.cfg" };
@@ -99,7 +100,7 @@ static void add_installation(struct child_paths *paths, const char *programs)
     }
 }
 
-/* Adds the absolute paths in a text. separators: those of the shell, or of PATH. */
+/* Adds the absolute paths in a text. separators: characters between paths, those of shell commands or of PATH. */
 static void add_absolute(struct child_paths *paths, const char *text, const char *separators, bool installed)
 {
     for (const char *at = text; *at;) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Calls exec from the confined thread, which makes the kernel end all other threads. */
+/* Restarts the program confined: calls exec from the confined thread, which makes the kernel end all other threads. */
 #include "preprocess/child/child_self.h"
 
 #include <dirent.h>
@@ -28,9 +28,7 @@ static int count_threads(void)
 int child_self_confine(const struct child_paths *paths, bool notifies, char **argv)
 {
     int threads = count_threads();
-    const struct confine_params params = {
-        .role = CONFINE_READER, .paths = paths->at, .path_count = paths->count, .notifies = notifies
-    };
+    const struct confine_params params = { .role = CONFINE_READER, .paths = paths->at, .path_count = paths->count, .notifies = notifies };
     int status = confine(&params);
     if (status != 0 || threads == 1)
         return status;

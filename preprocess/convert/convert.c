@@ -21,7 +21,7 @@
 
 static const size_t max_bytes = (size_t)16 << 30, memory_bytes = (size_t)12 << 30;
 
-/* Appends the hash of a file, combined with that of the text `also`. Returns false with errno set if the file cannot be read. */
+/* Appends the hash of a file, combined with the hash of the text `also`. Returns false with errno set if the file cannot be read. */
 static bool add_hash(const char *path, const char *also, struct text *out)
 {
     size_t size;
@@ -120,7 +120,7 @@ bool convert_run(const struct plant *plant, const char *folder, FILE *progress, 
     char *path = mem_printf("%s/conversions.json", folder);
     json_t *made = json_load_file(path, 0, NULL);
     bool good = true;
-    if (!json_is_object(made)) { /* there is no record of conversions, or it is damaged: generate all models */
+    if (!json_is_object(made)) { /* the record of conversions is missing or damaged: generate all models */
         json_decref(made);
         made = json_object();
     }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Builds coloured shapes for one asset's surface, distances, points and bridges. */
+/* Builds coloured shapes that show one asset's surface, its distances, its sample points and the bridges over its gaps. */
 #include "preprocess/debug/debug_view.h"
 
 #include <math.h>
@@ -35,7 +35,7 @@ struct debug_drawing {
 struct soup { /* a shape being built */
     float (*positions)[3];
     uint16_t (*colors)[4];
-    uint32_t *indices, *vertex_of; /* vertex_of[surface point]: its vertex in this shape + 1; 0: none yet */
+    uint32_t *indices, *vertex_of; /* index of the surface point's vertex in this shape + 1; 0: the shape has none yet */
     size_t vertices, indices_used, position_room, color_room, index_room;
 };
 
@@ -161,7 +161,7 @@ static void draw_surfaces(struct debug_drawing *drawing)
 
 /* --- lines on surfaces --------------------------------------------------------------------------------------------------------- */
 
-/* Adds a line on both sides of the surface, which would otherwise hide half of it. */
+/* Draws a line twice, on both sides of the surface, because the surface would hide one copy from the other side. */
 static void add_lifted(struct soup *soup, const struct debug_drawing *drawing, size_t t, const double a[3], const double b[3])
 {
     double n[3], length;
@@ -248,7 +248,7 @@ static void draw_points(struct debug_drawing *drawing)
 {
     const struct surface_debug_mesh *look = &drawing->look;
     struct soup model = { 0 }, samples = { 0 };
-    /* kind of each surface point, 1: a triangle uses it; 2: it is also a vertex of the model */
+    /* by surface point: 0: no triangle uses it; 1: a triangle uses it; 2: it is also a vertex of the model */
     char *kind = mem_array(look->point_count, 1);
     for (size_t t = 0; t < look->tri_count; t++)
         for (int i = 0; i < 3; i++)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Compares two plants, one asset at a time. */
+/* Compares two plants, one asset after the other. */
 #include "preprocess/diff/diff.h"
 
 #include <math.h>
@@ -89,7 +89,7 @@ static void plant_motion(const struct asset_pair *pair, const double new_to_old[
     transform_multiply(step, plant_to_old, motion);
 }
 
-/* Returns the largest movement of a corner of the old asset's box on its way to the new position. */
+/* Returns the largest movement of a corner of the old asset's box between the old and the new position. */
 static double moved_by(const struct asset_pair *pair, const double new_to_old[16], double *turned_deg)
 {
     double motion[16], plant_to_old[16], step[16], local[16];
@@ -146,9 +146,9 @@ static double place_sensor(const struct pair_half *half, size_t column, double p
     return distance_m;
 }
 
-/* Returns how far the surface at a sensor moved. In the middle of a pipe many surface points are equally near, and rounding decides which
- * is found. So the surface counts as unmoved if the new surface still passes through the old point, and that point is about as near as the
- * nearest one. */
+/* Returns how far the surface at a sensor moved, metres. For a sensor on the axis of a pipe, many surface points are equally near, and
+ * rounding decides which one is found. So the surface counts as unmoved if the new surface still passes through the old point, and that
+ * point is about as near as the nearest one. */
 static double surface_moved(const struct asset_pair *pair, const double place_m[3], const double old_m[3], const double new_m[3])
 {
     double plant_to_new[16], at[3], still_m[3], moved_m = vec_distance(old_m, new_m);
@@ -198,8 +198,8 @@ static void compare_sensors(struct diff *diff, struct asset_pair *pair)
     }
 }
 
-/* Searches the new model for a renamed node: one with the old shape at the old position. If found, `why` names it instead of a similar
- * name. */
+/* Searches the new model for a renamed node: one with the old shape at the old position. If found, `why` names that node; otherwise `why`
+ * keeps the suggestion of a similar name. */
 static void find_renamed(struct diff *diff, const struct asset_pair *pair, const struct diff_side_asset *asset, double tolerance_m,
                          char *why)
 {

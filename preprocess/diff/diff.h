@@ -13,7 +13,7 @@ extern const char *const diff_changes[DIFF_CHANGES];
 struct diff_asset {
     const char *id;
     enum diff_change change;
-    char *why;        /* reason why a removed asset is missing although its id still exists; else NULL */
+    char *why;        /* removed assets: reason if the id still exists in the new plant, such as a missing node; else NULL */
     double move_m[3]; /* movement of the centre of the asset's box, metres, plant frame */
     double moved_m;   /* largest movement of a corner of the asset's box, metres */
     double turned_deg;
@@ -26,7 +26,7 @@ struct diff_sensor {         /* a tag that is a sensor in both revisions */
     const char *tag, *asset; /* asset: in the new revision */
     double moved_m;          /* distance between the nearest surface points in the two revisions */
     double place_moved_m;    /* movement of the position stated by the tag list or the node */
-    double distance_m[2];    /* distance from the sensor's position to the surface: old, new */
+    double distance_m[2];    /* distance from the sensor's position to the surface: old revision, new revision; metres */
     double limit_m;          /* distance from the surface above which the report warns, metres */
     double tolerance_m;
     bool far_moved; /* the surface under the sensor moved by more than the tolerance */

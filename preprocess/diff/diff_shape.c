@@ -11,8 +11,8 @@
 #include "preprocess/geometry/rigid_fit.h"
 #include "surface/mesh/bvh.h"
 
-#define SPREAD 100.0  /* number of probes along a line as long as the shape's diagonal */
-#define PLACES_MAX 64 /* maximum number of probes along a side of a triangle */
+#define SPREAD 100.0  /* number of probed points along a line as long as the shape's diagonal */
+#define PLACES_MAX 64 /* maximum number of probed points along a side of a triangle */
 
 struct diff_shape {
     struct trimesh mesh;

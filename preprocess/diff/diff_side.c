@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads both kinds of plants, one asset at a time. */
+/* Reads assets from a plant file with models, or from a folder of prepared files, one asset at a time. */
 #include "preprocess/diff/diff_side.h"
 
 #include <errno.h>

@@ -17,7 +17,7 @@ struct diff_side_tag {
 struct diff_side_asset {
     const char *id;
     double placement[16]; /* transform from the asset frame to the plant frame */
-    uint64_t work;        /* id of the asset's model; assets with equal numbers use the same model */
+    uint64_t work;        /* index of the asset's model; assets with equal indices use the same model */
     /* Set only for a plant file: */
     const struct plant_asset *plant;
     size_t model;
@@ -33,7 +33,7 @@ struct diff_side {
     struct plant *plant; /* the plant that was read; NULL: the side is a folder of prepared files */
     struct model_files models;
     struct model_file *parsed; /* the model currently in memory */
-    char *manifest;            /* text of the manifest; the strings of this struct point into `root` */
+    char *manifest;            /* text of the manifest; `root` owns the strings of this struct */
     void *root;
 };
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Closes hair gaps with the same code as the surface for distance computations. */
+/* Closes hair gaps with the code that also closes them in the surface for distance computations. */
 #include "preprocess/geometry/gaps.h"
 
 #include "base/math/gap_split.h"
@@ -8,7 +8,7 @@
 
 #define SAME_M 1e-9 /* metres; vertices at most this far apart count as one position */
 
-/* Each round closes one gap at a corner where several meet. */
+/* maximum number of rounds. Each round closes at most one gap at a corner where several gaps meet. */
 enum { MAX_ROUNDS = 4 };
 
 static double widest_m(const float (*positions_m)[3], const uint32_t *indices, size_t index_count, double tolerance_m)

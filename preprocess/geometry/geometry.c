@@ -14,10 +14,13 @@
 
 #define MAX_TRIANGLES 50000000ull /* per asset */
 #define MAX_SIZE_M 1e7
-#define COARSE_SIZE_M 1e4 /* metres; single-precision positions of a larger model are only accurate to half a millimetre at its ends */
-#define SAME_PLACE_M 1e-3 /* metres; nodes of the same name at most this far apart count as one position */
+/* size in metres of a large model, whose origin is the median of its vertices; single-precision positions at its ends are only accurate to
+ * half a millimetre */
+#define COARSE_SIZE_M 1e4
+#define SAME_PLACE_M 1e-3 /* metres; nodes of one name that are at most this far apart give a sensor one unambiguous position */
 #define SHOWN_NODES 6
-#define MIN_SIZE_M 1e-6 /* metres; a smaller model has a wrong unit, and fourth powers of its lengths would underflow */
+/* minimum size of a model in metres; a smaller model certainly has a wrong unit, and fourth powers of its lengths would underflow */
+#define MIN_SIZE_M 1e-6
 
 /* --- which nodes --------------------------------------------------------------------------------------------------------- */
 
@@ -240,7 +243,7 @@ static bool several_places(const struct gltf_model *model, const char *pattern, 
                  pattern, numbers, count > SHOWN_NODES ? ", ..." : "");
 }
 
-/* Reduces the found nodes to those inside the asset, if there are any. */
+/* Removes from the found nodes those outside the asset, unless all are outside. */
 static size_t prefer_own(const struct gltf_model *model, const struct geometry_params *params, uint32_t *found, size_t count)
 {
     char why[MODEL_WHY_BYTES];
@@ -361,7 +364,8 @@ static const struct asset_material plain_material = {
     .double_sided = 1,
 };
 
-/* Returns the asset's index of a material. Primitives are sorted by material, so it is the last one or a new one. */
+/* Returns the asset's index of a material. Primitives are sorted by material, so the asset's index is that of the last material, or a new
+ * one. */
 static uint32_t material_number(struct geometry *geometry, const struct gltf_model *model, int material, int *last)
 {
     if (geometry->material_count && *last == material)

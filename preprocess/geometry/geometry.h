@@ -22,8 +22,8 @@ struct geometry {
     struct text names;
     uint32_t vertex_count, index_count, primitive_count, material_count, texture_count;
     size_t texel_bytes;
-    /* Counts for the report: nodes taken, triangles without area, flipped triangles turned (winding.h), positions moved (gaps.h),
-     * primitives without normals, line primitives and point primitives. */
+    /* Counts for the report: selected nodes, triangles without area, triangles turned (winding.h), positions moved (gaps.h), primitives
+     * without normals, line primitives, point primitives. */
     uint32_t node_count, degenerate_triangles, turned_triangles, closed_gaps, computed_normals, skipped_lines, skipped_points;
 };
 

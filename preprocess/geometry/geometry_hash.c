@@ -10,7 +10,7 @@
 struct hashing {
     XXH3_state_t state;
     const struct gltf_model *model;
-    uint32_t *texture; /* by texture of the model: its index among the asset's textures, from 1; 0: not used yet */
+    uint32_t *texture; /* by texture of the model: its index among the asset's textures + 1; 0: not used yet */
     uint32_t textures;
 };
 
@@ -26,7 +26,7 @@ static void add_number(struct hashing *h, uint32_t number)
     XXH3_64bits_update(&h->state, &number, sizeof(number));
 }
 
-/* Adds a texture's index in the asset, and its content the first time. */
+/* Adds a texture's index in the asset to the hash, and at its first use the texture's content. */
 static void add_texture(struct hashing *h, uint32_t number)
 {
     const struct gltf_model *model = h->model;
@@ -79,7 +79,7 @@ bool geometry_hash(uint64_t *out, const struct gltf_model *model, const struct g
     XXH3_INITSTATE(&h.state);
     XXH3_64bits_reset(&h.state);
     h.texture = mem_array(model->texture_count + 1u, sizeof(*h.texture));
-    /* include these counts, because the report shows them */
+    /* hash these counts too, because the report shows them */
     const uint32_t numbers[3] = { counts.node_count, counts.skipped_lines, counts.skipped_points };
     add(&h, numbers, sizeof(numbers));
     for (size_t i = 0; good && i < parts.count; i++) {

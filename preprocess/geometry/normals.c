@@ -12,7 +12,8 @@
 
 #define MANY 256 /* number of faces at one position up to which all pairs are compared */
 #define LEAF 16
-#define CREASE_COSINE 0.766 /* cosine of 40 degrees: a cylinder with ten sides is shaded round, one with eight has edges */
+/* cosine of the crease angle, 40 degrees: a cylinder with ten sides is shaded round, one with eight sides shows its edges */
+#define CREASE_COSINE 0.766
 
 static void face_normal(const float a[3], const float b[3], const float c[3], double out[3])
 {
@@ -165,7 +166,7 @@ static void halves_sum(const struct halves *halves, size_t node, size_t begin, s
 
 static bool sum_of_many(const struct around *a, uint32_t first, size_t count, float (*corner_normals)[3])
 {
-    /* the halves differ by at most one, so node numbers stay below twice the smallest power of 2 above count / LEAF */
+    /* the halves differ by at most one in size, so tree indices stay below twice the smallest power of 2 above count / LEAF */
     size_t node_count = 4;
     while (node_count < 4 * (count / LEAF + 1))
         node_count *= 2;

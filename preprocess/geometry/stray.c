@@ -12,7 +12,7 @@
 #include "preprocess/geometry/geometry_impl.h"
 
 struct farthest {
-    struct extent main; /* main part of the asset, in the asset frame */
+    struct extent main; /* bounding box of the asset's main part, in the asset frame */
     double away_m, at_m[3];
     const struct gltf_node *node;
 };

@@ -7,7 +7,7 @@
 #include "preprocess/geometry/welded_positions.h"
 #include "surface/mesh/tri_edges.h"
 
-#define MAX_TURNED 0.25 /* share of a connected group's area; a larger group of flipped triangles is not turned */
+#define MAX_TURNED 0.25 /* maximum share of a connected group's area that flipped triangles may have; with more, none are turned */
 
 struct winding {
     const float (*positions)[3];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Builds the JSON lists of a scene and one buffer. */
+/* Builds a scene's glTF lists (nodes, meshes, materials) as JSON, and one buffer with all vertex data. */
 #include "preprocess/glb/glb_scene.h"
 
 #include <string.h>
@@ -13,7 +13,7 @@ enum { TRIANGLES = 4 }; /* primitive mode of glTF */
 struct glb_scene {
     char *generator;
     json_t *nodes, *meshes, *materials, *roots;
-    json_t *material_numbers; /* index of each material, by its colour as text */
+    json_t *material_numbers; /* index of each material; the key is its colour as text */
     struct glb_file file;
 };
 

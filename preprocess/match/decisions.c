@@ -28,7 +28,7 @@ static void add_cell(struct text *out, const char *cell)
         text_add(out, "%s", cell);
 }
 
-/* Computes the check cell of a row: first letter of the status, then a hash of tag, status and asset. */
+/* Computes the check cell of a row: first letter of the written status, then a hash of tag, status and asset. */
 static void find_check(const char *tag, const char *status, const char *asset, char check[16])
 {
     char *all = mem_printf("%s\n%s\n%s", tag, status, asset);
@@ -92,8 +92,8 @@ static bool find_columns(const struct table_row *header, int columns[COLUMNS], c
     return true;
 }
 
-/* Reads a row and compares it with its check cell. If the row was edited and the status still has the check's first letter, the person
- * changed the asset. */
+/* Reads a row and compares it with its check cell. If the row was edited but the status still begins with the check's first letter, a
+ * person changed only the asset: the status then follows from the asset. */
 static bool read_row(struct decision *out, const struct table_row *row, const int columns[COLUMNS], char why[MATCH_WHY_BYTES])
 {
     const char *status = table_cell(row, columns[STATUS]), *asset = table_cell(row, columns[ASSET]),
@@ -107,9 +107,7 @@ static bool read_row(struct decision *out, const struct table_row *row, const in
         snprintf(why, MATCH_WHY_BYTES, "line %d: Status: expected sure, likely or none, found '%.40s'", row->line, status);
         return false;
     }
-    *out = (struct decision){ .tag = mem_strdup(table_cell(row, columns[TAG])),
-                              .asset = mem_strdup(asset),
-                              .row = row_text(row, columns) };
+    *out = (struct decision){ .tag = mem_strdup(table_cell(row, columns[TAG])), .asset = mem_strdup(asset), .row = row_text(row, columns) };
     find_check(out->tag, found < 0 ? "" : match_status_names[found], asset, check);
     bool changed = strcmp(check, written) != 0, same_status = found >= 0 && written[0] == match_status_names[found][0];
     out->edited = changed;

@@ -9,7 +9,7 @@
 struct decision { /* one row of the file */
     char *tag, *asset;
     enum match_status status; /* status in the file; for a row edited by hand, the status that the edit implies */
-    bool by_hand, edited;     /* by_hand: a person decided it; edited: a person changed it since the last run wrote it */
+    bool by_hand, edited;     /* by_hand: a person made the decision; edited: a person changed the row since the last run wrote it */
     char *row;                /* text of the whole row with its line end */
 };
 

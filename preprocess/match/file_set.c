@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes temporary files, then renames all of them. */
+/* Writes all temporary files, then renames each to its final name. */
 #include "preprocess/match/file_set.h"
 
 #include <dirent.h>
@@ -15,8 +15,8 @@
 
 #include "base/mem.h"
 
-/* age in seconds from which an orphaned file is removed; processes of other containers or machines are not visible here, but finish
- * sooner */
+/* age in seconds from which an orphaned file is removed; the writer may be a process of another container or machine, invisible here, but
+ * it would have finished by then */
 enum { LEFT_S = 60 };
 
 static bool is_old(int folder, const char *name)

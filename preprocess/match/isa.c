@@ -56,7 +56,7 @@ static const struct {
     { "HIHI", ISA_STATE },      { "LOLO", ISA_STATE },     { "ACK", ISA_STATE },
 };
 
-/* Removes attributes that follow a separator. The last one determines the role. */
+/* Removes attributes that follow a separator. The last attribute determines the role (measurement, state or setting). */
 static void drop_attributes(struct isa_name *name)
 {
     bool first = true;

@@ -14,8 +14,8 @@ enum isa_role { /* role of the tag's value */
 struct isa_name {
     struct name_tokens tokens; /* tokens of the name without a trailing attribute such as PV */
     int letters, number;       /* indices of the tokens with the letters and the loop number; -1: none */
-    const char *suffix;        /* suffix: a single letter after the number, or "" */
-    char variable;             /* letter of the measured variable, or 'd' for differential pressure; 0: none */
+    const char *suffix;        /* suffix: a single letter after the loop number; "": none */
+    char variable;             /* letter of the measured variable; 'd': differential pressure; 0: unknown */
     enum isa_role role;
     const char *attribute; /* trailing attribute word that states the role, such as SP; "": none */
 };

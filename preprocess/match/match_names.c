@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Matching by name: a node with the tag's name, the site's rules, equipment named within the tag's name, and equipment named with a
+/* Matching by name: a node with the tag's name, the site's rules, equipment whose name is part of the tag's name, and the same with a
  * spelling slip. */
 #include <stdio.h>
 #include <string.h>
@@ -117,12 +117,12 @@ bool method_rules(const struct matcher *matcher, const struct match_subject *sub
     return false;
 }
 
-/* --- equipment named in the tag --------------------------------------------------------------------------------------------- */
+/* --- equipment whose name is part of the tag's name ----------------------------------------------------------------------------- */
 
 static bool is_apart(const struct name_tokens *tokens, int from, int to)
 {
     bool before = tokens->at[from].apart, behind = to == tokens->count || tokens->at[to].apart;
-    /* A single letter after the number distinguishes equipment: E-101-A is not E-101. */
+    /* Returns whether the tokens are followed by a single letter that distinguishes equipment: E-101-A is not E-101. */
     bool letter = to < tokens->count && !tokens->at[to].digits && strlen(tokens->at[to].text) == 1 && tokens->at[to].text[0] <= 'F' &&
                   tokens->at[to - 1].digits;
     return before && behind && !letter;
@@ -158,7 +158,7 @@ bool method_name_within(const struct matcher *matcher, const struct match_subjec
 
 /* --- slips of spelling ------------------------------------------------------------------------------------------------------ */
 
-/* Finds equipment whose name differs only by O for 0, or I or L for 1. */
+/* Finds equipment whose name differs from the tag's tokens only by O for 0, or I or L for 1. */
 static bool find_folded(const struct matcher *matcher, const struct name_tokens *tokens, struct proposal *out)
 {
     for (int length = tokens->count; length >= 1; length--)
@@ -176,7 +176,8 @@ static bool find_folded(const struct matcher *matcher, const struct name_tokens 
     return false;
 }
 
-/* Finds equipment with the same digits and letters that differ by one slip. Proposes nothing if several assets are that close. */
+/* Finds equipment with the same digits, and letters that differ by one slip (doubled, missing or swapped). Proposes nothing if several
+ * assets match. */
 static bool find_slip(const struct matcher *matcher, const struct name_tokens *tokens, struct proposal *out)
 {
     const struct key_map *map = &matcher->site->digits;
@@ -205,7 +206,7 @@ static bool find_slip(const struct matcher *matcher, const struct name_tokens *t
     return false;
 }
 
-/* Finds equipment whose name ends with the tokens, after a separator: ART1105BA for 1105-BA. */
+/* Finds equipment whose name ends with tokens of the tag's name: ART1105BA for 1105-BA. */
 static bool find_ending(const struct matcher *matcher, const struct name_tokens *tokens, struct proposal *out)
 {
     for (int length = tokens->count; length >= 2; length--)

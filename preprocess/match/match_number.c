@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Matching by number: a loop has the number of its equipment, perhaps with one or two more digits (ISA-5.1, 4.2; ISA-5.1-2009 annex A). */
+/* Matching by number: an instrument loop has the number of its equipment, possibly followed by one or two digits (ISA-5.1, 4.2;
+ * ISA-5.1-2009 annex A). */
 #include <stdio.h>
 #include <string.h>
 
@@ -13,7 +14,8 @@ static bool has_token(const struct name_tokens *tokens, const struct name_token 
     return false;
 }
 
-/* Rates the tag's prefix: 2 if it occurs in the asset's name or area, 1 if it says nothing, 0 if it is another area. */
+/* Rates the tag's prefix: 2 if it occurs in the asset's name or area, 1 if the tag has no telling prefix, 0 if the prefix names another
+ * area. */
 static int rate_prefix(const struct matcher *matcher, const struct match_subject *subject, int asset)
 {
     const struct isa_name *name = &subject->name;
@@ -40,7 +42,7 @@ static const char *suffix_of(const struct indexed_asset *asset)
     return *text >= 'A' && *text <= 'F' && !text[1] ? text : "";
 }
 
-/* Words for equipment in descriptions, and letters in names of such equipment. */
+/* Kinds of equipment: a word for the kind in descriptions, and the letters that names of such equipment have. */
 static const struct {
     const char *word, *letters;
 } classes[] = {
@@ -115,7 +117,7 @@ static void keep(const struct matcher *matcher, const struct match_subject *subj
         *list = kept;
 }
 
-/* Removes candidates with a suffix letter that differs from the tag's. */
+/* Removes candidates whose suffix letter (A, B, ...) differs from the tag's suffix letter. */
 static void drop_other_suffix(const struct matcher *matcher, const struct match_subject *subject, struct match_candidates *list)
 {
     struct match_candidates kept = { .more = list->more };
@@ -133,7 +135,8 @@ bool method_number(const struct matcher *matcher, const struct match_subject *su
     if (name->letters < 0)
         return false;
     const struct name_token *number = &name->tokens.at[name->number];
-    /* runs of digits and of letters seen in the prefix; with both, the prefix names equipment whose number is used */
+    /* whether the prefix has a run of digits, and of letters; with both, the prefix names equipment itself, and the loop number is not
+     * used */
     bool digits = false, letters = false;
     for (int i = 0; i < name->letters; i++) {
         digits |= name->tokens.at[i].digits && name->tokens.at[i].raw_length >= 3;
@@ -171,12 +174,12 @@ bool method_number(const struct matcher *matcher, const struct match_subject *su
 
 /* --- parts of names ----------------------------------------------------------------------------------------------------------- */
 
-/* Returns whether the tag's tokens, without its instrument letters and loop number, occur in the asset's name in the same order, including
- * some letters. */
+/* Returns whether the tag's tokens, without its instrument letters and loop number, occur in the asset's name in the same order, and
+ * include letters. */
 static bool is_part(const struct isa_name *name, const struct name_tokens *of)
 {
     int at = 0;
-    bool letters = false; /* some matching token of the asset's name has letters */
+    bool letters = false; /* at least one matching token has letters */
     for (int i = 0; i < name->tokens.count; i++) {
         const struct name_token *token = &name->tokens.at[i];
         int next = at;

@@ -38,7 +38,7 @@ static void find_numbers(const struct matcher *matcher, const struct name_tokens
     }
 }
 
-/* Proposes all equipment named in the description; of overlapping names the longest counts. */
+/* Proposes all equipment named in the description; where names overlap in the text, only the longest counts. */
 bool method_description(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out)
 {
     const struct name_tokens *tokens = &subject->description;
@@ -111,7 +111,8 @@ static void count_own(const char *word, void *data)
     ++*(int *)data;
 }
 
-/* Returns the number of words an asset can be recognised by: those of its description, or of its name if that has no number. */
+/* Returns the number of words that a tag's texts must contain for a match by words: those of the asset's description, or fewer if a name
+ * without a number has fewer. */
 static int own_words(const struct model_index *site, int asset)
 {
     int description = 0, name = 0;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Matches tags to equipment. Tries methods in order, from a model node with the tag's own name to an alias, and gives a reason for each
- * match. Conflicting evidence lowers a match to "likely" or none. Thread: any; one per matcher while rules and aliases are read. */
+/* Matches tags to equipment. Tries methods in order of certainty, from a model node with the tag's own name to an alias, and states a
+ * reason for each match. Conflicting evidence lowers a match to "likely" or none. Thread: any; one per matcher while rules and aliases are
+ * read. */
 #ifndef PREPROCESS_MATCH_MATCHER_H
 #define PREPROCESS_MATCH_MATCHER_H
 #include <regex.h>
@@ -15,10 +16,10 @@ enum { MATCH_CANDIDATES = 8 };
 
 struct match {
     enum match_status status;
-    int asset, node; /* the matched asset, and the node below its root that the tag's name refers to; -1: none */
-    double confidence;                                 /* 0 to 1 */
-    char *reason;                                      /* reason for the match, one line of English; the caller frees it */
-    int candidates[MATCH_CANDIDATES], candidate_count; /* assets that the tag may belong to if the match is not sure, likeliest first */
+    int asset, node;   /* the matched asset, and a node of the asset that the tag's name refers to; -1: none */
+    double confidence; /* 0 to 1 */
+    char *reason;      /* reason for the match, one line of English; the caller frees it */
+    int candidates[MATCH_CANDIDATES], candidate_count; /* assets that the tag may belong to if the match is not sure, the likeliest first */
 };
 
 struct match_rule {  /* a rule of the site: tags that match the pattern belong to the equipment */

@@ -10,13 +10,13 @@ enum { CANDIDATES = 8, METHOD_REASON_BYTES = 240 };
 
 struct match_candidates { /* distinct assets */
     int assets[CANDIDATES];
-    int nodes[CANDIDATES]; /* by asset: its node that was found first; -1: the asset itself, or several nodes */
+    int nodes[CANDIDATES]; /* by candidate: the node of the asset that was found; -1: the asset itself was found, or several nodes */
     int count;
-    bool more; /* there are more candidates than listed */
+    bool more; /* more candidates were found than the list has room for */
 };
 
 struct proposal {
-    struct match_candidates candidates; /* a single candidate is the proposal; of several, one must be chosen */
+    struct match_candidates candidates; /* one candidate: the proposed asset; several: the method cannot tell them apart */
     double confidence;
     char reason[METHOD_REASON_BYTES];
 };
@@ -28,7 +28,7 @@ struct match_subject { /* a tag with its texts split into tokens */
 };
 
 void candidates_add(struct match_candidates *list, int asset, int node);
-/* Adds all entries of the map with this key. Returns whether there are any. */
+/* Adds all entries of the map with this key. Returns whether the map has the key. */
 bool candidates_find(struct match_candidates *list, const struct key_map *map, const char *key);
 bool candidates_have(const struct match_candidates *list, int asset);
 /* Writes the candidates' names as text, such as "E-101, P-101 or V-101". */

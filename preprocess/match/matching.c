@@ -40,7 +40,8 @@ struct matching_run {
     char *result;                                      /* output lines for people */
     char *plant_text, *new_text;                       /* plant file: current text and new text */
     char *plant_before, *tags_before, *matches_before; /* texts at the start of the run; NULL: the file does not exist */
-    struct text tags_text, matches_text, left_names;   /* left_names: the first tags that are no longer in the tag list */
+    /* left_names: names of the first tags that are missing from the new tag list, for the report */
+    struct text tags_text, matches_text, left_names;
     size_t left, by_hand, left_out, written, assumed, own_nodes;
 };
 
@@ -155,7 +156,7 @@ static bool read_plant(struct matching_run *run)
     return true;
 }
 
-/* Reads the export and the lists beside it, in the confined child. */
+/* Reads the export and the lists that accompany it, in the confined child. */
 static bool read_lists(struct matching_run *run)
 {
     const struct matching_params *params = run->params;
@@ -197,14 +198,14 @@ static bool obey(struct matching_run *run)
                                  .confidence = match->asset == asset ? match->confidence : 1,
                                  .reason = mem_strdup("by hand") };
         if (match->node < 0 && match->confidence > 0.98)
-            match->confidence = 0.95; /* not 1, because the place is still an assumption */
+            match->confidence = 0.95; /* less than 1, because only the asset is certain and the place is assumed */
         run->by_hand++;
     }
     mem_free(path);
     return good;
 }
 
-/* Determines the source of the tags: the stated one, the one to be added, or the plant's only one. */
+/* Determines the source of the tags: the one that --source states, the one that --modbus adds, or the plant's only one. */
 static bool find_source(struct matching_run *run)
 {
     const struct matching_params *params = run->params;
@@ -245,7 +246,7 @@ static void put_rows(struct matching_run *run)
         const char *found = match->asset < 0 ? "" : run->plant->assets[match->asset].id;
         bool kept = asset && (!before || !before->edited) && match->status == MATCH_SURE && strcmp(asset, found) != 0;
         struct match shown = *match;
-        if (kept) { /* a person edited the asset in the tag list, which takes precedence */
+        if (kept) { /* a person edited the asset in the tag list; this edit takes precedence over the match */
             shown.status = *asset ? MATCH_SURE : MATCH_NONE;
             found = asset;
         }
@@ -281,7 +282,7 @@ static bool is_of_source(const struct matching_run *run, const char *tag)
     return run->plant->source_count <= 1;
 }
 
-/* Keeps decisions about tags that are missing from this list: they may belong to another system, or return. */
+/* Keeps decisions about tags that are missing from this list: the tags may belong to another control system, or be in a later list. */
 static void keep_left(struct matching_run *run)
 {
     const char **names = mem_array(run->list.count + 1, sizeof(*names));
@@ -396,8 +397,8 @@ static bool compose_plant(struct matching_run *run, bool placeholder)
 
 /* --- writing ---------------------------------------------------------------------------------------------------------------- */
 
-/* Returns whether a file still has the text that was read. Checked last: reading and matching may take minutes, while other people save the
- * file. */
+/* Returns whether a file still has the text that was read. Called directly before writing, because reading and matching may take minutes,
+ * in which other people may save the file. */
 static bool is_as_read(const char *path, const char *before)
 {
     size_t length = 0;
@@ -418,9 +419,9 @@ static void say_written(const char *path, const char *before, const char *text)
     printf("%s: %s\n", path, before && !strcmp(before, text) ? "stays as it is" : "written");
 }
 
-/* Writes the files. The plant file comes first, since it only gains groups and a source and is valid with the old tag list. matches.csv
- * comes last: until then, the tag list's new rows are not mistaken for edits by people. The next run completes a run that was killed in
- * between. */
+/* Writes the files. The plant file comes first, because it only gains groups and a source, and is valid with the old tag list. matches.csv
+ * comes last: if a run is killed before that, the next run does not take the tag list's new rows for edits by people, and completes the
+ * work. */
 static bool write_files(struct matching_run *run, const char *matches_path)
 {
     const char *plant = run->params->plant, *tags = run->plant->tags_path;
@@ -517,7 +518,7 @@ static int lock_folder(const struct matching_params *params)
 
 struct matching_answer {
     struct matching_run *run;
-    int file; /* memory file shared with the child: for each text an 8-byte length, then its bytes */
+    int file; /* memory file into which the child writes its answer: for each text an 8-byte length, then its bytes */
 };
 
 static bool put_text(int file, const char *text)
@@ -549,7 +550,8 @@ static char *get_text(int file)
     return text;
 }
 
-/* Reads and matches the untrusted list and composes all files, in the child. Returns the child's exit status. */
+/* Reads and matches the untrusted list and composes all files, in the child. Returns the exit status of the child: 0, or 1 after printing
+ * the error. */
 static int match_in_child(void *arg)
 {
     const struct matching_answer *answer = arg;

@@ -11,17 +11,17 @@ struct matching_params {
     const char *tags;             /* path of the exported tag list */
     const char *encoding;         /* encoding of the export; NULL: detect it */
     const char *decisions;        /* path of a file of people's decisions, which override matches.csv; NULL: none */
-    const char *const *equipment; /* selections of the nodes that become assets (equipment.h); none: keep the plant file's assets */
+    const char *const *equipment; /* selections of the nodes that become assets (equipment.h); count 0: keep the plant file's assets */
     int equipment_count;
-    const char *source;     /* id of the source; NULL: the plant's only source, or `plc` with --modbus */
+    const char *source; /* id of the source; NULL: the plant's only source, or `plc` with --modbus */
     /* HOST or HOST:PORT of a Modbus source to add, or the new address of a source that an earlier run added; NULL: none */
     const char *modbus;
-    int unit;               /* Modbus unit identifier of that source; -1: not stated */
-    const char *byte_order; /* byte order of that source; NULL: not stated */
+    int unit;               /* Modbus unit identifier of the source to add; -1: not stated */
+    const char *byte_order; /* byte order of the Modbus source to add; NULL: not stated */
     int address_base;       /* address base of that source */
     int lent;               /* descriptor of a folder lock held by the parent process (plant_folder.h); 0: none */
-    int timeout_s;          /* seconds that the confined child may take for reading and matching */
-    size_t memory_bytes;    /* bytes of memory that the confined child may use */
+    int timeout_s;          /* time limit of the confined child for reading and matching, seconds */
+    size_t memory_bytes;    /* memory limit of the confined child, bytes */
     bool dry_run;           /* print the results, write nothing */
 };
 

@@ -30,7 +30,7 @@ void model_index_each_word(const char *text, void (*each)(const char *word, void
 
 /* --- names ------------------------------------------------------------------------------------------------------------------ */
 
-/* Returns the index of the longest run of digits, at least two; of equally long ones the last. */
+/* Returns the index of the longest run of digits, at least two; of equally long runs the last one; -1: none. */
 static int find_number(const struct name_tokens *tokens)
 {
     int best = -1;
@@ -125,7 +125,7 @@ static void add_node_names(struct model_index *site, int model, int node)
     }
 }
 
-/* Determines which nodes of the model belong to the asset. */
+/* Marks the nodes of the model that belong to the asset. */
 static bool take_nodes(struct model_index *site, int asset, char why[MODEL_INDEX_WHY_BYTES])
 {
     const struct plant_asset *of = &site->plant->assets[asset];

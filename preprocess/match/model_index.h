@@ -12,7 +12,8 @@ struct indexed_asset {
     struct name_tokens tokens; /* tokens of the asset's id */
     int number;                /* index of the token with the equipment's number; -1: none */
     int model;                 /* index of the asset's model in model_index.models */
-    int root;                  /* common ancestor of all the asset's nodes, or their first node; -1: the whole model */
+    /* common ancestor of all the asset's nodes, or without one the first node; -1: the asset is the whole model */
+    int root;
 };
 
 struct model_index { /* zero-initialise */
@@ -20,7 +21,7 @@ struct model_index { /* zero-initialise */
     struct model_tree *models;
     size_t model_count;
     struct indexed_asset *assets; /* data of each asset, in the order of the plant's assets */
-    int **asset_of;               /* asset by model and node; -1: none. A node of several assets belongs to the first */
+    int **asset_of;               /* asset_of[model][node]: index of the asset that has the node, the first of several; -1: none */
     struct key_map names;         /* index of names: assets by id, tag and the names of their nodes; nodes by name */
     struct key_map folded;        /* index of assets by name_tokens_folded() */
     struct key_map digits;        /* index of assets by the digits of their names */

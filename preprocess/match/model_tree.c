@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Walks the JSON of a glTF file from the scene's roots. Checks only what it uses: plantcast-prep validates the rest. */
+/* Walks the JSON of a glTF file from the scene's roots. Checks only the properties that it reads; plantcast-prep validates all others. */
 #include "preprocess/match/model_tree.h"
 
 #include <errno.h>

@@ -8,10 +8,10 @@
 enum { NAME_MAX_TOKENS = 48, NAME_KEY_BYTES = 256 };
 
 struct name_token {
-    char text[32];  /* text of the token in upper case; digits without leading zeros; truncated if longer */
+    char text[32];  /* text of the token in upper case; digits without leading zeros; truncated if it does not fit */
     int raw_length; /* length before removing leading zeros */
     bool digits;
-    bool apart; /* a separator or blank precedes the token, or it is the first */
+    bool apart; /* true: the token is the first, or follows a separator or blank */
 };
 
 struct name_tokens {
@@ -31,7 +31,7 @@ void name_tokens_split(const struct name_tokens *tokens, int from, int to, char 
 bool name_tokens_have(const struct name_tokens *tokens, int from, int to, bool digits);
 
 enum name_slip { NAME_SAME, NAME_SLIP /* one letter doubled, left out or swapped */, NAME_OTHER_LETTER, NAME_DIFFERENT };
-/* Classifies the difference between two runs of letters. */
+/* Returns the kind of spelling slip between two runs of letters, or that they are equal or differ otherwise. */
 enum name_slip name_slip(const char *a, const char *b);
 
 #endif

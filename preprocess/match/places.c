@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds places by words for ends and nozzles, or by spreading points along the equipment. */
+/* Finds places for tags on their equipment: by words for ends and nozzles (inlet, top), or spread along the equipment. */
 #include "preprocess/match/places.h"
 
 #include <math.h>
@@ -48,7 +48,7 @@ static bool shows(const struct model_tree *tree, int node)
     return tree->more[node].low[0] <= tree->more[node].high[0];
 }
 
-/* Returns the asset's node whose name has the most of the wanted ends, if exactly one node does; else -1. */
+/* Returns the node of the asset whose name mentions the most of the wanted ends, if exactly one node does; else -1. */
 static int find_end(const struct model_index *site, int asset, unsigned wanted)
 {
     const struct indexed_asset *of = &site->assets[asset];

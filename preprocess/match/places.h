@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Proposes the place of a tag on its equipment: the node of its name, else a nozzle or end named in its description, else a position spread
- * over the equipment. All but the first are marked as assumed until a person confirms them. Thread: one. */
+/* Proposes the place of a tag on its equipment: the node that has the tag's name, else a nozzle or end named in its description, else one
+ * of several positions spread over the equipment. The latter two kinds are marked as assumed until a person confirms them. Thread: one. */
 #ifndef PREPROCESS_MATCH_PLACES_H
 #define PREPROCESS_MATCH_PLACES_H
 #include "preprocess/match/matcher.h"

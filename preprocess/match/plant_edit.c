@@ -23,7 +23,8 @@ static const char *next_line(const char *line)
     return line + (*line == '\n');
 }
 
-/* Finds the line `list:` that has at most a comment after the colon. Sets *flow if it has something else. */
+/* Finds the line `list:` that has at most a comment after the colon. Sets *flow if a value follows the colon, which means a list in flow
+ * style. */
 static const char *find_key(const char *text, const char *list, bool *flow)
 {
     size_t length = strlen(list);
@@ -37,7 +38,8 @@ static const char *find_key(const char *text, const char *list, bool *flow)
     return NULL;
 }
 
-/* Finds the items of a list: from the line after its key to its last line that is neither blank nor a comment belonging to the next key. */
+/* Finds the byte range of a list's items: from the line after the list's key to the last item's last line, without blank lines and comments
+ * that belong to the next key. */
 static void find_items(const char *key, const char **begin, const char **end)
 {
     *begin = *end = next_line(key);
@@ -61,7 +63,7 @@ static char *spliced(const char *text, const char *begin, const char *end, const
     return out.at;
 }
 
-/* Returns the lines with the indentation of the list's items. */
+/* Returns the lines, indented like the list's existing items. The caller frees the text. */
 static char *indented(const char *begin, const char *end, const char *lines)
 {
     struct text out = { 0 };

@@ -9,7 +9,7 @@
 #include "base/files/atomic_file.h"
 #include "base/mem.h"
 
-/* Returns the plant file's text with another tag list. */
+/* Returns the plant file's text in which the path of the tag list is replaced. */
 static char *with_list(const char *text, const char *list)
 {
     const char *key = strstr(text, "\ntags:"), *end = key ? key + 1 + strcspn(key + 1, "\n") : NULL;

@@ -24,7 +24,7 @@ static bool has_any(const char *text, const char *const *words, size_t count)
     return false;
 }
 
-/* Returns whether values of a data type can be shown as a field: not booleans, texts or times. */
+/* Returns whether values of a data type can be shown as a field, which excludes booleans, texts and times. */
 static bool is_number(const char *type)
 {
     static const char *const others[] = { "Boolean",  "Bool", "Bit",      "String",  "Text", "Char",
@@ -35,11 +35,11 @@ static bool is_number(const char *type)
 /* For each kind of unit, the quantities that use such units; the first is the default. None: the unit does not identify a quantity. */
 static const struct {
     const char *kind;
-    bool alone; /* the kind of unit alone decides the quantity */
+    bool alone; /* true: a unit of this kind decides the quantity alone, without description or letters */
     const char *quantities;
 } kinds[] = {
     { "temperature", true, "|Temperature|" },
-    { "pressure", true, "|Pressure|Differential pressure|" }, /* pressure: gauge, absolute or any other reference */
+    { "pressure", true, "|Pressure|Differential pressure|" }, /* units of pressure: gauge, absolute and other references */
     { "flow", true, "|Flow|" },
     { "density", true, "|Density|" },
     { "conductivity", true, "|Conductivity|" },
@@ -59,7 +59,7 @@ static const struct {
     { "resistance", false, "|Resistance|Conductivity|Temperature|" },
 };
 
-/* Returns the entry of a unit's kind; -1: unknown. */
+/* Returns the index in the table of the unit's kind; -1: unknown unit. */
 static int kind_of(const char *unit)
 {
     const char *kind = *unit ? unit_kind(unit) : NULL;
@@ -78,8 +78,8 @@ static bool is_possible(int kind, const char *quantity)
     return possible;
 }
 
-/* Returns whether the tag is a tuning parameter. TI is one (integral time) if its unit is seconds; with another unit or a telling
- * description it is a temperature indicator. */
+/* Returns whether the tag is a tuning parameter. TI is a tuning parameter (integral time) if its unit is seconds; with another unit or a
+ * telling description it is a temperature indicator. */
 static bool is_tuning(const struct export_tag *tag, const struct isa_name *isa, int kind, const char *described)
 {
     if (strcmp(isa->attribute, "TI") != 0)
@@ -153,7 +153,8 @@ static struct quantity *add(struct quantities *quantities, const char *id, const
     return quantity;
 }
 
-/* Returns the group with this name and unit. Accepts an existing group of the plant by unit alone if it is the only one that fits. */
+/* Returns the index of the group with this name and unit; -1: none. Accepts an existing group of the plant by unit alone if it is the only
+ * one that fits. */
 static int find(const struct quantities *quantities, const char *name, const char *unit)
 {
     int by_unit = -1, fitting = 0;
@@ -185,7 +186,7 @@ static void take_range(struct quantity *quantity, const struct export_tag *tag)
     quantity->high = fmax(quantity->high, unit_change_value(&change, high));
 }
 
-/* Returns a unit as people write it in a legend. */
+/* Returns a unit in the spelling for a legend, such as "°C" for "degC". */
 static const char *written(const char *unit)
 {
     static const char *const usual[] = { "°C", "°F" };
@@ -223,7 +224,7 @@ void quantities_find(struct quantities *quantities, const struct plant *plant, c
     for (size_t g = 0; g < plant->group_count; g++)
         if (!unused || strcmp(unused, plant->groups[g].id) != 0)
             add(quantities, plant->groups[g].id, plant->groups[g].quantity, plant->groups[g].unit, false);
-    /* Tags without a unit come last, when the groups of the others are known. */
+    /* Tags without a unit are assigned last, because they join groups that other tags have created. */
     for (int blank = 0; blank < 2; blank++)
         for (size_t i = 0; i < list->count; i++) {
             if (blank == 0)

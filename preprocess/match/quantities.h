@@ -8,8 +8,8 @@
 
 struct quantity { /* an existing group or one to be added */
     char *id, *name, *unit;
-    bool is_new;        /* the group is to be added; false: the plant file already has it */
-    double low, high;   /* range of the scaled limits of its tags, in the group's unit; low > high: no tag has limits */
+    bool is_new;        /* true: the group must be added to the plant file; false: the plant file has it */
+    double low, high;   /* lowest and highest scaled limit of the group's tags, in the group's unit; low > high: no tag has limits */
     size_t tags, blank; /* number of tags in the group, and of those without a unit */
 };
 

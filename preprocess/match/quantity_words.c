@@ -87,14 +87,15 @@ static char *words_of(const char *text)
     return out;
 }
 
-/* Returns whether a word must match a whole word. Chinese, Japanese and Korean do not separate words, so theirs never must. */
+/* Returns whether a word must match a whole word. Returns false for Chinese, Japanese and Korean words, because these languages do not
+ * separate words. */
 static bool is_whole(const char *word, char mark)
 {
     bool cyrillic = (unsigned char)*word == 0xd0 || (unsigned char)*word == 0xd1, ascii = !((unsigned char)*word & 0x80);
     return mark == '=' || strchr(word, ' ') || (ascii && strlen(word) <= 5) || (cyrillic && strlen(word) <= 10);
 }
 
-/* Finds a word and blanks it out, so that "pressure" is not found again in "differential pressure". */
+/* Finds a word in the text and overwrites it with blanks, so that "pressure" is not found again in "differential pressure". */
 static bool take_word(char *text, const char *word, char mark)
 {
     bool found = false, whole = mark != '~' && is_whole(word, mark);

@@ -65,8 +65,8 @@ void table_finish(struct cell_table *table)
     *table = (struct cell_table){ 0 };
 }
 
-/* Rates a separator: counts it in each line outside quotes, and finds the count above 0 that most lines share. Returns the number of those
- * lines times 1000, plus the count as a tie-breaker. */
+/* Rates a separator by how many lines contain it equally often, outside quotes and at least once. Returns the number of those lines times
+ * 1000, plus the count per line as a tie-breaker. */
 static size_t rate(const char *text, char separator)
 {
     size_t counts[SAMPLE_LINES] = { 0 }, lines = 0, best = 0;

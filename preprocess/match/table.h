@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A table of text cells from a CSV file or a spreadsheet. More lenient than csv.h, since other programs write these files: rows may differ
- * in length. Thread: any. */
+/* A table of text cells from a CSV file or a spreadsheet. Reads more leniently than csv.h, since other programs write these files: rows may
+ * differ in length. Thread: any. */
 #ifndef PREPROCESS_MATCH_TABLE_H
 #define PREPROCESS_MATCH_TABLE_H
 #include <stdbool.h>
@@ -21,7 +21,7 @@ struct cell_table {         /* zero-initialise */
 enum { TABLE_MAX_CELLS = 1000 };
 #define TABLE_MAX_ROWS 1000000
 
-/* Detects the separator: the one of comma, semicolon, tab and bar that splits most of the first lines into equally many cells. */
+/* Detects the separator: the one of comma, semicolon, tab and bar that splits the most of the first lines into equally many cells. */
 char table_separator(const char *text);
 /* Appends the rows of a CSV text. Returns false with the reason in why: too many rows, or an unterminated quote. */
 bool table_read_csv(struct cell_table *table, const char *text, char separator, char *why, size_t why_bytes);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads spreadsheets: a ZIP archive (minizip) of XML (expat), ISO/IEC 29500-1, 18.3 and 18.4. Only texts and numbers as stored, without
- * number formats. */
+/* Reads spreadsheets: a ZIP archive (minizip) of XML (expat), ISO/IEC 29500-1, 18.3 and 18.4. Reads texts, and numbers as stored; number
+ * formats are not applied. */
 #include "preprocess/match/table.h"
 
 #include <expat.h>
@@ -140,7 +140,7 @@ static void cell_ends(void *data, const char *name)
         table_add_row(sheet->table, &sheet->row);
 }
 
-/* --- parts of the archive --------------------------------------------------------------------------------------------------- */
+/* --- parts (XML files) of the archive --------------------------------------------------------------------------------------- */
 
 static void refuse_entity(void *data, const char *name, int parameter, const char *value, int length, const char *base,
                           const char *system_id, const char *public_id, const char *notation)
@@ -159,7 +159,8 @@ static unsigned long current_line(XML_Parser parser)
 #endif
 }
 
-/* Parses one part of the archive. Returns 1 if it was read, 0 if there is no such part, -1 if it is broken, with the reason in why. */
+/* Parses one XML file ("part") of the archive. Returns 1 if the part was read, 0 if it is missing, -1 if it is broken, with the reason in
+ * why. */
 static int read_part(struct xlsx_sheet *sheet, unzFile zip, const char *part, XML_StartElementHandler begins, XML_EndElementHandler ends,
                      char *why, size_t why_bytes)
 {
@@ -203,7 +204,7 @@ struct book_sheet {
 };
 
 struct book {
-    struct xlsx_sheet sheet; /* must be the first member: handlers of all parts receive a pointer to it */
+    struct xlsx_sheet sheet; /* must be the first member: the XML handlers receive a pointer to this member */
     struct book_sheet sheets[MAX_SHEETS];
     int count;
     bool too_many;

@@ -115,7 +115,8 @@ static void read_row(struct tag_export *list, const struct tag_header *header, c
         export_tag_set(tag, EXPORT_TYPE, header->data_type);
 }
 
-/* --- Studio 5000: several kinds of rows ------------------------------------------------------------------------------------- */
+/* --- Studio 5000 exports: rows of several kinds (tags, aliases, comments)
+ * ------------------------------------------------------------------------------------- */
 
 /* Returns a description without the escapes $N (new line), $Q and $' (quotes) and $$ (dollar). */
 static char *without_escapes(const char *text)
@@ -178,7 +179,7 @@ static void read_studio(struct tag_export *list, const struct cell_table *table,
         text_add(&list->remarks, "%zu comments describe elements of tags: they are no tags\n", comments);
 }
 
-/* --- lists with a header -------------------------------------------------------------------------------------------------------- */
+/* --- lists whose first lines contain a row of column names ----------------------------------------------------------------------- */
 
 /* Finds the row with the most recognised columns. Returns their number, or 0 if no row has a column of tag names. */
 static int find_header(const struct cell_table *table, struct tag_header *header, size_t *row)
@@ -259,7 +260,7 @@ static bool is_dump(const struct cell_table *table)
     return false;
 }
 
-/* Reads a section header. Returns whether its rows are tags, and not access names, alarm groups or trends. */
+/* Reads a section header. Returns whether the section's rows are tags; false for access names, alarm groups and trends. */
 static bool begin_section(struct tag_export *list, const struct table_row *row, struct tag_header *header)
 {
     static const struct {
@@ -278,7 +279,8 @@ static bool begin_section(struct tag_export *list, const struct table_row *row, 
     for (size_t i = 0; i < sizeof(kinds) / sizeof(*kinds); i++)
         if (!strcasecmp(cell, kinds[i].section)) {
             header->data_type = kinds[i].type;
-            header->columns[EXPORT_NAME] = 0; /* in these sections the column ItemName is the tag's address */
+            /* in these sections the first column is the tag's name, and the column ItemName is its address */
+            header->columns[EXPORT_NAME] = 0;
             for (size_t c = 0; c < row->count; c++)
                 if (!strcasecmp(row->cells[c], "ItemName"))
                     header->columns[EXPORT_ADDRESS] = (int)c;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads the tag list exported by a control system or OPC server, whatever its columns are called: Kepware CSV, Ignition JSON and CSV, AVEVA
+/* Reads the tag list exported by a control system or OPC server, with columns of any names: Kepware CSV, Ignition JSON and CSV, AVEVA
  * InTouch DBDump and Galaxy dump, lists in the style of DeltaV and Experion, plain CSV, spreadsheets. Thread: any. */
 #ifndef PREPROCESS_MATCH_TAG_EXPORT_H
 #define PREPROCESS_MATCH_TAG_EXPORT_H
@@ -15,18 +15,20 @@ struct export_tag {
     int line;                    /* line number of the tag in the file; 0 for JSON */
 };
 
-struct tag_export {                /* zero-initialise */
-    const char *format;            /* name of the detected format (static) */
+struct tag_export {                 /* zero-initialise */
+    const char *format;             /* name of the detected format (static) */
     struct charset_choice encoding; /* encoding of the file; name "": a spreadsheet */
     char separator;                 /* column separator; 0: none */
     struct export_tag *tags;        /* in file order; names are unique, case-insensitive */
     size_t count, capacity;
-    size_t rows;                       /* number of tags before duplicates were merged */
-    size_t same, differing;            /* duplicate rows left out: rows equal to the first one of their name, and rows different from it */
+    size_t rows; /* number of tags before duplicates were merged */
+    /* count of rows left out as duplicates: rows equal to the first row of the same name, and rows different from it */
+    size_t same, differing;
     char *differing_lines;             /* the first different duplicates, "TT-101 (lines 5 and 80), ..."; NULL: none */
-    size_t nameless, control, damaged; /* numbers of rows without a name (left out), of control characters and of undecodable characters */
+    size_t nameless, control, damaged; /* counts: rows left out because they have no name; control characters; undecodable characters */
     struct text remarks;               /* further remarks for people, one a line */
-    size_t renamed;                    /* tags that share their name with tags of other folders and got their path as a prefix */
+    /* count of tags that got their folder path as a prefix, because tags of other folders have the same name */
+    size_t renamed;
 };
 
 /* Reads a file. encoding: a name that charset_resolve() knows; NULL: detect it with charset_find(). Returns false with the reason in why
@@ -34,7 +36,7 @@ struct tag_export {                /* zero-initialise */
 bool tag_export_read(struct tag_export *list, const char *path, const char *encoding, char *why, size_t why_bytes);
 void tag_export_finish(struct tag_export *list);
 
-/* For readers of formats: appends an empty tag. Returns a pointer valid until the next call. */
+/* For the readers of file formats: appends an empty tag. Returns a pointer valid until the next call. */
 struct export_tag *tag_export_add(struct tag_export *list, int line);
 /* Sets a field to a copy of text. Does nothing if the field has a value already or text is blank. */
 void export_tag_set(struct export_tag *tag, enum export_field field, const char *text);

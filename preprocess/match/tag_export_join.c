@@ -39,7 +39,7 @@ static bool same_name(const struct tag_export *list, size_t a, size_t b)
     return !strcasecmp(list->tags[a].fields[EXPORT_NAME], list->tags[b].fields[EXPORT_NAME]);
 }
 
-/* Puts the folder path in front of the names of tags that share a name but are in different folders. */
+/* Puts the folder path in front of the names of tags that share a name with a tag of another folder. */
 static void rename_by_folder(struct tag_export *list)
 {
     size_t *order = sort_names(list);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads Ignition's export: folders and UDT instances contain tags, tags have properties. An instance has the members of its type, of that
- * type's parent and so on; each level may override single properties. */
+/* Reads Ignition's export: folders and UDT instances contain tags, tags have properties. A UDT instance has the members of its type, and of
+ * all parents of that type. The instance and each type may override single properties. */
 #include <jansson.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -31,7 +31,7 @@ static const struct property {
     { "opcServer", EXPORT_DEVICE },
 };
 
-/* A problem that concerns many tags: their number, and the paths of the first. */
+/* A problem that concerns many tags: the count of these tags, and the paths of the first ones. */
 struct complaint {
     size_t count;
     struct text paths;
@@ -42,10 +42,11 @@ struct tag_json_reader {
     json_t *types; /* type nodes by path within the folder of types; borrowed */
     struct complaint unknown, circular, unresolved;
     bool too_deep, too_many;
-    int references; /* references followed for the current property; limits parameters that refer to each other in a cycle */
+    /* count of references followed for the current property; limited, because parameters may refer to each other in a cycle */
+    int references;
 };
 
-/* A node as a stack of definitions: the instance's own first, then its types. */
+/* A node as a stack of definitions ("layers"): first the instance's own definition, then those of its types. */
 struct layered_node {
     json_t *layers[MAX_LAYERS];
     int count;
@@ -54,11 +55,11 @@ struct layered_node {
 struct instance_frame { /* a UDT instance that encloses a tag */
     const struct instance_frame *outer;
     const struct layered_node *node;
-    int own; /* number of layers that belong to the instance and not to its type; their parameters refer to the outer frame */
+    int own; /* count of layers that belong to the instance and not to its types; parameters in these layers refer to the outer frame */
     const char *name;
 };
 
-struct scope { /* the context of a parameter reference: its tag, folder and instances */
+struct scope { /* Context in which a parameter reference is resolved: the tag, its folder and the instances around it. */
     struct tag_json_reader *reader;
     const struct instance_frame *frame;
     const char *folder, *name; /* path of the tag's folder; name of the tag */
@@ -260,7 +261,7 @@ static bool add_formatted(const struct scope *scope, const char *reference, stru
     return good;
 }
 
-/* Appends a text with its references replaced. Returns false if any could not be resolved; those stay unchanged. */
+/* Appends a text with its references replaced. Returns false if a reference could not be resolved; such a reference stays in the text. */
 static bool expand(const struct scope *scope, const char *text, struct text *out, int depth)
 {
     bool good = true;
@@ -328,7 +329,7 @@ static void add_tag(const struct scope *scope, const struct layered_node *node)
     mem_free(name);
     for (size_t i = 0; i < sizeof(properties) / sizeof(*properties); i++)
         set_field(scope, tag, properties[i].field, property_of(node, properties[i].name));
-    if (tag->fields[EXPORT_SCALED_HIGH]) /* an export omits Ignition's defaults, 0 and 100 */
+    if (tag->fields[EXPORT_SCALED_HIGH]) /* defaults of Ignition, which an export omits: 0 and 100 */
         export_tag_set(tag, EXPORT_SCALED_LOW, "0");
     if (tag->fields[EXPORT_SCALED_LOW])
         export_tag_set(tag, EXPORT_SCALED_HIGH, "100");
@@ -349,7 +350,7 @@ static json_t *child_of(json_t *layer, const char *name)
     return NULL;
 }
 
-/* Adds the children of a folder or instance, each once, merged over all layers. */
+/* Adds the children of a folder or instance. Children with the same name in several layers are merged into one. */
 static void add_children(struct tag_json_reader *reader, const struct layered_node *node, const struct instance_frame *frame,
                          const char *folder, int depth)
 {

@@ -101,7 +101,7 @@ static int rank_of(const char *words, const char *key)
     return at ? (int)(at - words) : -1;
 }
 
-/* Calls `each` for the keys of a cell until it returns true: the whole cell, then the parts around "/", "(" and similar, then the ASCII
+/* Calls `each` for the keys of a cell until `each` returns true: the whole cell, then the parts around "/", "(" and similar, then the ASCII
  * part and the rest, for bilingual headers. */
 static bool each_key(const char *cell, bool (*each)(const char *key, void *data), void *data)
 {
@@ -171,7 +171,7 @@ int tag_header_read(const struct table_row *row, struct tag_header *header)
         reading.column = (int)c;
         each_key(row->cells[c], take_key, &reading);
     }
-    /* a column "Instrument Tag" fits both name and address, so it is used only as the name */
+    /* a column "Instrument Tag" would fit both the name and the address; use it only as the name */
     if (header->columns[EXPORT_ADDRESS] == header->columns[EXPORT_NAME])
         header->columns[EXPORT_ADDRESS] = -1;
     for (int f = 0; f < EXPORT_FIELDS; f++)

@@ -9,8 +9,9 @@ struct tag_header {
     int columns[EXPORT_FIELDS]; /* column of each field; -1: none */
     int tag_type;               /* column of Ignition's tag type, which marks folders; -1: none */
     int span;                   /* column with the length of a range that begins at the scaled low limit; -1: none */
-    int kind, specifier;        /* columns of Studio 5000: kind of the row, and element that a comment describes; -1: none */
-    const char *data_type;      /* data type of the tags in all following rows; NULL: unknown */
+    /* columns of Studio 5000 exports: kind of the row, and the element of a tag that a comment row describes; -1: none */
+    int kind, specifier;
+    const char *data_type; /* data type of the tags in all following rows; NULL: unknown */
 };
 
 /* Reads a row as a header. Returns the number of recognised columns. */

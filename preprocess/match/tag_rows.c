@@ -94,7 +94,7 @@ static bool read_file(struct tag_rows *rows, const char *path, char why[MATCH_WH
     charset_decode(bytes, count, NULL, &text);
     rows->separator = table_separator(text.utf8);
     bool good = table_read_csv(&table, text.utf8, rows->separator, why, MATCH_WHY_BYTES);
-    if (good && table.count > 1) { /* keep the rows only if there are any besides the header */
+    if (good && table.count > 1) { /* keep the file's rows, unless it has only a header */
         rows->at = table.rows;
         rows->count = table.count;
         rows->capacity = table.capacity;
@@ -188,13 +188,12 @@ static bool is_left_out(const struct export_tag *tag, const struct tag_source *s
  * decides. */
 static const char *type_of(const char *type)
 {
-    static const char *const others[][2] = { { "Float4", "Float" }, { "Float8", "Double" },   { "Int1", "Short" },   { "Int2", "Short" },
-                                               { "Int4", "Long" },    { "Int8", "LLong" },      { "Integer", "Long" }, { "Real", "Float" },
-                                               { "Bool", "Boolean" }, { "Discrete", "Boolean" },
-                                               { "Int", "Short" },    { "DInt", "Long" },       { "UInt", "Word" },    { "UDInt", "DWord" },
-                                               { "LReal", "Double" }, { "Float32", "Float" },   { "Float64", "Double" },
-                                               { "Int16", "Short" },
-                                               { "Int32", "Long" } };
+    static const char *const others[][2] = {
+        { "Float4", "Float" },  { "Float8", "Double" },  { "Int1", "Short" },  { "Int2", "Short" },   { "Int4", "Long" },
+        { "Int8", "LLong" },    { "Integer", "Long" },   { "Real", "Float" },  { "Bool", "Boolean" }, { "Discrete", "Boolean" },
+        { "Int", "Short" },     { "DInt", "Long" },      { "UInt", "Word" },   { "UDInt", "DWord" },  { "LReal", "Double" },
+        { "Float32", "Float" }, { "Float64", "Double" }, { "Int16", "Short" }, { "Int32", "Long" }
+    };
     enum data_type parsed;
     for (size_t i = 0; i < sizeof(others) / sizeof(*others); i++)
         if (!strcasecmp(type, others[i][0]))
@@ -234,7 +233,8 @@ static void put_scaling(struct tag_rows *rows, struct table_row *row, const stru
             put(rows, row, columns[i], cells[i]);
 }
 
-/* Writes alarm limits. Limits that do not ascend are not from an alarm system: then all are left to the group. */
+/* Writes alarm limits. If they are not in ascending order, writes none, because they are not alarm limits: the group's limits then
+ * apply. */
 static void put_limits(struct tag_rows *rows, struct table_row *row, const struct export_tag *tag)
 {
     const char *before = NULL;
@@ -273,7 +273,7 @@ static void put_equipment(struct tag_rows *rows, struct table_row *row, const st
     }
 }
 
-/* Returns whether the equipment of an existing row may be written: not if a person changed the row. */
+/* Returns whether the equipment of an existing row may be overwritten: false if a person changed the row since the last run. */
 static bool may_put(const struct tag_row_input *input, const char *asset)
 {
     const struct decision *before = input->before;

@@ -7,16 +7,16 @@
 #include "preprocess/match/table.h"
 
 struct tag_rows {         /* zero-initialise */
-    struct table_row *at; /* all rows of the tag list; the first is the header */
+    struct table_row *at; /* all rows of the tag list, existing and added; the first is the header */
     size_t count, capacity;
-    int *by_name; /* the rows that the file had, as indices sorted by name */
+    int *by_name; /* indices of the rows that the file had, sorted by name */
     size_t known; /* number of rows that the file had, including the header */
     char separator;
 };
 
 struct tag_source { /* the source that reads the exported tags */
     const char *id; /* id of the source; NULL: neither the source nor addresses are written */
-    bool modbus;    /* leave out tags whose address is not valid for Modbus */
+    bool modbus;    /* true: the source is Modbus; tags without a valid Modbus address are left out */
     int address_base;
 };
 

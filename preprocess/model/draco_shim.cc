@@ -17,8 +17,8 @@ struct draco_mesh {
 namespace
 {
 
-/* Limit of the triangle count. A regular grid compresses to well under a bit per triangle, but more triangles per byte than this are
- * implausible. */
+/* Limit of the triangle count. A regular grid compresses to well under one bit per triangle, but files with more triangles than
+ * FREE_TRIANGLES plus TRIANGLES_PER_BYTE per byte are rejected as implausible. */
 constexpr uint64_t FREE_TRIANGLES = 1 << 16, TRIANGLES_PER_BYTE = 1024;
 
 bool read_varint(draco::DecoderBuffer *buffer, uint64_t *out)
@@ -35,7 +35,7 @@ bool read_varint(draco::DecoderBuffer *buffer, uint64_t *out)
     return false;
 }
 
-/* Checks the header's counts, for version 2.2 of the bit stream, which every glTF exporter writes. */
+/* Checks the header's counts, for version 2.2 of the bit stream, the version that every glTF exporter writes. */
 bool claims_good(const char *bytes, size_t size, char *why)
 {
     draco::DecoderBuffer buffer;
@@ -112,7 +112,7 @@ template <typename T> bool convert(draco::DataType type, const char *from, T *to
     }
 }
 
-/* Copies numbers without Draco's own conversion, which trusts a flag in the file. */
+/* Copies attribute values without Draco's own conversion, which trusts a flag in the file. */
 template <typename T> bool copy(const draco::Mesh &mesh, const draco::PointAttribute &attribute, int width, void *out)
 {
     T *to = static_cast<T *>(out);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Converts the primitives of meshes to triangle lists over just the vertices used. */
+/* Converts the primitives of meshes to triangle lists that contain only the vertices used. */
 #include "preprocess/model/gltf_impl.hh"
 
 #include <algorithm>
@@ -60,8 +60,8 @@ std::vector<uint32_t> triangle_list(std::vector<uint32_t> in, int mode, const st
     return out;
 }
 
-/* Returns the used vertices in ascending order and renumbers the indices accordingly. Exporters often share one large buffer among many
- * primitives. */
+/* Returns the used vertices in ascending order and renumbers the indices accordingly. Dropping unused vertices matters because exporters
+ * often share one large buffer among many primitives. */
 std::vector<uint32_t> compact(std::vector<uint32_t> *indices)
 {
     std::vector<uint32_t> used;
@@ -69,7 +69,7 @@ std::vector<uint32_t> compact(std::vector<uint32_t> *indices)
         return used;
     auto ends = std::minmax_element(indices->begin(), indices->end());
     uint32_t low = *ends.first, range = *ends.second - low + 1;
-    if (range / 8 > indices->size()) { /* few indices over a wide range: sort instead of marking */
+    if (range / 8 > indices->size()) { /* few indices over a wide range: sort them, because an array over the range would be large */
         used = *indices;
         std::sort(used.begin(), used.end());
         used.erase(std::unique(used.begin(), used.end()), used.end());
@@ -137,8 +137,8 @@ float (*read_vectors(const attribute_reader &reader, const std::string &name))[3
     return out;
 }
 
-/* Reads a set of texture coordinates; *out stays NULL if the primitive has none. Returns whether any lie outside 0..1 of a mapping that is
- * valid only inside. */
+/* Reads a set of texture coordinates; *out stays NULL if the primitive has none. Returns true if coordinates lie outside 0..1 although the
+ * mapping is valid only inside. */
 bool read_texcoords(const attribute_reader &reader, const uv_transform &uv, float (**out)[2])
 {
     std::string name = "TEXCOORD_" + std::to_string(uv.set);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads the nodes of the default scene, depth first, with world transforms; instances become nodes of their own. */
+/* Reads the nodes of the default scene, depth first, with world transforms; each instance becomes a separate node. */
 #include "preprocess/model/gltf_impl.hh"
 
 #include <cmath>
@@ -14,7 +14,8 @@ namespace
 {
 
 constexpr uint32_t MAX_NODES = 4'000'000, MAX_DEPTH = 512, ELEMENTS_PER_INSTANCE = 16;
-constexpr double ROTATION_SLACK = 0.01, LEAST_ROTATION = 1e-6; /* rotations of instances stored as bytes deviate by up to 0.008 */
+/* tolerance of a quaternion's length; rotations of instances stored as bytes deviate by up to 0.008 */
+constexpr double ROTATION_SLACK = 0.01, LEAST_ROTATION = 1e-6;
 
 /* Checks a rotation, which glTF requires to be a unit quaternion. One of another length is normalised, as other programs do, and counted;
  * rounding is tolerated. */
@@ -56,7 +57,7 @@ void local_of(gltf_work *w, const tinygltf::Node &node, double out[16], const st
     check_affine(out, what);
 }
 
-struct node_order { /* the scene's nodes while they are put in depth-first order */
+struct node_order { /* working data while the scene's nodes are listed in depth-first order */
     gltf_work *w;
     std::vector<gltf_node> out;
     std::vector<char> seen;
@@ -165,7 +166,7 @@ std::vector<int> roots_of(const tinygltf::Model &m)
     return roots;
 }
 
-/* Records how many nodes with a mesh are not part of the scene. */
+/* Records in the remarks how many nodes with a mesh are not part of the scene. */
 void note_unreached(const node_order &tree)
 {
     size_t count = 0;

@@ -72,7 +72,7 @@ void parse(gltf::gltf_work *w)
         loader.LoadASCIIFromString(&w->parsed, &error, &warning, w->document->json, static_cast<unsigned>(w->document->json_bytes), "");
     while (!error.empty() && error.back() == '\n')
         error.pop_back();
-    if (!good || !error.empty()) /* tinygltf drops what it cannot read and only reports it here */
+    if (!good || !error.empty()) /* tinygltf reports here what it could not read and left out */
         refuse("%s", error.empty() ? "not a glTF file" : error.c_str());
 }
 

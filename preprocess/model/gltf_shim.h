@@ -57,7 +57,7 @@ struct gltf_model {
     uint32_t primitive_count, mesh_count, node_count, material_count, texture_count, image_count;
     uint32_t skipped_lines, skipped_points; /* sums over all meshes */
     uint32_t scaled_rotations;              /* number of nodes and instances whose rotation quaternion is not of unit length */
-    char **left_out;                        /* a text for each texture use and each extension that is ignored */
+    char **left_out;                        /* texts, one for each texture use and each extension that is ignored */
     uint32_t left_out_textures;
 };
 

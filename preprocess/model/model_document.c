@@ -70,7 +70,8 @@ static bool views_good(const struct document_work *work)
 
 /* --- accessors ----------------------------------------------------------------------------------------------------------- */
 
-/* Gives an accessor without a buffer view a buffer of zeros, as glTF defines it; its sparse part may replace some. */
+/* Gives an accessor without a buffer view a buffer of zeros, as glTF defines it; the accessor's sparse values may then replace some
+ * zeros. */
 static bool fill_with_zeros(struct document_work *work, const json_t *number, uint64_t *zeros)
 {
     json_t *accessor = json_array_get(json_object_get(work->root, "accessors"), (size_t)json_integer_value(number));
@@ -167,10 +168,9 @@ static void take_left_out(struct document_work *work)
     for (size_t i = 0; i < json_array_size(required); i++) {
         const char *name = json_string_value(json_array_get(required, i));
         if (name && model_rules_look(name))
-            d->looks[d->look_count++] =
-                mem_printf("the file requires %.100s%s", name,
-                           strcmp(name, specular) == 0 ? ": its diffuse colours are kept, its specular ones are not"
-                                                       : ", which only changes how it looks");
+            d->looks[d->look_count++] = mem_printf("the file requires %.100s%s", name,
+                                                   strcmp(name, specular) == 0 ? ": its diffuse colours are kept, its specular ones are not"
+                                                                               : ", which only changes how it looks");
     }
     for (size_t i = 0; i < json_array_size(used); i++) {
         const char *name = json_string_value(json_array_get(used, i));

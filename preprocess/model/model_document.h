@@ -10,7 +10,7 @@ extern "C" {
 #endif
 
 struct document_bytes {
-    const unsigned char *at; /* points into `own`, into the source's bytes, or into another buffer */
+    const unsigned char *at; /* the buffer's bytes: in `own`, in the source file, or in another buffer */
     size_t size;
     unsigned char *own; /* allocation to free; NULL: the bytes belong to another object */
 };
@@ -27,7 +27,7 @@ struct model_document {
     struct document_image *images;
     char **looks; /* a text for each ignored extension */
     size_t buffer_count, image_count, look_count;
-    size_t total_bytes; /* size of all buffers except all-zero ones */
+    size_t total_bytes; /* total size of all buffers except all-zero ones */
 };
 
 /* Normalises a source file, which must outlive the document. Returns false with the reason in why; then model_document_finish() need not be

@@ -5,7 +5,7 @@
 #include "preprocess/model/model_document.h"
 #include "preprocess/model/model_json.h"
 
-struct document_work { /* a document being normalised; types and references in root have been checked (model_rules.h) */
+struct document_work { /* a document being normalised; model_rules.h has already checked types and references in `root` */
     json_t *root;
     const struct model_source *source;
     struct model_bytes binary;
@@ -20,7 +20,7 @@ static inline uint64_t document_number(const json_t *object, const char *key)
     return (uint64_t)json_integer_value(json_object_get(object, key));
 }
 
-/* Appends a buffer and takes ownership of bytes.own, also on failure. Returns the buffer's number. */
+/* Appends a buffer and takes ownership of bytes.own, also on failure. Returns the buffer's index. */
 size_t document_add_buffer(struct document_work *work, struct document_bytes bytes);
 /* Appends a buffer view that covers a whole buffer and makes the accessor read from it. */
 void document_point_accessor(struct document_work *work, json_t *accessor, size_t buffer);
@@ -29,8 +29,8 @@ void document_point_accessor(struct document_work *work, json_t *accessor, size_
 bool document_range(const struct document_work *work, size_t buffer, uint64_t offset, uint64_t length, const char *what,
                     struct model_bytes *out);
 
-/* Returns the size in bytes of one element of an accessor, and its component type and number of components. Returns 0 if its type is not
- * one of glTF 2.0. */
+/* Returns the size in bytes of one element of an accessor, and writes the component type and the number of components. Returns 0 if glTF
+ * 2.0 has no such type. */
 size_t document_element_bytes(const json_t *accessor, int *component_type, int *width);
 
 /* Decodes EXT_meshopt_compression: each compressed buffer view becomes a plain one over a new buffer. Returns false with the reason in

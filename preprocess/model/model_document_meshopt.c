@@ -13,7 +13,9 @@ enum meshopt_filter { NONE, OCTAHEDRAL, QUATERNION, EXPONENTIAL };
 static const char *const modes[] = { "ATTRIBUTES", "TRIANGLES", "INDICES" };
 static const char *const filters[] = { "NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL" };
 
-#define BYTES_PER_BYTE 128u /* largest plausible expansion: vertex data needs at least 1 byte for 64, an index at least a third of a byte */
+/* largest plausible ratio of decoded to compressed bytes: 64 bytes of vertex data need at least 1 byte, an index at least a third of a
+ * byte */
+#define BYTES_PER_BYTE 128u
 
 struct meshopt_view {
     uint64_t count, stride;

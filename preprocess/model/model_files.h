@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The distinct model files of a plant: all are hashed first, each is parsed only while its assets are cut out. Thread: one. */
+/* The distinct model files of a plant: all files are hashed first; a file is parsed and in memory only while its assets are extracted.
+ * Thread: one. */
 #ifndef PREPROCESS_MODEL_FILES_H
 #define PREPROCESS_MODEL_FILES_H
 #include "plant/plant.h"
@@ -16,7 +17,7 @@ struct model_file {
     bool is_parsed, was_parsed;
     double parse_s;
     uint32_t skipped_lines, skipped_points, scaled_rotations, left_out_textures; /* counts of the last parse; valid if was_parsed */
-    char **left_out;                                                             /* a text for each ignored texture use and extension */
+    char **left_out;                                                             /* texts, one for each ignored texture use and extension */
 };
 
 struct model_files {

@@ -72,7 +72,8 @@ json_t *model_json_load(struct model_bytes file, struct model_bytes *binary, cha
         return NULL;
     if (json.size >= 3 && memcmp(json.at, "\xEF\xBB\xBF", 3) == 0)
         json = (struct model_bytes){ json.at + 3, json.size - 3 };
-    while (is_glb && json.size > 0 && json.at[json.size - 1] == 0) /* some writers pad with zero bytes instead of blanks */
+    /* accept zero bytes after the JSON, with which some writers pad instead of blanks */
+    while (is_glb && json.size > 0 && json.at[json.size - 1] == 0)
         json.size--;
     if (!depth_good(json, why))
         return NULL;

@@ -15,7 +15,8 @@ struct model_rule {
     const char *list, *path; /* path: dots separate nested objects, which earlier rules check */
     enum rule_kind kind;
     enum rule_need need;
-    const char *target; /* INDEX, INDICES, ATTRIBUTES: the list that an index refers to; NULL for ATTRIBUTES: any number */
+    /* INDEX, INDICES, ATTRIBUTES: name of the list that the index refers to; NULL for ATTRIBUTES: any number is allowed */
+    const char *target;
     size_t length;      /* NUMBERS: length of the array */
 };
 
@@ -34,7 +35,7 @@ struct model_rule {
 #define INSTANCING "extensions.EXT_mesh_gpu_instancing"
 
 /* clang-format off */
-/* accessors' buffer views are checked when they are read, because some files have unused invalid ones */
+/* buffer views of accessors are checked only when the accessor is read, because some files have unused accessors with invalid views */
 static const struct model_rule rules[] = {
     { "buffers", "byteLength", SIZE, MUST, NULL, 0 }, { "buffers", "uri", TEXT, MAY, NULL, 0 },
     { "bufferViews", "buffer", INDEX, MUST, "buffers", 0 }, { "bufferViews", "byteOffset", SIZE, MAY, NULL, 0 },
@@ -102,9 +103,9 @@ static const char *const look_extensions[] = {
 
 struct rule_check { /* the object being checked */
     json_t *root;
-    const char *list; /* name of the object's list; NULL: the document itself */
+    const char *list; /* name of the list that contains the object; NULL: the object is the document itself */
     size_t number;
-    int primitive; /* primitive being checked, of mesh `number`; -1: the object is no primitive */
+    int primitive; /* index of the primitive in mesh `number`; -1: the object is no primitive */
     char *why;
 };
 

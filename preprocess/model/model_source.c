@@ -20,7 +20,8 @@ static bool hash_uri(const struct model_source *source, const char *what, size_t
     if (!uri || model_uri_is_data(uri)) /* embedded data is part of the file, which is hashed already */
         return true;
     unsigned char *bytes = model_uri_read(source->folder, uri, &size, uri_why);
-    if (!bytes && strcmp(what, "image") == 0) /* the model can be drawn without the image; adding the image later changes the hash */
+    /* a missing image is no error, because the model can be drawn without it; if the image is added later, the hash changes */
+    if (!bytes && strcmp(what, "image") == 0)
         return true;
     if (!bytes)
         return wrong(why, "%s %zu: %s", what, number, uri_why);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Resolves the URIs of a model: a file inside the model's folder, or data in the URI itself. Nothing else is ever opened. */
+/* Resolves the URIs of a model: a file inside the model's folder, or data in the URI itself. Files outside the folder are never opened. */
 #ifndef PREPROCESS_MODEL_URI_H
 #define PREPROCESS_MODEL_URI_H
 #include <stddef.h>

@@ -37,8 +37,8 @@ static bool is_alone(const struct plant *plant, const struct plant_sensor *senso
     return true;
 }
 
-/* Returns whether the field is constant because each group has a single sensor, uses Shepard and has no reach: then distances do not
- * matter. */
+/* Returns whether the field is constant, so that distances do not matter: each group has a single sensor, Shepard interpolation and no
+ * reach. */
 static bool is_constant(const struct plant *plant, const struct plant_sensor *sensors, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
@@ -151,12 +151,12 @@ struct build {
     struct levels levels;
     struct sensor_distances measured;
     struct asset_level file[LEVELS_MAX]; /* levels as stored in the file */
-    struct text parts;                   /* serialised geometry and levels for the cache; empty if they came from it */
+    struct text parts;                   /* serialised geometry and levels for the geometry cache; empty if they were read from the cache */
     bool surface_kept;                   /* the surface was written to the cache */
     struct distance_rows distances;      /* distances of the vertices in their final order */
     struct clusters_making *making[LEVELS_MAX];
     size_t making_count;
-    bool keeps; /* results of subdivision are kept for the next run */
+    bool keeps; /* results of subdivision are cached for the next run */
     struct subdiv_cache findings;
     struct sample_cache sample_cache;
     struct build_report geometry_report;
@@ -184,7 +184,8 @@ static bool run_both(struct build *build, void (*first)(struct build *build), vo
     return !build->failed[0] && !build->failed[1];
 }
 
-/* --- levels and distances run in parallel ------------------------------------------------------------------------------------ */
+/* --- two concurrent tasks: levels of detail, and distances
+ * ------------------------------------------------------------------------------------ */
 
 static void make_levels(struct build *build)
 {
@@ -212,7 +213,8 @@ static void assume_sensors(struct build *build)
         sensor_distances_assume(&build->measured, build->workers, build->input, &build->geometry);
 }
 
-/* --- subdivision and the check run in parallel --------------------------------------------------------------------------------- */
+/* --- two concurrent tasks: subdivision, and the check of the distances
+ * --------------------------------------------------------------------------------- */
 
 /* Starts clustering one level while the next is being subdivided, since meshoptimizer uses a single core. */
 static void begin_clusters(void *arg, const struct level *level)
@@ -222,7 +224,7 @@ static void begin_clusters(void *arg, const struct level *level)
     build->making[build->making_count++] = clusters_begin(build->workers, level, (const float(*)[3])g->positions_m, g->vertex_count);
 }
 
-/* Collects the clusters of all levels, before the levels are merged. */
+/* Waits for the clusters of all levels and collects them, before the levels are merged. */
 static void end_clusters(struct build *build, struct clusters *clusters)
 {
     uint32_t first_index = 0;
@@ -336,7 +338,7 @@ static void write_caches(void *arg)
     write_geometry(build);
 }
 
-/* Orders the vertices by level, so that each level uses only a prefix of them. */
+/* Orders the vertices by level, so that each level uses only a prefix of the vertices. */
 static bool put_in_order(struct build *build, uint32_t own)
 {
     struct build_report *report = &build->output->report;
@@ -404,7 +406,7 @@ static void send_file(void *arg)
     folder_draft_send(arg);
 }
 
-/* Writes the distances to disk early: they are most of the file, and the rest is hashed and checked meanwhile. */
+/* Writes the distances to disk early: they are most of the file, and writing runs while the other sections are hashed and checked. */
 static void write_distances(void *arg, uint16_t *codes)
 {
     struct build *build = arg;
@@ -462,7 +464,7 @@ static bool lay_out(struct build *build, const struct clusters *clusters)
     char view_why[200];
     memcpy(parts.origin_m, g->origin_m, sizeof(parts.origin_m));
     size_t size;
-    wrong(build->why, "out of memory for its file"); /* the default error text, unless a later step gives another one */
+    wrong(build->why, "out of memory for its file"); /* error text if asset_build() fails; a later failure replaces it */
     void *bytes = asset_build(&parts, &size);
     if (bytes && build->write_error)
         return wrong(build->why, "its distances cannot be written into %s: %s", input->folder, strerror(build->write_error));
@@ -498,7 +500,7 @@ static bool build_file(struct build *build)
     return good;
 }
 
-/* Gets the geometry from the cache, which also has levels and surface, or from the model. */
+/* Gets the geometry, from the cache (together with levels and surface) or else from the model. */
 static bool begin(struct build *build)
 {
     const struct build_input *input = build->input;

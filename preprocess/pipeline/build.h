@@ -13,7 +13,7 @@
 bool build_asset(struct log *log, struct workers *workers, const struct build_input *input, struct build_output *output,
                  char why[MODEL_WHY_BYTES]);
 
-/* Returns a key for a model and the parameters by which an asset is cut out of it: equal keys mean equal geometry. */
+/* Returns a key for a model and the parameters by which an asset is extracted: equal keys mean equal geometry. */
 uint64_t build_recipe(uint64_t model_hash, const struct geometry_params *geometry);
 /* Returns the key of everything in the asset that does not depend on sensors. geometry_hash: result of geometry_hash(). */
 uint64_t build_geometry_key(uint64_t geometry_hash, const struct geometry_params *geometry);

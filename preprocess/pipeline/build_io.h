@@ -14,7 +14,7 @@ struct build_input {
     const struct gltf_model *model; /* parsed model to cut the asset from; unused if `cache` is set */
     struct geometry_params geometry;
     const struct plant *plant;          /* the plant; its groups and tags determine where the field needs subdivision */
-    const struct plant_sensor *sensors; /* the asset's sensors; position_m is set for all of them, including those given by a node */
+    const struct plant_sensor *sensors; /* the asset's sensors; position_m is set for all sensors, including those placed by a node */
     size_t sensor_count;
     uint64_t key;
     const struct geometry_cache *cache; /* cached geometry for geometry_key; NULL: there is none */
@@ -25,7 +25,7 @@ struct build_input {
 struct build_level {
     uint32_t triangles;       /* triangles after simplification */
     uint32_t split_triangles; /* triangles after subdivision */
-    uint32_t vertices;        /* number of vertices that the level uses, a prefix of all vertices */
+    uint32_t vertices;        /* number of vertices that the level uses; they are the first ones of the asset */
     float error_m;
     struct level_left left[LEVEL_LIMITS]; /* edges that still have a field error after subdivision */
 };
@@ -36,15 +36,16 @@ struct build_report {
     uint32_t skipped_lines, skipped_points; /* primitives skipped because they are not triangles */
     struct surface_report surface;          /* report of the surface; zero if the asset has no sensor */
     size_t unreachable_vertices;            /* number of vertices without a finite distance to any sensor */
-    /* stocked: 1 if the geometry came from the cache; kept_sensors: sensors whose distances came from the cache */
+    /* stocked: 1 if the geometry came from the cache, else 0; kept_sensors: count of sensors whose distances came from the cache */
     uint32_t stocked, kept_sensors;
     struct build_level levels[LEVELS_MAX];
     size_t level_count, levels_given_up;
-    /* edges and triangles whose field error subdivision measured in this run, and those whose error it took from the last run */
+    /* counts of edges and triangles whose field error was measured in this run, and of those whose error came from the last run's cache */
     size_t split_measured, split_kept;
-    struct bend_report bend;           /* measured bend of harmonic, fin and gp between corners; zero: no group requests them */
-    struct cloud_report cloud;         /* report of distances by heat on a point cloud; zero: no group requests them */
-    char stray[STRAY_TEXT_BYTES];      /* text about pieces far from the main part (geometry/stray.h); "": there are none */
+    /* measured interpolation error of harmonic, fin and gp inside triangles; all zero: no group requests them */
+    struct bend_report bend;
+    struct cloud_report cloud;    /* report of distances by heat on a point cloud; zero: no group requests them */
+    char stray[STRAY_TEXT_BYTES]; /* description of pieces far from the main part (geometry/stray.h); "": there are none */
     double read_s, surface_s, solve_s, levels_s, split_s;
 };
 

@@ -78,7 +78,7 @@ static void pack_geometry(struct text *to, const struct geometry *g)
     pack_array(to, g->names.at, g->names.length, 1);
 }
 
-/* Converts a count to the 32 bits that geometry uses; marks the data as damaged if it does not fit. */
+/* Converts a count to 32 bits. If it does not fit, marks the cached data as damaged. */
 static uint32_t narrow(struct unpack *from, size_t count)
 {
     from->bad |= count > UINT32_MAX;

@@ -7,7 +7,7 @@
 #include "base/files/cache_file.h"
 #include "preprocess/pipeline/build_io.h"
 
-#define GEOMETRY_CACHE_TRIANGLES 10000u /* triangle count below which assets are not cached, because rebuilding them is about as fast */
+#define GEOMETRY_CACHE_TRIANGLES 10000u /* triangle count below which assets are not cached, because building them again is about as fast */
 
 struct geometry_cache { /* mapped and checked files */
     struct cache_file parts, surface;

@@ -25,10 +25,11 @@
 #define FAR_M 0.25       /* distance in metres of a sensor from its surface above which a warning is due */
 #define FAR_OF_SIZE 0.05 /* the same distance as a share of the asset's size; the smaller one applies */
 
-#define BATCH_TRIANGLES 4e6 /* triangle count of a batch: models are parsed until their assets have this many, then the assets are built */
-/* triangle count above which assets are built one at a time with all cores, because two at once would need twice the memory */
+/* triangle count of a batch: models are parsed until their assets have this many triangles, then these assets are built */
+#define BATCH_TRIANGLES 4e6
+/* triangle count above which assets are built one at a time with all cores, because building two at once would need twice the memory */
 #define ALONE_TRIANGLES 1e6
-#define SENSORS_WORK 6e4    /* progress estimate: measured cost of an asset's first sensor, in triangles */
+#define SENSORS_WORK 6e4 /* for the progress estimate: measured cost of an asset's first sensor, in equivalent triangles */
 
 struct prepare_run {
     struct prepare *prepare;
@@ -38,12 +39,14 @@ struct prepare_run {
     size_t *todo; /* indices of assets to build, grouped by model */
     size_t todo_count, batch_begin, batch_end;
     struct model_cache known, cuts; /* model caches of the last run and of this run */
-    double parsed_triangles; /* triangles of models that were parsed for their keys and stay in memory until their assets are built */
+    /* triangle count of the models that were parsed to compute keys and stay in memory until their assets are built */
+    double parsed_triangles;
     pthread_mutex_t lock;
     /* --- members protected by `lock` */
     struct diag *diag;
     struct progress progress;
-    bool failed, unusable; /* failed: any error; unusable: an error other than of a model */
+    /* failed: an error occurred; unusable: an error occurred that is not a model's, so the manifest cannot be written */
+    bool failed, unusable;
 };
 
 struct geometry_params prepare_geometry(const struct plant_asset *asset)
@@ -101,7 +104,7 @@ static size_t first_with_key(const struct prepare_run *run, size_t i)
     return i;
 }
 
-/* Gets an asset's geometry hash and sensor positions from the cache of models. Returns false if the model must be parsed. */
+/* Gets an asset's geometry hash and sensor positions from the model cache. Returns false if the model must be parsed. */
 static bool recall_cut(struct prepare_run *run, struct prepare_asset *asset, uint64_t *geometry)
 {
     bool known = model_cache_find(&run->known, asset->recipe, geometry);
@@ -219,9 +222,10 @@ static void find_keys(struct prepare_run *run)
     }
 }
 
-/* --- what is in the folder -------------------------------------------------------------------------------------------------- */
+/* --- existing files in the folder of prepared files
+ * -------------------------------------------------------------------------------------------------- */
 
-/* Copies from an existing, checked file what the report and the warnings need. */
+/* Copies from an existing, checked file the numbers that the report and the warnings need. */
 static void take_file(struct prepare_asset *asset, const struct asset_view *view)
 {
     const struct asset_level *finest = &view->levels[0];
@@ -277,7 +281,7 @@ static void look_at_some(void *arg, size_t begin, size_t end)
     }
 }
 
-/* Separates assets that are up to date from those to build; groups the latter by model. */
+/* Separates assets that are up to date from those to build, and groups those to build by model. */
 static void sort_out(struct prepare_run *run)
 {
     struct prepare *prepare = run->prepare;
@@ -390,7 +394,8 @@ static double own_triangles(const struct prepare_asset *asset, const struct mode
     return asset->cache.parts.bytes ? asset->cache.report.triangles : (double)geometry_triangles(&model->parsed, &geometry);
 }
 
-/* Parses models of todo from batch_begin on until there is enough work for a batch. Assets whose model cannot be parsed fail. */
+/* Parses the models of the assets todo[batch_begin] and after until there is enough work for a batch. Assets whose model cannot be parsed
+ * fail. */
 static void parse_batch(struct prepare_run *run)
 {
     struct prepare *prepare = run->prepare;
@@ -514,7 +519,8 @@ static void write_manifest(struct prepare_run *run)
 {
     struct prepare *prepare = run->prepare;
     struct folder_entry *entries = mem_array(prepare->asset_count, sizeof(*entries));
-    const char **tags = mem_array(prepare->plant->tag_count, sizeof(*tags)), **next = tags; /* each tag is a sensor of at most one asset */
+    /* capacity is enough: each tag is a sensor of at most one asset */
+    const char **tags = mem_array(prepare->plant->tag_count, sizeof(*tags)), **next = tags;
     for (size_t i = 0; i < prepare->asset_count; i++) {
         const struct prepare_asset *asset = &prepare->assets[i];
         for (size_t s = 0; s < asset->sensor_count; s++)

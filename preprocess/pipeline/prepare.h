@@ -20,8 +20,8 @@ struct prepare_asset {
     struct plant_sensor *sensors;
     size_t sensor_count;
     float *surface_distances_m; /* distance of each sensor from the surface, metres; NULL: preparing the asset failed */
-    double size_m[3];                                  /* size of the asset in its own frame, the last is the height; 0: unknown */
-    double far_m;                                      /* distance of a sensor from its surface above which a warning is due */
+    double size_m[3];           /* size of the asset in its own frame, the last is the height; 0: unknown */
+    double far_m;               /* distance of a sensor from its surface above which a warning is due */
     uint64_t recipe, key, geometry_key, distances_key; /* recipe: result of build_recipe() */
     char *missing;               /* reason why the model, or the node of a sensor, cannot be used; NULL: no such failure */
     struct geometry_cache cache; /* geometry cache, open while the asset is built; parts.bytes NULL: not open */
@@ -29,7 +29,7 @@ struct prepare_asset {
     enum prepare_state state;
     char *rebuilt_because; /* defect of the existing file, which caused a rebuild; NULL: none */
     uint32_t triangles, vertices;
-    bool reported; /* `report` is set: always after a build, otherwise if the file's report was kept */
+    bool reported; /* `report` is valid: always after a build; for an unchanged asset only if KEY.report.json exists */
     struct build_report report;
     double seconds, work;
 };
@@ -47,14 +47,14 @@ struct prepare {
 struct prepare_params {
     const char *folder;
     const char *only;                  /* id of the only asset to prepare, with the manifest unchanged; NULL: all assets */
-    FILE *progress;                    /* receives progress lines; NULL: prints nothing */
-    struct service_patience *patience; /* receives the status after each asset; NULL: not reported */
+    FILE *progress;                    /* stream for progress lines; NULL: prints nothing */
+    struct service_patience *patience; /* service manager that is told the status after each asset; NULL: not reported */
     const atomic_bool *stop;           /* stop request: once true, no further asset is started; NULL: never stops */
 };
 
 /* Prepares the plant's assets into params->folder, one process at a time per folder. Errors go to diag, by line of the plant file or tag
- * list. Returns false if something failed or the run was interrupted; good assets have been written. On failure the manifest is left
- * unchanged, unless only models are the cause: then the manifest lists the good assets and the reasons for the missing ones. Call
+ * list. Returns false if something failed or the run was interrupted; good assets have been written. After a failure the manifest stays
+ * unchanged, except if only models caused it: then the manifest lists the good assets, and the reason for each missing asset. Call
  * prepare_finish() in both cases. */
 bool prepare_run(struct prepare *prepare, struct log *log, struct workers *workers, const struct plant *plant,
                  const struct prepare_params *params, struct diag *diag);

@@ -14,8 +14,8 @@ struct progress { /* zero-initialise; out NULL: prints nothing */
     FILE *out;
     bool terminal;
     int64_t began_ns, said_ns;
-    size_t total, there, done; /* numbers of assets: all; those that need no work; those of the rest that are finished */
-    size_t known;              /* assets of the rest whose amount of work is known */
+    size_t total, there, done; /* counts of assets: all; those that need no work; finished ones among those that need work */
+    size_t known;              /* count of assets that need work and whose amount of work is known */
     double work_known, work_done;
 };
 
@@ -28,7 +28,7 @@ void progress_step(struct progress *progress, double work, int64_t now_ns);
 /* Clears the progress line on a terminal. */
 void progress_end(struct progress *progress);
 
-/* Returns the estimated remaining seconds at the rate so far, or a negative number if nothing is finished yet. */
+/* Returns the estimated remaining seconds at the average rate so far, or a negative number if nothing is finished yet. */
 double progress_left_s(const struct progress *progress, int64_t now_ns);
 
 #endif

@@ -19,11 +19,11 @@ struct sensor_distances {
  * cases. */
 bool sensor_distances_find(struct sensor_distances *measured, struct log *log, struct workers *workers, const struct build_input *input,
                            const struct geometry *geometry, struct build_output *output, char why[MODEL_WHY_BYTES]);
-/* Returns whether any sensor has a known position. A sensor with an assumed position applies evenly to the whole asset: if all are assumed,
- * distances are meaningless and no surface is needed. */
+/* Returns whether any sensor has a known position. A sensor with an assumed position colours the whole asset evenly: if all positions are
+ * assumed, distances are meaningless and no surface is needed. */
 bool sensor_distances_matter(const struct plant *plant, const struct plant_sensor *sensors, size_t count);
-/* Replaces sensor_distances_find() if sensor_distances_matter() is false: projects the sensors onto the nearest triangle of the geometry,
- * even if other parts hide it. */
+/* Call instead of sensor_distances_find() if sensor_distances_matter() is false: projects the sensors onto the nearest triangle of the
+ * geometry, even if other parts hide it. */
 void sensor_distances_assume(struct sensor_distances *measured, struct workers *workers, const struct build_input *input,
                              const struct geometry *geometry);
 /* Makes distances for sensors with assumed positions: 0 at every vertex. The caller frees them. */

@@ -25,7 +25,7 @@ static void to_plant(const struct asset_view *view, const double placement[16], 
     transform_point(placement, p, out);
 }
 
-/* Returns whether a vertex is from the model and not added by preparing. */
+/* Returns whether a vertex is from the model, and was not added by preparation. */
 static bool is_own(const struct asset_view *view, uint32_t vertex)
 {
     uint32_t level = 0;
@@ -45,8 +45,7 @@ bool distances_print(const struct prepare *prepare, const char *folder, int asse
                    prepare->plant->tags[tag].name, asset->plant->id);
         return false;
     }
-    if (prepare->plant->tags[tag].place_assumed &&
-        !sensor_distances_matter(prepare->plant, asset->sensors, asset->sensor_count)) {
+    if (prepare->plant->tags[tag].place_assumed && !sensor_distances_matter(prepare->plant, asset->sensors, asset->sensor_count)) {
         diag_error(diag, prepare->plant->tags_path, prepare->plant->tags[tag].line, 0,
                    "tag %s: its place on asset %s is assumed: it stands for all of it, and no distance from it was found",
                    prepare->plant->tags[tag].name, asset->plant->id);

@@ -9,7 +9,7 @@
 #include "plant/models/asset_size.h"
 #include "preprocess/report/text_table.h"
 
-#define ROWS_MAX 40 /* maximum rows per table, unless all are requested */
+#define ROWS_MAX 40 /* maximum rows per table, unless all rows are requested */
 #define CONCERNS_MAX 20
 
 struct order { /* display order of assets: those with problems first, then the slowest */
@@ -115,8 +115,8 @@ static void print_surfaces(const struct text_report *report)
 static void print_clouds(const struct text_report *report)
 {
     static const struct text_table_column columns[] = {
-        { "", false }, { "asset", false }, { "points", true }, { "k", true }, { "every mm", true }, { "differ %", true },
-        { "at most %", true }, { "reached alone", true }, { "not reached", true }, { "ours differ %", true },
+        { "", false },        { "asset", false },    { "points", true },        { "k", true },           { "every mm", true },
+        { "differ %", true }, { "at most %", true }, { "reached alone", true }, { "not reached", true }, { "ours differ %", true },
     };
     struct text_table table = { .columns = columns, .column_count = sizeof(columns) / sizeof(columns[0]) };
     bool any = false;
@@ -327,7 +327,7 @@ void report_text(const struct prepare *prepare, bool all, FILE *out)
         print_assets(&report);
         print_surfaces(&report);
         print_clouds(&report);
-    print_levels(&report);
+        print_levels(&report);
         print_times(&report);
         print_sensors(&report);
         fprintf(out, "\n");

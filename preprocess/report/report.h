@@ -9,7 +9,7 @@
 struct report_concern {
     const struct prepare_asset *asset;
     char *text;
-    double weight; /* the most serious has the highest weight */
+    double weight; /* severity for sorting: the most serious problem has the highest weight */
 };
 /* Lists possible problems, most serious first; *count receives their number. The caller frees the list with report_concerns_free(). */
 struct report_concern *report_concerns(const struct prepare *prepare, size_t *count);
@@ -22,7 +22,7 @@ void report_text(const struct prepare *prepare, bool all, FILE *out);
 bool report_json(const struct prepare *prepare, FILE *out);
 
 extern const char *const report_states[]; /* name of each enum prepare_state */
-/* Returns the number of vertices that preparing added to the model's own. */
+/* Returns the number of vertices that preparation added to the model's vertices. */
 uint32_t report_added(const struct prepare_asset *asset);
 
 #endif

@@ -8,11 +8,14 @@
 #include "preprocess/subdivision/subdivide.h"
 #include "preprocess/report/text_table.h"
 
-/* root mean square difference relative to the largest distance; smaller ones are due to the heat method's own smoothing */
+/* minimum root mean square difference between two methods' distances that is reported, relative to the largest distance; smaller
+ * differences are due to the heat method's smoothing */
 #define METHODS_DIFFER 0.05
-#define FIELD_SLACK 1.05      /* factor on the target error of subdivision, for single-precision rounding */
-#define BENT_SHARE 1e-3       /* share of an asset's surface; if less of it is affected, nothing is reported */
-#define HIGH_POWER 5          /* power from which on the error of a distance alone can exceed two colour steps */
+/* factor on the target error of subdivision, above which a field error is reported; allows for single-precision rounding */
+#define FIELD_SLACK 1.05
+#define BENT_SHARE 1e-3 /* minimum share of an asset's surface with a bend or unknown error that is reported */
+/* minimum power p that is reported: from there on, the error of distances alone can exceed two colour steps */
+#define HIGH_POWER 5
 #define DISTANCE_ERROR 0.0031 /* relative error of a distance along the surface: the worst of accuracy_test's whole shapes */
 
 const char *const report_states[] = { "left", "failed", "unchanged", "shared", "built" };
@@ -68,7 +71,7 @@ static void add_numbers(struct concerns *concerns, const struct prepare_asset *a
                        (double)left->steps, text_table_number(left->edges).text));
 }
 
-/* Reports the bend of solved fields, which are drawn on triangles made for another purpose. */
+/* Reports the bend (interpolation error inside triangles) of harmonic, fin and gp fields: the triangles are subdivided for other fields. */
 static void add_bend(struct concerns *concerns, const struct prepare_asset *asset)
 {
     const struct bend_report *bend = &asset->report.bend;
@@ -78,12 +81,13 @@ static void add_bend(struct concerns *concerns, const struct prepare_asset *asse
                        "surface, by up to %.1f steps",
                        100 * bend->over_share, bend->steps));
     if (bend->unmeasured > 0 || bend->unknown_share > BENT_SHARE)
-        add(concerns, asset, 1, mem_printf("by how much harmonic, fin or gp may err between corners is not known on %.3g %% of its surface",
-                                           bend->unmeasured > 0 ? 100 : 100 * bend->unknown_share));
+        add(concerns, asset, 1,
+            mem_printf("by how much harmonic, fin or gp may err between corners is not known on %.3g %% of its surface",
+                       bend->unmeasured > 0 ? 100 : 100 * bend->unknown_share));
 }
 
 /* Reports high powers. A weight is a power p of a distance, so the ratio of two sensors' weights has a relative error of up to p/2 times
- * that of a distance. */
+ * the relative error of a distance. */
 static void add_powers(struct concerns *concerns, const struct prepare *prepare, const struct prepare_asset *asset)
 {
     for (size_t g = 0; g < prepare->plant->group_count; g++) {
@@ -102,7 +106,7 @@ static void add_powers(struct concerns *concerns, const struct prepare *prepare,
     }
 }
 
-/* Reports doubtful sizes, also of assets not built in this run, because wrong units stay wrong. */
+/* Reports doubtful sizes, also of assets not built in this run, because a wrong unit is an error until somebody corrects it. */
 static void add_sizes(struct concerns *concerns, const struct prepare *prepare)
 {
     double *longest_m = mem_array(prepare->asset_count, sizeof(*longest_m));
@@ -114,7 +118,7 @@ static void add_sizes(struct concerns *concerns, const struct prepare *prepare)
     for (size_t i = 0; i < prepare->asset_count; i++) {
         const struct prepare_asset *asset = &prepare->assets[i];
         char why[SIZE_WHY_BYTES];
-        bool stray = asset->reported && asset->report.stray[0]; /* the stray pieces are reported already, and explain the size */
+        bool stray = asset->reported && asset->report.stray[0]; /* stray pieces explain the size and are reported already */
         if (!stray && asset_longest_m(asset->size_m) > 0 && asset_size_doubtful(asset->plant, asset->size_m, median_m, why))
             add(concerns, asset, 1e6, mem_strdup(why));
     }
