@@ -56,7 +56,7 @@ static int count_steps(struct light *light, const struct light_key *key)
     return steps;
 }
 
-/* Tested with sky light that is already baked and with sky light that is not. */
+/* Baking in steps equals baking at once: with the sky light for the first sun, and without it for the second. */
 TEST(test_bits_make_the_same_light)
 {
     struct gpu_scene gpu_scene;

@@ -165,7 +165,7 @@ static int alarms_of(struct alarm_service_setup *s, struct history_reader *reade
     return count;
 }
 
-/* When nothing was recorded, no duration is known for an alarm that was active when recording ended. */
+/* An alarm was active when recording ended: how long it lasted after that is unknown. */
 CASE(while_nothing_was_recorded_no_alarm_is_known)
 {
     int error;

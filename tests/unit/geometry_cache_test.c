@@ -426,7 +426,7 @@ CASE(what_nothing_needs_any_more_is_removed)
 #define MANY 65
 #define STEP (1 / 255.0)
 
-/* Returns `MANY` tags of one group around the ring; the tag with number `first` moves each time. */
+/* Returns a list of MANY tags of one group around the ring; `first` chooses the position of tag s0, and the others stay. */
 static char *many_tags(int first)
 {
     struct text rows = { 0 };

@@ -33,7 +33,7 @@ static void stretch(struct cad *cad, size_t from, double x, double y, double z, 
             cad->positions[v][axis] = (float)((double)cad->positions[v][axis] * by[axis] + low[axis]);
 }
 
-/* Makes the pair. low: the rod's lowest corner. The source is in the middle of the sheet's side that faces away from the rod. */
+/* Makes the pair. low: the rod's lowest corner. The source is in the middle of the rod's side that faces away from the sheet. */
 static void make_pair(struct sheet_and_rod *pair, double thick, double rod, const double low[3], const double source[3])
 {
     *pair = (struct sheet_and_rod){ .thick = thick, .rod = rod };

@@ -119,7 +119,7 @@ CASE(the_plant_file_has_its_own)
     assert_int_equal(save(f, "mine", "Mine", -1), REFUSAL_NONE);
     f->plant.view_count = 0;
     assert_int_equal(save(f, "all", "Mine", -1), REFUSAL_NONE);
-    f->plant.view_count = 1; /* the plant file has the view again: its version counts */
+    f->plant.view_count = 1; /* the plant file has the view again, and its version replaces the saved one */
     assert_order(f, "all mine");
 }
 

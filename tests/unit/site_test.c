@@ -76,7 +76,8 @@ CASE(honest_paths_are_served)
     expect(f, "/core/wire.js", "export {};", "text/javascript; charset=utf-8");
 }
 
-/* Lines keep their numbers; what only looks like a comment, texts of template literals, and what is not the page's own, stays. */
+/* Comments and indentation are stripped while lines keep their numbers. Template literals, text that only looks like a comment, and
+   vendored scripts stay unchanged. */
 CASE(scripts_come_without_comments_and_indentation)
 {
     static const char source[] = "// licence\n// what it is\nconst a = 1; // why\n    // a `tick\n\n    const b = 'x//y';\n"
