@@ -133,7 +133,7 @@ static double solid_angle(const double corners[3][3])
                                                       vec_dot(corners[2], corners[0]) * length[1]);
 }
 
-/* Returns whether the eye is inside the asset, by its winding number. Surfaces inside closed bodies were removed, so such cameras are avoided. */
+/* Returns whether the eye is inside the asset, by its winding number. Such cameras are avoided: surfaces inside bodies were removed. */
 static bool is_inside(const struct scene_asset *asset, const double eye_m[3])
 {
     const struct asset_view *file = &asset->file->view;

@@ -1181,7 +1181,7 @@ TEST(test_a_level_is_a_prefix)
     for (int paper = 0; paper < 2; paper++) {
         rig.params.interpolation = paper ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
         for (int round = 0; round < 200; round++) {
-            for (size_t i = 0; round % 3 == 0 && i < 20; i++) /* all: summed anew */
+            for (size_t i = 0; round % 3 == 0 && i < 20; i++) /* all sensors: sums are recomputed */
                 set(&rig, i, between(&random, 0, 100), synthetic_random(&random) % 9 ? QUALITY_GOOD : QUALITY_BAD_SENSOR_FAILURE);
             assert_first_as_fresh(&rig, counts[(size_t)round % 8]);
         }
@@ -1380,7 +1380,7 @@ TEST(test_difference_needs_both)
     struct baselines *baselines = baselines_create();
     rig.params.show = SHOW_DIFFERENCE;
     rig.params.baseline = 1;
-    assert_int_equal(show(&rig)->at[2].no_data, 255); /* nobody knows of baselines */
+    assert_int_equal(show(&rig)->at[2].no_data, 255); /* the field has no baselines */
     field_set_baselines(rig.field, baselines);
     set(&rig, 1, 50, QUALITY_BAD_SENSOR_FAILURE);
     set(&rig, 2, 50, QUALITY_UNCERTAIN_LAST_USABLE);

@@ -336,7 +336,7 @@ TEST(queries_make_views)
     static const char *const seen[] = { "fit=E-101",     "side=top",           "projection=orthographic",
                                         "hidden=P-101A", "ghost=E-101,P-101A", "clip=1,0,0,2;0,3,0,1.5" };
     assert_true(query(seen, sizeof(seen) / sizeof(seen[0]), &view, &error));
-    assert_true(view.camera.height_m > 2 && view.camera.target_m[0] > 0.2 && view.camera.eye_m[2] > 2.5); /* beside the legend */
+    assert_true(view.camera.height_m > 2 && view.camera.target_m[0] > 0.2 && view.camera.eye_m[2] > 2.5); /* next to the legend */
     assert_int_equal(visibility_of(&view.visibility, 0), ASSET_GHOST);
     assert_int_equal(visibility_of(&view.visibility, 1), ASSET_HIDDEN);
     assert_true(view.visibility.clip.plane_count == 2 && view.visibility.clip.planes[1][3] == 0.5 && !view.visibility.clip.is_box);

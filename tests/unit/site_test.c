@@ -76,7 +76,7 @@ CASE(honest_paths_are_served)
     expect(f, "/core/wire.js", "export {};", "text/javascript; charset=utf-8");
 }
 
-/* Comments and indentation are stripped while lines keep their numbers. Template literals, text that only looks like a comment, and
+/* Whole-line comments and indentation are stripped; lines keep their numbers. Template literals, text that only looks like a comment, and
    vendored scripts stay unchanged. */
 CASE(scripts_come_without_comments_and_indentation)
 {
