@@ -5,6 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/text/utf8.h"
+
 #define REFUSAL_ROW(name, code, text) { code, text },
 static const struct {
     const char *code, *text;
@@ -16,6 +18,7 @@ void refusal_set(struct refusal *refusal, enum refusal_code code, const char *ar
     va_start(ap, args);
     refusal->code = code;
     vsnprintf(refusal->args, sizeof(refusal->args), args, ap);
+    utf8_drop_invalid(refusal->args);
     va_end(ap);
 }
 

@@ -126,13 +126,16 @@ static float steps_per_m(const struct field_layout *layout)
 
 static bool take_errors(struct weights *weights, const float *errors)
 {
+    size_t erring[WEIGHTS_ERRING] = { 0 };
     weights->errors = mem_try_array(weights->layout->vertex_count, sizeof(*errors));
     for (size_t v = 0; weights->errors && v < weights->layout->vertex_count; v++) {
         weights->errors[v] = errors[v];
         weights->largest_error = fmaxf(weights->largest_error, errors[v]);
         for (int b = 0; b < WEIGHTS_ERRING; b++)
-            weights->erring[b] += errors[v] >= ldexpf(1, -b) ? 1 / (float)weights->layout->vertex_count : 0;
+            erring[b] += errors[v] >= ldexpf(1, -b);
     }
+    for (int b = 0; b < WEIGHTS_ERRING; b++) /* a sum of floats would stop growing at 2^24 vertices */
+        weights->erring[b] = (float)((double)erring[b] / (double)weights->layout->vertex_count);
     weights->errors_version = 1;
     return weights->errors;
 }

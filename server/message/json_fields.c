@@ -5,12 +5,26 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/text/utf8.h"
+
 const char *quoted(const char *text, char out[48])
 {
-    size_t n = 0;
-    for (; text[n] && n < 40; n++)
-        out[n] = (unsigned char)text[n] < 32 || (unsigned char)text[n] > 126 ? '?' : text[n];
-    strcpy(out + n, text[n] ? "..." : "");
+    enum { MOST_BYTES = 40 };
+    size_t n = 0, at = 0, left = strnlen(text, MOST_BYTES + 4);
+    while (at < left) {
+        const unsigned char *c = (const unsigned char *)text + at;
+        size_t step = utf8_length(text + at, left - at);
+        bool control = c[0] < 32 || c[0] == 127 || (c[0] == 0xC2 && c[1] < 0xA0); /* C0, DEL, C1 */
+        if (n + (step && !control ? step : 1) > MOST_BYTES)
+            break;
+        if (step && !control)
+            memcpy(out + n, text + at, step);
+        else
+            out[n] = '?';
+        n += step && !control ? step : 1;
+        at += step ? step : 1;
+    }
+    strcpy(out + n, text[at] ? "..." : "");
     return out;
 }
 

@@ -22,7 +22,8 @@ bool may_text(const json_t *o, const char *name, char *out, size_t size, bool *g
 bool need_words(const json_t *o, const char *name, bool needed, char *out, size_t size, struct message_error *error);
 /* Returns whether the text has characters that would garble a line of text: control characters, and overrides of the writing direction. */
 bool has_controls(const char *text);
-/* Copies a client's text into `out`, truncated and with control characters replaced, for a log line or an answer. Returns `out`. */
+/* Copies a client's text into `out` for a log line or an answer: at most 40 bytes, control characters and invalid UTF-8 replaced by '?'.
+   Returns `out`. */
 const char *quoted(const char *text, char out[48]);
 
 #endif

@@ -5,6 +5,8 @@
 #include <stdarg.h>
 #include <stdio.h>
 
+#include "base/text/utf8.h"
+
 void message_fail(struct message_error *error, const char *code, const char *fmt, ...)
 {
     va_list ap;
@@ -12,6 +14,7 @@ void message_fail(struct message_error *error, const char *code, const char *fmt
     error->code = code;
     error->refusal = (struct refusal){ .code = REFUSAL_NONE };
     vsnprintf(error->text, sizeof(error->text), fmt, ap);
+    utf8_drop_invalid(error->text);
     va_end(ap);
 }
 
@@ -35,6 +38,7 @@ void message_refuse_with(struct message_error *error, const char *code, const ch
     va_start(ap, args);
     error->refusal.code = refusal;
     vsnprintf(error->refusal.args, sizeof(error->refusal.args), args, ap);
+    utf8_drop_invalid(error->refusal.args);
     va_end(ap);
     set_text(error, code, field);
 }
@@ -44,4 +48,5 @@ void message_error_within(struct message_error *error, const char *field)
     char text[REFUSAL_TEXT_BYTES];
     snprintf(text, sizeof(text), "%s", error->text);
     snprintf(error->text, sizeof(error->text), "%s: %.*s", field, (int)(sizeof(text) - sizeof(error->about) - 3), text);
+    utf8_drop_invalid(error->text);
 }

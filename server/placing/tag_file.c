@@ -46,7 +46,7 @@ static void cannot_write(struct refusal *why, const char *file, int error)
 {
     if (error == ENOSPC || error == EDQUOT)
         refusal_set(why, REFUSAL_DISK_FULL, "file=%s", file);
-    else if (error == EACCES || error == EPERM || error == EROFS)
+    else if (error == EACCES || error == EPERM)
         refusal_set(why, REFUSAL_FOLDER_LOCKED, "file=%s", file);
     else
         refusal_set(why, REFUSAL_UNWRITTEN, "file=%s\nerror=%s", file, strerror(error));

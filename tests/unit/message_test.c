@@ -10,6 +10,7 @@
 #include "base/mem.h"
 #include "base/text/text.h"
 #include "field/colormap.h"
+#include "message/json_fields.h"
 #include "message/view_query.h"
 #include "message/view_query_write.h"
 #include "session/reply/reply.h"
@@ -589,6 +590,27 @@ TEST(a_refused_number_is_told_why)
         assert_string_equal(error.text, said[i][1]);
         mem_free(text);
     }
+}
+
+/* Names in Korean and German stay readable: control characters and invalid bytes become '?', and no character is cut. */
+TEST(names_are_quoted_in_their_own_letters)
+{
+    static const char name[] = "온도 측정기 A-101 입구 온도 측정기";
+    static const char *const quotes[][2] = {
+        { "Kühlwasser", "Kühlwasser" },
+        { "a\nb\x7f\xc2\x85 \xff\xeb\x8f", "a?b?? ???" },
+        { name, "온도 측정기 A-101 입구 온도 측..." },
+        { "0123456789012345678901234567890123456789", "0123456789012345678901234567890123456789" },
+        { "012345678901234567890123456789012345678é", "012345678901234567890123456789012345678..." },
+    };
+    char out[48];
+    struct message_error error = { 0 };
+    for (size_t i = 0; i < sizeof(quotes) / sizeof(quotes[0]); i++)
+        assert_string_equal(quoted(quotes[i][0], out), quotes[i][1]);
+    message_fail(&error, "bad_field", "'%.11s'", name);
+    assert_string_equal(error.text, "'온도 측'");
+    message_refuse_with(&error, "unknown_tag", "tag", REFUSAL_NO_TAG, "name=%.11s", name);
+    assert_string_equal(error.refusal.args, "name=온도 측");
 }
 
 TEST(no_number_is_minus_nought)

@@ -22,7 +22,7 @@ otherwise: sein Zustand hat sich inzwischen geändert
 shelf: ein Alarm kann höchstens eine Woche zurückgestellt werden
 tolerance: der Wert liegt außerhalb der Toleranz
 reading: der Messwert ist nicht gut
-failed: als nicht bestanden markiert
+failed: von Ihnen als durchgefallen gemeldet
 disk: nicht gespeichert: der Server kann nicht auf seinen Datenträger schreiben
 disk_full: nicht gespeichert: der Datenträger des Servers ist voll
 disk_locked: nicht gespeichert: der Datenträger des Servers ist schreibgeschützt
@@ -33,15 +33,15 @@ fixed: diese Ansicht stammt aus der Anlagendatei: dort ändern
 viewless: diese Ansicht wurde von jemand anderem entfernt
 digits: kein Bildschirm zeigt diesen Code
 guesses: zu viele falsche Codes; in einer Minute erneut versuchen
-deviceless: dieser Bildschirm wurde von jemand anderem entkoppelt
+deviceless: unter diesem Namen ist kein Bildschirm mehr gekoppelt
 devices: die Höchstzahl an Bildschirmen ist erreicht
 views: die Höchstzahl an Ansichten ist erreicht: erst eine entfernen
 notes: die Höchstzahl an Notizen ist erreicht: erst eine entfernen
 note_ended: das Ende der Notiz ist schon vorbei
-noteless: diese Notiz wurde von jemand anderem entfernt
+noteless: diese Notiz wurde von jemand anderem entfernt oder ist abgelaufen
 computed: {tag} wird aus anderen Messstellen berechnet: diese prüfen
 far: {tag}: dieser Ort ist zu weit von {asset} entfernt
-groupless: {tag} gehört zu keiner Gruppe: in der Messstellenliste angeben
+groupless: {tag} gehört zu keiner Gruppe; nennen Sie eine in der Messstellenliste
 twice: {tag} wird zweimal verschoben
 busy: eine andere Liste wird gerade angewendet
 unmoved: es wurde kein Sensor verschoben

@@ -21,7 +21,7 @@ otherwise: its state has changed meanwhile
 shelf: an alarm can be shelved for at most a week
 tolerance: the value is beyond the tolerance
 reading: the reading is not good
-failed: marked as failed
+failed: you reported it as failed
 disk: not saved: the server cannot write to its disk
 disk_full: not saved: the server’s disk is full
 disk_locked: not saved: the server’s disk is read-only
@@ -32,15 +32,15 @@ fixed: this view comes from the plant file: change it there
 viewless: this view was removed by someone else
 digits: no display shows this code
 guesses: too many wrong codes; try again in a minute
-deviceless: this display was revoked by someone else
+deviceless: no display of this name is paired any more
 devices: the limit of displays is reached
 views: the limit of views is reached: remove one first
 notes: the limit of notes is reached: remove one first
 note_ended: the end of the note is already past
-noteless: this note was removed by someone else
+noteless: this note was removed by someone else, or has expired
 computed: {tag} is computed from other tags: loop-check those
 far: {tag}: this location is too far from {asset}
-groupless: {tag} belongs to no group: name one in the tag list
+groupless: {tag} belongs to no group; name one in the tag list
 twice: {tag} is moved twice
 busy: another list is being applied
 unmoved: no sensor has been moved

@@ -2,6 +2,8 @@
 /* Decodes UTF-8: the first byte tells how many bytes follow and which values the second may have. */
 #include "base/text/utf8.h"
 
+#include <string.h>
+
 size_t utf8_length(const char *text, size_t left)
 {
     const unsigned char *p = (const unsigned char *)text;
@@ -31,4 +33,15 @@ size_t utf8_length(const char *text, size_t left)
         if (p[i] < 0x80 || p[i] > 0xBF)
             return 0;
     return count;
+}
+
+void utf8_drop_invalid(char *text)
+{
+    size_t kept = 0;
+    for (size_t at = 0, count = strlen(text), step; at < count; at += step ? step : 1) {
+        step = utf8_length(text + at, count - at);
+        memmove(text + kept, text + at, step);
+        kept += step;
+    }
+    text[kept] = 0;
 }
