@@ -71,7 +71,7 @@ static void on_signal(int signal)
 static void give_up(int signal)
 {
     static const char words[] =
-        "\nplantcast-prep: interrupted; what was begun is given up, what is finished is kept: the next run goes on from there\n";
+        "\nplantcast-prep: interrupted; unfinished assets were discarded, finished ones are kept; run it again to continue\n";
     (void)signal;
     if (write(STDERR_FILENO, words, sizeof(words) - 1) < 0)
         _exit(1);

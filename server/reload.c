@@ -250,7 +250,7 @@ static bool reload_now(struct reload *reload)
     struct plant_runtime *before = *reload->runtime, *after = plant_runtime_read(reload->context, &diag);
     const char *why = after ? plant_needs_restart(before->plant, after->plant) : diag.errors ? NULL : "the log says why";
     if (after && !why && !start_render_service(reload, after))
-        why = "nothing draws it beside the one in force; the log says why";
+        why = "drawing the new plant failed; the log says why";
     bool good = after && !why;
     if (good) {
         plant_diff(before->plant, after->plant, &diff);

@@ -54,7 +54,7 @@ static bool add_png(struct film *film, const struct text *body)
 {
     png_image image = { .version = PNG_IMAGE_VERSION };
     if (!png_image_begin_read_from_memory(&image, body->at, body->length)) {
-        fprintf(stderr, "plantcast: %s: what the daemon sent is no PNG: %s\n", film->options->from, image.message);
+        fprintf(stderr, "plantcast: %s: the server's answer is not a PNG file: %s\n", film->options->from, image.message);
         return false;
     }
     image.format = PNG_FORMAT_BGRA;

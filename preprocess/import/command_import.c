@@ -155,7 +155,7 @@ static int convert_all(struct import_command *import)
         return fail_at(import->folder, "interrupted");
     if (import->unread > 0 && (import->count == 0 || (import->anew && find_plant(import) == WHOLE_PLANT))) {
         if (import->count > 0)
-            fail_at(import->folder, "nothing was imported: --anew needs all models");
+            fail_at(import->folder, "nothing was imported: --anew needs every model; name them all");
         return 1;
     }
     if (import->unread > 0)
@@ -200,7 +200,7 @@ static int bring_in(const struct import_command *import)
     if (found == WHOLE_PLANT && !import->anew)
         return revise(&params);
     if (import->dry_run)
-        return fail_at(import->folder, "there is no plant yet that this could change");
+        return fail_at(import->folder, "there is no plant here yet to compare with; leave out --dry-run");
     if (import->anew || found == BEGUN_PLANT)
         return import_anew(&params, &draft);
     int status = move_all(import);

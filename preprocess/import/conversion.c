@@ -443,7 +443,7 @@ bool conversion_run(const char *path, const char *glb, const char *folder, const
     if (stat(path, &st) != 0)
         return fail(why, "%s", strerror(errno));
     if (!S_ISREG(st.st_mode))
-        return fail(why, "it is no file");
+        return fail(why, "it is not a regular file");
     if (!format)
         return fail(why, "its ending is none that import reads (plantcast import --formats); `convert` in the plant file (PLANT.md) runs a "
                          "program of yours");

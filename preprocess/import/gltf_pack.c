@@ -59,7 +59,7 @@ static bool take_buffers(struct pack *pack)
         if (!uri && standins[i])
             continue; /* leave out an empty fallback buffer (EXT_meshopt_compression): compressed buffers hold its data */
         if (!uri && (i > 0 || !pack->binary.at)) {
-            good = wrong(pack->why, "buffer %zu has no bytes of its own: pack the model into a GLB file by the program that made it", i);
+            good = wrong(pack->why, "buffer %zu has no data: export the model as a GLB file from the program that made it", i);
             break;
         }
         unsigned char *own = uri ? model_uri_read(pack->source->folder, uri, &size, uri_why) : NULL;

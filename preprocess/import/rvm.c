@@ -63,7 +63,7 @@ static bool fail(struct rvm_reader *r, const char *fmt, ...)
 
 static bool need(struct rvm_reader *r, size_t bytes)
 {
-    return bytes <= r->chunk_end - r->at ? true : fail(r, "the chunk ends in the middle of what it should hold");
+    return bytes <= r->chunk_end - r->at ? true : fail(r, "the chunk is shorter than its content");
 }
 
 static uint32_t peek_word(const uint8_t *at)
@@ -198,7 +198,7 @@ static bool read_primitive(struct rvm_reader *r)
     double box;
     struct primitive primitive = { .byte = r->at - HEADER };
     if (r->depth == 0)
-        return fail(r, "a primitive stands outside of every group");
+        return fail(r, "a primitive is outside every group");
     if (!read_word(r, &version) || !read_word(r, &kind))
         return false;
     for (int i = 0; i < 12; i++)

@@ -55,7 +55,7 @@ static int beside(char path[PATH_MAX], const char *name)
     path[length > 0 ? length : 0] = 0;
     char *slash = strrchr(path, '/');
     if (!slash)
-        return fail_at(name, "is not beside this program");
+        return fail_at(name, "is not in the folder of this program");
     strcpy(slash + 1, name);
     return 0;
 }

@@ -166,7 +166,7 @@ bool method_number(const struct matcher *matcher, const struct match_subject *su
     bool other_area = rate_prefix(matcher, subject, list->assets[0]) == 0;
     out->confidence = other_area || !same_width ? 0.6 : cut ? 0.9 : 0.93;
     snprintf(out->reason, sizeof(out->reason), "loop %.30s: equipment number %.30s%s", number->text, text,
-             other_area   ? ", but what stands before it is not of that equipment"
+             other_area   ? ", but the part before it is not that of the equipment"
              : same_width ? ""
                           : ", written with another number of zeros");
     return true;

@@ -459,7 +459,7 @@ static void print_result(const struct matching_run *run, FILE *out)
         fprintf(out, "%zu tags of before are no longer in the list; what was decided about them stays: %s%s\n", run->left,
                 run->left_names.at, run->left > LEFT_NAMED ? ", ..." : "");
     if (!run->source.id)
-        fprintf(out, "there is no source yet, so the tag list has no addresses: --modbus HOST makes one\n");
+        fprintf(out, "the tag list has no addresses, since the plant has no source: add one with --modbus HOST\n");
     for (size_t i = 0; i < run->quantities.count; i++)
         if (run->quantities.at[i].is_new)
             fprintf(out, "group %s: %zu tag%s\n", run->quantities.at[i].id, run->quantities.at[i].tags,

@@ -132,7 +132,8 @@ void read_textures(gltf_work *w, const tinygltf::Material &from, asset_material 
         if (uses[i].texture < 0)
             continue;
         if (lays.of[i] == 2)
-            why = "(TEXCOORD_" + std::to_string(transform_of(w->parsed, uses[i]).set) + ") lies on the surface in a third way of its own";
+            why =
+                "(TEXCOORD_" + std::to_string(transform_of(w->parsed, uses[i]).set) + ") needs a third texture mapping; two are supported";
         else
             *places[i] = texture_of(w, uses[i].texture, i == BASE_COLOR || i == EMISSIVE, &why);
         if (!why.empty())

@@ -511,7 +511,8 @@ static bool begin(struct build *build)
         return false;
     if (input->cache &&
         !geometry_cache_unpack(input->cache, build->log, build->workers, &build->geometry, &build->levels, &build->measured.surface))
-        return wrong(build->why, "%016" PRIx64 ".surface is no good, or out of memory: delete it", input->geometry_key);
+        return wrong(build->why, "%016" PRIx64 ".surface is damaged, or memory ran out: delete the file and run again",
+                     input->geometry_key);
     *report = (struct build_report){ .nodes = g->node_count,
                                      .triangles = g->index_count / 3,
                                      .vertices = g->vertex_count,

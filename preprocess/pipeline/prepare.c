@@ -484,7 +484,7 @@ static void warn(struct prepare_run *run, const struct prepare_asset *asset)
 {
     const struct plant *plant = run->prepare->plant;
     if (asset->rebuilt_because)
-        diag_warning(run->diag, plant->path, asset->plant->line, 0, "asset %s: the file that was there was no good (%s) and is made anew",
+        diag_warning(run->diag, plant->path, asset->plant->line, 0, "asset %s: the prepared file was not usable (%s) and is rebuilt",
                      asset->plant->id, asset->rebuilt_because);
     for (size_t s = 0; asset->surface_distances_m && s < asset->sensor_count; s++) {
         const struct plant_tag *tag = &plant->tags[asset->sensors[s].tag];

@@ -310,7 +310,7 @@ static void print_summary(const struct text_report *report)
             prepare->plant->name, wanted, NUMBER(triangles), sensors, counts[PREPARE_BUILT], counts[PREPARE_UNCHANGED],
             counts[PREPARE_SHARED], counts[PREPARE_FAILED]);
     if (prepare->interrupted)
-        fprintf(report->out, "; interrupted: %zu are left, the next run goes on from here", counts[PREPARE_LEFT]);
+        fprintf(report->out, "; interrupted: %zu are left, run it again to continue", counts[PREPARE_LEFT]);
     if (prepare->removed)
         fprintf(report->out, "; %zu old files removed", prepare->removed);
     fprintf(report->out, "; %.1f s\n", prepare->seconds);

@@ -61,7 +61,7 @@ static void add_numbers(struct concerns *concerns, const struct prepare_asset *a
     }
     if (r->surface.heat_disagreement > METHODS_DIFFER)
         add(concerns, asset, 10 * (1 + r->surface.heat_disagreement),
-            mem_printf("two ways to find its distances differ by %.1f %%: it may not hang together as it looks",
+            mem_printf("two methods of measuring its distances differ by %.1f %%: its surface may be torn or joined in wrong places",
                        100 * r->surface.heat_disagreement));
     const struct level_left *left = &r->levels[0].left[LEVEL_LIMIT_TRIANGLES];
     if (r->level_count && (double)left->steps > FIELD_SLACK)

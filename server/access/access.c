@@ -18,13 +18,13 @@ bool access_allowed_at(const struct access_params *params, bool loopback, const 
 {
     bool tls = params->tls_cert_path && params->tls_key_path;
     if (params->behind_proxy && !params->tokens_path && !params->open_viewers)
-        *why = "--behind-proxy: who comes through the proxy needs a token (--tokens FILE), or --open-viewers";
+        *why = "--behind-proxy needs --tokens FILE, or --open-viewers to serve pictures without a token";
     else if (params->openid_path && !params->tokens_path)
-        *why = "--openid needs --tokens FILE: a token lets you in while the identity provider does not answer";
+        *why = "--openid needs --tokens FILE: tokens still work while the identity provider does not answer";
     else if (params->lock_min && !params->tokens_path)
-        *why = "--lock-after needs --tokens FILE: whom it locks out has to say who it is";
+        *why = "--lock-after needs --tokens FILE: locked users sign in again with a token";
     else if (params->behind_proxy && params->host_count == 0)
-        *why = "--behind-proxy: --host NAME says by which name the proxy is asked for";
+        *why = "--behind-proxy needs --host NAME: the host name in the proxy's address";
     else if (params->behind_proxy && params->trust_local)
         *why = "--trust-local: with --behind-proxy everyone would look like somebody on this machine";
     else if ((params->tls_cert_path != NULL) != (params->tls_key_path != NULL))

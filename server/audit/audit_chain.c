@@ -80,7 +80,7 @@ bool audit_chain_check(struct audit_chain *chain, const char *line, size_t count
     const size_t tail = strlen(HASH_KEY) + AUDIT_HASH_CHARS + strlen(END);
     char hash[AUDIT_HASH_CHARS + 1];
     if (count < tail || count >= AUDIT_LINE_BYTES || memcmp(line + count - tail, HASH_KEY, strlen(HASH_KEY)) != 0) {
-        *why = "it is no line of an audit trail";
+        *why = "it is not a line of an audit trail";
         return false;
     }
     const char *said = line + count - strlen(END) - AUDIT_HASH_CHARS;

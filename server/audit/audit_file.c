@@ -114,7 +114,7 @@ static int look_at_path(struct audit_file *file, char **finding)
     struct stat ours, there;
     bool open = file->fd >= 0 && fstat(file->fd, &ours) == 0, found = stat(file->path, &there) == 0;
     if (open && (size_t)ours.st_size != file->bytes) {
-        *finding = mem_printf("%s: has %lld bytes, and %zu were written: somebody else changed it", file->path, (long long)ours.st_size,
+        *finding = mem_printf("%s: has %lld bytes, and %zu were written: another program changed it", file->path, (long long)ours.st_size,
                               file->bytes);
         file->bytes = (size_t)ours.st_size;
     }

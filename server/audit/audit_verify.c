@@ -55,7 +55,7 @@ static void verify_file(struct audit_walk *walk, const char *path)
         if (report->lines++ == 0)
             report->first_seq = report->end.seq;
         compare(walk, &walk->head, path, "the file .head");
-        compare(walk, walk->known, path, "whoever kept it");
+        compare(walk, walk->known, path, "--known");
     }
     free(line);
     fclose(file);
@@ -110,7 +110,7 @@ void audit_file_verify(const char *path, const struct audit_chain *known, struct
     if (report->good && report->lines == 0 && walk.head.seq == 0)
         set_fault(report, mem_printf("%s: has no lines; a daemon writes one when it starts, so the trail was emptied or is not one", path));
     if (report->good && !has_head)
-        set_fault(report, mem_printf("%s: is not there: nobody can say whether last lines were removed", head_path));
+        set_fault(report, mem_printf("%s: is missing: removed last lines cannot be detected", head_path));
     if (report->good && walk.head.seq > report->end.seq)
         set_fault(report, mem_printf("%s: ends at line %" PRIu64 "; the last %" PRIu64 " lines were removed (%s)", path, report->end.seq,
                                      walk.head.seq - report->end.seq, head_path));

@@ -290,17 +290,17 @@ static void on_text(struct core_link *link)
     json_t *message = json_loadb(link->in.at, link->in.length, JSON_REJECT_DUPLICATES, NULL);
     const char *type = json_string_value(json_object_get(message, "type")), *why = NULL;
     if (!type)
-        refuse(link, "what it says is no JSON");
+        refuse(link, "its message is not JSON");
     else if (!strcmp(type, "refused"))
         on_refused(link, message);
     else if (!strcmp(type, "standby"))
-        end(link, "it stands by: another core leads, or none yet");
+        end(link, "this core stands by: another core leads, or none yet");
     else if (!strcmp(type, "core"))
         on_core(link, message);
     else if (!strcmp(type, "lease") && (link->taken || link->votes))
         on_lease(link, message);
     else if (!link->taken)
-        refuse(link, "it does not say who it is");
+        refuse(link, "it did not introduce itself first");
     else if (!strcmp(type, "told"))
         on_told(link, message);
     else if (!strcmp(type, "links"))
@@ -361,7 +361,7 @@ static void on_bytes(struct core_link *link)
 {
     struct core_readings readings = { .at = link->readings, .least_ns = link->least_ns, .at_ns = link->readings_ns };
     int64_t now_ns = clock_mono_ns();
-    const char *why = !link->taken ? "it does not say who it is"
+    const char *why = !link->taken ? "it did not introduce itself first"
                                    : core_readings_read(&readings, link->params.plant->tag_count, link->in.at, link->in.length, now_ns);
     if (why) {
         refuse(link, why);
@@ -652,9 +652,10 @@ static void answer_waiting(struct core_link *link)
     for (size_t i = 0; i < CORE_ACTS; i++) {
         uint64_t client = take_waiting(link, link->waiting[i].id);
         if (client)
-            arrive(link, client, json_text(json_pack("{s:s,s:s,s:s}", "type", "error", "code", "core_lost", "text",
-                                                     "the core was lost meanwhile: whether it was done is shown once it is back"),
-                                           0));
+            arrive(link, client,
+                   json_text(json_pack("{s:s,s:s,s:s}", "type", "error", "code", "core_lost", "text",
+                                       "the connection to the core was lost: check whether the action was done when it is back"),
+                             0));
     }
 }
 

@@ -308,7 +308,7 @@ static void tell(struct lease_keeper *keeper)
     if (ends && !keeper->told_lost) {
         keeper->told_lost = true;
         log_err(keeper->params.log, "lease: lost (%s); this core ends now, and stops polling",
-                lost ? "another leads, or the row was set by somebody" : "neither PostgreSQL nor a standby has confirmed it");
+                lost ? "another core leads, or the row was edited" : "neither PostgreSQL nor a standby has confirmed it");
         keeper->params.lost(keeper->params.arg);
     }
 }

@@ -55,7 +55,7 @@ char *seat_take(struct seat *seat, const char *folder)
     *seat = (struct seat){ .fd = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0600) };
     if (seat->fd >= 0 && flock(seat->fd, LOCK_EX | LOCK_NB) != 0)
         why = errno == EWOULDBLOCK
-                  ? mem_printf("%s: another core of this machine has its history there: each needs a --history of its own", folder)
+                  ? mem_printf("%s: another core on this machine uses this history: give each core its own --history", folder)
                   : mem_printf("%s: cannot be locked: %s", path, strerror(errno));
     else if (seat->fd < 0 || fstat(seat->fd, &st) != 0 ||
              (!read_id(seat, st.st_ino, machine) && !write_id(seat, st.st_ino, machine)))

@@ -54,7 +54,7 @@ static int cut_outbox(struct month_file *file, int64_t until_us, int64_t *unsent
         return error;
     sqlite3_stmt *cut = month_sql(file, SQL_CUT_OUTBOX);
     sqlite3_bind_int64(cut, 1, until_us);
-    error = month_run(file, cut, "cannot delete what was not sent");
+    error = month_run(file, cut, "cannot delete unsent points");
     *unsent += error ? 0 : sqlite3_changes(file->db.handle);
     return error;
 }

@@ -253,7 +253,7 @@ static int move_rows(struct month_file *file)
     }
     sqlite3_reset(recent);
     mem_free(tags);
-    return error ? error : database_fail(&file->db, code, "cannot read what is recent");
+    return error ? error : database_fail(&file->db, code, "cannot read recent points");
 }
 
 int month_file_tidy(struct month_file *file)
@@ -270,7 +270,7 @@ int month_file_tidy(struct month_file *file)
     if (!error)
         error = move_rows(file);
     if (!error)
-        error = month_run(file, month_sql(file, SQL_CLEAR_RECENT), "cannot clear what was recent");
+        error = month_run(file, month_sql(file, SQL_CLEAR_RECENT), "cannot clear recent points");
     error = end(file, error);
     if (!error)
         file->waiting = 0;
@@ -363,12 +363,12 @@ static int end_lines(struct month_file *file, uint32_t gap_quality, bool sends_g
             *ended_us = point.t_us;
     }
     sqlite3_reset(held);
-    return error ? error : database_fail(&file->db, code, "cannot read what was held");
+    return error ? error : database_fail(&file->db, code, "cannot read held points");
 }
 
 int month_file_clear_held(struct month_file *file)
 {
-    return month_run(file, month_sql(file, SQL_CLEAR_HELD), "cannot clear what was held");
+    return month_run(file, month_sql(file, SQL_CLEAR_HELD), "cannot clear held points");
 }
 
 int month_file_recover(struct month_file *file, uint32_t gap_quality, bool sends_gaps, int64_t *ended_us)

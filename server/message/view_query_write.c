@@ -81,7 +81,7 @@ static bool put_baseline(struct view_address *out, struct baselines *baselines, 
         return true;
     if (baselines && baselines_describe(baselines, id, &found) && found.name[0])
         return view_address_add(out, "baseline", found.name);
-    message_fail(error, "not_signed", "what the difference is from has no name");
+    message_fail(error, "not_signed", "difference: the baseline has no name");
     return false;
 }
 

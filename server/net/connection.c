@@ -15,12 +15,13 @@ static const char LOCAL[] = "local";            /* name of a user on this machin
 static const char SIGNED_IN[] = " (signed in)"; /* suffix for a signed-in user if a token has the same name */
 
 static const struct http_refusal NO_HOST = { 400, "HTTP/1.1 requires the header Host\n" };
-static const struct http_refusal WRONG_HOST = { 403, "this server is not asked for by that name (Host); --host NAME lets it\n" };
+static const struct http_refusal WRONG_HOST = { 403,
+                                                "the header Host has a name that this server does not accept; --host NAME allows it\n" };
 static const struct http_refusal LOCAL_ONLY = { 403, "this server answers to localhost, 127.0.0.1 and [::1] only\n" };
-static const struct http_refusal PROXY = { 403, "a proxy speaks for somebody here; the server needs --behind-proxy for that\n" };
+static const struct http_refusal PROXY = { 403, "the request came through a proxy; start the server with --behind-proxy to allow this\n" };
 static const struct http_refusal IN_QUERY = { 400, "a token does not belong in a URL, where logs and histories keep it: send it as "
                                               "Authorization: Bearer, in the subprotocol list, or in hello\n" };
-static const struct http_refusal BAD_TOKEN = { 401, "this token is not, or no longer, let in\n" };
+static const struct http_refusal BAD_TOKEN = { 401, "this token is unknown or has expired\n" };
 static const struct http_refusal HELD = { 429, "too many wrong tokens came from this address; try again in 5 s\n" };
 static const struct http_refusal TOO_LONG = { 431, "a header is too long\n" };
 static const struct http_refusal TOO_MANY = { 503, "this address has as many connections as one may have; try again later\n" };
@@ -221,14 +222,16 @@ static void record_login(struct server_context *server, const struct connection 
         return;
     audit_say(server->params.audit, &(struct audit_entry){ .event = "login",
                                                            .result = good ? "done" : "refused",
-                                                           .who = holder->name[0] ? holder->name : good ? LOCAL : NULL,
+                                                           .who = holder->name[0] ? holder->name
+                                                                  : good          ? LOCAL
+                                                                                  : NULL,
                                                            .role = known ? name_of(names_role, (int)holder->role) : NULL,
                                                            .from = connection->address,
                                                            .how = way,
-                                                           .why = good                          ? NULL
-                                                                  : known                       ? "its time is over"
-                                                                  : login == LOGIN_WRONG_SLOWS ? "nobody's token; the address is slowed"
-                                                                                               : "nobody's token" });
+                                                           .why = good                         ? NULL
+                                                                  : known                      ? "its time is over"
+                                                                  : login == LOGIN_WRONG_SLOWS ? "unknown token; the address is slowed"
+                                                                                               : "unknown token" });
 }
 
 void connection_log_login(struct server_context *server, struct lws *wsi, const char *way, const struct token_holder *holder,

@@ -571,7 +571,7 @@ void net_run(struct net *net)
     net_unwatch_readings(net);
     finish_actions(net);
     streams_close(server);
-    renderers_close(server, "the core goes down");
+    renderers_close(server, "the core shuts down");
     server->goes_down = true;
     set_timer(net, clock_mono_ns() + GOODBYE_NS);
     for (int64_t end_ns = clock_mono_ns() + GOODBYE_NS;

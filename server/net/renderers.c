@@ -73,7 +73,7 @@ const char *renderers_refusal(const struct server_context *server, struct lws *w
 {
     const struct connection *connection = connection_of(wsi);
     if (!server->params.is_core)
-        return "this daemon is no core: it has no --role core\n";
+        return "this daemon is not a core: start it with --role core\n";
     return role_is_node(connection->role) || is_local(connection) ? NULL : "this takes a token of the role renderer or standby\n";
 }
 
@@ -468,7 +468,7 @@ static char *standby_refusal(const struct server_context *server, struct rendere
         if (other != one && (matches ? is_standby(other) : is_witness(other)))
             return mem_printf("%.63s stands by already", other->name);
     if (!id || !lease_name(one->lease, one->name, id))
-        return mem_printf("the standby %.63s does not tell its id, or it is too long", one->name);
+        return mem_printf("the standby %.63s has no id, or a too long one", one->name);
     return NULL;
 }
 
@@ -492,7 +492,7 @@ static void end_voters(struct server_context *server)
     for (struct renderer_peer *one = server->renderers; one; one = one->next)
         if (one->state == RENDERER_VOTES) {
             one->state = RENDERER_REFUSED;
-            one->close_text = "another core stands by";
+            one->close_text = "another core is the standby";
             lws_callback_on_writable(one->wsi);
         }
 }
@@ -555,7 +555,7 @@ static const char *verify_person(const struct server_context *server, const stru
     *out = (struct token_holder){ .role = ROLE_NOBODY };
     if (token && server->tokens)
         return !tokens_find(server->tokens, token, clock_utc_ns(), out) ? "the core does not let this token in (its --tokens file)"
-               : role_is_node(out->role)                                ? "a daemon's token lets nobody act"
+               : role_is_node(out->role)                                ? "a daemon's token does not allow user actions"
                                                                         : NULL;
     if (id_token && server->openid) {
         const char *why = openid_vouch(server->openid, id_token, out);
@@ -567,7 +567,7 @@ static const char *verify_person(const struct server_context *server, const stru
         return NULL;
     }
     return id_token ? "the core cannot tell who is signed in: it has no --openid"
-                    : "the core cannot tell who this is: it takes a token, or somebody who is signed in";
+                    : "the core cannot verify the user: it needs a token or a sign-in";
 }
 
 static void act(struct server_context *server, struct renderer_peer *renderer, const json_t *message)
@@ -597,13 +597,13 @@ static const char *on_message(struct server_context *server, struct renderer_pee
     json_t *message = json_loadb(renderer->in.at, renderer->in.length, JSON_REJECT_DUPLICATES, NULL);
     const char *type = json_string_value(json_object_get(message, "type")), *why = NULL;
     if (!type)
-        why = "what it says is no JSON";
+        why = "its message is not JSON";
     else if (!strcmp(type, "renderer") && renderer->state == RENDERER_NEW)
         introduce(server, renderer, message);
     else if (!strcmp(type, "promise") && is_witness(renderer) && server->params.keeper)
         lease_keeper_promised(server->params.keeper, renderer->lease, (uint64_t)json_integer_value(json_object_get(message, "number")));
     else if (renderer->state != RENDERER_TAKEN)
-        why = "it did not say who it is";
+        why = "it did not introduce itself first";
     else if (!strcmp(type, "act") && json_is_integer(json_object_get(message, "id")))
         act(server, renderer, message);
     else if (!strcmp(type, "pairing") && server->tokens)

@@ -80,7 +80,7 @@ void plant_influence_check(const struct plant *plant, struct diag *diag)
             continue;
         if (isnan(group->ambient))
             diag_error(diag, plant->path, group->line, 0,
-                       "group %s: fin needs 'ambient', what is around the assets, in %s: far from sensors the wall cools down to it",
+                       "group %s: fin needs 'ambient', the value around the assets, in %s: far from sensors the wall cools to it",
                        group->id, *group->unit ? group->unit : "the group's unit");
         for (size_t a = 0; a < plant->asset_count; a++)
             if (plant->assets[a].thickness_m <= 0 && has_sensor(plant, (int)g, (int)a))

@@ -108,20 +108,20 @@ bool session_left_alone(const struct session *session, int64_t now_ns, struct me
     int64_t lock_ns = session->context->lock_ns, since_ns = identity->active_ns ? identity->active_ns : session->opened_ns;
     if (!lock_ns || identity->holder.signed_in || identity->holder.unattended || now_ns - since_ns <= lock_ns)
         return false;
-    message_fail(error, "locked", "nobody was at this page for %.3g min", (double)lock_ns / 60e9);
+    message_fail(error, "locked", "no input at this page for %.3g min", (double)lock_ns / 60e9);
     return true;
 }
 
 void session_check_token(struct session *session, int64_t now_ns, int64_t now_utc_ns)
 {
     bool person = session->identity.holder.signed_in;
-    const char *why = person ? "you are signed out" : "this token is no longer let in";
+    const char *why = person ? "you are signed out" : "this token has expired or was revoked";
     if (session->identity.holder.role == ROLE_NOBODY)
         return;
     struct message_error alone = { 0 };
     if (!session->close.code && session_left_alone(session, now_ns, &alone)) {
         session_reply_error(session, &alone);
-        session_close(session, 1008, "locked: nobody was at this page");
+        session_close(session, 1008, "locked: no input at this page");
         return;
     }
     enum role role = role_now(session, now_utc_ns);

@@ -24,8 +24,8 @@ static bool judge_token(struct session *session, const char *token, int64_t now_
     }
     session->identity.holder = holder;
     if (!good) {
-        message_fail(error, "bad_token", "this token is not, or no longer, let in");
-        session_close(session, 1008, "this token is not let in");
+        message_fail(error, "bad_token", "this token is unknown or has expired");
+        session_close(session, 1008, "this token is unknown or has expired");
         return false;
     }
     session->identity.role = tokens_role_of(&holder);

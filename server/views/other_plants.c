@@ -133,7 +133,7 @@ static enum why judge(struct other *other, struct other_picture *about, char sai
         snprintf(said, 160, "it does not say how old its readings are, as servers of Plantcast do");
         why = WHY_NO_PICTURE;
     } else if (!other_picture_is_png((const uint8_t *)text, body->length, plant->width_px, plant->height_px)) {
-        snprintf(said, 160, "what it sends is no PNG file of %d x %d", plant->width_px, plant->height_px);
+        snprintf(said, 160, "its answer is not a PNG file of %d x %d", plant->width_px, plant->height_px);
         why = WHY_NO_PICTURE;
     }
     return why;

@@ -81,7 +81,7 @@ const char *wall_place_wrong(const struct plant *plant, const struct wall_place 
 {
     const struct wall *wall = wall_find(plant, place->wall);
     if (!wall)
-        return "wall: there is no such wall";
+        return "wall: the plant has no such wall";
     if (place->display < 1 || place->display > (int)wall->display_count)
         return "display: the wall has no such display";
     const struct wall_display *display = &wall->displays[place->display - 1];

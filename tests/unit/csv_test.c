@@ -164,7 +164,7 @@ CASE(what_is_no_table_is_said_once)
         { "ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('AUTOMOTIVE_DESIGN'));\n", "is a STEP file; a table (CSV) is wanted" },
         { "ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('IFC4'));\n", "is an IFC model" },
         { "PK\x03\x04\x14", "is a ZIP archive, or a document that is one (XLSX, DOCX, 3MF); a table (CSV) is wanted" },
-        { "\xFE\xAA\n\xFE\xAA\n\xFE\xAA\n\xFE\xAA\n\xFE\xAA\n\xFE\xAA\n", "is no text; a table (CSV) is wanted" },
+        { "\xFE\xAA\n\xFE\xAA\n\xFE\xAA\n\xFE\xAA\n\xFE\xAA\n\xFE\xAA\n", "is not a text file; expected a table (CSV)" },
     };
     for (size_t i = 0; i < sizeof(others) / sizeof(*others); i++) {
         char *path = temp_write_text(f->folder, "t.csv", others[i].begins);

@@ -678,7 +678,7 @@ CASE(test_what_is_missing_is_said)
     write_model(c);
     write_plant(c, "", ", prepare: [harmonic, fin]", 2);
     prep_case_expect(c, "$PLANT", 1);
-    prep_case_says(&c->err, "group temperature: fin needs 'ambient', what is around the assets, in K");
+    prep_case_says(&c->err, "group temperature: fin needs 'ambient', the value around the assets, in K");
     prep_case_says(&c->err, "asset S: fin, which group temperature asks for, needs 'thickness_m'");
     write_plant(c, "", ", prepare: [kriging]", 2);
     prep_case_expect(c, "$PLANT", 1);

@@ -104,7 +104,7 @@ TEST(paths_to_several_values_are_refused)
         { "a[?id=='x'", "and ]" },
         { "a[?(id=='x']", "expected )" },
         { "a[?a==1&&b==1&&c==1&&d==1&&e==1]", "at most 4" },
-        { "@.t", "not from the value" },
+        { "@.t", "not from the current value" },
         { "a[0]b", "expected . or [" },
         { "['\\x']", "a string" },
         { "['\\ud800']", "a string" },

@@ -60,8 +60,8 @@ CASE(secrets_do_not_stand_in_the_file)
     load(c, "notify:\n  mail: { server: \"smtps://me:secret@m.example\", from: p@p.example, password: secret }\n"
             "  recipients:\n  - { id: a, webhook: \"https://u:p@h.example/\" }\n"
             "  - { id: b, webhook: \"http://h.example/\", token_file: t }\n  rules: [{ id: r, to: a }]");
-    FOUND(c, { "plant.yaml", 6, 69, "unknown key 'password'" }, { "plant.yaml", 6, 19, "a password does not stand in the plant file" },
-          { "plant.yaml", 8, 23, "a password does not stand in the plant file" },
+    FOUND(c, { "plant.yaml", 6, 69, "unknown key 'password'" }, { "plant.yaml", 6, 19, "do not write a password in the plant file" },
+          { "plant.yaml", 8, 23, "do not write a password in the plant file" },
           { "plant.yaml", 9, 56, "a token is sent over https:// only" });
 }
 

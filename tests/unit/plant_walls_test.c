@@ -109,7 +109,7 @@ CASE(wrong_other_plants_are_said_at_their_place)
             "- { id: c d, url: \"https://h/\", view: a&b }\n- { url: \"https://h/\" }");
     FOUND(c, { "plant.yaml", 7, 17, "url: it begins with another scheme" }, { "plant.yaml", 8, 42, "cannot be read" },
           { "plant.yaml", 8, 42, "token_file: a token is sent over https" },
-          { "plant.yaml", 9, 17, "a password does not stand in the plant file" }, { "plant.yaml", 9, 9, "'b'" },
+          { "plant.yaml", 9, 17, "do not write a password in the plant file" }, { "plant.yaml", 9, 9, "'b'" },
           { "plant.yaml", 10, 17, "without '?' and '#'" }, { "plant.yaml", 10, 42, "every_s" }, { "plant.yaml", 10, 52, "width" },
           { "plant.yaml", 11, 9, "id: expected letters" }, { "plant.yaml", 11, 39, "view: expected the id" },
           { "plant.yaml", 12, 3, "id" });
@@ -154,10 +154,10 @@ CASE(what_is_wrong_is_said_at_its_place)
             "  displays:\n  - grid: [A b]\n    panes: [{ area: b }]\n"
             "  - grid: [b b]\n    panes: [{ area: b, clock: yes, text: x }, { area: b, views: v }, { area: z, clock: yes, every_s: 9 },"
             " { area: b, tiles: [] }]");
-    FOUND(c, { "plant.yaml", 7, 9, "id: expected letters, digits" }, { "plant.yaml", 8, 18, "something in it that does not stand" },
+    FOUND(c, { "plant.yaml", 7, 9, "id: expected letters, digits" }, { "plant.yaml", 8, 18, "a character that an address cannot have" },
           { "plant.yaml", 9, 18, "it begins after the #" }, { "plant.yaml", 9, 9, "view 'v' is there twice (first at line 8)" },
-          { "plant.yaml", 10, 3, "view" }, { "plant.yaml", 12, 22, "displays: expected at least one" },
-          { "plant.yaml", 14, 11, "inches" }, { "plant.yaml", 15, 14, "a span such as" }, { "plant.yaml", 17, 12, "areas in lower case" },
+          { "plant.yaml", 10, 3, "view" }, { "plant.yaml", 12, 22, "displays: expected at least one" }, { "plant.yaml", 14, 11, "inches" },
+          { "plant.yaml", 15, 14, "a span such as" }, { "plant.yaml", 17, 12, "areas in lower case" },
           { "plant.yaml", 18, 13, "expected one of views, trend, alarms" }, { "plant.yaml", 18, 21, "the grid has no 'b'" },
           { "plant.yaml", 20, 13, "expected one of views" }, { "plant.yaml", 20, 55, "'b' has two panes" },
           { "plant.yaml", 20, 102, "only a pane of views has it" }, { "plant.yaml", 20, 78, "the grid has no 'z'" },

@@ -30,7 +30,7 @@ static int verify(const char *path, const struct audit_chain *known)
         printf("%s: good: lines %" PRIu64 " to %" PRIu64 " in %zu file%s%s\n"
                "the last is %" PRIu64 ":%s\n",
                path, report.first_seq, report.end.seq, report.files, report.files == 1 ? "" : "s",
-               report.first_seq > 1 ? "; what came before is not here" : "", report.end.seq, report.end.hash);
+               report.first_seq > 1 ? "; earlier entries are not in these files" : "", report.end.seq, report.end.hash);
     else
         fprintf(stderr, "plantcast: %s\n", report.text);
     mem_free(report.text);

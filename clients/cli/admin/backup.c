@@ -225,7 +225,7 @@ static json_t *read_manifest(const char *folder)
     bool good =
         json_integer_value(json_object_get(manifest, "version")) == MANIFEST_VERSION && json_is_array(json_object_get(manifest, "files"));
     if (!good)
-        say(path, text ? "is no list of a backup that this program knows" : strerror(errno));
+        say(path, text ? "is not a list of a backup that this program can read" : strerror(errno));
     if (!good && manifest) {
         json_decref(manifest);
         manifest = NULL;
@@ -252,7 +252,7 @@ static bool is_whole(struct backup_job *job)
         char hash[COPY_HASH_BYTES];
         long long bytes;
         if (!is_plain(name) || !expected)
-            return say(job->folder, "its list is wrong");
+            return say(job->folder, "its list of files is damaged");
         char *path = mem_printf("%s/%s", job->folder, name);
         if (!copy_hash(job->log, path, hash, &bytes) || strcmp(hash, expected) != 0)
             good = say(path, "is not as it was when the backup was made");
@@ -356,7 +356,7 @@ static bool each_restored(struct backup_job *job, const char *plant_path, const 
         long long bytes;
         bool same = copy_hash(job->log, path, hash, &bytes) && !strcmp(hash, expected);
         if (!same)
-            say(path, "is not as it was backed up");
+            say(path, "differs from the backup after it was copied");
         good = same && (!is_database(name) || copy_database(job->log, path, copy)) && good;
         unlink(copy);
         mem_free(copy);

@@ -75,7 +75,8 @@ static int reload(const char *daemon, pid_t pid, const char *runtime, int timeou
     else {
         while (!(result = read_result(path, since_ns)) && kill(pid, 0) == 0 && clock_mono_ns() < end_ns)
             usleep(50000);
-        status = result ? say(result) : fail(daemon, clock_mono_ns() >= end_ns ? "nothing came of it in time" : "it ended meanwhile");
+        status =
+            result ? say(result) : fail(daemon, clock_mono_ns() >= end_ns ? "no result before --timeout" : "it exited during the reload");
     }
     json_decref(result);
     mem_free(path);

@@ -148,7 +148,7 @@ static int add(const char *path, struct token_holder *holder)
     if (!old)
         return 1;
     if (has_name(old, holder->name)) {
-        fail_at(path, "somebody has that name already; revoke it, or take another");
+        fail_at(path, "a token with this name exists; revoke it, or choose another name");
     } else if (!tokens_make(token)) {
         fail_at(path, "this machine gives no random numbers");
     } else {
@@ -214,7 +214,7 @@ static int take_back(const char *path, const char *name)
         line += n;
     }
     if (old && !found)
-        fail_at(path, "nobody has that name");
+        fail_at(path, "no token has this name");
     else if (old)
         result = write_file(path, &text);
     text_finish(&text);

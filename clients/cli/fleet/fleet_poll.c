@@ -83,7 +83,7 @@ static const char *note_answer(struct fleet_poll *poll, struct fleet_request *re
     struct picture *picture = &poll->pictures[request->plant];
     if (request->kind == PICTURE) {
         if (request->http.answer.length <= 8 || memcmp(request->http.answer.at, "\x89PNG\r\n\x1a\n", 8) != 0)
-            return "its picture is none";
+            return "its picture is not a PNG file";
         mem_free(picture->at);
         *picture = (struct picture){ request->http.answer.at, request->http.answer.length, picture->number + 1 };
         request->http.answer = (struct text){ 0 };

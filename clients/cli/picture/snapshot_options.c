@@ -306,7 +306,7 @@ static int judge(const struct snapshot_options *options, bool clip, int left)
     if (clip && (!options->from_text || (!options->to_text && !options->tour)))
         return wrong(clip, "--from and --to are missing");
     if (options->tour && (options->to_text || !only_size(options)))
-        return wrong(clip, "a tour says itself what is seen and for how long: only --size and --from have a place beside it");
+        return wrong(clip, "--tour sets view and length; combine it only with --size and --from");
     if (options->is_signed && !strstr(options->out, ".mp4") && !strstr(options->out, ".mov"))
         return wrong(clip, "--signed: signatures are kept in .mp4 and .mov");
     if (clip && !options->tour && options->from_us >= options->to_us)

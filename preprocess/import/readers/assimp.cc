@@ -247,14 +247,14 @@ void root_matrix(const aiScene *scene, const format &from, const char *units, co
         double longest = longest_side(scene);
         unit = longest > LONGEST_IN_METRES ? "mm" : "m";
         printf("it does not say its units: %s is taken, because it is %.4g long, which is then %.4g m. Is that right? If not, --units "
-               "says otherwise (m, mm, cm, in, ft)\n",
+               "sets them (m, mm, cm, in, ft)\n",
                unit, longest, longest * metres_of(unit));
         printf("unit\t%s\t%.9g\n", unit, longest);
     }
     const char *axis = strcmp(up, "-") != 0 ? up : from.up;
     if (!axis) {
         axis = strcmp(from.ending, ".obj") == 0 ? "y" : "z";
-        printf("it does not say which axis is up: %s is taken, as usual for %s; --up says otherwise\n", axis, from.ending);
+        printf("it does not say which axis is up: %s is taken, as usual for %s; set it with --up\n", axis, from.ending);
     }
     double m = metres_of(unit) * (strcmp(from.ending, ".fbx") == 0 ? fbx_axes(scene, &axis) : 1);
     const double y_up[16] = { m, 0, 0, 0, 0, m, 0, 0, 0, 0, m, 0, 0, 0, 0, 1 },
@@ -548,7 +548,7 @@ void convert(const char *input, const char *output, const char *units, const cha
     if (!r.lines.empty())
         say_lines(r.lines);
     if (r.triangles == 0)
-        refuse("there is no surface in it");
+        refuse("it contains no surface");
     write_scene(&r.out, output, "");
     say_textures(scene);
     if (r.lost > 0)

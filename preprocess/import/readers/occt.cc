@@ -305,7 +305,7 @@ std::string read_step(const char *path, const char *output, Handle(TDocStd_Docum
     step.SetNameMode(Standard_True);
     step.SetLayerMode(Standard_True);
     if (step.ReadFile(files.main.c_str()) != IFSelect_RetDone)
-        refuse("it is no STEP file, or is cut off");
+        refuse("it is not a STEP file, or is truncated");
     TColStd_SequenceOfAsciiString lengths, angles, solid_angles;
     step.ChangeReader().FileUnits(lengths, angles, solid_angles);
     bool transferred = step.Transfer(document);
@@ -336,7 +336,7 @@ std::string read_iges(const char *path, Handle(TDocStd_Document) document, const
     IGESControl_Reader iges;
     Interface_Static::SetCVal("read.iges.sequence", "none");
     if (iges.ReadFile(path) != IFSelect_RetDone)
-        refuse("it is no IGES file, or is cut off");
+        refuse("it is not an IGES file, or is truncated");
     text_encoding encoding;
     encoding.choose(read_whole(path), asked, "");
     encoding.say();
@@ -390,7 +390,7 @@ void convert(const char *input, const char *output, double chord_mm, bool y_up, 
         add(&r, free.Value(i), root, XCAFPrs_Style(), 0);
     say_lines(r);
     if (r.places == 0)
-        refuse("there is no surface in it");
+        refuse("it contains no surface");
     write_scene(&r.scene, output, ": a larger --chord makes it smaller");
     size_t made = 0;
     for (const auto &entry : r.parts)

@@ -232,7 +232,7 @@ char *asset_edit_apply(const char *text, const struct asset_edit *edits, size_t 
             out = spliced(&editor);
         yaml_document_delete(&editor.doc);
     } else {
-        fail(&editor, "it is no YAML");
+        fail(&editor, "it is not valid YAML");
     }
     yaml_parser_delete(&parser);
     if (out && added) {

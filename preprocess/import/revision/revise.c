@@ -204,9 +204,10 @@ static int apply(struct revising *r)
     if (status != 0)
         return status;
     status = revision_files_apply(r->params->folder, r->params->work, r->files, r->file_count, &changed);
-    return status == 0         ? 0
-           : status == -ESTALE ? fail_at(changed, "was changed by somebody else meanwhile; nothing was done: run it again")
-                               : fail_at(r->params->folder, strerror(-status));
+    return status == 0 ? 0
+           : status == -ESTALE
+               ? fail_at(changed, "was changed by another program during the import; nothing was written: run the command again")
+               : fail_at(r->params->folder, strerror(-status));
 }
 
 static int plan(struct revising *r)
@@ -266,8 +267,8 @@ int revise(const struct revise_params *params)
             status = apply(&r);
             if (status == 0)
                 printf("%s/review.csv: %zu rows\n%s: %s; plantcast import --undo -o %s takes it back\n", params->folder,
-                       r.revision.row_count, r.plant_path,
-                       strcmp(r.plant_text, r.revision.plant_text) ? "written" : "stays as it is", params->folder);
+                       r.revision.row_count, r.plant_path, strcmp(r.plant_text, r.revision.plant_text) ? "written" : "stays as it is",
+                       params->folder);
         }
     }
     finish(&r);

@@ -190,7 +190,7 @@ static void follow_part(struct planning *p, const struct plant_tag *tag, const s
         mem_free(one);
     }
     if (!motion.known) {
-        lose_place(p, tag, "what it stood on has another shape");
+        lose_place(p, tag, "the surface below it has changed shape");
         return;
     }
     moved_in_list(asset, motion.motion, tag->position_m, now);

@@ -210,7 +210,7 @@ static enum openid_rights ask_again(struct openid *openid, struct person *person
 enum openid_rights openid_check(struct openid *openid, struct person *person, const char **why)
 {
     if (clock_utc_ns() >= person->holder.until_utc_ns) {
-        *why = "a log-in lasts no longer here";
+        *why = "the sign-in has reached its longest duration here";
         return RIGHTS_GONE;
     }
     return person->refresh_token ? refresh(openid, person, why) : ask_again(openid, person, why);

@@ -23,7 +23,7 @@ static int alive(struct server_context *server, struct http_exchange *request)
 static int ready(struct server_context *server, struct http_exchange *request)
 {
     if (server->params.keeper && !core_end_leads(server))
-        return request_answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "it stands by: another core leads, or none yet\n");
+        return request_answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "this core stands by: another core leads, or none yet\n");
     if (render_service_ready(server->params.plant.render_service))
         return request_answer_text(request, HTTP_STATUS_OK,
                                    !server->params.keeper            ? "ok\n"

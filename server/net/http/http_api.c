@@ -287,7 +287,7 @@ static int pair(struct server_context *server, struct http_exchange *request, co
                            ? ask_core(server, asked, digits, &left_s)
                            : pairings_ask(server->params.plant.pairings, asked, clock_mono_ns(), digits, &left_s);
     if (now == PAIRING_FULL)
-        return request_answer_later(request, "too many displays wait to be let in; try again\n");
+        return request_answer_later(request, "too many displays wait for pairing; try again\n");
     if (now == PAIRING_OTHER)
         return request_answer_text(request, HTTP_STATUS_CONFLICT, "this secret is that of another display; make one for this display\n");
     if (now == PAIRING_DONE)
@@ -303,7 +303,7 @@ int api_pair(struct server_context *server, struct http_exchange *request)
     struct args args;
     char secret[256];
     if (!server->tokens)
-        return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "displays are not let in by digits here\n");
+        return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "this server does not pair displays (it runs without --tokens)\n");
     enum refusal_code why = server->params.plant.core_link ? REFUSAL_NONE : pairings_refusal(server->params.plant.pairings);
     if (why)
         return request_refuse(request, HTTP_STATUS_NOT_FOUND, why);
@@ -327,7 +327,7 @@ int api_pair(struct server_context *server, struct http_exchange *request)
 int api_devices(struct server_context *server, struct http_exchange *request)
 {
     if (!server->tokens)
-        return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "displays are not let in by digits here\n");
+        return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "this server does not pair displays (it runs without --tokens)\n");
     return request_answer_json(request, pairings_text(server->params.plant.pairings));
 }
 

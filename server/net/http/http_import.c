@@ -71,7 +71,7 @@ static int answer_done(struct http_exchange *request, const char *file)
 int api_import(struct server_context *server, struct http_exchange *request)
 {
     if (!server->params.import)
-        return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "plants are not brought in here\n");
+        return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "this server does not import plants\n");
     const struct import_source source = import_source_of_plant(server->params.plant.scene->plant);
     return request_answer_json(request, plant_import_text(server->params.import, &source));
 }
@@ -129,7 +129,7 @@ static int order_all(struct server_context *server, struct http_exchange *reques
     struct import_order wanted = { 0 };
     char what[8];
     if (!take_argument(args, "what", what, sizeof(what)) || (*what && strcmp(what, "tags") != 0 && strcmp(what, "anew") != 0))
-        return refuse_with(request, HTTP_STATUS_BAD_REQUEST, "what is tags or anew, or left out\n");
+        return refuse_with(request, HTTP_STATUS_BAD_REQUEST, "what must be tags, anew or absent\n");
     wanted.anew = !strcmp(what, "anew");
     wanted.models = wanted.anew || !*what;
     if (!take_argument(args, "units", wanted.units, sizeof(wanted.units)) || !take_argument(args, "up", wanted.up, sizeof(wanted.up)) ||
@@ -167,7 +167,7 @@ static int remove_file(struct server_context *server, struct http_exchange *requ
 {
     char name[256];
     if (!take_argument(args, "name", name, sizeof(name)) || !export_name_good(name))
-        return refuse_with(request, HTTP_STATUS_BAD_REQUEST, "this is no name of a file here\n");
+        return refuse_with(request, HTTP_STATUS_BAD_REQUEST, "this is not the name of an export\n");
     int error = export_folder_remove(plant_import_exports(server->params.import), name);
     return error == 0 || error == -ENOENT ? answer_done(request, name) : fail_with(request, name, error);
 }
@@ -273,7 +273,7 @@ int import_end_body(struct server_context *server, struct http_exchange *request
     if (busy)
         return refuse_with(request, HTTP_STATUS_CONFLICT, BUSY);
     if (!whole)
-        return refuse_with(request, HTTP_STATUS_BAD_REQUEST, "the file did not come to its end\n");
+        return refuse_with(request, HTTP_STATUS_BAD_REQUEST, "the upload ended before the file was complete\n");
     if (error)
         return fail_with(request, name, error);
     if (decides)

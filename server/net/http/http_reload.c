@@ -20,7 +20,7 @@ int ask_reload(struct server_context *server, struct http_exchange *request)
     if (!request_may_change(server, request))
         return request_answer_text(request, HTTP_STATUS_FORBIDDEN, "pages of other sites may not do this\n");
     if (!server->params.reload)
-        return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "this plant cannot be loaded anew\n");
+        return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "this plant cannot be reloaded\n");
     request->reloads = true;
     request_await(server, request);
     server->params.reload(server->params.reload_arg, connection_who(connection_of(request->wsi)));
@@ -43,7 +43,7 @@ static void answer_all(struct server_context *server, bool reloads, int status, 
 
 void http_release_plant(struct server_context *server)
 {
-    answer_all(server, false, HTTP_STATUS_SERVICE_UNAVAILABLE, HTTP_TEXT, "the plant was loaded anew meanwhile; try again\n");
+    answer_all(server, false, HTTP_STATUS_SERVICE_UNAVAILABLE, HTTP_TEXT, "the plant was reloaded during the request; try again\n");
 }
 
 void http_on_reloaded(struct server_context *server, bool good, const char *text)

@@ -27,7 +27,7 @@ static void set_cookie(const struct openid_config *config, struct http_exchange 
                                      *ending ? "Lax" : "Strict", config->secure ? "; Secure" : "");
 }
 
-static const char NOT_HERE[] = "nobody signs in by OpenID Connect here\n";
+static const char NOT_HERE[] = "this server has no sign-in by OpenID Connect\n";
 
 int ask_login(struct server_context *server, struct http_exchange *request)
 {
@@ -56,7 +56,7 @@ int ask_login(struct server_context *server, struct http_exchange *request)
 static int refuse_unasked(struct server_context *server, struct http_exchange *request, enum openid_finish why)
 {
     server->unasked++;
-    return why == OPENID_FULL ? request_answer_later(request, "too many sign in at this moment; sign in again from the page\n")
+    return why == OPENID_FULL ? request_answer_later(request, "too many sign-ins at once; sign in again from the page\n")
                               : request_answer_text(request, HTTP_STATUS_FORBIDDEN,
                                                     "no log-in of this browser waits for this answer; sign in again from the page\n");
 }

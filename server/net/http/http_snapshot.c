@@ -123,7 +123,7 @@ static bool may_ask(struct server_context *server, struct http_exchange *request
         *result = request_refuse(request, HTTP_STATUS_NOT_FOUND, REFUSAL_UNRECORDED);
         return false;
     }
-    const char *why = server->picture_count >= server->quotas->at[QUOTA_SNAPSHOTS] ? "too many pictures are being made; try again\n"
+    const char *why = server->picture_count >= server->quotas->at[QUOTA_SNAPSHOTS] ? "too many pictures are being drawn; try again\n"
                       : address_limits_may_draw(server->limits, connection_of(request->wsi)->client)
                           ? NULL
                           : "as many pictures are being made for this address as one may have; try again\n";

@@ -82,7 +82,7 @@ static char *check_text(char *text, size_t bytes, const char *path, const char *
     else if (check_characters(text, bytes, path, diag))
         return text;
     else
-        diag_error(diag, path, 0, 0, "is no text; %s is wanted", wanted);
+        diag_error(diag, path, 0, 0, "is not a text file; expected %s", wanted);
     mem_free(text);
     return NULL;
 }

@@ -541,7 +541,8 @@ void plant_file_read(struct plant *plant, struct diag *diag)
     yaml_map_read(&reader, yaml_document_get_root_node(&reader.doc), "the plant file", keys, &file, &map);
     plant_alarms_check(&reader, yaml_map_place(&map, "alarms"), plant);
     if (plant->notify && plant->history.off)
-        yaml_error(&reader, yaml_map_place(&map, "notify"), "notify needs `record: yes` in `history`: what was sent is written there");
+        yaml_error(&reader, yaml_map_place(&map, "notify"),
+                   "notify needs `record: yes` in `history`: sent notifications are stored in the history");
     if (!plant->time_zone)
         plant->time_zone = mem_strdup("UTC");
     stand_upright(plant);

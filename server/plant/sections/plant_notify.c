@@ -140,7 +140,7 @@ static void read_recipient(struct yaml_reader *reader, yaml_node_t *node, struct
     else if (recipient->kind != NOTIFY_EMAIL)
         url_check(reader, &map, recipient->kind == NOTIFY_WEBHOOK ? "webhook" : "alertmanager", recipient->url, "http://", "https://");
     if (recipient->id && strcspn(recipient->id, "\"\\\n") != strlen(recipient->id))
-        yaml_error(reader, yaml_map_place(&map, "id"), "id: a quote or backslash cannot stand in it");
+        yaml_error(reader, yaml_map_place(&map, "id"), "id: remove the quote or backslash");
     check_token(reader, &map, recipient);
     plant_list_check_id(reader, &map, "recipient", plant->notify->recipients, plant->notify->recipient_count, sizeof(*recipient),
                         offsetof(struct notify_recipient, line));

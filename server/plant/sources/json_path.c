@@ -279,7 +279,7 @@ bool json_path_check(const char *text, bool relative, char why[200])
     const char *at = json_path_begin(text);
     struct json_path_step step;
     if (*text == '@' && !relative)
-        return wrong(why, "expected a path from the payload's root ($), not from the value beside it (@)", text);
+        return wrong(why, "expected a path from the payload's root ($), not from the current value (@)", text);
     while (*at && json_path_next(&at, &step, why))
         ;
     return !*at;

@@ -64,7 +64,7 @@ static void check_session(struct yaml_reader *reader, const struct yaml_map *map
 {
     if (mqtt->persistent && !mqtt->time)
         yaml_error(reader, yaml_map_place(map, "session"),
-                   "session: persistent needs payload: json and time, since what the broker has kept would look fresh");
+                   "session: persistent needs payload: json and time, otherwise messages stored by the broker would look fresh");
     if (mqtt->persistent && !mqtt->client_id)
         yaml_error(reader, yaml_map_place(map, "session"), "session: persistent needs client_id, by which the broker knows the session");
 }

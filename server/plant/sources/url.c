@@ -32,7 +32,7 @@ static const char *wrong_with(const char *url, const char *plain, const char *se
     if (host_length == 0)
         return "it names no server";
     if (memchr(host, '@', host_length))
-        return "a password does not stand in the plant file; password_file or token_file names a file that holds it";
+        return "do not write a password in the plant file; let password_file or token_file name a file with it";
     for (const char *at = url; *at; at++)
         if ((unsigned char)*at <= ' ' || *at == 127)
             return "there is white space in it";

@@ -204,7 +204,8 @@ static void read_scaling(struct tag_wire *wire)
     tag->negate = cell_flag(wire->columns, COL_NEGATE);
     for (enum tag_column clamp = COL_CLAMP_LOW; clamp <= COL_CLAMP_HIGH; clamp++)
         if (cell_flag(wire->columns, clamp))
-            cell_warning(wire->columns, clamp, "%s has no effect: what is beyond the range is shown as such", tag_column_name(clamp));
+            cell_warning(wire->columns, clamp, "%s has no effect: values beyond the range are marked as out of range",
+                         tag_column_name(clamp));
 }
 
 /* --- values that mean "no sensor" ------------------------------------------------------------------------------------------- */

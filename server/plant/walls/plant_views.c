@@ -27,7 +27,7 @@ const char *named_view_address_wrong(const char *address)
         return "it begins after the #";
     for (const char *at = address; *at; at++)
         if ((unsigned char)*at <= ' ' || (unsigned char)*at >= 127)
-            return "there is something in it that does not stand in an address";
+            return "it contains a character that an address cannot have";
     return NULL;
 }
 

@@ -174,7 +174,7 @@ const char *admission_refuses(const struct admission *admission, const struct ad
     if (why || admission_busy_percent(admission) < BUSY_PERCENT)
         return why;
     if (slows_too_far(admission, share))
-        return "full: with one more, those who move would get too few pictures; try later";
+        return "full: one more moving view would make all of them too slow; try later";
     if (reads_too_late(admission, share))
         return "full: readings are drawn too late already; try later";
     return NULL;

@@ -110,7 +110,7 @@ bool session_check_loop(struct session *session, const struct message *message, 
 {
     const struct session_context *context = session->context;
     if (!context->loop_checks) {
-        message_refuse(error, "no_history", "proofs are kept beside the history", REFUSAL_UNRECORDED);
+        message_refuse(error, "no_history", "proofs are kept in the history folder", REFUSAL_UNRECORDED);
         return false;
     }
     const struct kept_action action = session_kept_begin(session);

@@ -242,7 +242,7 @@ bool session_scope_allows(const struct session *session, const struct message *m
     else if (holder->display && !is_in(message->type, displays, sizeof(displays) / sizeof(displays[0])) &&
              /* a display with pictures picks to find a free side for an alarm's label */
              (message->type != MESSAGE_PICK || session->scope.tags))
-        message_fail(error, "not_allowed", "this token is that of display %d of wall %s, and does what that does", holder->display,
+        message_fail(error, "not_allowed", "this token is that of display %d of wall %s and allows nothing else", holder->display,
                      holder->wall);
     else
         return true;

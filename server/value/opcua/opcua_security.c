@@ -244,7 +244,8 @@ static UA_StatusCode check_leaf(const struct opcua_security *security, X509 *lea
         snprintf(why, 200, "the server's certificate has no RSA key of %d bits or more", KEY_BITS);
         status = UA_STATUSCODE_BADCERTIFICATEPOLICYCHECKFAILED;
     } else if (!is_for(leaf, security->server_name)) {
-        snprintf(why, 200, "the server's certificate is not for %.100s (server_name says for whom else)", security->server_name);
+        snprintf(why, 200, "the server's certificate is not for %.100s (set server_name to the name in the certificate)",
+                 security->server_name);
         status = UA_STATUSCODE_BADCERTIFICATEHOSTNAMEINVALID;
     }
     ERR_clear_error();
