@@ -13,8 +13,8 @@
 
 #include "base/mem.h"
 
-/* Maps a file. Returns MAP_FAILED with errno on failure. plantcast-prep never modifies a file in place (it renames a new one over it), so
-   the map stays consistent. */
+/* Maps a file. Returns MAP_FAILED with errno on failure. plantcast-prep never modifies a file in place (it writes a new file and renames
+ * that over the old one), so the mapped contents never change. */
 static void *map_file(const char *path, size_t *bytes)
 {
     struct stat st;

@@ -14,9 +14,9 @@ struct asset {
     void *map; /* mapped file; NULL: the asset was built in memory, see `made` */
     void *made;
     size_t bytes;
-    struct cache_file influence_file; /* the file KEY.influence next to the asset's; zero: not opened */
+    struct cache_file influence_file; /* mapped file KEY.influence (influence of sensors) next to the asset's file; zero: not opened */
     struct influence_view influence;
-    /* bit per level: preparation subdivided the level's triangles until they show the field exactly (field/drawn_error.h) */
+    /* bit l set: preparation subdivided the triangles of level l until they show the field without visible error (field/drawn_error.h) */
     uint64_t resolved_levels;
     _Atomic int refs;
     struct closed_bodies *_Atomic *closed; /* closed bodies per level; NULL: not computed yet */
@@ -31,7 +31,7 @@ bool asset_open_influence(struct log *log, struct asset *asset);
 struct asset *asset_stand_in(void);
 struct asset *asset_ref(struct asset *asset);
 void asset_unref(struct asset **asset);        /* &NULL is fine; sets it to NULL */
-void asset_forget_closed(struct asset *asset); /* frees the closed bodies; nobody may use them any more */
+void asset_forget_closed(struct asset *asset); /* frees the closed bodies; pointers from asset_closed() are then invalid */
 /* Returns the closed bodies of a level. The first call computes them, in a few milliseconds per 100,000 triangles. Owned by the asset. */
 const struct closed_bodies *asset_closed(const struct asset *asset, uint32_t level);
 

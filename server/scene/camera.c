@@ -7,12 +7,12 @@
 
 #include "base/math/vec.h"
 
-#define FIT_MARGIN 1.06      /* margin: a fitted box fills 1/1.06 of the picture */
-#define LEAST_BOX_M 1e-4     /* smallest box: a smaller or empty one is framed as if it had this size */
+#define FIT_MARGIN 1.06  /* margin: a fitted box fills 1/1.06 of the picture */
+#define LEAST_BOX_M 1e-4 /* smallest box that is framed; a smaller or empty box is framed as if it had this size */
 #define LEAST_NEAR_M 1e-6
-#define LEAST_HEIGHT_M 1e-5  /* smallest height of an orthographic picture */
+#define LEAST_HEIGHT_M 1e-5 /* smallest height of an orthographic picture */
 
-/* --- which way it looks ----------------------------------------------------------------------------------------------------- */
+/* --- axes of the camera ----------------------------------------------------------------------------------------------------- */
 
 struct basis {
     double right[3], up[3], forward[3];
@@ -78,8 +78,9 @@ static void safe_box(const double min_m[3], const double max_m[3], double safe_m
     }
 }
 
-/* One axis of the picture and the range of it to fill: tangents of the bounding planes, or in an orthographic view their positions in half
-   pictures. The planes touch the box where low = max(-x + z from) and high = max(x - z to), with z forward. The eye is between them. */
+/* Fits a box along one axis of the picture. from, to: range of the picture to fill, as tangents of the bounding planes; in an orthographic
+ * view, as positions in half pictures. The planes touch the box where low = max(-x + z from) and high = max(x - z to), with z forward. The
+ * eye is between the planes. */
 struct clip_side {
     double from, to, low, high;
 };
@@ -96,13 +97,13 @@ static void side_add(struct clip_side *side, double x, double z)
     side->low = fmax(side->low, -x + z * side->from);
 }
 
-/* Returns the smallest distance of the eye. */
+/* Returns the smallest distance of the eye from the box's centre at which the box fits along this axis. */
 static double side_back(const struct clip_side *side)
 {
     return (side->low + side->high) / (side->to - side->from);
 }
 
-/* Returns the sideways shift of the eye at this distance. */
+/* Returns the sideways shift of the eye that centres the box, at this distance. */
 static double side_shift(const struct clip_side *side, double back_m)
 {
     return (side->high - side->low - back_m * (side->to + side->from)) / 2;
@@ -131,8 +132,8 @@ static void place_parallel(struct camera *camera, const struct basis *basis, con
     }
 }
 
-static void place_eye(struct camera *camera, const struct basis *basis, const double (*points_m)[3], size_t count,
-                      const double center_m[3], double aspect, const struct camera_window *window)
+static void place_eye(struct camera *camera, const struct basis *basis, const double (*points_m)[3], size_t count, const double center_m[3],
+                      double aspect, const struct camera_window *window)
 {
     double t_up = tan(camera->fov_deg * M_PI / 360), nearest_m = INFINITY;
     struct clip_side right, up;
@@ -231,7 +232,8 @@ static void depth_range(const struct camera *camera, const struct basis *basis, 
         *far_m = farthest + margin_m;
         return;
     }
-    *far_m = fmax(farthest * 1.001, 2 * LEAST_NEAR_M); /* if the box is behind the camera, any range will do */
+    /* if the box is behind the camera, nothing is visible, and any valid range will do */
+    *far_m = fmax(farthest * 1.001, 2 * LEAST_NEAR_M);
     *near_m = fmax(fmax(nearest * 0.999, *far_m * CAMERA_NEAR_TO_FAR), LEAST_NEAR_M);
     if (*near_m >= *far_m) /* a box without depth */
         *near_m = *far_m / 2;
@@ -242,7 +244,8 @@ static void camera_look(const struct camera *camera, struct basis *basis)
     double forward[3];
     for (int i = 0; i < 3; i++)
         forward[i] = camera->target_m[i] - camera->eye_m[i];
-    if (!basis_of(forward, camera->up, basis)) /* camera_valid() refuses such a camera; looking north keeps the numbers finite */
+    /* camera_valid() rejects such a camera; use the view to the north, so that the numbers stay finite */
+    if (!basis_of(forward, camera->up, basis))
         basis_of((double[]){ 0, 1, 0 }, (double[]){ 0, 0, 1 }, basis);
 }
 

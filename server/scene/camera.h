@@ -17,10 +17,10 @@ struct camera {
 /* Returns whether all numbers are finite and within PLANT_MAX_M, the eye differs from the target, up is not along the view, and 1 <=
    fov_deg <= 120 or height_m >= 1e-5. */
 bool camera_valid(const struct camera *camera);
-/* Frames the whole box from the plant's raised south-west corner: x is east; north is y in a Z-up frame and -z in a Y-up one. Sets every
-   member. */
+/* Frames the whole box from the plant's raised south-west corner: x points east; y points north in a Z-up frame, -z in a Y-up frame. Sets
+ * every member. */
 void camera_fit_up(struct camera *camera, enum axis up, const double min_m[3], const double max_m[3], double aspect);
-struct camera_window { /* a rectangle of the picture; each axis from -1 to 1. Zero: the whole picture */
+struct camera_window { /* a rectangle of the picture; each axis from -1 to 1. all zero: the whole picture */
     double left, right, bottom, top;
 };
 /* Frames the box within a window of the picture, along `forward`, which must not be along camera->up. Keeps lens and up vector of the
@@ -35,8 +35,8 @@ void camera_basis(const struct camera *camera, double right[3], double up[3], do
 /* Returns the distance from which a camera with the default angle sees as much as an orthographic picture shows. 0: the camera is
    perspective. */
 double camera_parallel_m(const struct camera *camera);
-/* Computes view_from_plant and clip_from_view, 16 doubles each. Near and far planes enclose the box; in an orthographic picture also its
-   part behind the eye. */
+/* Computes view_from_plant and clip_from_view, 16 doubles each. Near and far planes enclose the box; in an orthographic picture also the
+ * part of the box behind the eye. */
 void camera_matrices(const struct camera *camera, double aspect, const double min_m[3], const double max_m[3], double view[16],
                      double projection[16]);
 

@@ -12,19 +12,21 @@ enum { MAX_INDICES = 3 * 1000 * 1000 };
 static const float WELD_PART = 1e-5f; /* welding distance of vertices, relative to the asset's size */
 
 struct edge_count {
-    uint64_t ends; /* two vertices, the lower one in the upper half; 0: a free slot, since no edge joins a vertex to itself */
+    /* indices of the edge's two vertices, the lower one in the upper half; 0: a free slot, because no edge joins a vertex to itself */
+    uint64_t ends;
     int32_t balance;
 };
 
 struct bodies {
     const struct asset_view *view;
     const struct asset_level *level;
-    uint32_t *place, *root; /* place: by vertex, the first vertex at its position; root: by that vertex, union-find */
-    uint32_t *table;        /* hash table of positions by cell: vertex + 1 */
+    /* place: by vertex: the first vertex at its position; root: by that first vertex: parent in the union-find forest of bodies */
+    uint32_t *place, *root;
+    uint32_t *table; /* hash table by grid cell: index of the vertex at the position + 1; 0: free slot */
     float apart_m;
     size_t table_mask, edge_mask;
     struct edge_count *edges;
-    uint8_t *open; /* 1 if the body is open, by root */
+    uint8_t *open; /* by root of a body: 1 if the body is open */
 };
 
 static size_t power_above(size_t count)
@@ -74,7 +76,7 @@ static uint32_t find_place(const struct bodies *bodies, const int32_t cell[3], c
     return UINT32_MAX;
 }
 
-/* Finds a welded position in the point's cell, or in an adjacent cell whose border is near. */
+/* Finds a welded position in the point's cell, or in an adjacent cell whose border is within the welding distance. */
 static uint32_t find_place_near(const struct bodies *bodies, const float at[3], int32_t own[3])
 {
     int32_t beside[3];
@@ -85,7 +87,7 @@ static uint32_t find_place_near(const struct bodies *bodies, const float at[3], 
     }
     for (int k = 0; k < 8; k++) {
         int32_t cell[3];
-        bool again = false; /* true if the cell was searched already for another k */
+        bool again = false; /* true if the cell equals one already searched for a lower k */
         for (int i = 0; i < 3; i++) {
             cell[i] = k >> i & 1 ? beside[i] : own[i];
             again |= (k >> i & 1) && beside[i] == own[i];

@@ -11,13 +11,15 @@
 
 static const double SAME_PLANE_M = 2e-4, SAME_NORMAL = 1e-3; /* accuracy of CAD positions stored as floats */
 static const double MIN_AREA_M2 = 1e-4, MIN_OVERLAP_M = 1e-3;
-/* relative shift: more than the depth error of frames where a surface is seen at 6 degrees and positions are exact to 1/256 pixel */
+/* shift towards the viewer per rank, relative to the distance: larger than the depth error of frames for surfaces seen at 6 degrees or
+ * more, with positions rounded to 1/256 pixel */
 static const double SHIFT_PER_STEP = 4e-5;
 enum { MAX_STEPS = 7 };
 
 struct coincident_face {
-    double normal[3]; /* sign chosen so that the largest component is positive: both sides are treated alike */
-    double offset_m;  /* distance of its plane from the centre of the region where two assets meet */
+    /* unit normal, with the sign that makes the largest component positive, so that both orientations of a face compare equal */
+    double normal[3];
+    double offset_m; /* distance of the face's plane from the centre of the region where two assets meet */
     double corner[3][3], low[3], high[3];
 };
 struct faces {
@@ -44,7 +46,7 @@ static void turn(double normal[3])
         normal[c] = -normal[c];
 }
 
-/* Computes normal and plane. Returns false if the triangle is too small to consider. */
+/* Computes the face's normal and offset. Returns false if the triangle is too small to matter. */
 static bool measure(struct coincident_face *face)
 {
     double ab[3], ac[3];
@@ -65,7 +67,7 @@ static bool measure(struct coincident_face *face)
     return true;
 }
 
-/* Collects faces of the coarsest level, which keeps flat areas in few triangles. */
+/* Collects the asset's faces in the region, from the coarsest level, which has the fewest triangles in flat areas. */
 static void collect(const struct scene_asset *asset, const struct region *region, struct faces *out)
 {
     const struct asset_view *view = &asset->file->view;
@@ -122,7 +124,8 @@ static bool on_one_plane(const struct coincident_face *a, const struct coinciden
     return true;
 }
 
-/* Returns whether any faces coincide. Nearly parallel planes may differ in offset by their angle times the region's size. */
+/* Returns whether a face of one asset coincides with a face of the other. Nearly parallel planes may differ in offset by their angle times
+ * the region's size. */
 static bool coincide(const struct faces *a, const struct faces *b, const struct region *region)
 {
     double slack_m = SAME_PLANE_M;
@@ -158,7 +161,8 @@ static bool meet(const struct scene_asset *a, const struct scene_asset *b, struc
     return coincide(&faces[0], &faces[1], &region);
 }
 
-/* Assigns fronts from back to front: each asset is in front of all earlier ones that it meets. */
+/* Assigns ranks (`front`) to assets from back to front: each asset gets a higher rank than all earlier ones with which its faces coincide,
+ * up to MAX_STEPS. */
 void coincident_find(struct scene *scene)
 {
     struct faces faces[2] = { 0 };

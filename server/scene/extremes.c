@@ -10,10 +10,13 @@
 #include "scene/main_part.h"
 
 enum { DIRECTIONS = 96 };
-/* Rules for recognising ground: it has no sensor, is low for its size, including lamps and kerbs, and covers most of the plant's area. */
-static const double GROUND_HEIGHT = 0.25, GROUND_PART = 0.8; /* height relative to its larger side; area relative to the plant's */
-static const double GROUND_LEAST_M = 5; /* smallest larger side of ground, metres: a smaller plate is part of the equipment */
-/* largest error of the level used, relative to an asset's size: with coarser levels the view would crop the asset */
+/* Limits for recognising an asset as the plant's ground: it has no sensor, is low for its size, including lamps and kerbs, and covers most
+ * of the plant's area. */
+/* largest height of ground, relative to its larger side; smallest area, relative to the plant's */
+static const double GROUND_HEIGHT = 0.25, GROUND_PART = 0.8;
+static const double GROUND_LEAST_M = 5; /* smallest larger side of ground, metres: a smaller plate counts as equipment */
+/* largest error of the level whose vertices are searched, relative to the asset's size; with a coarser level the view would crop the
+ * asset */
 static const double LEVEL_ERROR = 0.005;
 
 static double area_of(const double min_m[3], const double max_m[3], int up)
@@ -48,7 +51,7 @@ static void add_asset(const struct scene *scene, const struct scene_asset *asset
     const struct asset_view *view = &asset->file->view;
     const double *m = asset->placement;
     uint32_t count = level_vertices(asset);
-    char *held = NULL; /* per vertex of an asset partly outside the main part: whether the vertex is inside */
+    char *held = NULL; /* by vertex: whether it lies within the main part; NULL: all vertices do */
     if (asset->stray) {
         held = mem_array(count, 1);
         for (uint32_t v = 0; v < count; v++) {
@@ -90,7 +93,7 @@ void extremes_find(struct scene *scene)
         memcpy(directions[d], (double[]){ flat * cos(turn), flat * sin(turn), z }, sizeof(directions[d]));
         most[d] = -INFINITY;
     }
-    /* searches first without the ground, then with it, then also with assets hidden at start */
+    /* tries until a vertex is found: first without the ground, then with it, then also with assets hidden at start */
     for (int round = 0; round < 3 && !isfinite(most[0]); round++)
         for (size_t i = 0; i < scene->asset_count; i++)
             if (!scene->assets[i].missing && (round > 0 || !is_ground(scene, &scene->assets[i])) &&

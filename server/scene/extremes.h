@@ -6,7 +6,7 @@
 
 #include "scene/scene.h"
 
-/* Sets scene->extremes_m, owned by the scene. Ignores the ground, if there is more than that, and assets hidden at start. */
+/* Sets scene->extremes_m, owned by the scene. Ignores assets hidden at start, and the ground if the plant has other assets. */
 void extremes_find(struct scene *scene);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds sensors that are too far from their surface. */
+/* Finds sensors whose configured position is implausibly far from the surface of their asset. */
 #include "scene/far_sensors.h"
 
 #include <math.h>

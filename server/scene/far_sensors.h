@@ -7,13 +7,13 @@
 struct far_sensor {
     const struct scene_asset *asset;
     const struct scene_sensor *sensor;
-    double limit_m; /* distance from the surface above which a sensor is far: 0.25 m or 5 % of the asset's size, whichever is less */
+    double limit_m; /* distance from the surface above which a sensor is far: the smaller one of 0.25 m and 5 % of the asset's size */
 };
 
 /* Returns the sensors beyond the limit, farthest first. Free with mem_free. */
 struct far_sensor *far_sensors_find(const struct scene *scene, size_t *count);
-/* Returns the distance from the asset's surface beyond which a sensor deserves a warning: 0.25 m or 5 % of the diagonal of the asset's
-   bounds, whichever is less. The sensor may belong to another asset, or its coordinates may be wrong. */
+/* Returns the distance from the asset's surface beyond which a sensor deserves a warning: the smaller one of 0.25 m and 5 % of the diagonal
+ * of the asset's bounds. The sensor may belong to another asset, or its coordinates may be wrong. */
 double far_limit_m(const struct scene_asset *asset);
 
 #endif

@@ -7,11 +7,12 @@
 
 #include "base/mem.h"
 
-/* Tilt of the views straight down and up, as a tangent: exactly vertical, north would have no direction. With it up stays the plant's, and
-   orbiting continues the same way. */
+/* Tilt of the views straight down and up against the vertical, as a tangent. In an exactly vertical view, north would have no direction in
+ * the picture. With the tilt, the camera's up vector stays the plant's, and orbiting continues smoothly. */
 static const double VERTICAL_TILT = 1e-3;
-static const double DEFAULT_ASPECT = 16 / 9.0;            /* aspect ratio assumed for the plant file's view */
-static const double SENSOR_PART = 0.35;                   /* part of the asset's size that is shown around a sensor */
+static const double DEFAULT_ASPECT = 16 / 9.0; /* aspect ratio assumed for the plant file's view */
+/* size of the surroundings shown around a sensor, as a part of the asset's size */
+static const double SENSOR_PART = 0.35;
 static const double SENSOR_MIN_M = 0.3, SENSOR_MAX_M = 3; /* limits of that size */
 static const double SENSOR_RISE = 0.36;                   /* elevation of the camera above a sensor, as a tangent */
 
@@ -48,7 +49,7 @@ static void compass(const struct scene *scene, double east[3], double north[3], 
 
 static void side_forward(const struct scene *scene, enum side side, const struct camera *camera, double forward[3])
 {
-    static const double parts[][3] = { /* components along east, north and up */
+    static const double parts[][3] = { /* components of the view direction along east, north and up */
                                        [SIDE_TOP] = { 0, VERTICAL_TILT, -1 },
                                        [SIDE_BOTTOM] = { 0, VERTICAL_TILT, 1 },
                                        [SIDE_FRONT] = { 0, 1, 0 },

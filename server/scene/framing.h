@@ -4,7 +4,8 @@
 #define SCENE_FRAMING_H
 #include "scene/scene.h"
 
-/* Side from which the camera looks. Front is south, left is west (in a Z-up frame x is east and y is north; in a Y-up one, z is south). */
+/* Side from which the camera looks. Front is south, left is west (in a Z-up frame x points east and y north; in a Y-up frame x points east
+ * and z south). */
 enum side { SIDE_NOW, SIDE_TOP, SIDE_BOTTOM, SIDE_FRONT, SIDE_BACK, SIDE_LEFT, SIDE_RIGHT, SIDE_ISO };
 
 struct framing {
@@ -18,7 +19,7 @@ bool framing_find(const struct plant *plant, const char *name, struct framing *f
 /* Moves the camera to show the framing's subject completely; keeps its lens. */
 void framing_look(const struct scene *scene, const struct framing *framing, double aspect, struct camera *camera);
 /* Moves a perspective camera, without turning, until the window of a picture with that aspect ratio shows everything of the plant that the
-   camera sees at 16:9. Does nothing if the window shows that already. A zero window: the whole picture. */
+ * camera sees at 16:9. Does nothing if the window shows that already. window all zero: the whole picture. */
 void framing_keep(const struct scene *scene, double aspect, const struct camera_window *window, struct camera *camera);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds the main part of a scene, and the triangles of each asset outside. */
+/* Finds the main part of a scene, and counts each asset's triangles outside it. */
 #include "scene/main_part.h"
 
 #include <math.h>
@@ -57,7 +57,7 @@ static double distance_to_bounds(const struct scene *scene, const double place_m
     return sqrt(square);
 }
 
-/* Counts triangles outside; call after the bounds are set. */
+/* Counts triangles outside the main part; call after the scene's bounds are set. */
 static void count_outside(struct scene *scene, const struct gap_tri *tris, size_t count)
 {
     struct scene_outside *outside = &scene->outside;

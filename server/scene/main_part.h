@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The main part of a plant, which an initial view frames: everything except stray pieces so far away that the rest would be a dot. */
+/* The main part of a plant, which an initial view frames: everything except stray pieces that are so far away that the plant would appear
+ * as a dot. */
 #ifndef SCENE_MAIN_PART_H
 #define SCENE_MAIN_PART_H
 #include <stdbool.h>

@@ -11,12 +11,12 @@
 struct manifest {
     char *path;
     struct manifest_entry {
-        char *id, *file; /* file: a name in the manifest's folder */
-        char *surface;   /* name of the stored surface (surface_store.h); NULL: none */
-        char *missing;   /* why the asset could not be prepared and has no file; NULL: it was prepared */
-        uint64_t recipe; /* hash of the inputs of its preparation (plant/recipe.h) */
+        char *id, *file;          /* file: a name in the manifest's folder */
+        char *surface;            /* name of the stored surface (surface_store.h); NULL: none */
+        char *missing;            /* reason why the asset could not be prepared and has no file; NULL: it was prepared */
+        uint64_t recipe;          /* hash of the inputs of its preparation (plant/recipe.h) */
         uint64_t resolved_levels; /* as in struct asset */
-    } *entries;
+    } * entries;
     size_t count;
 };
 

@@ -55,7 +55,7 @@ struct raycast_search { /* search in one asset */
 
 struct surface_crossing {
     double t, u, v;
-    bool back; /* true if the ray leaves the body here */
+    bool back; /* true: the triangle's back is hit, so the ray leaves a body */
 };
 
 /* Moeller and Trumbore, "Fast, minimum storage ray/triangle intersection", 1997. The determinant is negative for back faces. */
@@ -142,7 +142,8 @@ static void find_normal(const struct scene *scene, const struct ray *ray, struct
         hit->normal[i] *= turn / length;
 }
 
-/* Converts t of a hit to that of the asset shifted forward as in frames (coincident_forward); brought_back() is the inverse. */
+/* Converts t of a hit on the asset at its true position to t on the asset as drawn, shifted towards the viewer (coincident_forward).
+ * brought_back() is the inverse. */
 static double brought_forward(const struct ray *ray, const struct scene_asset *asset, double t)
 {
     double forward = coincident_forward(asset);
@@ -174,7 +175,7 @@ static bool aim_at(struct raycast_search *search, const struct scene_asset *asse
     return true;
 }
 
-/* Counts the asset's closed bodies that contain the ray's point at search->low: exits minus entries. */
+/* Returns the number of the asset's closed bodies that contain the ray's point at search->low: exits minus entries beyond that point. */
 static int count_bodies(const struct raycast_search *search, const struct asset *file)
 {
     const struct closed_bodies *closed = asset_closed(file, 0);
@@ -187,12 +188,13 @@ static int count_bodies(const struct raycast_search *search, const struct asset 
     return count;
 }
 
-/* Tests whether the ray meets a section cap where it passes the cut: the point is inside a closed body (render/gl/section_caps.h). */
+/* Returns whether the ray meets a section cap (render/gl/section_caps.h): where it passes the section plane, its point is inside a closed
+ * body. */
 static bool hits_cap(const struct scene *scene, const struct visibility *visibility, const struct ray *ray, double low, double high,
                      struct raycast_hit *hit)
 {
     int bodies = 0;
-    if (!(low > ray->low)) /* no cap is met if the eye is in the uncut space */
+    if (!(low > ray->low)) /* the ray starts in the space that is not cut away, so it passes no section plane from outside */
         return false;
     for (size_t i = 0; i < scene->asset_count; i++) {
         const struct scene_asset *asset = &scene->assets[i];

@@ -16,9 +16,9 @@ struct ray {
 struct raycast_hit {
     int asset; /* asset that was hit; -1: none, and the other members are unset */
     double t;
-    uint32_t corners[3]; /* vertex numbers in the asset file */
+    uint32_t corners[3]; /* indices of the hit triangle's vertices in the asset file */
     double weights[3];   /* barycentric weights; sum 1; all 0 for a section plane */
-    bool inside;         /* true if the inner side of a cut surface, or a section plane, was hit */
+    bool inside;         /* true: the ray hit the inner side of a cut-open surface, or a section plane */
     double normal[3];    /* unit vector in the plant frame, towards the ray's origin */
 };
 

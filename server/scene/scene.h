@@ -11,7 +11,7 @@
 
 struct scene_sensor {
     int tag;              /* index in plant->tags */
-    int column;           /* index in the asset file's sensors */
+    int column;           /* index of the sensor in the asset file */
     double position_m[3]; /* plant frame, as configured */
     double surface_m[3];  /* plant frame, on the surface */
     double surface_distance_m;
@@ -24,9 +24,11 @@ struct scene_asset {
     double bounds_min_m[3], bounds_max_m[3]; /* plant frame, axis-aligned */
     struct scene_sensor *sensors;            /* sensors of all groups, in the order of the tag list */
     size_t sensor_count;
-    bool stray;                         /* true if a piece of the asset is far from the main part (scene/main_part.h) */
-    double stray_at_m[3], stray_away_m; /* farthest corner, and its distance to the main part; 0: none */
-    char *missing;                      /* why it could not be prepared: it then has no sensors and is invisible; NULL: prepared */
+    bool stray; /* true if a piece of the asset is far from the main part (scene/main_part.h) */
+    /* position of the asset's farthest corner outside the main part, and its distance from there; 0: none */
+    double stray_at_m[3], stray_away_m;
+    /* reason why the asset could not be prepared; it then has no sensors and is invisible; NULL: it was prepared */
+    char *missing;
     int front; /* rank where faces of two assets coincide: the asset with the higher value is visible (scene/coincident.h) */
 };
 
@@ -36,18 +38,19 @@ struct scene {
     struct scene_asset *assets; /* by index in plant->assets */
     size_t asset_count;
     double bounds_min_m[3], bounds_max_m[3]; /* of the main part: scene/main_part.h */
-    double whole_min_m[3], whole_max_m[3];   /* box of everything; min equal to max: the same as the bounds */
+    /* box of all assets including stray pieces; min equal to max: the same box as bounds_min_m, bounds_max_m */
+    double whole_min_m[3], whole_max_m[3];
     struct scene_outside {
         size_t triangles; /* outside the main part */
         int assets;       /* assets with such triangles */
-        double away_m;    /* distance of the farthest from the main part */
+        double away_m;    /* distance of the farthest such triangle from the main part */
     } outside;
     double (*extremes_m)[3]; /* outermost points that a view of the whole plant has to contain (scene/extremes.h) */
     size_t extreme_count;    /* 0: unknown */
 };
 
-/* Chooses the box that near and far planes have to enclose: that of everything, unless a stray piece is so far away that the near plane
-   would cut into the main part; then the main part's. */
+/* Chooses the box that near and far planes have to enclose: the box of everything. If a stray piece is so far away that the near plane
+ * would then cut into the main part, chooses the box of the main part. */
 void scene_depth_box(const struct scene *scene, const double eye_m[3], double min_m[3], double max_m[3]);
 /* Returns whether the asset's placement mirrors it, which reverses the winding of triangles. */
 bool scene_asset_mirrored(const struct scene_asset *asset);

@@ -20,8 +20,8 @@
 
 #define SAME_PLACE_M 1e-4
 
-
-/* --- does the file fit? ----------------------------------------------------------------------------------------------------- */
+/* --- checks that a file belongs to the plant
+ * ----------------------------------------------------------------------------------------------------- */
 
 /* Compares positions. Positions in the file are floats relative to its origin, so a position far from the origin is less exact. */
 static bool same_place(const struct asset_header *header, const struct asset_sensor *in_file, const struct plant_sensor *in_plant)
@@ -84,7 +84,8 @@ static bool influence_fits(struct log *log, const struct plant *plant, const str
     for (size_t g = 0; g < plant->group_count; g++) {
         const struct plant_group *group = &plant->groups[g];
         size_t placed = plant_prepares_any(group) ? count_placed(plant, sensors, count, (int)g) : 0;
-        bool heat = placed > 0 && group->heat && !has_entry(log, asset, g, INFLUENCE_HEAT, placed); /* without sensors there is no file */
+        /* without sensors, preparation writes no influence file */
+        bool heat = placed > 0 && group->heat && !has_entry(log, asset, g, INFLUENCE_HEAT, placed);
         if (heat || (placed > 0 && group->directed && !has_entry(log, asset, g, INFLUENCE_TRANSPORT, placed))) {
             log_err(log, "asset %s: has no usable %s for group %s; run plantcast-prep %s", asset->plant->id,
                     heat ? "distances by heat" : "directions", group->id, plant->path);
@@ -243,7 +244,7 @@ static int compare_assets(const void *a, const void *b)
     return ((const struct file_use *)a)->asset - ((const struct file_use *)b)->asset;
 }
 
-/* Opens files for all assets: each range opens the first use of a name, and the following uses share it. */
+/* Opens files for all assets: uses are sorted by name; the first use of a name opens the file, and the following ones share it. */
 static void open_some(void *arg, size_t begin, size_t end)
 {
     const struct file_uses *uses = arg;
@@ -259,7 +260,7 @@ static void open_some(void *arg, size_t begin, size_t end)
     }
 }
 
-/* Opens each file once, on all cores, because checking the files takes longer than everything else here. */
+/* Opens each file once, on all cores, because checking the files takes longer than all other steps of loading. */
 static void open_files(struct file_uses *uses)
 {
     qsort(uses->at, uses->count, sizeof(*uses->at), compare_uses);
@@ -288,7 +289,7 @@ static bool find_file(struct file_uses *uses, const struct manifest *manifest, u
     return true;
 }
 
-/* --- all of them ------------------------------------------------------------------------------------------------------------ */
+/* --- all assets of the scene ------------------------------------------------------------------------------------------------ */
 
 /* Gives missing assets the bounds of the plant, so that framing one shows the plant. Returns false if there is no other asset. */
 static bool bound_missing(struct scene *scene)
@@ -388,13 +389,13 @@ void scene_home(const struct scene *scene, double aspect, struct camera *camera)
     memcpy(camera->eye_m, view->eye_m, sizeof(camera->eye_m));
     memcpy(camera->target_m, view->target_m, sizeof(camera->target_m));
     camera->fov_deg = view->fov_deg;
-    if (!camera_valid(camera)) /* looking straight down: a plan with north at the top */
+    if (!camera_valid(camera)) /* invalid if the view looks straight down; then up is north, as in a plan */
         memcpy(camera->up, scene->plant->up == AXIS_Y ? (double[]){ 0, 0, -1 } : (double[]){ 0, 1, 0 }, sizeof(camera->up));
 }
 
 void scene_depth_box(const struct scene *scene, const double eye_m[3], double min_m[3], double max_m[3])
 {
-    double away_m = 0, farthest_m2 = 0; /* distances from the eye to the main part, and to the farthest corner of everything (squared) */
+    double away_m = 0, farthest_m2 = 0; /* distance from the eye to the main part; squared distance to the farthest corner of everything */
     for (int c = 0; c < 3; c++) {
         away_m = fmax(away_m, fmax(scene->bounds_min_m[c] - eye_m[c], eye_m[c] - scene->bounds_max_m[c]));
         farthest_m2 += pow(fmax(fabs(scene->whole_min_m[c] - eye_m[c]), fabs(scene->whole_max_m[c] - eye_m[c])), 2);

@@ -14,17 +14,18 @@ struct asset_set { /* set of assets, by index in scene->assets; zero: empty */
 void asset_set_add(struct asset_set *set, int asset); /* 0..ASSET_SET_MAX - 1 */
 bool asset_set_has(const struct asset_set *set, int asset);
 
-struct clip { /* section planes; the intersection of all inner sides is kept */
+struct clip { /* section planes; the space on the inner side of all planes is kept */
     int plane_count;
     bool is_box;                       /* the planes are those of an axis-aligned box: min x, max x, min y, ... */
-    double planes[CLIP_MAX_PLANES][4]; /* n x, n y, n z, d: n p + d >= 0 is kept; n: unit vector in the plant frame */
+    double planes[CLIP_MAX_PLANES][4]; /* nx, ny, nz, d: points p with n p + d >= 0 are kept; n: unit vector in the plant frame */
 };
-/* Returns a plane as it cuts: slightly farther out than set, so that a surface in the plane itself is kept whole. */
+/* Writes the plane that is used for cutting: slightly farther out than the set plane, so that a surface in the plane itself is kept
+ * whole. */
 void clip_plane(const struct clip *clip, int index, double out[4]);
 void clip_box(struct clip *clip, const double min_m[3], const double max_m[3]);
 void clip_get_box(const struct clip *clip, double min_m[3], double max_m[3]);
 bool clip_keeps(const struct clip *clip, const double point_m[3]);
-/* clip_drops: the box is cut away entirely; clip_touches: some of the box is cut away. */
+/* clip_drops: the box is cut away entirely; clip_touches: at least a part of the box is cut away. */
 bool clip_drops(const struct clip *clip, const double min_m[3], const double max_m[3]);
 bool clip_touches(const struct clip *clip, const double min_m[3], const double max_m[3]);
 /* Clips origin + t direction, low <= t <= high, to the kept space. Returns false if nothing is left. */
@@ -37,7 +38,7 @@ struct visibility {
 enum asset_look {
     ASSET_SHOWN,
     ASSET_GHOST, /* transparent, without a field */
-    ASSET_HIDDEN /* hidden by the user, or others are isolated and it is no ghost */
+    ASSET_HIDDEN /* the user has hidden it, or has isolated others and not ghosted it */
 };
 enum asset_look visibility_of(const struct visibility *visibility, int asset);
 struct plant;
