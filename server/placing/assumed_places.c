@@ -13,7 +13,7 @@
 #include "plant/parse/csv.h"
 #include "plant/tags/tag_edit.h"
 
-/* --- what is known of a place ------------------------------------------------------------------------------------------------- */
+/* --- facts about each tag's position ------------------------------------------------------------------------------------------ */
 
 /* Returns per tag the distance of its position from its asset's surface; NaN: the tag is not on a surface. The caller frees the array. */
 static double *surface_distances(const struct scene *scene)

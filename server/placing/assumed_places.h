@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Selects, among the sensors with an assumed position (PLANT.md, "Assumed places"), those that an engineer accepts at once. Thread: the
-   loop. */
+/* Selects, among the sensors with an assumed position (PLANT.md, "Assumed places"), those that an engineer accepts in one operation.
+ * Thread: the loop. */
 #ifndef PLACING_ASSUMED_PLACES_H
 #define PLACING_ASSUMED_PLACES_H
 #include <stddef.h>
@@ -12,12 +12,13 @@
 struct assumed_filter {
     int asset, group;  /* indices in the plant; -1: any */
     char pattern[101]; /* glob over the tag's name; without * and ? a substring of its name or description; case-insensitive; "": any */
-    double within_m;   /* largest distance from the asset's surface; negative: any */
-    double confidence; /* smallest confidence of the match, 0..1, from matches.csv next to the tag list; negative: any */
+    double within_m;   /* largest distance from the asset's surface; negative: any distance */
+    /* smallest confidence of the match between tag and equipment, 0..1, from matches.csv next to the tag list; negative: any */
+    double confidence;
 };
 
 enum assumed_outcome {
-    ASSUMED_NOT_MEANT, /* the tag's position is not assumed, or asset, group or pattern do not match */
+    ASSUMED_NOT_MEANT, /* the tag's position is not assumed, or the filter's asset, group or pattern does not match the tag */
     ASSUMED_ACCEPTED,
     ASSUMED_NOWHERE, /* the tag's row has neither a node nor X, Y, Z */
     ASSUMED_MISSING, /* its asset has no model */

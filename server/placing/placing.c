@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sets of moved sensors, the relocation objects of their assets, and results from workers. */
+/* Manages the users' sets of moved sensors, the relocation objects of the assets concerned, and results from workers. */
 #include "placing/placing.h"
 
 #include <math.h>
@@ -15,7 +15,7 @@
 #include "surface/relocation.h"
 #include "value/quality.h"
 
-enum { MOVERS = 4 }; /* number kept warm; those with moved sensors are kept in any case */
+enum { MOVERS = 4 }; /* limit of relocation objects kept in memory; those of assets with moved sensors are kept beyond it */
 
 struct distance_ask { /* pending request for the distances of one moved sensor */
     struct placing *placing;
@@ -25,7 +25,7 @@ struct distance_ask { /* pending request for the distances of one moved sensor *
 };
 
 struct placing_entry { /* private part of a moved sensor; set->placed holds the public part */
-    uint64_t asked;    /* number of its pending request; 0: none */
+    uint64_t asked;    /* sequence number of the sensor's pending request; 0: none */
     uint64_t ticket;
     struct trial_sensor sensor;
 };
@@ -131,8 +131,8 @@ static bool is_moved_on(const struct placing *placing, int asset)
     return false;
 }
 
-/* Frees the least recently used surface without moved sensors, if more than MOVERS are in memory. A surface still being built stays, since
-   freeing it would mean waiting. keep: index of an asset whose surface stays. */
+/* Frees the least recently used relocation object of an asset without moved sensors, if more than MOVERS are in memory. Does not free one
+ * whose surface is still being built, because that would mean waiting. keep: index of an asset whose object stays. */
 static void cool(struct placing *placing, int keep)
 {
     int count = 0, oldest = -1;

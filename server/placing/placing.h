@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sensors that users place on the model: a set of moves per user, which becomes a trial (field/trials.h) at once with straight-line
-   distances, and again when geodesic ones are computed. Thread: the loop, except functions called by workers. */
+/* Sensors that users place on the model: a set of moves per user, which becomes a trial (field/trials.h): at once with straight-line
+ * distances, and a new trial when geodesic distances have been computed. Thread: the loop, except functions called by workers. */
 #ifndef PLACING_PLACING_H
 #define PLACING_PLACING_H
 #include "base/log/log.h"
@@ -15,13 +15,13 @@ struct placing_params {
     struct workers *workers;
     const struct scene *scene;
     const char *folder;        /* folder of prepared files; only read during placing_create() */
-    void (*notify)(void *arg); /* called on any thread when placing_collect() has something to collect */
+    void (*notify)(void *arg); /* callback, on any thread: placing_collect() has new results */
     void *notify_arg;
 };
 struct placing;
 /* Everything in params but `folder` must outlive the result. Never NULL. The caller destroys it. */
 struct placing *placing_create(const struct placing_params *params);
-/* Waits for pending work and frees everything. All sets must be destroyed before. &NULL is fine; sets it to NULL. */
+/* Waits for pending work and frees everything. Destroy all sets before. &NULL is fine; sets it to NULL. */
 void placing_destroy(struct placing **placing);
 /* Returns the registry in which views look up trials. Owned by `placing`. */
 struct trials *placing_trials(struct placing *placing);
@@ -40,7 +40,7 @@ enum placed_state {
 struct placed {
     struct place_move move;
     double surface_m[3];        /* point on the asset, in the plant frame */
-    double distance_m, limit_m; /* distance from there to the requested position; above limit_m it deserves a warning */
+    double distance_m, limit_m; /* distance from surface_m to the requested position; a distance above limit_m deserves a warning */
     enum placed_state state;
 };
 
@@ -52,11 +52,11 @@ void place_set_destroy(struct place_set **set);
 /* Replaces the set's moves: at most PLACING_MOVES, each tag once; unchanged ones keep their distances. Returns false with nothing changed;
    `why` names the tag that cannot be placed (it has no group, or the point is farther from the asset than the asset's size). */
 bool place_set_moves(struct place_set *set, const struct place_move *moves, size_t count, struct refusal *why);
-/* Returns the number of the set's trial; 0: it has no moves. */
+/* Returns the id of the set's trial (field/trials.h); 0: the set has no moves. */
 uint32_t place_set_trial(const struct place_set *set);
 /* Writes the set's moves to *out, valid until the set changes. Returns their number. */
 size_t place_set_get(const struct place_set *set, const struct placed **out);
-/* Returns whether geodesic distances arrived since the last call; the set then has a new trial number. */
+/* Returns whether geodesic distances arrived since the last call; the set then has a new trial id. */
 bool place_set_changed(struct place_set *set);
 
 /* The answer to a coverage request; client and seq identify the request. */
@@ -69,15 +69,15 @@ struct sensor_coverage_answer {
     struct {
         int asset;
         struct sensor_coverage coverage;
-    } * assets; /* assets with sensors of the group */
+    } * assets; /* coverage of each asset that has sensors of the group */
     struct sensor_coverage_answer *next;
 };
 /* Computes on a worker the sensor coverage of a group on all its assets, with the moves of `set` (NULL: none). far_m: as in
    sensor_coverage_query. placing_collect() returns the answer. */
 void placing_request_coverage(struct placing *placing, const struct place_set *set, int group, double far_m,
                               const struct snapshot *snapshot, uint64_t client, uint32_t seq);
-/* Gives newly computed distances to their sets, and returns the coverage answers that are ready, oldest first, as a linked list. The caller
-   frees each with sensor_coverage_answer_free(). */
+/* Delivers newly computed distances to their sets. Returns a linked list of the coverage answers that are ready, oldest first. The caller
+ * frees each answer with sensor_coverage_answer_free(). */
 struct sensor_coverage_answer *placing_collect(struct placing *placing);
 /* Frees one answer. */
 void sensor_coverage_answer_free(struct sensor_coverage_answer *answer);

@@ -66,7 +66,7 @@ static void find_next(const struct field_layout *layout, enum distance_mode mode
     }
 }
 
-struct nearest_block { /* nearest sensors for a block of vertices */
+struct nearest_block { /* for a block of vertices: distance to the nearest sensor, and whether that sensor's reading is usable */
     float m[KERNEL_BLOCK];
     bool good[KERNEL_BLOCK];
 };

@@ -10,7 +10,8 @@ struct sensor_coverage_query {
     int asset, group;
     enum distance_mode mode;
     double reach_m; /* INFINITY: no limit */
-    double far_m;   /* distance from which a point counts as far from all sensors; 0: half of the reach, or a fifth of the asset's size */
+    /* distance from which a point counts as far from all sensors; 0: half of the reach, or without a reach a fifth of the asset's size */
+    double far_m;
     const uint8_t *good; /* by tag: 1 if the sensor's reading is usable now */
 };
 
@@ -21,8 +22,8 @@ struct sensor_coverage {
     double farthest_at_m[3]; /* position of that point, in the plant frame */
     double far_share;        /* fraction of the surface's area that is far, 0..1 */
     double lost_share;       /* fraction of the area that no sensor reaches, or whose nearest sensor has no usable reading */
-    double next_m;           /* largest distance of a sensor to its nearest neighbour; 0: there is only one sensor */
-    int next_tags[2];        /* tags of that sensor and its neighbour; -1: none */
+    double next_m;           /* largest distance from a sensor to its nearest other sensor; 0: there is only one sensor */
+    int next_tags[2];        /* indices of the tags of these two sensors; -1: none */
 };
 
 /* Computes the coverage for a query into *out. Returns false if no sensor of the group is on the asset. */

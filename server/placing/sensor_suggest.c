@@ -16,9 +16,11 @@
 #include "plant/influence.h"
 #include "plant/models/transform.h"
 
-#define MAX_CANDIDATES 1500 /* candidates per asset, spread evenly over the unseen area */
-#define MAX_MEASURED 40     /* geodesic distances computed per suggestion, at most; the bounds of the remaining candidates are smaller */
-#define MIN_GAIN 1e-6       /* gains below this part of the measure are ignored */
+/* maximum number of candidate positions per asset, spread evenly over the area where hot spots are hard to detect */
+#define MAX_CANDIDATES 1500
+/* maximum number of candidates per suggestion for which geodesic distances are computed, in order of their upper bounds */
+#define MAX_MEASURED 40
+#define MIN_GAIN 1e-6 /* smallest gain, as a part of the measure, for which a sensor is suggested */
 
 struct suggest_asset { /* an asset */
     int asset;
@@ -32,12 +34,12 @@ struct suggest_asset { /* an asset */
 struct candidate {
     size_t part;
     uint32_t vertex;
-    double bound; /* upper bound of its gain: square metres times the measure */
+    double bound; /* upper bound of the candidate's gain: square metres times the measure */
 };
 
 struct suggesting {
     const struct suggest_query *query;
-    double seen_m; /* distance from a sensor at which a hot spot of the whole range is still seen */
+    double seen_m; /* distance from a sensor up to which a hot spot of the group's whole range is detectable */
     struct suggest_asset *parts;
     size_t part_count;
     double whole_m2;
@@ -132,7 +134,7 @@ static int by_bound(const void *a, const void *b)
     return (first->bound < second->bound) - (first->bound > second->bound);
 }
 
-/* Spreads candidates evenly over the unseen area, deterministically. The caller frees the list. */
+/* Lists candidates, spread evenly over the area where hot spots are hard to detect. Deterministic. The caller frees the list. */
 static struct candidate *find_candidates(const struct suggesting *suggesting, size_t *count)
 {
     struct candidate *list = mem_array(suggesting->part_count * (MAX_CANDIDATES + 1), sizeof(*list));
@@ -198,7 +200,7 @@ static float *distances_from(const struct suggesting *suggesting, struct suggest
     return waiting.result.status == RELOCATION_DONE ? waiting.result.geodesic_m : NULL;
 }
 
-/* Finds the best candidate and applies its effect. Returns false if there is nothing to gain. */
+/* Finds the best candidate and applies its effect. Returns false if no candidate gains more than MIN_GAIN. */
 static bool take_best(struct suggesting *suggesting, struct suggestion *out)
 {
     size_t count;

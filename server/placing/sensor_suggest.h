@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Suggests where additional sensors would help most: one position after the other, each reducing the unseen part as much as a single sensor
-   can. The measure is the mean over the surface of ln(h / h0) / ln(1 / 0.05), capped at 1: h is the smallest hot spot detectable at a point
-   (show: blind), h0 the one detectable at a sensor. 0 means a sensor everywhere; 1 means that even a hot spot of the group's whole range is
-   undetectable. The greedy choice reaches at least 63 % of the best set's gain (Nemhauser, Wolsey & Fisher, 1978), among the tested
-   positions. Thread: one; waits for workers. */
+/* Suggests where additional sensors would help most: one position after the other, each reducing the measure as much as a single sensor
+ * can. The measure says how badly hot spots are detectable: it is the mean over the surface of ln(h / h0) / ln(1 / 0.05), capped at 1: h is
+ * the smallest hot spot detectable at a point (show: blind), h0 the one detectable at a sensor. 0 means a sensor everywhere; 1 means that
+ * even a hot spot of the group's whole range is undetectable. The greedy choice reaches at least 63 % of the best set's gain (Nemhauser,
+ * Wolsey & Fisher, 1978), among the tested positions. Thread: one; waits for workers. */
 #ifndef PLACING_SENSOR_SUGGEST_H
 #define PLACING_SENSOR_SUGGEST_H
 #include "base/log/log.h"
@@ -15,7 +15,7 @@ struct suggest_query {
     struct workers *workers;
     const struct scene *scene;
     const char *folder; /* folder of the prepared files */
-    int group, asset;   /* asset -1: all assets with sensors of the group at known positions */
+    int group, asset;   /* asset: index of the asset; -1: all assets with sensors of the group at known positions */
     size_t count;
 };
 
@@ -26,8 +26,8 @@ struct suggestion {
     double unseen_before, unseen_after; /* fraction of the area where even a hot spot of the whole range is undetectable */
 };
 
-/* Writes up to query->count suggestions to `out` and returns their number, fewer if there is nothing left to gain. Returns 0 if no asset
-   has sensors of the group at known positions, or after a failure, logged. */
+/* Writes up to query->count suggestions to `out` and returns their number, fewer if no further sensor would help. Returns 0 if no asset has
+ * sensors of the group at known positions, or after a failure, logged. */
 size_t sensor_suggest(const struct suggest_query *query, struct suggestion *out);
 
 #endif

@@ -52,7 +52,7 @@ static void cannot_write(struct refusal *why, const char *file, int error)
         refusal_set(why, REFUSAL_UNWRITTEN, "file=%s\nerror=%s", file, strerror(error));
 }
 
-/* Uses a link, so that owner and mode stay. */
+/* Keeps the present file by a second hard link, so that its owner and mode stay. */
 char *tag_file_keep(const char *path, struct refusal *why)
 {
     for (int n = 1; n < MAX_VERSIONS; n++) {

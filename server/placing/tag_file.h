@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The tag list on disk: a new version takes the name, and the previous one is kept as NAME.1, NAME.2, ... Nothing is ever overwritten.
-   Thread: any, one at a time per list. */
+/* The tag list on disk: a new version takes the name, and the previous one is kept as NAME.1, NAME.2, ... No version is ever overwritten.
+ * Thread: any, one at a time per list. */
 #ifndef PLACING_TAG_FILE_H
 #define PLACING_TAG_FILE_H
 #include <stdbool.h>
@@ -21,7 +21,7 @@ void tag_save_free(struct tag_save *save);
 
 /* Returns the list's text (mem_free). NULL with the reason in *why. */
 char *tag_file_read(const char *path, struct refusal *why);
-/* Writes a hash of the text as 16 hexadecimal digits, to tell versions apart. */
+/* Writes a hash of the text as 16 hexadecimal digits, by which versions are told apart. */
 void tag_file_hash(const char *text, char out[17]);
 /* Keeps the present file under the first free name of NAME.1, NAME.2, ..., as a second link. Returns that name (mem_free). NULL with the
    reason in *why. */
