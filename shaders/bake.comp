@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bakes the light that reaches each vertex, each large triangle or each texel of the ground, using depth maps from many directions.
+// Bakes light: computes the light that reaches each vertex, each large triangle or each texel of the ground, from depth maps of many
+// directions.
 #include "light.glsl"
 #include "shadow.glsl"
 #include "environment.glsl"
@@ -8,12 +9,12 @@ layout(local_size_x = 64) in;
 layout(binding = 1) uniform sampler2DArrayShadow sky_maps;
 layout(std430, binding = 1) readonly buffer Directions {
     mat4 map_from_plant[32];
-    vec4 direction[32]; // unit vector towards the light; w: its brightness
+    vec4 direction[32]; // unit vector towards the light; w: brightness of the light
 };
-layout(location = 0) uniform mat4 plant_from_here; // result is relative to the centre of the scene
+layout(location = 0) uniform mat4 plant_from_here; // to plant axes, relative to the centre of the scene
 layout(location = 1) uniform mat4 sun_from_plant;
 layout(location = 4) uniform mat3 plant_from_normal;
-layout(location = 8) uniform vec4 sun;             // direction; w: texel size of the sun's map in metres
+layout(location = 8) uniform vec4 sun;             // unit vector towards the sun; w: texel size of the sun's depth map in metres
 layout(location = 9) uniform float sky_texel_m;
 layout(location = 10) uniform ivec2 range; // range of vertices or points: first index, and one beyond the last
 #ifdef GROUND
@@ -26,12 +27,12 @@ const int TAPS = 4;
 const float SPREAD = 0.004;
 layout(std430, binding = 2) readonly buffer Positions { float positions_m[]; };
 layout(std430, binding = 3) readonly buffer Normals { uint normals[]; }; // packed as in normal.glsl
-layout(std430, binding = 4) buffer Light { uint baked[]; }; // bytes: light, ambient, openness, cosine to the sun
+layout(std430, binding = 4) buffer Light { uint baked[]; }; // bytes: light, ambient, openness (visible part of the sky), cosine to the sun
 layout(std430, binding = 5) readonly buffer Corners { uint corners[]; }; // three per large triangle: render/light/bake_faces.h
-layout(std430, binding = 6) buffer Sums { uint sums[]; }; // sums per vertex over samples in large triangles: weight, openness, sun
+layout(std430, binding = 6) buffer Sums { uint sums[]; }; // per vertex, sums over samples in large triangles: weight, openness, sun
 layout(location = 12) uniform float large_m;
 layout(location = 13) uniform bool has_faces;
-layout(location = 14) uniform float least_open; // lower bound of openness while some of the plant is hidden
+layout(location = 14) uniform float least_open; // lower bound of openness while some assets are hidden
 #endif
 
 const vec2 disc[16] = vec2[](vec2(0.177, 0.000), vec2(-0.226, 0.207), vec2(0.035, -0.394), vec2(0.285, 0.371), vec2(-0.522, -0.092),
@@ -39,8 +40,8 @@ const vec2 disc[16] = vec2[](vec2(0.177, 0.000), vec2(-0.226, 0.207), vec2(0.035
                              vec2(0.343, -0.734), vec2(0.255, 0.808), vec2(-0.764, -0.443), vec2(0.897, -0.197), vec2(-0.548, 0.779),
                              vec2(-0.126, -0.976));
 
-// Returns the open fraction of a cone around one direction of the sky maps: 32 directions are too few to test each by a single ray. slope:
-// of the surface in the map, so that the surface does not occlude itself.
+// Returns the open fraction of a cone around one direction of the sky maps: with only 32 directions, a single ray for each would be too
+// coarse. slope: slope of the surface in the depth map, so that the surface does not occlude itself.
 float opening(vec3 p, vec2 slope, int i)
 {
     float sum = 0.0;
@@ -133,7 +134,8 @@ void main()
 #else
     float open = unpackUnorm4x8(baked[i]).z;
 #endif
-    open = round(max(open, least_open) * 255.0) / 255.0; // openness is rounded as it will be when read back after the sun has moved
+    // round openness as it is stored, so that the result does not change when it is read back after the sun has moved
+    open = round(max(open, least_open) * 255.0) / 255.0;
     float ambient = open * sky_brightness(normal);
     float facing = max(dot(normal, sun.xyz), 0.0);
     float sun_visible = weight > 0.0 ? float(sums[3 * i + 2]) / weight : sun_visibility(sun_from_plant, place, normal, sun.w);

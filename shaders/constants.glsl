@@ -7,7 +7,7 @@
 // Weights of scalar light: sky and ground; sun.
 #define LIGHT_AMBIENT 0.52
 #define LIGHT_SUN 0.48
-// Light of sky and sun, relative to white.
+// Brightness of the light from sky and sun, relative to white.
 #define SKY_LIGHT 0.55
 #define SUN_LIGHT 0.78
 // Reflectance of a dielectric at normal incidence.
@@ -15,7 +15,7 @@
 // Parameters of the Khronos PBR Neutral tone mapper.
 #define TONE_START 0.76
 #define TONE_DESATURATION 0.15
-// Context is mixed with this grey, by this fraction.
+// Assets without a field are mixed with this grey, by this fraction.
 #define MUTED_GREY 0.88
 #define MUTED_PART 0.48
 // Weights for the brightness of sRGB.
@@ -35,36 +35,39 @@
 #define GROUND_SUN 0.20
 #define GROUND_SKY 0.42
 #define GROUND_MOST 0.5
-// Columns of the colour map: positions on the scale from 1 on, out of range at both ends, then patterns.
+// Columns of the colour map: column 0 is for values below MIN, columns 1 to COLORMAP_PLACES are positions on the scale, the next is for
+// values above MAX, then the colours of patterns.
 #define COLORMAP_PLACES 1024
-// Patterns over the field: diagonal stripes for no data, dots for uncertain, horizontal lines for no limits. A cell has 1/PATTERN_PERIODS
-// of the picture's height, but at least PATTERN_LEAST_PX pixels; the following sizes are fractions of a cell.
+// Patterns over the field: diagonal stripes for no data, dots for uncertain, horizontal lines for no limits. A cell (one period of a
+// pattern) has 1/PATTERN_PERIODS of the picture's height, but at least PATTERN_LEAST_PX pixels; the following sizes are fractions of a
+// cell.
 #define PATTERN_PERIODS 90
 #define PATTERN_LEAST_PX 6
 #define HATCH_SLANT 1.4142
 #define HATCH_EDGE 0.25
 #define STIPPLE_RADIUS 0.26
 #define RULE_EDGE 0.36
-// Greys of the patterns, of 255.
+// Greys of the patterns, 0 to 255.
 #define HATCH_LIGHT_GREY 240
 #define HATCH_DARK_GREY 150
 #define STIPPLE_GREY 64
 #define RULE_LIGHT_GREY 226
 #define RULE_DARK_GREY 196
-// Feature edges: opacity, and the relative depth steps at which they start and are complete. The nearer surface must continue for
-// EDGE_THIN_PX pixels; the edge is complete from EDGE_WIDE_PX on.
+// Feature edges: opacity, and the relative depth steps at which a line begins and reaches full opacity. The nearer surface must be at least
+// EDGE_THIN_PX pixels wide; from EDGE_WIDE_PX on, the line has full opacity.
 #define EDGE_RGB 0.08, 0.10, 0.14
 #define EDGE_MOST 0.5
 #define EDGE_FROM 0.006
 #define EDGE_TO 0.03
 #define EDGE_THIN_PX 3
 #define EDGE_WIDE_PX 6
-// Isolines: dark on colours brighter than ISOLINE_BRIGHT, else light.
+// Isolines are dark on colours brighter than ISOLINE_BRIGHT, light on others.
 #define ISOLINE_BRIGHT 0.32
 #define ISOLINE_DARK_RGB 0.07, 0.09, 0.12
 #define ISOLINE_LIGHT 0.93
 #define ISOLINE_MOST 0.8
-// Ghosts, over a light and a dark backdrop: lines at relative steps of depth (FALL) and at creases (BEND); level lines between.
+// Ghosted assets, over a light and a dark backdrop: lines at relative steps of depth (FALL) and at creases (BEND), and thin horizontal
+// lines every GHOST_LEVEL_PX pixels.
 #define GHOST_ON_LIGHT_RGB 0.20, 0.26, 0.33
 #define GHOST_ON_DARK_RGB 0.56, 0.64, 0.72
 #define GHOST_FALL_MOST 0.9
@@ -76,7 +79,7 @@
 #define GHOST_LEAST 0.05
 #define GHOST_LEVEL 0.4
 #define GHOST_LEVEL_PX 10
-// Rim of the selected asset: a dark line inside a white one.
+// Outline of the selected asset: a dark line inside a white one.
 #define RIM_RGB 0.05, 0.09, 0.16
 #define RIM_WHITE 0.9
 // Section cuts: a surface's inner side, brighter towards the viewer and upwards; and section caps with darker stripes.

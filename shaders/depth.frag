@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Marks covered pixels, except holes that a texture cuts.
+// Marks the pixels that a surface covers; discards pixels where the texture is transparent (holes).
 #ifdef HOLES
 #include "material.glsl"
 layout(location = 0) in vec3 hole;

@@ -19,9 +19,10 @@ float line(float rise)
     return smoothstep(EDGE_FROM, EDGE_TO, rise);
 }
 
-// Returns line coverage towards the neighbour at `side`, if the neighbour is nearer. Depth is 1/distance, or falls with distance in an
-// orthographic view; a flat surface is a plane on the screen. The nearer surface must continue for EDGE_THIN_PX pixels, and about as far
-// sideways (slanting rails are thin but long); the line is complete at EDGE_WIDE_PX.
+// Returns line coverage towards the neighbour at `side`, if the neighbour is nearer. side: step of one pixel. Depth is 1/distance, or falls
+// with distance in an orthographic view, so depth is linear over a flat surface on the screen. The nearer surface must continue for
+// EDGE_THIN_PX pixels in direction `side`, and about as far along one side (slanting rails are thin but long). Coverage is full at
+// EDGE_WIDE_PX.
 float edge(ivec2 pixel, float here, ivec2 side)
 {
     ivec2 other = pixel + side;

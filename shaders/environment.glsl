@@ -6,7 +6,7 @@ layout(std140, binding = 1) uniform Environment {
     vec4 irradiance_terms[9];
 };
 layout(binding = 8) uniform sampler3D mirrored_map; // octahedral map; third coordinate: roughness
-layout(binding = 9) uniform sampler2D brdf_map;     // scale and bias of F0 by cosine to the viewer and roughness
+layout(binding = 9) uniform sampler2D brdf_map;     // lookup table: scale and bias of F0, by cosine to the viewer and roughness
 
 // Returns irradiance divided by pi.
 vec3 sky_irradiance(vec3 n)
@@ -23,7 +23,7 @@ float sky_brightness(vec3 n)
     return clamp(dot(sky_irradiance(n), vec3(0.2126, 0.7152, 0.0722)), 0.0, 1.0);
 }
 
-// Returns prefiltered reflection at this roughness.
+// Returns the reflected light, prefiltered for this roughness.
 vec3 mirrored(vec3 r, float roughness)
 {
     const float side = 128.0, layers = 8.0;

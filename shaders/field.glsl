@@ -4,14 +4,14 @@
 #include "constants.glsl"
 layout(binding = 0) uniform sampler2D colormap;
 #ifdef RICH
-layout(binding = 15) uniform sampler2D lines; // nearest position with an isoline, by position on the scale
+layout(binding = 15) uniform sampler2D lines; // lookup table by position on the scale: the nearest position that has an isoline
 #endif
 
 const int PLACES = COLORMAP_PLACES, HATCH_LIGHT = PLACES + 2, HATCH_DARK = PLACES + 3, STIPPLE = PLACES + 4,
           PLAIN_LIGHT = PLACES + 5, PLAIN_DARK = PLACES + 6;
 
-// Returns the column of a position. Interpolation of equal values may round, so the ends have some slack. Column 0 is below MIN, PLACES + 1
-// above MAX.
+// Returns the column of the colour map for a position on the scale. Interpolation of equal values may round, so positions up to 1e-5 beyond
+// the ends still count as inside. Column 0 is below MIN, PLACES + 1 above MAX.
 int colormap_column(float place)
 {
     const float slack = 1e-5, columns = float(PLACES) / (1.0 + 2.0 * slack);
@@ -28,7 +28,7 @@ vec3 colormap_color(int column, int row)
     return texelFetch(colormap, ivec2(column, row), 0).rgb;
 }
 
-// Diagonal stripes: exceeds 0.5 in the dark ones.
+// Diagonal stripes: returns a value above 0.5 in the dark stripes.
 float hatch(vec2 pixel)
 {
     float phase = fract((pixel.x + pixel.y) / (frame.scale.w * HATCH_SLANT));
@@ -43,7 +43,7 @@ float stipple(vec2 pixel)
 }
 
 #ifdef RICH
-// Horizontal lines, widely spaced: exceeds 0.5 on them.
+// Horizontal lines, widely spaced: returns a value above 0.5 on the lines.
 float rule(float y)
 {
     return (abs(fract(y / frame.scale.w) - 0.5) - RULE_EDGE) * frame.scale.w + 0.5;
@@ -54,8 +54,8 @@ float place_of(float value)
     return ((frame.scale.z > 0.5 ? log2(max(value, 1e-30)) : value) - frame.scale.x) * frame.scale.y;
 }
 
-// Returns how much of the pixel an isoline covers; line width does not depend on the field's slope. Where the field is level within
-// rounding (relative to the scale's largest value) there is no line.
+// Returns the fraction of the pixel that an isoline covers, 0..1. The line's width does not depend on the field's slope. Where the field is
+// constant within rounding (relative to the scale's largest value), returns 0.
 float line_part(float place, int column)
 {
     float slope = length(vec2(dFdx(place), dFdy(place)));
@@ -65,8 +65,8 @@ float line_part(float place, int column)
 }
 #endif
 
-// Returns an sRGB colour. field: position on the scale (RICH: the value itself), then no data, uncertain and (RICH) no limits, each 0..1,
-// interpolated between vertices.
+// Returns an sRGB colour. field.x: position on the scale (RICH: the value itself); the other components: shares of no data, uncertain and
+// (RICH) no limits, each 0..1, interpolated between vertices.
 vec3 field_color(FIELD_TYPE field, float light)
 {
 #ifdef RICH

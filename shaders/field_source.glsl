@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Source of the field at a fragment: interpolated between vertices, or computed here.
+// Provides the field at a fragment: interpolated between vertices, or computed from all sensors (reference.glsl).
 #ifdef PER_FRAGMENT
 #include "reference.glsl"
 FIELD_TYPE field_here(FIELD_TYPE interpolated)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Ghosted assets: lines where their depth has steps or creases, and a thin level line every ten pixels, so that the colours behind stay
-// recognisable. No dots and no slanting lines, which mean uncertain and no data.
+// Ghosted assets: lines where their depth has steps or creases, and a thin horizontal line every ten pixels, so that the colours behind
+// stay recognisable. Dots and slanting lines are not used, because they mean "uncertain" and "no data".
 #include "constants.glsl"
 #include "frame.glsl"
 layout(binding = 0) uniform sampler2D ghosts; // depth of ghosts; 0: none
@@ -13,7 +13,8 @@ float at(ivec2 pixel)
     return texelFetch(ghosts, clamp(pixel, ivec2(0), textureSize(ghosts, 0) - 1), 0).r;
 }
 
-// x: drop to either side, beyond the rise to the other side (a plane has none, however steep); y: curvature; both relative to distance.
+// Returns x: step of depth down to one side, minus the rise to the other side (0 on a plane, however steep); y: curvature. Both are
+// relative to distance.
 vec2 shape(ivec2 pixel, float here, float scale, ivec2 side)
 {
     float a = at(pixel - side), b = at(pixel + side);

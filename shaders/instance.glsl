@@ -2,10 +2,11 @@
 // Data that differs between assets drawn by one call: placement, and per-vertex numbers in buffers that many assets share (gpu/pool.h). The
 // layout must match struct draw_instance.
 
-// Three rows of the matrix for normals; in w: first block of light, first block of field (-1: none), unused
+// Three rows of the matrix for normals; in w: index of the asset's first block in `lights`; index of its first block in `scalars` (-1:
+// none); unused
 layout(location = 4) in mat3x4 eye_from_normal;
 layout(location = 8) in mat4 clip_from_file;
-// rows of the matrix from file to eye space; in previews: to texture coordinates and depth of the shadow map
+// rows of the matrix from file coordinates to eye space; in previews: to texture coordinates and depth of the sun's shadow map
 layout(location = 12) in mat3x4 from_file;
 layout(binding = 12) uniform samplerBuffer lights;
 layout(binding = 13) uniform usamplerBuffer scalars; // value as float bits; then bytes: no data, uncertain, no limits
@@ -15,7 +16,7 @@ vec4 light_here()
     return texelFetch(lights, int(eye_from_normal[0].w) * 64 + gl_VertexID);
 }
 
-// Assets without a field get no data.
+// Returns the field at the vertex; for assets without a field, "no data".
 FIELD_TYPE scalar_here()
 {
     int block = int(eye_from_normal[1].w);

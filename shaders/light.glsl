@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Light at a point and the resulting colour; shared by both tiers and by the ramps, so that they agree.
+// Light at a point and the resulting colour; shared by previews, refined frames and colour ramps, so that their colours agree.
 #include "constants.glsl"
 
 // Returns scalar light: 0 in a hidden corner, 1 facing the sun under the open sky. ambient: visible sky and ground, 0..1; sun: cosine times

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs for visible fragments of an asset's box, and enables the asset's draw commands.
+// Runs only for visible fragments of an asset's box, and then enables the asset's draw commands.
 layout(early_fragment_tests) in;
-layout(location = 0) flat in uvec2 commands_here; // index of the first command, and their number
+layout(location = 0) flat in uvec2 commands_here; // index of the asset's first draw command, and count of its commands
 struct Command {
     uint count, instances, first_index;
     int base_vertex;

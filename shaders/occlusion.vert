@@ -2,7 +2,7 @@
 // Draws the boxes of assets, each as a strip of 14 corners: render/gl/occlusion.h.
 layout(location = 0) in mat4 clip_from_box; // maps the unit cube to clip space
 layout(location = 4) in uvec2 commands_of;
-layout(location = 0) flat out uvec2 commands_here; // index of the first command, and their number
+layout(location = 0) flat out uvec2 commands_here; // index of the asset's first draw command, and count of its commands
 
 void main()
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Outline of the masked asset: a dark line inside a light one, visible on any field colour.
+// Outline of the masked asset: a dark line inside a light one, so that it is visible on any field colour.
 #include "constants.glsl"
 layout(binding = 0) uniform sampler2D mask;
 layout(location = 0) uniform float width_px;

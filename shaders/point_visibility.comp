@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Projects markers into the frame and tests whether a surface hides them.
+// Projects each marker into the frame and tests whether a surface hides it.
 #include "frame.glsl"
 layout(local_size_x = 64) in;
 struct Marker {
-    vec4 place;  // in: eye space, metres; w: depth tolerance in metres. out: x, y in pixels; z: 1 if hidden, else 0
+    vec4 place;  // input: position in eye space, metres; w: depth tolerance in metres. Output: x, y in pixels; z: 1 if hidden, else 0
 };
 layout(std430, binding = 0) buffer Markers { Marker markers[]; };
 layout(location = 0) uniform int count;

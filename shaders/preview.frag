@@ -10,7 +10,7 @@ layout(location = 1) in FIELD_TYPE field;
 #else
 layout(location = 0) in vec2 light;
 layout(location = 1) in vec3 sun_place;
-layout(binding = 1) uniform sampler2D ramps; // colour ramps: one row per material, light from left to right; sRGB
+layout(binding = 1) uniform sampler2D ramps; // colour ramps: one row per material, columns by light from 0 (left) to 1; sRGB
 layout(binding = 2) uniform sampler2DShadow sun_map;
 #endif
 layout(location = 2) uniform int material;

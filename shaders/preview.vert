@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Preview: position, baked light and, on assets with a field, a scalar. llvmpipe runs this on one thread, so keep it short.
+// Preview: position, baked light and, on assets with a field, the field's value. llvmpipe runs this on one thread, so keep it short.
 #include "frame.glsl"
 #include "clip.glsl"
 #include "instance.glsl"

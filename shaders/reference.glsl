@@ -4,12 +4,12 @@
 struct Sensor {
     vec4 place_m;  // file coordinates; w: strength
     float decay, value;
-    uint column, state; // state bits: 1 configured, 2 usable, 4 uncertain
+    uint column, state; // bits: 1: configured, 2: usable, 4: uncertain
 };
 layout(std430, binding = 5) readonly buffer Sensors {
-    vec4 numbers; // power, radius, reach, MIN of the range
-    vec4 more;    // x: MAX - MIN of the range, or 0 (paper: scales the sum to a value); y: number of vertices of the model
-    ivec4 choice; // paper, geodesic, fill, show; each a choice of struct sensors_head
+    vec4 numbers; // power, radius, reach, MIN of the group's range
+    vec4 more;    // x: MAX - MIN of the range, by which Algorithm 1 scales its sum to a value, or 0; y: vertex count of the asset
+    ivec4 choice; // enums of struct sensors_head: paper, geodesic, fill, show
     Sensor sensors[];
 };
 layout(std430, binding = 6) readonly buffer Corners { uint corners[]; };
@@ -54,7 +54,7 @@ float nearness(float distance_m)
     return max(0.0, 1.0 - distance_m / numbers.y);
 }
 
-// Returns the factor by which a weight fades towards the reach, relative to the nearest sensor's.
+// Returns the factor by which a weight fades towards the reach: 1 at the nearest sensor's distance, 0 from the reach on.
 float faded(float distance_m, float near_m)
 {
     float left = isinf(numbers.z) || distance_m <= near_m ? 1.0 : max(0.0, numbers.z - distance_m) / (numbers.z - near_m);

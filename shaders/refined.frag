@@ -12,11 +12,11 @@ layout(location = 0) centroid in vec3 place;
 layout(location = 1) centroid in vec3 surface_normal;
 layout(location = 2) centroid in vec4 uv; // first and second texture coordinates
 layout(location = 3) centroid in vec4 tint;
-layout(location = 4) centroid in vec3 sky; // x: baked ambient light; y: baked openness; z: 1 as interpolated to the centroid
+layout(location = 4) centroid in vec3 sky; // x: baked ambient light; y: baked openness; z: the constant 1 as interpolated to the centroid
 layout(location = 5) centroid in FIELD_TYPE field;
 layout(location = 2) uniform int material;
-// maps of the material as bits: base colour, metallic-roughness, normal, occlusion, emissive; from bit 8 on: the map uses the second
-// coordinates
+// texture maps of the material, as bits 0 to 4: base colour, metallic-roughness, normal, occlusion, emissive; bits 8 to 12: the map uses
+// the second texture coordinates
 layout(location = 3) uniform int textures;
 layout(binding = 3) uniform sampler2D base_color_map;
 layout(binding = 4) uniform sampler2D metallic_roughness_map;
@@ -58,7 +58,7 @@ void main()
         return;
     }
 #endif
-    bool turned = dot(n, v) < (gl_FrontFacing ? MOST_AWAY : 0.0); // seen from behind, or the normals belong to the other side
+    bool turned = dot(n, v) < (gl_FrontFacing ? MOST_AWAY : 0.0); // the surface is seen from behind, or its normals point to the other side
     if (turned)
         n = -n;
 #if defined(TEXTURED) || !defined(FIELD) || defined(GLOSSY)
@@ -73,7 +73,8 @@ void main()
 #endif
     float sun_visible = sun_visibility(frame.sun_from_eye, place, n, frame.sun.w);
     float ambient = sky.x;
-// llvmpipe interpolates to the centroid but divides by the depth at the pixel's centre; dividing by the interpolated 1 corrects that
+// llvmpipe interpolates to the centroid but divides by the depth at the pixel's centre; dividing by sky.z, the interpolated constant 1,
+// corrects the error
 #ifdef FIELD
     color = vec4(field_color(field_here(field / sky.z), light_scalar(ambient, max(dot(n, l), 0.0) * sun_visible)), 1.0);
 #endif
@@ -82,7 +83,7 @@ void main()
     vec3 glow = m.emissive.rgb;
 #ifdef GLOSSY
     s.base = linear_from_srgb(color.rgb);
-    s.metallic = 0.0; // non-metallic, since a metal would reflect the sky instead of showing the field
+    s.metallic = 0.0; // treat the surface as non-metallic, because a metal would reflect the sky instead of showing the field
 #endif
 #ifdef TEXTURED
     if ((textures & 2) != 0) {

@@ -33,7 +33,7 @@ void main()
     uv = vec4(texcoord, second_texcoord);
     tint = vertex_color;
     vec4 baked = light_here();
-    // z is always 1, but compilers must not know, because they do not interpolate constants
+    // z is always 1 (the condition is never true), but the compiler must not see this, because it would not interpolate a constant
     sky = vec3(baked.yz, baked.w < 0.0 ? 0.0 : 1.0);
     field = scalar_here();
 }

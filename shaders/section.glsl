@@ -3,7 +3,7 @@
 // stripes that slant the opposite way to those of no data.
 #include "constants.glsl"
 
-// v: unit vector towards the viewer; n: normal of any length and sign.
+// Returns the colour of a surface's inner side. v: unit vector towards the viewer; n: normal of any length and sign.
 vec3 inside_color(vec3 v, vec3 n)
 {
     n *= inversesqrt(max(dot(n, n), 1e-30)) * (dot(n, v) < 0.0 ? -1.0 : 1.0);

@@ -2,7 +2,7 @@
 // Draws section caps: the section plane where it enters closed bodies. Runs over the resolved frame, once for colours, once for depth.
 #include "frame.glsl"
 #include "section.glsl"
-layout(binding = 0) uniform sampler2D bodies; // written by section_cap_count.frag; several texels per pixel
+layout(binding = 0) uniform sampler2D bodies; // written by section_cap_count.frag; `texels` x `texels` of its texels are one pixel
 layout(location = 0) uniform int texels;      // along a pixel's side
 layout(location = 0) in vec2 clip;
 #ifdef DEPTH
@@ -10,7 +10,8 @@ layout(location = 0) in vec2 clip;
 layout(location = 0) out vec4 color;
 #endif
 
-// Returns the depth at which the ray enters the uncut space (1 near). 1: the ray begins inside; negative: it misses.
+// Returns the depth (1: near plane, 0: far plane) at which the pixel's ray enters the space that is not cut away. 1: the ray begins inside
+// it; negative: the ray misses it.
 float entry()
 {
     float top = 1.0, bottom = 0.0;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Visible fraction of the sun at a point: four taps on a rotated square, each the mean of four comparisons that overlap with its
-// neighbours'.
+// Computes the visible fraction of the sun at a point (0..1), from the sun's shadow map: four taps on a rotated square, each the mean of
+// four comparisons that overlap with its neighbours'.
 #include "constants.glsl"
 layout(binding = 2) uniform sampler2DShadow sun_map;
 
-// normal: direction in which the point is moved off its surface.
+// normal: direction in which the point is moved off its surface, so that the surface does not shadow itself.
 float sun_visibility(mat4 sun_from_here, vec3 place, vec3 normal, float texel_m)
 {
     vec3 p = (sun_from_here * vec4(place + normal * (texel_m * (1.0 + SUN_SPREAD)), 1.0)).xyz;
