@@ -18,7 +18,7 @@ bool access_allowed_at(const struct access_params *params, bool loopback, const 
 {
     bool tls = params->tls_cert_path && params->tls_key_path;
     if (params->behind_proxy && !params->tokens_path && !params->open_viewers)
-        *why = "--behind-proxy needs --tokens FILE, or --open-viewers to serve pictures without a token";
+        *why = "--behind-proxy: a user behind the proxy needs a token (add --tokens FILE), or add --open-viewers";
     else if (params->openid_path && !params->tokens_path)
         *why = "--openid needs --tokens FILE: tokens still work while the identity provider does not answer";
     else if (params->lock_min && !params->tokens_path)
