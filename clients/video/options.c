@@ -144,7 +144,7 @@ static int check_together(const struct video_options *options, bool open_readers
     if (inet_pton(AF_INET, options->listen, address) != 1 && inet_pton(AF_INET6, options->listen, address) != 1)
         return wrong("--listen %s: expected an address, as 0.0.0.0 or ::", options->listen);
     if (!is_loopback(options->listen) && !options->user && !open_readers)
-        return wrong("--listen %s: whoever gets there would see the plant; --readers-file names who may, --open-readers lets anyone",
+        return wrong("--listen %s: anybody who reaches this address could watch; add --readers-file FILE, or --open-readers",
                      options->listen);
     if (options->user && open_readers)
         return wrong("--readers-file and --open-readers do not go together");

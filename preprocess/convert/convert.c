@@ -78,7 +78,7 @@ static bool make(const struct plant_conversion *how, char why[CHILD_WHY_BYTES])
     if (good && !model_header_read(&header, output, why, CHILD_WHY_BYTES)) {
         char reason[CHILD_WHY_BYTES];
         snprintf(reason, sizeof(reason), "%.300s", why);
-        snprintf(why, CHILD_WHY_BYTES, "what it wrote to $2: %.300s", reason);
+        snprintf(why, CHILD_WHY_BYTES, "its output ($2): %.300s", reason);
         good = false;
     } else if (good) {
         model_header_finish(&header);

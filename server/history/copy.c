@@ -60,7 +60,7 @@ static const char *fault_of(const char *path, const struct stat *st)
     if (!stat_folder(path, &folder))
         return strerror(errno);
     if (st->st_uid != folder.st_uid && st->st_uid != geteuid())
-        return "it belongs to somebody else than its folder does";
+        return "its owner differs from the owner of its folder";
     return st->st_nlink > 1 && st->st_uid != folder.st_uid ? "it has another name elsewhere" : NULL;
 }
 

@@ -76,7 +76,7 @@ test('a fleet file is checked, and each mistake has its line', options, () => {
     assert.equal(bad.code, 1);
     for (const line of [/fleet\.yaml:3:\d+: error: url: the plant at https:\/\/a\.example\/ is there twice \(first at line 2\)/,
         /fleet\.yaml:4:\d+: error: id: plant 'a' is there twice \(first at line 2\)/, /fleet\.yaml:5:\d+: error: id: expected/,
-        /fleet\.yaml:5:\d+: error: url: it begins neither/, /fleet\.yaml:6:\d+: error: url: a password does not stand here/,
+        /fleet\.yaml:5:\d+: error: url: it begins neither/, /fleet\.yaml:6:\d+: error: url: do not write a password here/,
         /fleet\.yaml:7:\d+: error: .*needs the key 'id'/, /fleet\.yaml:7:\d+: error: poll_s: expected/,
         /fleet\.yaml:8:\d+: error: url: a token is sent by https/])
         assert.match(bad.err, line);
@@ -97,7 +97,7 @@ test('a page instead of metrics is silence, an old picture is none, a foreign na
         assert.equal((await fetch(`${fleet.url}picture/a`)).status, 404);
         plant.asked.page = '<html>We are back soon.</html>';
         const silent = await until('silence', async () => { const now = await first(); return !now.answers && now; });
-        assert.match(silent.why, /no server of Plantcast/);
+        assert.match(silent.why, /not a Plantcast server/);
         assert.deepEqual(silent.alarms, [3, 0, 0, 0]);
         assert.match(await (await fetch(`${fleet.url}metrics`)).text(), /^plantcast_fleet_up\{plant="a"\} 0$/m);
         assert.equal(await status('evil.example:8090'), 403);

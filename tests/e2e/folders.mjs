@@ -60,7 +60,7 @@ test('what leads out of the folder is not copied, by whatever name', { skip }, (
     const names = ['proofs.csv', readdirSync(history).find((name) => /^history-.*sqlite$/.test(name)), '../tags.csv'];
     const ways = [[(path) => symlinkSync(secret, path), /symbolic link/],
         [(path) => linkSync(secret, path), /another name elsewhere/],
-        [(path) => { writeFileSync(path, 'x'); chownSync(path, 1, 1); }, /belongs to somebody else/],
+        [(path) => { writeFileSync(path, 'x'); chownSync(path, 1, 1); }, /owner differs from the owner of its folder/],
         [(path) => mkdirSync(path), /not a file/]];
     for (const name of names) {
         const path = join(history, name);
@@ -90,7 +90,7 @@ test('restored files belong to whom their folder belongs to, and nothing is writ
     unlinkSync(join(state, 'tags.csv'));
     mkdirSync(join(root, 'elsewhere'));
     symlinkSync(join(root, 'elsewhere'), history);
-    assert.match(restore().err, /is no folder/);
+    assert.match(restore().err, /is not a folder/);
     assert.deepEqual(readdirSync(join(root, 'elsewhere')), []);
     unlinkSync(history);
     const restored = restore();
@@ -119,7 +119,7 @@ test('token: neither through links, nor in a folder of somebody else', { skip },
     assert.match(token('list', file).err, /neither to root nor to you/);
     chownSync(file, 0, 0);
     chownSync(folder, NOBODY, NOBODY);
-    assert.match(token('revoke', file, 'wall').err, /folder belongs to somebody else/);
+    assert.match(token('revoke', file, 'wall').err, /folder belongs to another user/);
     chownSync(folder, 0, 0);
     chmodSync(folder, 0o777);
     assert.match(token('revoke', file, 'wall').err, /others may write/);

@@ -322,7 +322,7 @@ test('bad input: what is wrong is said', options, async () => {
         [[url, '--rtsp', '99999'], 2, /--rtsp 99999: expected 0 to 65535/],
         [[url, '--rtsp', '8554', '--fps', '4'], 2, /--fps 4: expected 5 to 30/],
         [[url, '--rtsp', '8554', '--size', '641x360'], 2, /even numbers/],
-        [[url, '--rtsp', '8554', '--listen', '0.0.0.0'], 2, /whoever gets there would see the plant/],
+        [[url, '--rtsp', '8554', '--listen', '0.0.0.0'], 2, /anybody who reaches this address could watch/],
         [[url, '--rtsp', '8554', '--view', 'a', '--query', 'b'], 2, /do not go together/],
         [[url, '--rtsp', '8554', '--language', 'fr'], 2, /--language fr: expected en, ko or de/],
         [[url, '--rtsp', '8554', '--wall', 'b'], 2, /Unknown option --wall/],

@@ -255,7 +255,7 @@ static bool is_whole(struct backup_job *job)
             return say(job->folder, "its list of files is damaged");
         char *path = mem_printf("%s/%s", job->folder, name);
         if (!copy_hash(job->log, path, hash, &bytes) || strcmp(hash, expected) != 0)
-            good = say(path, "is not as it was when the backup was made");
+            good = say(path, "was changed or damaged after the backup was made");
         mem_free(path);
     }
     return good;
@@ -289,7 +289,7 @@ static bool make_folder(const char *path)
     if (good && made && geteuid() == 0)
         good = stat(parent, &around) == 0 && lchown(path, around.st_uid, around.st_gid) == 0;
     mem_free(parent);
-    return good || say(path, "is no folder, and cannot be made one");
+    return good || say(path, "is not a folder and cannot be created");
 }
 
 static bool each_file(struct backup_job *job, const char *plant_path, const char *history, const char *tags, bool put)

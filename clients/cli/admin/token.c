@@ -64,7 +64,7 @@ static const char *folder_fault(const char *path)
     if (stat(folder, &st) != 0)
         fault = strerror(errno);
     else if (is_foreign(&st))
-        fault = "its folder belongs to somebody else, who could put another in its place; keep it in one of root's";
+        fault = "its folder belongs to another user, who could replace the file; keep it in a folder of root";
     else if ((st.st_mode & S_IWOTH) && !(st.st_mode & S_ISVTX))
         fault = "others may write its folder";
     mem_free(folder);

@@ -36,7 +36,7 @@ static const char *wrong_with(const char *url)
     if (length == 0)
         return "it names no server";
     if (memchr(host + 3, '@', length))
-        return "a password does not stand here; token_file names a file that holds a token";
+        return "do not write a password here; let token_file name a file with a token";
     if (strpbrk(url, "?# \t\"<>"))
         return "it is the address of the page, without ?, # and white space";
     return NULL;

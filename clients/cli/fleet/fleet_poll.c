@@ -92,7 +92,7 @@ static const char *note_answer(struct fleet_poll *poll, struct fleet_request *re
     }
     struct fleet_state state;
     if (!fleet_state_read(request->http.answer.at ? request->http.answer.at : "", &state))
-        return "it is no server of Plantcast";
+        return "it is not a Plantcast server";
     known->state = state;
     known->answers = true;
     known->answered_us = clock_utc_ns() / 1000;

@@ -118,7 +118,7 @@ static const char *fault_of(const json_t *claims, const struct id_token_expected
     if (!is_for_us(claims, expected->config->client_id))
         return "it is made for another audience";
     if (!sub || !*sub || (expected->sub && strcmp(sub, expected->sub) != 0))
-        return "it is about somebody else";
+        return "its subject (sub) is missing or another user";
     if (!json_is_number(exp) || now_s >= json_number_value(exp) + ID_TOKEN_SKEW_S + (double)expected->patience_s)
         return "its time is over; do the clocks agree?";
     if (!json_is_number(iat) || json_number_value(iat) > now_s + ID_TOKEN_SKEW_S || json_number_value(iat) < oldest_s ||

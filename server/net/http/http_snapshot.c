@@ -51,7 +51,8 @@ static bool expand(const struct named_view *named, const struct args *args, stru
         for (size_t k = 0; k < sizeof(mine) / sizeof(mine[0]) && !good; k++)
             good = strlen(mine[k]) == length && !strncmp(args->list[i], mine[k], length);
         if (!good)
-            message_fail(error, "bad_field", "'%s': beside view, a query has width, height and language only", quoted(args->list[i], name));
+            message_fail(error, "bad_field", "'%s': a query with view may also have width, height and language only",
+                         quoted(args->list[i], name));
     }
     for (size_t k = 0; k < sizeof(mine) / sizeof(mine[0]) && good; k++) {
         const char *value = arg_of(args, mine[k]);
