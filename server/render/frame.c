@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Creates, cuts and releases frames, and keeps a few released pixel buffers for reuse. */
+/* Creates and releases frames, makes frames that show a part of another one, and keeps a few released pixel buffers for reuse. */
 #include "render/frame.h"
 
 #include <assert.h>
@@ -13,7 +13,7 @@
 #include "render/frame_record.h"
 #include "value/quality.h"
 
-static const float MARK_PX = 48; /* pixels from a marker's position that its drawn symbol reaches at most */
+static const float MARK_PX = 48; /* Largest distance in pixels from a marker's position to any pixel of its drawn symbol. */
 
 /* Pool of released pixel buffers: fresh memory from the kernel costs more in page faults than filling a frame does. */
 enum { SPARES = 4 };
@@ -170,10 +170,10 @@ struct frame *frame_cut(struct frame *whole, const struct frame_part *part)
     return frame;
 }
 
-/* The baseline that one half of a frame subtracts from its readings, if any. */
+/* The baseline that one half of a split view subtracts from its readings, if the half shows differences. */
 struct then {
-    bool wanted, distance;           /* distance: the half shows distances, which the markers hold already */
-    const struct snapshot *snapshot; /* snapshot of the baseline; NULL: the baseline no longer exists */
+    bool wanted, distance; /* distance: the half shows distances, which are in the markers already and are not computed from readings */
+    const struct snapshot *snapshot; /* readings of the baseline; NULL: the baseline no longer exists */
 };
 
 static struct then take_then(const struct field_params *params, struct baselines *baselines)

@@ -20,12 +20,14 @@ struct frame_marker {
     uint8_t half; /* half of a split view that the marker is in: 0 left, 1 right */
 };
 
-struct frame_label { /* a visible point of an isoline, or of an arrow, that may carry a label */
+struct frame_label { /* a visible point on an isoline where its label may be drawn, or the position of an arrow */
     double value;
     float x_px, y_px;
     float dx, dy; /* arrows: direction in the frame, length up to 1, shorter where the arrow points away from the viewer; 0, 0: unknown */
     uint8_t half, arrow, uncertain;
-    uint16_t stroke; /* number of the stroke within its half, equal for all of its points; 0: an arrow */
+    /* index of the stroke (a short streamline) within its half of the view, equal for all points of the stroke; 0: not a stroke but an
+       arrow */
+    uint16_t stroke;
 };
 /* minimum distance between arrows in pixels; the longest arrow is almost as long */
 #define FRAME_ARROW_PX(width_px) fmax(48, (width_px) / 24.0)
@@ -42,17 +44,17 @@ struct frame {
     struct frame *whole;          /* reference to the frame that owns the pixels; NULL: this frame owns them */
     struct frame_marker *markers; /* sensors of the shown group */
     size_t marker_count;
-    struct frame_label *labels; /* candidate points for isoline labels, more than fit; and arrows */
+    struct frame_label *labels; /* candidate points for isoline labels (more than there is room for), and arrows */
     size_t label_count;
     int64_t data_utc_ns;   /* UTC of the snapshot that the frame shows */
     bool clock_unset;      /* true if the clock that gave data_utc_ns was not synchronised */
     int64_t oldest_age_ns; /* age of the oldest reading used; INT64_MAX: no reading contributes */
-    double drawn_error;    /* error bound, in engineering units and rounded up, at places marked uncertain; 0: no place is */
+    double drawn_error;    /* error bound, in engineering units and rounded up, where the frame is marked uncertain; 0: nothing is marked */
     int64_t field_ns, render_ns, readback_ns; /* duration of each stage */
-    int64_t turn_ns;                          /* render thread's time for this frame, waiting included; 0: drawn elsewhere */
-    struct baseline baseline;                 /* the baseline that a difference is taken from; id 0: none */
-    struct frame_record *record;              /* readings that the frame was drawn from (render/frame_record.h); NULL: not requested */
-    uint64_t content; /* equal for equal frames: hash of view and field versions, without sequence numbers and times */
+    int64_t turn_ns;             /* time that the render thread spent on this frame, waiting for the GPU included; 0: drawn elsewhere */
+    struct baseline baseline;    /* the baseline that a difference is taken from; id 0: none */
+    struct frame_record *record; /* readings that the frame was drawn from (render/frame_record.h); NULL: not requested */
+    uint64_t content;            /* equal for equal frames: hash of view and field versions, without sequence numbers and times */
     int triangles;
 };
 

@@ -22,16 +22,17 @@ struct frame_context {
     size_t visible_count;
     struct shaded_colormap colormap;
     struct reference *reference; /* computes the field at each fragment; NULL: the field is interpolated between vertices */
-    double error_px;             /* largest error of levels of detail in pixels (render/plan/lod_selection.h); 0: finest levels only */
-    uint64_t shape;              /* content_hash_shape() of the frame plan */
-    bool measured;               /* the frame holds the field's numbers instead of colours, as floats */
+    /* largest error of a level of detail's surface, in pixels of the frame (render/plan/lod_selection.h); 0: finest levels only */
+    double error_px;
+    uint64_t shape; /* content_hash_shape() of the frame plan */
+    bool measured;  /* the frame holds the field's values as floats instead of colours */
 };
 
-/* Returns the level of an asset that the frame plan chose. */
+/* Returns the level of detail that the frame plan chose for an asset. */
 const struct model_level *frame_level(const struct frame_context *context, int asset);
 /* Returns whether the selected asset is among the visible ones. */
 bool frame_shows_selected(const struct frame_context *context);
-/* Returns the number of triangles of the planned levels of all visible assets. */
+/* Returns the number of triangles of the planned levels of detail of all visible assets. */
 int frame_triangles(const struct frame_context *context);
 /* Returns how far previews move surfaces towards the sun to avoid shadow acne, in depth units of the shadow map. */
 double frame_sun_slack(const struct frame_context *context);

@@ -11,7 +11,7 @@ enum { FRAME_RECORD_BASELINES = 2 }; /* baselines: one for each half of a split 
 struct frame_record {
     _Atomic int refs;
     struct snapshot *readings;
-    bool *unproven; /* by tag: true if the tag's loop was not checked, which its marker shows */
+    bool *unproven; /* by tag: true if no loop check has proven the tag's wiring, which its marker shows */
     struct {
         struct baseline what;
         struct snapshot *readings;
@@ -19,8 +19,8 @@ struct frame_record {
     int baseline_count;
 };
 
-/* Copies the readings, the baselines that the view takes differences from, and which tags are unproven. baselines, loop_checks: NULL: there
-   are none. The caller owns the record (frame_record_unref). */
+/* Copies the readings, the baselines that the view takes differences from, and which tags no loop check has proven. baselines, loop_checks:
+   NULL: there are none. The caller owns the record (frame_record_unref). */
 struct frame_record *frame_record_create(const struct view *view, const struct snapshot *readings, struct baselines *baselines,
                                          const struct loop_checks *loop_checks);
 /* Returns a record in which no tag has a reading. The caller fills it in before other threads see it. */

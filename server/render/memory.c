@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Divides one memory bound among the caches of a renderer. */
+/* Divides one bound on memory among the caches of a renderer. */
 #include "render/memory.h"
 
 #include "render/gl/gl_backend.h"
@@ -8,7 +8,8 @@
 
 const char *const render_store_names[RENDER_STORES] = { "shown fields", "light", "still pictures", "targets", "drawing", "models" };
 
-/* Shares of the bound, after the working memory is subtracted. Half of the fields' share is in main memory, half on the GPU. */
+/* Share of the bound for each store, after the working memory is subtracted. Half of the fields' share is in main memory, half on the
+   GPU. */
 static const double FIELDS_SHARE = 0.35, LIGHT_SHARE = 0.3, REFINED_SHARE = 0.15, PREVIEWS_SHARE = 0.1, TARGETS_SHARE = 0.1;
 /* Working memory beyond this share of the bound is freed after each frame and allocated again. */
 static const double WORKING_SHARE = 0.4;

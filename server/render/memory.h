@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Memory that a renderer keeps between frames: measures, bounds and frees it. Thread: the one of the GL context. */
+/* Measures, limits and frees the memory that a renderer keeps between frames. Thread: the one of the GL context. */
 #ifndef RENDER_MEMORY_H
 #define RENDER_MEMORY_H
 #include "render/renderer.h"
@@ -7,7 +7,7 @@
 enum render_store {
     STORE_FIELDS,   /* vertex values of shown fields, in main memory and on the GPU */
     STORE_LIGHT,    /* baked light, on the GPU and as copies in main memory */
-    STORE_PICTURES, /* visibility buffers of views whose camera stands still */
+    STORE_PICTURES, /* visibility buffers (triangle and light of each pixel) of views whose camera stands still */
     STORE_TARGETS,  /* framebuffers */
     STORE_ROOM,     /* working memory of the software renderer */
     STORE_MODELS,   /* geometry on the GPU that is not mapped from files; no cache, cannot be evicted */

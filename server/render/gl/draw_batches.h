@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Collects the draws of a pass into batches that need the same GL state, so that each batch is one call, however many assets it draws.
-   What differs between assets is in buffers: the placement per instance, light and scalars per vertex (gpu/pool.h).
-   Order of calls: begin, choose and add, upload, draw. Thread: the one of the GL context. */
+/* Collects the draws of a pass into batches that need the same GL state, so that each batch is one call, however many assets it draws. Data
+   that differ between assets are in buffers: the placement per instance, light and field values per vertex (gpu/pool.h). Order of calls:
+   begin, choose and add, upload, draw. Thread: the one of the GL context. */
 #ifndef RENDER_GL_DRAW_BATCHES_H
 #define RENDER_GL_DRAW_BATCHES_H
 #include "gpu/mesh.h"
@@ -9,8 +9,9 @@
 #include "render/plan/culling.h"
 #include "render/gl/model.h"
 
-struct draw_instance {   /* as in shaders/instance.glsl */
-    float normals[3][4]; /* rows of eye_from_normal; the fourth column holds block of light, block of field, unused */
+struct draw_instance { /* as in shaders/instance.glsl */
+    /* rows of eye_from_normal; the fourth elements of the rows are: index of the light block, index of the field block, unused */
+    float normals[3][4];
     float clip_from_file[16];
     float from_file[3][4]; /* rows */
 };
@@ -18,10 +19,11 @@ struct draw_instance {   /* as in shaders/instance.glsl */
 struct draw_batch_state {
     GLuint program;
     const struct gl_model *model;
-    const struct pool_page *light, *field; /* GPU memory pages of light and scalars; field NULL: the asset has no data or no field */
-    int front;                             /* as scene_asset.front */
-    int material;                          /* number of the material; -1: the program uses no material */
-    int alone;                             /* index of an asset that must not share its batch; -1: may be shared */
+    /* GPU memory pages with light and with field values; field NULL: the asset has no data or no field */
+    const struct pool_page *light, *field;
+    int front;    /* as scene_asset.front */
+    int material; /* index of the material in the model; -1: the program uses no material */
+    int alone;    /* index of an asset that must not share its batch; -1: may be shared */
     bool two_sided, mirrored, cut, blend;
 };
 
@@ -40,11 +42,11 @@ struct draw_batch {
 struct draw_batches { /* zero-initialise, then set log */
     struct log *log;
     struct draw_batch *at;
-    size_t count, from; /* count: batches; from: draws may only join batches with this index or higher */
+    size_t count, from; /* count: number of batches; from: a new draw may only join a batch with this index or a higher one */
     struct draw_instance *instances;
     struct draw_command *commands, *sorted; /* commands: in the order added; sorted: by batch */
-    uint32_t *batch_of, *place_of;          /* for each command in the order added: number of its batch, and its index in `sorted` */
-    size_t *newest;                         /* for each model: the batch made last */
+    uint32_t *batch_of, *place_of;          /* by index in `commands`: index of the command's batch, and the command's index in `sorted` */
+    size_t *newest;                         /* by model: index of its most recently made batch */
     size_t instance_count, command_count;
     size_t capacity, instance_capacity, command_capacity, sorted_capacity, batch_of_capacity, place_capacity, newest_capacity;
     GLuint instance_buffer, command_buffer, place_buffer;
@@ -55,19 +57,20 @@ struct draw_batches { /* zero-initialise, then set log */
 void draw_batches_finish(struct draw_batches *batches);
 /* Empties the batches for a new pass. */
 void draw_batches_begin(struct draw_batches *batches, size_t model_count);
-/* Copies an instance and returns its number. */
+/* Copies an instance into the pass's list and returns its index there. */
 uint32_t draw_batches_add_instance(struct draw_batches *batches, const struct draw_instance *instance);
 /* Returns the index of a batch with that state, and makes one if there is none. model: the model's index. in_order: draws must keep the
    order in which they are added, so only the batch made last may be joined. */
 size_t draw_batches_choose(struct draw_batches *batches, const struct draw_batch_state *state, size_t model, bool in_order);
-/* Adds the draw of a whole submesh. shown: instances to draw, 1; or 0 if an occlusion test on the GPU decides (render/gl/occlusion.h). */
+/* Adds the draw of a whole submesh. shown: 1: drawn; 0: not drawn unless an occlusion test on the GPU enables the draw
+   (render/gl/occlusion.h). */
 void draw_batches_add_submesh(struct draw_batches *batches, size_t batch, const struct model_submesh *submesh, uint32_t instance,
                               uint32_t shown);
-/* Adds draws of those clusters of a submesh that culling leaves. Returns their number of triangles. */
+/* Adds draws of those clusters of a submesh that culling does not remove. Returns the number of triangles added. */
 int draw_batches_add_seen(struct draw_batches *batches, size_t batch, const struct model_submesh *submesh, uint32_t instance,
                           const struct culling *culling);
-/* Sorts the commands by batch and uploads commands and instances; with `places` also place_buffer. Returns false when the GPU is out of
-   memory, logged. */
+/* Sorts the commands by batch and uploads commands and instances; if `places` is true, also place_buffer (the index in `sorted` of each
+   command). Returns false when the GPU is out of memory, logged. */
 bool draw_batches_upload(struct draw_batches *batches, bool places);
 /* Draws one batch. The caller has set the batch's state and bound its mesh. */
 void draw_batches_draw(const struct draw_batches *batches, const struct draw_batch *batch);

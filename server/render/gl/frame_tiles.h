@@ -8,21 +8,21 @@
 struct frame_tiles {
     int width_px, height_px;
     int block_px, columns, rows; /* blocks of cells; within a block, cells are in Z-order, so that tiles of any size are contiguous */
-    int next, span;              /* next: the next cell, counted through all passes; span: number of cells of its tile, 0: not chosen yet */
-    int *in_tile;                /* indices of the assets that the current tile shows */
+    int next, span; /* next: index of the next cell, counted through all passes; span: number of cells in its tile, 0: not chosen yet */
+    int *in_tile;   /* indices of the assets that the current tile shows */
 };
 struct tile {
     int x_px, y_px, width_px, height_px; /* rectangle in pixels, from the top left of the frame */
 };
 
-/* whole: one tile covers the frame. */
+/* whole: a single tile covers the whole frame. */
 void frame_tiles_init(struct frame_tiles *tiles, const struct frame_context *context, bool whole);
 void frame_tiles_finish(struct frame_tiles *tiles);
-int frame_tiles_cells(const struct frame_tiles *tiles); /* number of cells of one pass */
-/* Returns the largest tile that begins with the next cell and has at most most_px pixels, or the smallest tile. A tile outside the frame
-   has size 0. */
+int frame_tiles_cells(const struct frame_tiles *tiles); /* returns the number of cells that cover the frame, which each pass draws once */
+/* Returns the largest tile that begins with the next cell and has at most most_px pixels, or a tile of one cell if none is that small. A
+   tile outside the frame has size 0. */
 struct tile frame_tiles_choose(struct frame_tiles *tiles, double most_px);
-/* Returns the frame's context with only the assets that the tile shows. Valid until the next call. */
+/* Returns the frame's context with its list of visible assets reduced to those inside the tile. Valid until the next call. */
 struct frame_context frame_tiles_context(struct frame_tiles *tiles, const struct frame_context *frame, const struct tile *tile);
 
 #endif

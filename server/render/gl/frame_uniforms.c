@@ -43,7 +43,7 @@ static void fill_scale(struct frame_uniforms *block, const struct frame_context 
     block->lines[2] = block->lines[3] = 0;
 }
 
-/* Sets how brightness maps to a row of the colour map: over all rows, or to the middle row where light must not change colours. */
+/* Sets how brightness maps to a row of the colour map: over all rows, or always to the middle row where light must not change colours. */
 static void fill_shade(struct frame_uniforms *block, const struct view *view)
 {
     static const double dark = 0.14, bright = 0.86; /* brightness range that the rows cover; darker or brighter surfaces are clamped */
@@ -70,7 +70,7 @@ static void fill_clip(struct frame_uniforms *block, const struct frame_context *
     }
 }
 
-/* Brightness of context before a dark backdrop: floors are large and pale, and would glare. */
+/* Brightness of assets without a field before a dark backdrop. It is reduced because large pale floors would glare. */
 static const float DIM_CONTEXT = 0.55f;
 
 void frame_uniforms_fill(struct frame_uniforms *block, const struct frame_context *context)

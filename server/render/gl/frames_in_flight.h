@@ -18,7 +18,7 @@ struct frames_in_flight {
     struct frame_in_flight at[FRAMES_IN_FLIGHT];
 };
 
-/* Compiles the program. Returns false on failure, logged. */
+/* Compiles the shader program that tests points. Returns false on failure, logged. */
 bool frames_in_flight_init(struct frames_in_flight *frames_in_flight, struct log *log);
 void frames_in_flight_finish(struct frames_in_flight *frames_in_flight);
 /* Takes a free slot. Returns NULL if all are taken; logged. */

@@ -50,7 +50,7 @@ static void draw_depth(const struct ghosts *ghosts, const struct frame_context *
         }
 }
 
-/* Finds the rectangle that ghosts may cover: low and high corner, -1 to 1 over the frame. */
+/* Finds the rectangle that ghosts may cover: its low and high corner in normalised device coordinates (-1 to 1). */
 static void find_part(const struct frame_context *context, double low[2], double high[2])
 {
     const struct scene *scene = context->gpu_scene->scene;
@@ -73,7 +73,7 @@ static void find_part(const struct frame_context *context, double low[2], double
     }
 }
 
-/* Sets the scissor rectangle to the area of the ghosts; rows from the top. */
+/* Sets the scissor rectangle to the area of the ghosts; rows are counted from the top. */
 static void scissor(const struct frame_context *context)
 {
     double low[2] = { 1, 1 }, high[2] = { -1, -1 }, width = context->target->width_px, height = context->target->height_px;

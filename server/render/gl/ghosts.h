@@ -14,7 +14,7 @@ struct ghosts {
 /* Returns whether an asset is ghosted and inside the view frustum; ghosts_any: whether any asset is. */
 bool ghosts_shows(const struct frame_context *context, size_t asset);
 bool ghosts_any(const struct frame_context *context);
-/* Compiles the program. Returns false on failure, logged. */
+/* Compiles the shader programs of the pass. Returns false on failure, logged. */
 bool ghosts_init(struct ghosts *ghosts, struct log *log);
 void ghosts_finish(struct ghosts *ghosts);
 /* Draws all ghosts into the resolved picture; does nothing if there are none. */

@@ -17,11 +17,11 @@
 #include "render/renderer_impl.h"
 
 enum { REFINED_SAMPLES = 4 };
-/* Target duration of a tile where GL runs on the processor, and expected time per triangle. */
+/* Target duration of a tile where GL runs on the processor, and expected time per triangle there. */
 static const int64_t TILE_NS = 4 * NS_PER_MS;
 static const double TRIANGLE_NS = 36;
 enum { TILE_TRIANGLES = 80000 };
-/* A refined frame that a GPU draws in less time is quick: drawn at once, like a preview. */
+/* A refined frame that a GPU draws in less than this time is drawn at once, like a preview, instead of in steps. */
 static const int64_t MAX_QUICK_NS = 12 * NS_PER_MS;
 /* Occlusion culling runs for frames with at least this many triangles, about half a millisecond of a slow GPU. On a processor, testing
    boxes costs more than it saves. */
@@ -33,7 +33,7 @@ struct gl_job {
     struct target target;
     struct frame_tiles tiles;
     struct frame_in_flight *in_flight; /* slot of the frame once it is submitted to the GPU as a whole; NULL: not yet */
-    size_t drawn;                      /* number of assets of the current tile that are drawn, nearest first */
+    size_t drawn;                      /* number of assets of the current tile drawn so far, nearest first */
     bool short_of_memory;              /* the GPU ran out of memory while drawing, so the frame's content is undefined */
 };
 
@@ -101,7 +101,8 @@ bool gl_backend_take_up(struct renderer *renderer, struct frame_context *context
     return true;
 }
 
-/* Continues a job after other frames were drawn meanwhile. From now on the job holds its light. */
+/* Prepares to continue a job after other frames were drawn meanwhile. From then on the job holds a reference to its light set, so that the
+   set is not evicted. */
 static bool take_up(struct renderer *renderer, struct render_job *job)
 {
     return renderer_light_job(renderer, job) && gl_backend_take_up(renderer, &job->context);
@@ -121,7 +122,7 @@ static bool begin(struct renderer *renderer, struct render_job *job, const struc
     job->of.gl = mem_new(sizeof(*job->of.gl));
     job->of.gl->target = target;
     job->context.target = &job->of.gl->target;
-    /* A GPU draws the whole frame in the time that a processor needs for one tile. */
+    /* One tile for the whole frame: a GPU draws the whole frame in the time that a processor needs for one tile. */
     frame_tiles_init(&job->of.gl->tiles, &job->context, at_once || !renderer->gl->software);
     renderer_upload_fields(renderer, plan, &job->context, job->frame);
     return true;
@@ -141,8 +142,8 @@ static void abandon(struct renderer *renderer, struct render_job *job)
 
 /* --- tiles ------------------------------------------------------------------------------------------------------------------ */
 
-/* Draws a part of the tile. Returns the expected time of the triangles drawn, which is independent of pixels. *done: all of the tile is
-   drawn. */
+/* Draws a part of the tile. Returns the expected time of the triangles drawn, which does not depend on how many pixels they cover. *done:
+   all of the tile is drawn. */
 static double draw_surfaces(struct renderer *renderer, struct render_job *job, const struct tile *tile, bool *done)
 {
     struct gl_job *own = job->of.gl;
@@ -166,7 +167,8 @@ static double draw_surfaces(struct renderer *renderer, struct render_job *job, c
     return TRIANGLE_NS * pass->triangles;
 }
 
-/* Returns the number of cells of all passes: surfaces of all tiles, then edges, which read pixels beyond a tile's border. */
+/* Returns the number of cells to draw in all passes: first the surfaces of all tiles, then the edges, which read pixels beyond a tile's
+   border and so need finished surfaces. */
 static int count_cells(const struct render_job *job)
 {
     return frame_tiles_cells(&job->of.gl->tiles) * (job->view.tier == TIER_REFINED ? GL_PASSES : 1);
@@ -204,7 +206,8 @@ static struct drawn_tile draw_tile(struct renderer *renderer, struct render_job 
     return drawn;
 }
 
-/* Updates the measured time per pixel. took_ns: CPU time of this process; a busy machine is no reason for smaller tiles. */
+/* Updates the measured time per pixel. took_ns: CPU time of this process, not wall time, so that other load on the machine does not make
+   tiles smaller. */
 static void update_pixel_time(struct renderer *renderer, const struct drawn_tile *drawn, int64_t took_ns)
 {
     double *pixel_ns = &renderer->by_gl->pixel_ns[drawn->pass], now_ns = ((double)took_ns - drawn->triangles_ns) / fmax(drawn->pixels, 1);
@@ -219,7 +222,7 @@ static bool step(struct renderer *renderer, struct render_job *job, int64_t budg
     int cells = count_cells(job);
     unsigned shortages = gl_out_of_memory_count();
     if (own->tiles.next < cells && !take_up(renderer, job))
-        own->tiles.next = cells; /* end() fails as well if taking up the job failed */
+        own->tiles.next = cells; /* counts as done: end() repeats the failed call and reports the error */
     while (own->tiles.next < cells && (spent_ns == 0 || spent_ns + (last_ns > TILE_NS ? last_ns : TILE_NS) <= budget_ns)) {
         int64_t work_ns = clock_work_ns();
         struct drawn_tile drawn = draw_tile(renderer, job);

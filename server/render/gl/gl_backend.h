@@ -10,7 +10,7 @@
 #include "render/gl/targets.h"
 #include "render/render_backend.h"
 
-enum gl_pass { GL_SURFACES, GL_EDGES, GL_PASSES }; /* passes of a frame drawn tile by tile */
+enum gl_pass { GL_SURFACES, GL_EDGES, GL_PASSES }; /* passes in which a frame is drawn tile by tile: surfaces, then edges */
 
 struct gl_backend {
     struct surface_pass surface_pass;
@@ -20,7 +20,7 @@ struct gl_backend {
     struct frames_in_flight frames_in_flight;
     GLuint frame_buffer; /* uniform buffer of struct frame_uniforms */
     struct targets targets;
-    double pixel_ns[GL_PASSES]; /* recent measurement of the time per pixel */
+    double pixel_ns[GL_PASSES]; /* last measured time per pixel, by pass */
     int64_t refined_ns;         /* GPU time of the last refined frame; 0: unknown */
 };
 

@@ -19,16 +19,16 @@ struct gpu_scene {
     GLuint depth_programs[2][2]; /* [clip planes][alpha-masked textures] */
 };
 
-/* Uploads all models. sky: the light for the colour ramps of previews. Returns false on failure, logged. */
+/* Uploads all models. sky: the light under which the colour ramps of previews are computed. Returns false on failure, logged. */
 bool gpu_scene_init(struct gpu_scene *gpu_scene, struct gl *gl, const struct scene *scene, const struct environment_light *sky);
 void gpu_scene_finish(struct gpu_scene *gpu_scene);
 
-/* Returns the asset's coarsest level whose error, projected at its distance from the camera, is at most error_px. */
+/* Returns the asset's coarsest level of detail whose error, projected at its distance from the camera, is at most error_px. */
 const struct model_level *gpu_scene_level(const struct gpu_scene *gpu_scene, const struct view_constants *constants, int asset,
                                           double error_px);
 
-/* Draws the depth of one asset into the caller's framebuffer and viewport, on the coarsest level with an error of at most error_m.
-   clip: section planes. blended: transparent submeshes are drawn as well. Pixels cut out by alpha masks are holes. */
+/* Draws the depth of one asset into the caller's framebuffer and viewport, using the coarsest level of detail with an error of at most
+   error_m. clip: section planes. blended: transparent submeshes are drawn as well. Pixels that alpha masks cut out stay empty. */
 void gpu_scene_draw_depth(const struct gpu_scene *gpu_scene, const double clip_from_plant[16], const struct clip *clip, int asset,
                           double error_m, bool blended);
 /* Enables and disables the clip distances of the view's section planes around draws with programs that clip. */

@@ -16,7 +16,7 @@ bool lines_init(struct gl_lines *lines, struct log *log);
 void lines_finish(struct gl_lines *lines);
 /* Darkens the frame where depth or normal change abruptly. */
 void lines_draw_edges(const struct gl_lines *lines, const struct frame_context *context);
-/* Returns the width in pixels of the outline's dark line; the adjacent light line is as wide. Pure. */
+/* Returns the width in pixels of the outline's dark line; the light line next to it has the same width. Pure. */
 double lines_outline_px(const struct view *view);
 /* Draws the outline of view->selected_asset, also where other surfaces hide it. */
 void lines_draw_outline(struct gl_lines *lines, const struct frame_context *context);

@@ -22,7 +22,7 @@ static bool make_mesh(struct gl_model *model, struct gl *gl)
     return mesh_init(&model->mesh, gl, model->file->path, &params);
 }
 
-/* Collects all primitives of one level that have this material. */
+/* Collects all primitives of one level of detail that have this material. */
 static void fill_batch(struct model_submesh *submesh, const struct asset_view *view, const struct asset_level *level, uint32_t material)
 {
     submesh->material = material;
@@ -65,7 +65,7 @@ static void make_level(struct model_level *level, const struct asset_view *view,
         }
 }
 
-/* Finds the level's first cluster. A level's clusters are contiguous and begin at the first index of its first primitive. */
+/* Finds the index of the level's first cluster. */
 static void find_clusters(struct model_level *level, const struct asset_view *view)
 {
     uint32_t first_index = level->primitive_count ? view->primitives[level->first_primitive].first_index : 0;
@@ -118,7 +118,7 @@ void model_draw_submesh(const struct model_submesh *submesh)
         glMultiDrawElements(GL_TRIANGLES, submesh->counts, GL_UNSIGNED_INT, submesh->offsets, submesh->draws);
 }
 
-/* Adds a draw, merged with the last one if their indices are contiguous. Returns the new number of draws. */
+/* Adds a draw, or extends the last one if the new indices follow directly. Returns the number of draws in the list afterwards. */
 static size_t add_draw(struct model_draws *draws, size_t count, uint32_t first_index, uint32_t index_count)
 {
     const void *offset = (const void *)((uintptr_t)first_index * 4);

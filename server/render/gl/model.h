@@ -8,10 +8,11 @@
 #include "scene/asset.h"
 
 enum model_map { MODEL_BASE_COLOR, MODEL_METALLIC_ROUGHNESS, MODEL_NORMAL, MODEL_OCCLUSION, MODEL_EMISSIVE, MODEL_MAPS };
-enum { MODEL_MUTED, MODEL_OWN, MODEL_RAMPS }; /* colour ramps: muted, for context; in the material's own colours */
-enum { MODEL_LIGHT_STEPS = 64 };              /* texels of a material's ramp */
+/* two colour ramps per material: MUTED: greyed, for assets without a field; OWN: the material's own colours */
+enum { MODEL_MUTED, MODEL_OWN, MODEL_RAMPS };
+enum { MODEL_LIGHT_STEPS = 64 }; /* texels of a material's ramp */
 
-struct model_submesh { /* the triangles of one material in one level */
+struct model_submesh { /* all triangles of one material in one level of detail */
     uint32_t material;
     bool blend, double_sided;
     GLsizei draws;
@@ -31,8 +32,8 @@ struct model_level {
 
 struct model_material {
     GLuint maps[MODEL_MAPS]; /* texture of each map, owned by the model; 0: none */
-    int mask;                /* bit per map that the material has */
-    int second;              /* bit per map that uses the second set of texture coordinates */
+    int mask;                /* bit mask, by enum model_map: maps that the material has */
+    int second;              /* bit mask, by enum model_map: maps that use the second set of texture coordinates */
     bool masked;             /* alpha of the base colour cuts holes (glTF alphaMode MASK) */
 };
 
@@ -59,11 +60,11 @@ void model_draws_finish(struct model_draws *draws);
    must still be called. */
 bool model_init(struct gl_model *model, struct gl *gl, const struct asset *file);
 void model_finish(struct gl_model *model);
-/* Returns the coarsest level with an error of at most error_m. */
+/* Returns the coarsest level of detail with an error of at most error_m. */
 const struct model_level *model_level(const struct gl_model *model, double error_m);
 /* Draws one submesh; the model's mesh must be bound. */
 void model_draw_submesh(const struct model_submesh *submesh);
-/* Draws the closed bodies of a level (scene/closed_bodies.h) and nothing else. */
+/* Draws the triangles of the closed bodies of a level of detail (scene/closed_bodies.h) and nothing else. */
 void model_draw_closed(struct model_draws *draws, const struct gl_model *model, const struct model_level *level);
 
 #endif

@@ -78,7 +78,8 @@ static bool make_box(const struct view_constants *constants, const struct scene_
     return true;
 }
 
-/* Adds an asset. Assets shifted forward (scene_asset.front) may extend beyond their box, and are drawn untested. */
+/* Adds an asset. Assets that are shifted towards the viewer (scene_asset.front) may extend beyond their box, so they are drawn without a
+   test. */
 static struct occlusion_asset add_asset(struct occlusion *occlusion, const struct frame_context *context, int index)
 {
     const struct scene_asset *asset = &context->gpu_scene->scene->assets[index];

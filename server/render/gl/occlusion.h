@@ -12,13 +12,13 @@ struct occlusion_box { /* layout that shaders/occlusion.vert reads */
     /* first_place, place_count: range of the asset's draw commands (render/gl/draw_batches.h) */
     uint32_t first_place, place_count, unused[2];
 };
-struct occlusion_asset { /* culling state of a visible asset; one more element ends the list */
+struct occlusion_asset { /* occlusion state of one visible asset; an extra element ends the list */
     size_t boxes_before;
     bool tested;
     int triangles;
 };
 
-struct occlusion { /* state of the frame drawn last; zero-initialise, then set log */
+struct occlusion { /* culling state of the frame drawn last; zero-initialise, then set log */
     struct log *log;
     GLuint program, vao, box_buffer;
     struct occlusion_box *boxes;
@@ -32,7 +32,7 @@ struct occlusion { /* state of the frame drawn last; zero-initialise, then set l
 bool occlusion_init(struct occlusion *occlusion, struct log *log);
 void occlusion_finish(struct occlusion *occlusion);
 /* Collects the boxes of all visible assets; call before opaque draws are collected. Returns false if the frame has fewer than
-   least_triangles triangles: testing would not pay, so all assets must be drawn. */
+   least_triangles triangles: the tests would cost more than they save, so all assets must be drawn. */
 bool occlusion_begin(struct occlusion *occlusion, const struct frame_context *context, int least_triangles);
 /* Returns how many of the visible assets, from index `first` on, the next round should draw before it tests again. The first round draws an
    eighth of all triangles, each later one but the last as many as all rounds before it. Pure. */
@@ -43,7 +43,7 @@ void occlusion_decides(struct occlusion *occlusion, const struct occlusion_asset
 /* Uploads the boxes. Returns false when the GPU is out of memory, logged. */
 bool occlusion_upload(struct occlusion *occlusion);
 /* Tests the boxes of visible assets first..end-1 against the depth drawn so far. Changes the program, bindings, face culling and polygon
-   offset; leaves all other GL state of the pass (render/gl/surface_pass.c) as it was. */
+   offset; all other GL state of the pass (render/gl/surface_pass.c) stays unchanged. */
 void occlusion_test(const struct occlusion *occlusion, const struct draw_batches *batches, size_t first, size_t end);
 /* Returns how many assets were culled; waits for the GPU. For tests and measurements. */
 size_t occlusion_count(const struct occlusion *occlusion, const struct draw_batches *batches);

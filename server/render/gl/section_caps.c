@@ -7,7 +7,8 @@
 #include "render/matrix.h"
 #include "render/gl/surface_pass.h"
 
-enum { MAX_SUPERSAMPLED_PIXELS = 4 * 1024 * 1024 }; /* largest frame that is supersampled; larger frames use one texel per pixel */
+/* number of pixels of the largest frame that is supersampled; larger frames use one texel per pixel */
+enum { MAX_SUPERSAMPLED_PIXELS = 4 * 1024 * 1024 };
 
 bool section_caps_init(struct section_caps *caps, struct log *log)
 {
@@ -51,8 +52,8 @@ static void count_asset(struct section_caps *caps, const struct frame_context *c
 }
 
 /* Enables clipping by the planes through which rays enter the remaining space. Geometry beyond the exit stays, because a ray that leaves a
-   body there was inside it. In clip space a plane is an entry everywhere or nowhere, by the sign of its depth coefficient; a plane through
-   the eye is neither. */
+   body there was inside it. In clip space, the sign of a plane's depth coefficient tells whether rays enter or leave the space there, for
+   all pixels alike; a plane through the eye is ignored. */
 static void clip_entries(const struct frame_context *context)
 {
     const struct clip *clip = &context->view->visibility.clip;
@@ -67,7 +68,8 @@ static void clip_entries(const struct frame_context *context)
     }
 }
 
-/* Counts bodies into a texture. Returns the number of texels along a pixel's side; 0: no memory for the texture. */
+/* Counts, into a texture, the bodies that contain each pixel's ray at the plane. Returns the number of texels along a pixel's side; 0: no
+   memory for the texture. */
 static int count_bodies(struct section_caps *caps, const struct frame_context *context)
 {
     const struct target *target = context->target;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draws assets with their field, or as muted context. */
+/* Draws assets with their field, or in muted colours as context. */
 #include "render/gl/surface_pass.h"
 
 #include <limits.h>
@@ -16,8 +16,8 @@ enum { MATERIAL = 2, TEXTURES = 3 };
 static const double FORWARD_SLOPE = 0.05;
 enum { UNIT_COLORMAP = 0, UNIT_RAMPS = 1, UNIT_SUN_MAP = 2, UNIT_MAPS = 3, UNIT_LIGHTS = 12, UNIT_SCALARS = 13, UNIT_LINES = 15 };
 
-/* Returns whether a program is compiled at start. Previews use textures only for the holes they cut; rich scales and gloss exist only with
-   a field. */
+/* Returns whether a program is compiled at start. Previews use textures only for the holes they cut; SURFACE_RICH and SURFACE_GLOSSY are
+   mostly used together with SURFACE_FIELD. */
 static bool is_used(int tier, int variant)
 {
     if (variant & SURFACE_CLIP)
@@ -86,7 +86,8 @@ static int choose_variant(const struct frame_context *context, const struct mode
     int variant = field ? SURFACE_FIELD : 0;
     if (field && (context->colormap.lines || view->color_scale.log))
         variant |= SURFACE_RICH;
-    if (!field && view_is_operator(view)) /* grey: no material may have a colour close to those that mean alarm limits */
+    /* draws it in greys (RICH without FIELD): no material may have a colour close to those that mean alarm limits */
+    if (!field && view_is_operator(view))
         variant |= SURFACE_RICH;
     if (field && view->look == LOOK_GLOSSY)
         variant |= SURFACE_GLOSSY;
@@ -178,7 +179,8 @@ static void gather(struct surface_pass *pass, struct draw_batches *batches, cons
         state.program = choose_program(pass, context, field, variant);
         if (!state.program)
             continue;
-        state.two_sided = submesh->double_sided || state.cut; /* cut assets show their inner side */
+        /* assets that a section plane cuts show their inner side, so back faces are drawn */
+        state.two_sided = submesh->double_sided || state.cut;
         state.material = looks_at_material(context, variant) ? (int)submesh->material : -1;
         if (!placed) {
             struct draw_instance place;
@@ -208,7 +210,7 @@ static void set_material(const struct frame_context *context, const struct draw_
         glBindTextures(UNIT_MAPS, MODEL_MAPS, material->maps);
 }
 
-/* Sets the GL state that differs. was: the present state; NULL: unknown. */
+/* Sets the GL state in which the batch differs from the present one. was: the present state; NULL: unknown, everything is set. */
 static void set_state(const struct draw_batches *batches, const struct frame_context *context, const struct draw_batch_state *is,
                       const struct draw_batch_state *was)
 {
@@ -289,7 +291,7 @@ static bool leaves_out(struct surface_pass *pass, const struct frame_context *co
     return !context->measured && !context->reference && occlusion_begin(&pass->occlusion, context, pass->least_hiding);
 }
 
-/* Draws in rounds, nearest assets first: each round is tested against the depth of all earlier rounds. */
+/* Draws in rounds, nearest assets first: each round's bounding boxes are tested against the depth of all earlier rounds. */
 static void draw_seen(struct surface_pass *pass, const struct frame_context *context)
 {
     struct occlusion *occlusion = &pass->occlusion;

@@ -23,10 +23,12 @@ enum surface_program_kind { SURFACE_PICTURE, SURFACE_PER_FRAGMENT, SURFACE_MEASU
 struct surface_pass {
     struct log *log;
     struct occlusion occlusion;
-    int least_hiding; /* fewest triangles of a frame for occlusion culling; INT_MAX: never, only clusters are culled */
-    bool one_by_one;  /* draws each asset with GL calls of its own; for comparison in tests */
+    /* minimum number of triangles in a frame for occlusion culling; INT_MAX: no occlusion culling, clusters outside the frustum are still
+       culled */
+    int least_hiding;
+    bool one_by_one; /* draws each asset with GL calls of its own; for comparison in tests */
     struct draw_batches opaque, blended;
-    int triangles;                                       /* number of triangles drawn, without culled ones; the caller resets it */
+    int triangles;                                       /* triangles submitted so far, not counting culled ones; the caller resets it */
     GLuint programs[SURFACE_KINDS][2][SURFACE_VARIANTS]; /* [kind][refined][features]; 0: not compiled yet */
 };
 

@@ -7,7 +7,7 @@
 enum { TARGETS = 6 };
 struct targets {               /* zero-initialise */
     struct target at[TARGETS]; /* free targets, least recently used last; width 0: empty */
-    size_t bound_bytes;        /* memory limit; one target is kept even above it; 0: no limit but TARGETS */
+    size_t bound_bytes;        /* memory limit; one target is kept even if it exceeds the limit; 0: at most TARGETS targets, of any size */
 };
 
 /* Takes a target of that size from the cache, or creates one; the caller owns it until targets_give(). Returns false when the GPU is out of

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Bakes light with depth maps and compute shaders, in small steps: one asset on one map, a few thousand points, or some rows of the
-   ground. */
+/* Bakes light with depth maps and compute shaders, in small steps: one asset drawn into one depth map, a few thousand points, or some rows
+   of the ground. */
 #include "render/light/bake.h"
 
 #include <math.h>
@@ -13,10 +13,11 @@
 #include "render/matrix.h"
 
 enum { SKY_DIRECTIONS = 32, SKY_MAP_PX = 1024, SUN_MAP_PX = 4096 };
-static const uint8_t ROUGH_OPENNESS = 190; /* openness (0..255) of every point in a rough set */
+/* constant openness (0..255) of every point in a rough light set, which is baked without openness */
+static const uint8_t ROUGH_OPENNESS = 190;
 static const double LARGE_FACE_TEXELS = 8; /* large faces have an edge of at least this length, in texels of the sky's depth maps */
 static const double SUN_MARGIN = 0.002;    /* empty border of the sun's map, as a fraction of its width: lookups reach beyond a point */
-/* lower bound of openness where the hidden assets are as large as the plant; less where they are smaller */
+/* lower bound of openness where the hidden assets are as large as the plant; proportionally less where they are smaller */
 static const double OPEN_AT_LEAST = 0.6;
 /* Size of a step where GL runs on a processor: vertices, or points in faces, with and without sky; rows of the ground with and without sky.
    A GPU takes everything in one step. */
@@ -33,7 +34,7 @@ struct bake {
     const struct bake_programs *programs;
     const double *plant_from_ground;
     struct light_set set;
-    struct visibility start; /* the plant's initial visibility, with which the sky's maps are drawn */
+    struct visibility start; /* asset visibility with which the plant file begins; the sky's maps are drawn with it */
     bool with_sky;
     struct directions_block *directions;
     GLuint sky_maps, directions_buffer, framebuffer;
@@ -41,7 +42,7 @@ struct bake {
     enum { BAKE_SKY_MAPS, BAKE_SUN_MAP, BAKE_GROUND, BAKE_FACES, BAKE_VERTICES, BAKE_DONE } part;
     int direction, row;
     size_t asset, place, vertex;
-    struct bake_faces faces; /* large faces of the asset whose vertices come next */
+    struct bake_faces faces; /* large faces of the asset whose vertices are baked next */
 };
 
 bool bake_programs_init(struct bake_programs *programs, struct log *log)
@@ -78,7 +79,7 @@ void light_set_finish(struct light_set *set, const struct gpu_scene *gpu_scene)
 
 /* --- maps ---------------------------------------------------------------------------------------------------------------------- */
 
-/* Creates a depth texture for comparisons; points outside the map are lit. */
+/* Creates a depth texture for comparisons; points outside the map count as lit. */
 static GLuint make_map(GLenum kind, int size_px, int layers)
 {
     static const float nothing[4] = { 0 };
@@ -103,7 +104,7 @@ static int sun_map_px(const struct gpu_scene *gpu_scene)
     return SUN_MAP_PX < gpu_scene->gl->max_texture_px ? SUN_MAP_PX : gpu_scene->gl->max_texture_px;
 }
 
-/* Draws one asset into a map if it is shown. layer: -1 if the texture is no array. error_m: of the level of detail. */
+/* Draws one asset into a map if it is shown. layer: -1 if the texture is no array. error_m: largest error of the level of detail. */
 static void draw_on_map(struct bake *bake, GLuint map, int layer, int size_px, const double clip_from_plant[16],
                         const struct visibility *shown, double error_m)
 {
@@ -180,7 +181,7 @@ static void sun_map_bit(struct bake *bake)
     bake->part = BAKE_GROUND;
 }
 
-/* --- what reaches the surfaces --------------------------------------------------------------------------------------------------- */
+/* --- light that reaches the surfaces --------------------------------------------------------------------------------------------- */
 
 static void set_uniforms(const struct bake *bake, const double plant_from_here[16], size_t first, size_t end)
 {
@@ -242,7 +243,7 @@ static void bind_vertices(const struct bake *bake)
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 6, bake->faces.sums);
 }
 
-/* Bakes points inside large faces. If there is no memory for them, only vertices are baked. */
+/* Bakes points inside large faces. If there is no memory for them, light is sampled at vertices only. */
 static void faces_bit(struct bake *bake)
 {
     const struct scene_asset *asset = &bake->gpu_scene->scene->assets[bake->asset];

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Bakes one light set in small steps, so that frames can be drawn in between: a shadow map of the sun, and the light that reaches each
    vertex and the ground. Sky light and openness (ambient occlusion) come from depth maps in 32 directions. Openness depends on neither sun
-   nor environment, so it is copied from another set, or read from a file. It is that of the whole plant; where assets are hidden, only a
-   lower bound is applied. Thread: the one of the GL context. */
+   nor environment, so it is copied from another set, or read from a file. Openness is always that of the whole plant; if assets are hidden,
+   it is only raised to a lower bound. Thread: the one of the GL context. */
 #ifndef RENDER_BAKE_H
 #define RENDER_BAKE_H
 #include "gpu/pool.h"
@@ -13,7 +13,7 @@ struct light_key {
     double towards[3];       /* unit vector towards the sun, in the plant frame */
     int environment;         /* number of the environment (render/light/environments.h) */
     struct visibility shown; /* assets that cast shadows */
-    bool rough;              /* without openness: every point is taken to be equally open */
+    bool rough;              /* a rough set: openness is not baked but constant, which is much faster */
 };
 
 struct light_set {
@@ -38,12 +38,12 @@ bool bake_programs_init(struct bake_programs *programs, struct log *log);
 void bake_programs_finish(struct bake_programs *programs);
 
 struct bake;
-/* Returns the lower bound of openness, 0..1, for this visibility: surfaces that hidden assets covered must not stay dark. */
+/* Returns the lower bound of openness, 0..1, for this visibility: it keeps surfaces that are next to hidden assets from staying dark. */
 double bake_least_open(const struct gpu_scene *gpu_scene, const struct visibility *shown);
-/* Begins to bake a set for `key`. from: a set to copy openness from; it is read during the call only, must not be rough, and must have no
-   larger bake_least_open(). kept: where `from` is NULL, the plant's openness, read during the call only. Both NULL: openness is baked as
-   well, which is most of the work, unless the key is rough. The caller ends the bake with bake_end() or bake_abandon(). Returns NULL when
-   the GPU is out of memory, logged. */
+/* Begins to bake a set for `key`. from: a light set to copy openness from; it is read during the call only, must not be rough, and its
+   bake_least_open() must not be larger. kept: the plant's openness file, used if `from` is NULL; read during the call only. Both NULL:
+   openness is baked as well, which is most of the work, unless the key is rough. The caller ends the bake with bake_end() or
+   bake_abandon(). Returns NULL when the GPU is out of memory, logged. */
 struct bake *bake_begin(const struct gpu_scene *gpu_scene, const struct bake_programs *programs, const double plant_from_ground[16],
                         const struct light_key *key, const struct light_set *from, struct openness *kept);
 /* Returns the key that the bake was begun with. */

@@ -10,8 +10,8 @@ enum { BAKE_FACE_SAMPLES = 6 }; /* per triangle; must match shaders/bake.comp */
 
 struct bake_faces {
     size_t count;
-    GLuint corners; /* buffer: three vertex indices per triangle */
-    GLuint sums;    /* buffer, per vertex: sums of weight, openness and sun, in units of 1/256 */
+    GLuint corners; /* GL buffer with three vertex indices per triangle */
+    GLuint sums;    /* GL buffer with three sums per vertex: weight, openness and sun, in units of 1/256 */
 };
 
 /* Finds the triangles of the finest level with an edge of at least least_m. Returns false when the GPU is out of memory, logged; `count` is

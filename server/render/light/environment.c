@@ -9,25 +9,26 @@
 #include "base/mem.h"
 #include "render/light/ggx.h"
 
-/* size of the built-in sky, which varies with elevation only; the sums of harmonics need a few columns */
+/* size in pixels of the built-in sky's image. It varies with elevation only, but integrating the harmonics needs a few columns */
 enum { SKY_WIDTH = 8, SKY_HEIGHT = 256 };
 enum { BASE_PX = 256, PYRAMID = 6, SAMPLES = 128 };
-/* radiance is clipped at this multiple of the mean: brighter spots are sun or lamps, and the sun is a light of its own */
+/* radiance is clipped at this multiple of the mean: brighter spots are sun or lamps, and the renderer adds the sun as a separate light */
 static const double MAX_RADIANCE_FACTOR = 24;
-/* Resolution per roughness layer: rough layers are smooth, so they are computed at low resolution and enlarged. */
+/* Side in pixels of the reflection map for each roughness layer: rough layers are smooth, so they are computed at low resolution and
+   enlarged. */
 static const int layer_px[ENVIRONMENT_LAYERS] = { 128, 128, 128, 64, 64, 32, 32, 32 };
 
 struct environment_source { /* an environment map: first equirectangular like its image, then an octahedral pyramid in plant axes */
     const float (*pixels)[4];
     int width, height;
-    bool y_up, even; /* radiance depends on elevation only, as in the built-in sky */
+    bool y_up, even;        /* radiance depends on elevation only, as in the built-in sky */
     double factor[3], most; /* factor: exposure and white balance; most: limit of the brightest channel before the factor */
     float (*pyramid[PYRAMID])[4];
 };
 
 /* --- directions ---------------------------------------------------------------------------------------------------------------- */
 
-/* Returns the direction of a texel's centre in the octahedral mapping of `mirrored`. */
+/* Returns the direction of a texel's centre in the octahedral reflection maps (the array `mirrored`). */
 static void texel_direction(int x, int y, int side_px, double towards[3])
 {
     double u = (2.0 * x) / (side_px - 1) - 1, v = (2.0 * y) / (side_px - 1) - 1, z = 1 - fabs(u) - fabs(v);
@@ -42,7 +43,7 @@ static void texel_direction(int x, int y, int side_px, double towards[3])
     towards[2] = z / size;
 }
 
-/* Returns the position of a direction in an octahedral square with this side: 0 to side_px - 1. */
+/* Returns the position of a direction in an octahedral square with this side: each coordinate is 0 to side_px - 1. */
 static void texel_of(const double towards[3], int side_px, double *x, double *y)
 {
     double sum = fabs(towards[0]) + fabs(towards[1]) + fabs(towards[2]), u = towards[0] / sum, v = towards[1] / sum;
@@ -84,7 +85,7 @@ static void sky_color(double height, float out[4])
 
 static float (*make_sky(void))[4]
 {
-    float (*pixels)[4] = mem_array(SKY_WIDTH * SKY_HEIGHT, sizeof(*pixels));
+    float(*pixels)[4] = mem_array(SKY_WIDTH * SKY_HEIGHT, sizeof(*pixels));
     for (int i = 0; i < SKY_WIDTH * SKY_HEIGHT; i++)
         sky_color(cos(M_PI * (i / SKY_WIDTH + 0.5) / SKY_HEIGHT), pixels[i]);
     return pixels;
@@ -116,15 +117,23 @@ static void clipped(const struct environment_source *source, const float pixel[4
 /* Real spherical harmonics without their constant factors (term_factors). */
 static void terms_of(const double n[3], double terms[ENVIRONMENT_TERMS])
 {
-    const double all[ENVIRONMENT_TERMS] = { 1,           n[1],        n[2], n[0], n[0] * n[1], n[1] * n[2], 3 * n[2] * n[2] - 1,
-                                            n[0] * n[2], n[0] * n[0] - n[1] * n[1] };
+    const double all[ENVIRONMENT_TERMS] = {
+        1, n[1], n[2], n[0], n[0] * n[1], n[1] * n[2], 3 * n[2] * n[2] - 1, n[0] * n[2], n[0] * n[0] - n[1] * n[1]
+    };
     memcpy(terms, all, sizeof(all));
 }
 
-/* Squared factors of the real harmonics, times the cosine lobe's coefficient of each band over pi. */
+/* Squared constant factors of the real harmonics, times the cosine lobe's coefficient of each band, divided by pi. */
 static const double term_factors[ENVIRONMENT_TERMS] = {
-    0.079577472, 0.238732415 * 2 / 3, 0.238732415 * 2 / 3, 0.238732415 * 2 / 3, 1.092548431 * 1.092548431 / 4,
-    1.092548431 * 1.092548431 / 4, 0.315391565 * 0.315391565 / 4, 1.092548431 * 1.092548431 / 4, 0.546274215 * 0.546274215 / 4,
+    0.079577472,
+    0.238732415 * 2 / 3,
+    0.238732415 * 2 / 3,
+    0.238732415 * 2 / 3,
+    1.092548431 * 1.092548431 / 4,
+    1.092548431 * 1.092548431 / 4,
+    0.315391565 * 0.315391565 / 4,
+    1.092548431 * 1.092548431 / 4,
+    0.546274215 * 0.546274215 / 4,
 };
 
 struct sums {
@@ -190,11 +199,11 @@ struct environment_job {
     struct environment_source *source;
     float (*out)[4];
     int side_px, layer;
-    const struct lobe *lobe; /* sample rays of the layer; NULL for the first layer, a perfect mirror */
+    const struct lobe *lobe; /* sample rays of the roughness layer; NULL for layer 0, a perfect mirror */
 };
 
-/* Returns the one texel that is computed for all texels of equal light. An even sky repeats in the octahedral mapping: in eight equal
-   triangles, or with y up in two halves. */
+/* Returns the index of the representative texel: texels with equal light are computed once. A sky that depends on elevation only repeats in
+   the octahedral map: in eight equal triangles, or with y up in two halves. */
 static size_t twin_of(const struct environment_source *source, int side_px, size_t i)
 {
     int x = (int)(i % (size_t)side_px), y = (int)(i / (size_t)side_px);
@@ -239,14 +248,14 @@ static void make_pyramid(struct environment_source *source, struct workers *work
 {
     struct environment_job job = { .source = source };
     for (int level = 0, side = BASE_PX; level < PYRAMID; level++, side /= 2) {
-        float (*to)[4] = source->pyramid[level] = mem_array((size_t)side * (size_t)side, sizeof(*to));
+        float(*to)[4] = source->pyramid[level] = mem_array((size_t)side * (size_t)side, sizeof(*to));
         if (level == 0) {
             job.out = to;
             workers_for(workers, BASE_PX, 8, base_rows, &job);
             copy_to_twins(source, BASE_PX, to);
             continue;
         }
-        const float (*from)[4] = (const float(*)[4])source->pyramid[level - 1];
+        const float(*from)[4] = (const float(*)[4])source->pyramid[level - 1];
         for (int i = 0; i < side * side; i++)
             for (int c = 0; c < 4; c++) {
                 int at = (i / side) * 4 * side + (i % side) * 2;
@@ -357,7 +366,7 @@ static void make_layer(struct environment_source *source, struct workers *worker
 
 bool environment_init(struct environment *environment, const struct image_float *image, bool y_up, struct workers *workers)
 {
-    float (*sky)[4] = image ? NULL : make_sky();
+    float(*sky)[4] = image ? NULL : make_sky();
     struct environment_source source = { .pixels = image ? (const float(*)[4])image->rgba : (const float(*)[4])sky,
                                          .width = image ? (int)image->width_px : SKY_WIDTH,
                                          .height = image ? (int)image->height_px : SKY_HEIGHT,

@@ -13,16 +13,16 @@
 
 enum { ENVIRONMENT_PX = 128, ENVIRONMENT_LAYERS = 8, ENVIRONMENT_TERMS = 9 };
 struct environment {
-    /* Coefficients of irradiance over pi, in the order 1, y, z, x, xy, yz, 3zz-1, xz, xx-yy of a direction's components, with the
-       basis functions' constant factors multiplied in. */
+    /* Coefficients of irradiance over pi, in the order of the terms 1, y, z, x, xy, yz, 3zz-1, xz, xx-yy of a direction's components, with
+       the basis functions' constant factors multiplied in. */
     float irradiance[ENVIRONMENT_TERMS][4];
-    /* By roughness 0 to 1, then octahedral (render: shaders/environment.glsl): mean radiance around the reflected ray. */
+    /* Octahedral maps (shaders/environment.glsl), one per roughness from 0 to 1, of the mean radiance around the reflected ray. */
     float (*mirrored)[4];
 };
 
 /* image: equirectangular, its middle row the horizon, its middle column towards +x of the plant; NULL: the built-in sky. y_up: +y of the
    plant is up; else +z. Keeps no pointer to the image. Free with environment_finish(). Returns false if no light comes from above in a
-   colour channel: a black image, or one without any blue. */
+   colour channel: a black image, or one in which a channel, such as blue, is 0 everywhere. */
 bool environment_init(struct environment *environment, const struct image_float *image, bool y_up, struct workers *workers);
 void environment_finish(struct environment *environment);
 

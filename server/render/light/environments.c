@@ -13,7 +13,7 @@
 
 enum { SOURCE_MAX_PX = 1024, BLOCK_BINDING = 1, UNIT_MIRRORED = 8, UNIT_BRDF = 9 };
 
-/* Shared by worker and renderer: freed when both have released it. */
+/* Loading task, shared by worker and renderer and freed when both have released it. */
 struct environment_task {
     atomic_int refs;
     struct log *log;
@@ -154,7 +154,7 @@ void environments_finish(struct environments *environments)
         struct environment_slot *slot = &environments->slots[i];
         glDeleteBuffers(1, &slot->irradiance);
         glDeleteTextures(1, &slot->mirrored);
-        if (i > 0) /* slot 0, the built-in sky, is shared */
+        if (i > 0) /* index 0, the built-in sky, is shared by all renderers */
             environment_finish(&slot->of);
         task_unref(&slot->task);
     }
@@ -183,7 +183,7 @@ bool environments_wait(struct environments *environments, int number, int64_t ti
     if (!wait_done(slot->task, timeout_ns))
         return false;
     if (slot->task->good) {
-        slot->of = slot->task->environment; /* safe to take: the worker no longer accesses the task */
+        slot->of = slot->task->environment; /* safe to read without a lock: the worker no longer accesses the task */
         slot->task->environment = (struct environment){ 0 };
     }
     if (slot->of.mirrored && !upload(environments, slot)) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The environment maps of a plant on the GPU, by number: 0 is the built-in sky, then those of the plant file, which workers read and
+/* The environment maps of a plant on the GPU, by index: 0 is the built-in sky; 1 and up are those of the plant file, which workers read and
    convolve in the background. Thread: the one of the GL context. */
 #ifndef RENDER_ENVIRONMENTS_H
 #define RENDER_ENVIRONMENTS_H
@@ -21,8 +21,9 @@ struct environments {
     struct gl *gl;
     struct environment_slot slots[1 + PLANT_ENVIRONMENTS];
     int count;
-    const float (*brdf_texels)[2]; /* environment_brdf() of ENVIRONMENT_BRDF_PX; shared by all renderers */
-    GLuint brdf;                   /* texture of brdf_texels */
+    /* texture of the result of environment_brdf(), ENVIRONMENT_BRDF_PX wide and high; the table is shared by all renderers */
+    const float (*brdf_texels)[2];
+    GLuint brdf; /* texture of brdf_texels */
 };
 enum { ENVIRONMENT_BRDF_PX = 48 };
 

@@ -107,7 +107,7 @@ void light_drop(struct light *light, const struct light_key *usual)
             drop(light, &light->sets[i]);
 }
 
-/* Returns an empty slot, after dropping sets beyond the bound as far as they are not held. NULL: all are held. */
+/* Returns an empty slot, after dropping sets beyond the memory bound that nobody holds. NULL: all are held. */
 static struct light_set *make_room(struct light *light, size_t bytes)
 {
     for (;;) {
@@ -148,7 +148,8 @@ static bool begin(struct light *light, const struct light_key *key)
     return light->bake != NULL;
 }
 
-/* Starts to write openness to its file, once. Sets baked while assets were hidden are no source: their openness has a lower bound. */
+/* Starts to write openness to its file, once. Sets baked while assets were hidden are never written, because their openness was raised to a
+   lower bound. */
 static void keep_openness(struct light *light, const struct light_set *set)
 {
     if (light->kept || set->key.rough || bake_least_open(light->gpu_scene, &set->key.shown) > 0)
@@ -210,7 +211,7 @@ bool light_step(struct light *light, const struct light_key *key, int64_t budget
     if (!environments_wait(light->environments, key->environment, budget_ns / 2))
         return false;
     if (!light->bake && !begin(light, key))
-        return true; /* light_get() fails in the same way */
+        return true; /* light_get() will try again to begin the bake, and report the failure */
     environments_bind(light->environments, bake_key(light->bake)->environment);
     while (!issued && spent_ns + last_ns <= budget_ns) {
         issued = bake_step(light->bake);

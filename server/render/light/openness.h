@@ -10,12 +10,12 @@
 
 enum { OPENNESS_GROUND_PX = 256 }; /* width and height of the ground's texture */
 
-struct openness { /* the mapped file: the ground's texels, then those of the vertices, asset by asset */
+struct openness { /* the mapped file: openness of the ground's texels, then of the vertices, asset by asset */
     struct cache_file file;
-    size_t vertex; /* index of the next vertex to upload */
+    size_t vertex; /* index, counted through all assets, of the next vertex to upload */
 };
 
-/* Opens the plant's file. Returns false if there is no valid one; nothing needs closing then. */
+/* Opens the plant's file. Returns false if there is no valid one; openness_close() is then not needed. */
 bool openness_open(struct openness *openness, const struct gpu_scene *gpu_scene);
 void openness_close(struct openness *openness); /* a zeroed struct is fine */
 /* Uploads the next asset's openness into the third byte of each texel of its slice. Returns false when the GPU is out of memory, logged. */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Fits the sun's frustum: bounds all assets as seen from the sun, turned so that the longer side is shortest. */
+/* Fits the sun's frustum: bounds all assets as seen from the sun, with the rotation around the sun's direction that makes the longer side
+   shortest. */
 #include "render/light/sun_frame.h"
 
 #include <math.h>

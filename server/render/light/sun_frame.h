@@ -6,7 +6,7 @@
 
 struct sun_frame {
     double clip_from_plant[16]; /* depth 1 nearest to the sun, 0 farthest */
-    double width_m, depth_m;    /* width_m: of the larger side; depth_m: along the light */
+    double width_m, depth_m;    /* width_m: length of the longer side; depth_m: length along the light's direction */
 };
 
 /* Fits the frustum. towards: direction to the sun. margin: added on every side, as a fraction of the width. */

@@ -14,7 +14,8 @@ static const double NEIGHBOUR_UNITS = 30, HELD_FACTOR = 0.8;
 struct item_buckets {
     const struct crowd_item *items;
     double cell;
-    int *heads, *next; /* heads: last item of each bucket; next: per item, the previous one in its bucket; -1: none */
+    /* heads: index of the last item of each hash bucket; next: by item, index of the previous item in its bucket; -1: none */
+    int *heads, *next;
     size_t mask;
 };
 
@@ -49,7 +50,7 @@ static void put(struct item_buckets *crowd, int index)
     *head = index;
 }
 
-/* Counts the items of a cell that are nearer than sqrt(least), up to the limit. */
+/* Counts the items of a cell that are nearer than sqrt(least), counting at most to the limit. */
 static int count_cell(const struct item_buckets *crowd, double column, double row, const struct crowd_item *item, double least)
 {
     int count = 0;

@@ -13,19 +13,20 @@ enum { LABEL_NONE = -1, LABEL_SLOTS = 16, LABEL_FIRST_FAR = 8, LABEL_MOST_BAD = 
 enum label_rank { LABEL_NOT_WANTED = -1, LABEL_PLAIN, LABEL_DOUBTFUL, LABEL_BAD, LABEL_BEYOND };
 
 struct label_item {             /* one per visible marker */
-    double x, y, width, height; /* x, y: centre of the marker; width, height: of its label */
+    double x, y, width, height; /* x, y: centre of the marker; width, height: size of its label */
     double depth_m;
     enum label_rank rank;
-    int held;    /* slot of its label in the previous frame, or LABEL_NONE */
+    int held;    /* slot (candidate position around the marker) of its label in the previous frame, or LABEL_NONE */
     bool ring;   /* the marker has an alarm ring; its rank is then LABEL_BEYOND */
-    int callout; /* call-out that contained the item in the previous frame, or LABEL_NONE */
+    int callout; /* call-out (label shared by several alarm rings) that contained the item in the previous frame, or LABEL_NONE */
 };
 struct label_area {
     struct label_box box;
     double unit;
     const struct label_box *blocked;
     size_t blocked_count;
-    void (*measure)(void *arg, const int *members, size_t count, double size[2]); /* measures the call-out for these items */
+    /* writes the width and height that a call-out for these items would have */
+    void (*measure)(void *arg, const int *members, size_t count, double size[2]);
     void *arg;
 };
 struct label_place {

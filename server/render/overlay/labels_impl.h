@@ -23,7 +23,7 @@ struct label_layout {
     const struct label_item *items;
     const struct label_area *area;
     struct label_place *places;
-    int columns, rows, *heads; /* grid over the frame: per cell, the head of a list of occupied boxes */
+    int columns, rows, *heads; /* grid over the frame; heads: for each grid cell, the index of the first of its occupied boxes; -1: none */
     struct cell_entry *entries;
     size_t entry_count, entry_capacity;
     int *labelled; /* indices of items that have a label */
@@ -31,7 +31,8 @@ struct label_layout {
     double used;
 };
 
-/* Returns the box of an item's label in a slot. across, down: half extent of the group of markers centred on item->x, item->y. */
+/* Returns the box of an item's label in a slot. across, down: half the width and height of the group of markers around item->x, item->y; 0
+   for a single marker. */
 struct label_box layout_box(const struct label_item *item, int slot, double unit, double across, double down);
 /* Returns whether a box lies within the label area. */
 bool layout_is_inside(const struct label_layout *layout, const struct label_box *box);
@@ -39,7 +40,8 @@ bool layout_is_inside(const struct label_layout *layout, const struct label_box 
 bool layout_is_free(const struct label_layout *layout, const struct label_box *box, int owner, enum label_over over);
 /* Places the label of these items and marks its box as occupied; more than one item makes it a call-out. */
 void layout_set(struct label_layout *layout, const int *members, size_t count, const struct label_box *box, int slot);
-/* Gives every item with an alarm ring a label or a place in a call-out. order: indices of the items, most important first. */
+/* Gives every item with an alarm ring a label of its own or adds it to a call-out, a label shared by several rings. order: indices of the
+   items, most important first. */
 void layout_place_rings(struct label_layout *layout, const int *order, size_t count);
 
 #endif

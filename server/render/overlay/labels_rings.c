@@ -1,17 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Places labels of alarm rings: each ring gets a label of its own or shares a call-out with near rings. */
+/* Places labels of alarm rings: each alarm ring (the circle around the marker of a tag in alarm) gets its own label or shares a call-out,
+   one label for several near rings. */
 #include <math.h>
 #include <stdlib.h>
 
 #include "base/mem.h"
 #include "render/overlay/labels_impl.h"
 
-/* units between rings that share a call-out; STILL_CLOSE: if they did in the previous frame */
+/* CLOSE: rings nearer to each other than this, in units, share a call-out; STILL_CLOSE: the same for rings that shared one in the previous
+   frame */
 static const double CLOSE = 26, STILL_CLOSE = 34;
 static const double GROWTH = 1.25; /* factor by which both distances grow until at most MAX_GROUPS labels remain */
 enum { MAX_GROUPS = 24 };
-static const double MAX_DISTANCE = 170; /* largest distance of a label, in units, unless it is the last one and has no other to join */
-/* Further positions of a label: offsets from the centre of its rings, in steps of these units. */
+static const double MAX_DISTANCE = 170; /* largest distance of a label from its rings, in units; does not apply if only one label is left */
+/* Grid of further label positions, tried nearest first: STEP_X, STEP_Y: its spacing in units; STEPS: its steps to each side of the centre
+   of the rings. */
 enum { STEP_X = 24, STEP_Y = 15, STEPS = 60, SIDE = 2 * STEPS + 1, OFFSETS = SIDE * SIDE, NOWHERE = -2, FORCED = 1000000 };
 
 struct offset {
@@ -19,19 +22,19 @@ struct offset {
 };
 
 struct ring_group {         /* rings that share a label */
-    struct label_item item; /* centre of the rings, and size of their label */
-    double across, down;    /* half extents of the group's rings around the centre */
+    struct label_item item; /* x, y: centre of the rings; width, height: size of their label */
+    double across, down;    /* half the width and height of the rectangle that encloses the group's ring centres */
     int *members;           /* indices of items, by importance; points into rings.members */
     size_t count;
     struct label_box box;
-    int slot, mate; /* mate: for a group without room, the group that it joins */
+    int slot, mate; /* mate: if the group's label found no room, the index of the group to merge with; else LABEL_NONE */
 };
 
 struct rings {
     struct label_layout *layout;
     const int *order;
     size_t count, group_count;
-    double least; /* factor on the distances: one unit, or more where many rings are close together */
+    double least; /* pixels by which CLOSE and STILL_CLOSE are multiplied: one unit, or more if that leaves too many labels */
     struct ring_group *groups;
     int *group_of;          /* by index in `order` */
     int *members;           /* members of all groups, group after group */
@@ -98,7 +101,7 @@ static size_t join_close(const struct rings *rings, int *first)
     return groups;
 }
 
-/* Computes a group's centre and size, and the slot that it held in the previous frame. */
+/* Computes a group's centre and size, and the slot that its label had in the previous frame. */
 static void measure(struct rings *rings, struct ring_group *group)
 {
     const struct label_area *area = rings->layout->area;
@@ -111,7 +114,7 @@ static void measure(struct rings *rings, struct ring_group *group)
         right = fmax(right, item->x);
         top = fmin(top, item->y);
         bottom = fmax(bottom, item->y);
-        /* the held slot only counts if the label was of the same kind, single or call-out */
+        /* the slot only counts if the label was of the same kind in the previous frame: of a single ring, or a call-out */
         if ((item->callout == LABEL_NONE) == (group->count == 1))
             group->item.held = item->held;
     }
@@ -126,7 +129,7 @@ static void measure(struct rings *rings, struct ring_group *group)
     group->down = (bottom - top) / 2;
 }
 
-/* Collects the groups. first: by index in `order`, union-find roots. */
+/* Makes the groups from the union-find forest `first`, which is indexed like `order`. */
 static void make_groups(struct rings *rings, int *first)
 {
     int *next = rings->members;
@@ -151,7 +154,7 @@ static void make_groups(struct rings *rings, int *first)
         measure(rings, &rings->groups[i]);
 }
 
-/* --- where their labels lie -------------------------------------------------------------------------------------------------- */
+/* --- places of the labels ---------------------------------------------------------------------------------------------------- */
 
 static struct label_box box_at(const struct rings *rings, const struct ring_group *group, int slot)
 {
@@ -189,14 +192,15 @@ static int find_slot(const struct rings *rings, const struct ring_group *group)
     for (int i = 0; i < 2 * LABEL_SLOTS; i++)
         if (is_free(rings, group, i % LABEL_SLOTS, clearance, i < LABEL_SLOTS ? OVER_NOTHING : OVER_MARKS))
             return i % LABEL_SLOTS;
-    for (int over = OVER_MARKS; over <= (alone ? OVER_RINGS : OVER_MARKS); over++) /* as a last resort the label may cover its own rings */
+    /* OVER_RINGS: as a last resort the label may cover its own rings */
+    for (int over = OVER_MARKS; over <= (alone ? OVER_RINGS : OVER_MARKS); over++)
         for (int i = 0; i < OFFSETS && (alone || rings->offsets[i].squared <= MAX_DISTANCE * MAX_DISTANCE); i++)
             if (is_free(rings, group, LABEL_SLOTS + i, clearance, (enum label_over)over))
                 return LABEL_SLOTS + i;
     return alone ? FORCED : NOWHERE;
 }
 
-/* Returns a box at the centre, moved into the area, whatever it covers. */
+/* Returns the label's box at the centre of its rings, moved into the label area even if it covers other things there. */
 static struct label_box forced_box(const struct rings *rings, const struct ring_group *group)
 {
     const struct label_box *area = &rings->layout->area->box;
@@ -227,7 +231,7 @@ static int nearest_to(const struct rings *rings, int index)
     return nearest;
 }
 
-/* Places the labels of all groups. Returns false if some found no room; each of those has chosen a mate to join. */
+/* Places the labels of all groups. Returns false if a label found no room; its group's `mate` is then the group to merge with. */
 static bool place_groups(struct rings *rings)
 {
     bool all = true;

@@ -199,7 +199,7 @@ static void draw_header(struct pen *pen)
     pen_take(pen, &box);
 }
 
-/* Returns whether any shown sensor has a usable reading. */
+/* Returns whether any shown sensor has a reading that is not Bad. */
 static bool is_live(const struct pen *pen)
 {
     const struct plant *plant = pen->scene->plant;
@@ -265,7 +265,7 @@ static void pen_init(struct pen *pen, cairo_surface_t *surface, const struct fra
     pen_scale(pen, fmin(frame->width_px / 1280.0, frame->height_px / 720.0));
 }
 
-/* Draws everything but header and banners. */
+/* Draws everything of the overlay except header and banners. */
 static void draw_rest(struct pen *pen)
 {
     int halves = pen->frame->view.split ? 2 : 1;
@@ -274,7 +274,7 @@ static void draw_rest(struct pen *pen)
     bool shared = pen->frame->view.split && overlay_legend_is_shared(pen);
     for (int half = shared ? 1 : 0; half < halves; half++) {
         pen_choose_half(pen, half);
-        if (pen->view.look != LOOK_MATERIALS) /* without a field there is nothing to explain */
+        if (pen->view.look != LOOK_MATERIALS) /* without a field there is no legend */
             overlay_legend(pen);
     }
     if (!pen->bare && !pen->calm)
@@ -346,7 +346,8 @@ static double legend_share(struct pen *pen, const struct view *view)
     return legend_px / width_px;
 }
 
-/* Computes the free window. unit: as in overlay_draw_pane(); 0: as for a snapshot, which has a header. */
+/* Computes the rectangle that legend and clock leave free. unit: as in overlay_draw_pane(); 0: the layout of a snapshot, which has a
+   header. */
 static void find_window(const struct scene *scene, const struct view *view, double unit, struct camera_window *out)
 {
     cairo_surface_t *surface = cairo_image_surface_create(CAIRO_FORMAT_A8, 1, 1);

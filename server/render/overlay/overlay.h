@@ -22,7 +22,7 @@ void overlay_draw_bare(struct frame *frame, const struct scene *scene, const str
 void overlay_draw_pane(cairo_surface_t *surface, const struct frame *frame, const struct scene *scene, const struct snapshot *snapshot,
                        double unit, const struct burn_shift *legend);
 
-/* Computes the rectangle of the view, or of each half of a split view, that legend and clock leave free. Pure. */
+/* Computes the part of the view, or of each half of a split view, that legend and clock do not cover. Pure. */
 void overlay_window(const struct scene *scene, const struct view *view, struct camera_window *out);
 /* Computes the free rectangle of a pane that overlay_draw_pane() draws over. unit: as there. */
 void overlay_pane_window(const struct scene *scene, const struct view *view, double unit, struct camera_window *out);

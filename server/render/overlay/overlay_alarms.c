@@ -34,7 +34,7 @@ static bool *find_seen(struct pen *pen)
     return seen;
 }
 
-/* Writes these alarms to `list`, which has room for every tag. Returns their number. */
+/* Writes the alarms that no visible marker shows to `list`, which has room for every tag. Returns the count. */
 static size_t find_unseen(struct pen *pen, struct unseen *list)
 {
     const struct plant *plant = pen->scene->plant;

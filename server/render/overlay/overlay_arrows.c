@@ -74,7 +74,8 @@ void overlay_unknown_direction(struct pen *pen, double x, double y)
     stroke_both(pen, 1.6 * pen->unit, false);
 }
 
-/* Draws the stroke whose points begin at label `from`, with an arrowhead at its end. Returns the index of its last point. */
+/* Draws the stroke (short streamline) whose points begin at label `from`, with an arrowhead at its end. Returns the index of its last
+   point. */
 static size_t draw_stroke(struct pen *pen, size_t from)
 {
     const struct frame_label *label = &pen->frame->labels[from], *last = label;

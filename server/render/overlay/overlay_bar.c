@@ -10,7 +10,7 @@ struct ticks {
     double values[MAX_TICKS], places[MAX_TICKS]; /* places: position of the text, 0 at MIN, 1 at MAX */
     int count;
 };
-static const double LINE_GAP = 1.12; /* distance between lines of text, in text_px */
+static const double LINE_GAP = 1.12; /* minimum distance between lines of text, as a multiple of text_px */
 
 /* Returns a step of 1, 2 or 5 times a power of ten that divides the range into at most `count` steps. */
 static double nice_step(double range, double count)
@@ -76,7 +76,7 @@ static void choose_ticks(struct ticks *ticks, const struct view *view, double mo
     }
 }
 
-/* Moves positions apart so that the texts do not overlap; none leaves the bar. */
+/* Moves the tick labels apart so that they do not overlap; none leaves the bar. */
 static void spread(double *places, int count, double gap)
 {
     for (int i = 1; i < count; i++)

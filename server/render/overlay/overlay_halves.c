@@ -11,7 +11,7 @@ struct caption { /* caption of one half */
     int count;
 };
 
-/* Adds a line. value: inserted into the sentence; NULL: a word without a gap. */
+/* Adds a line to the caption. value: inserted for the {} of the sentence; NULL: the text has no {}. */
 static void add_line(struct caption *caption, const struct pen *pen, enum overlay_word word, const char *value)
 {
     if (caption->count < MAX_LINES)

@@ -86,7 +86,7 @@ static bool shows_assumed(const struct pen *pen)
     return false;
 }
 
-/* Returns whether the frame shows a cross for an unknown direction, in either half, since a shared legend explains both. */
+/* Returns whether either half of the frame shows a cross for an unknown direction: a legend that both halves share explains both. */
 static bool shows_unknown_direction(const struct pen *pen)
 {
     for (size_t i = 0; i < pen->frame->label_count; i++)
@@ -115,7 +115,7 @@ static void choose_rows(const struct pen *pen, struct legend *legend)
         legend->rows[legend->row_count++] = ROW_UNPROVEN;
     if (shows_assumed(pen))
         legend->rows[legend->row_count++] = ROW_ASSUMED;
-    if (overlay_has_arrows(pen)) { /* strokes are not explained, since their length has no meaning */
+    if (overlay_has_arrows(pen)) { /* arrows alone have a row: strokes have none, since their length has no meaning */
         if (view->directions == DIRECTIONS_ARROWS)
             legend->rows[legend->row_count++] = ROW_ARROW;
         if (shows_unknown_direction(pen))
@@ -153,7 +153,7 @@ static void write_hot_spot(const struct pen *pen, struct legend *legend)
     add_note(legend, legend->since);
 }
 
-/* Notes how far triangles deviate from the field, which causes the dots. */
+/* Adds the error bound of the places marked with dots: how far values interpolated over a triangle may deviate from the field. */
 static void write_drawn_error(const struct pen *pen, struct legend *legend)
 {
     const char *unit = view_is_operator(&pen->view) ? "" : view_unit(pen->scene->plant, &pen->view);
@@ -204,11 +204,12 @@ static void write_words(const struct pen *pen, struct legend *legend)
 
 static const char *row_text(const struct pen *pen, const struct legend *legend, enum row row)
 {
-    static const enum overlay_word texts[] = { [ROW_NO_LIMITS] = WORD_NO_LIMITS,      [ROW_NO_DATA] = WORD_NO_DATA,
-                                               [ROW_UNCERTAIN] = WORD_UNCERTAIN,      [ROW_UNPROVEN] = WORD_UNPROVEN,
-                                               [ROW_ASSUMED] = WORD_PLACE_ASSUMED,    [ROW_NOWHERE] = WORD_DIRECTION_UNKNOWN,
-                                               [ROW_ALARM] = WORD_PRIORITY_1,         [ROW_ALARM + 1] = WORD_PRIORITY_2,
-                                               [ROW_ALARM + 2] = WORD_PRIORITY_3,     [ROW_ALARM + 3] = WORD_PRIORITY_4 };
+    static const enum overlay_word texts[] = {
+        [ROW_NO_LIMITS] = WORD_NO_LIMITS, [ROW_NO_DATA] = WORD_NO_DATA,       [ROW_UNCERTAIN] = WORD_UNCERTAIN,
+        [ROW_UNPROVEN] = WORD_UNPROVEN,   [ROW_ASSUMED] = WORD_PLACE_ASSUMED, [ROW_NOWHERE] = WORD_DIRECTION_UNKNOWN,
+        [ROW_ALARM] = WORD_PRIORITY_1,    [ROW_ALARM + 1] = WORD_PRIORITY_2,  [ROW_ALARM + 2] = WORD_PRIORITY_3,
+        [ROW_ALARM + 3] = WORD_PRIORITY_4
+    };
     return row == ROW_BELOW ? legend->below : row == ROW_ARROW ? legend->longest : pen_word(pen, texts[row]);
 }
 
@@ -237,7 +238,9 @@ static void lay_out(struct pen *pen, struct legend *legend)
         width = fmax(width, beside + pen_text_width(pen, row_text(pen, legend, legend->rows[i])));
     for (int i = 0; i < legend->note_count; i++)
         width = fmax(width, pen_text_width(pen, legend->notes[i]));
-    if (overlay_has_arrows(pen)) /* reserved even if not listed: the free window is computed before crosses are known */
+    /* space for the row is reserved even if it is not listed: the free rectangle is computed before it is known whether there are
+       crosses */
+    if (overlay_has_arrows(pen))
         width = fmax(width, beside + pen_text_width(pen, row_text(pen, legend, ROW_NOWHERE)));
     width = fmax(width, overlay_bar_width(pen));
     if (legend->longest[0])
@@ -324,7 +327,7 @@ static void draw_swatch(struct pen *pen, const struct label_box *box, enum row r
         overlay_outline(pen, box->x + box->width / 2, box->y + box->height / 2, 0.27 * box->height, false);
         overlay_outline(pen, box->x + box->width / 2, box->y + box->height / 2, 0.47 * box->height, false);
         break;
-    case ROW_ARROW: /* draw_longest() draws it next to the text */ break;
+    case ROW_ARROW: /* draw_longest() draws this row's arrow next to the text */ break;
     case ROW_NOWHERE: overlay_unknown_direction(pen, box->x + box->width / 2, box->y + box->height / 2); break;
     default:
         overlay_ring(pen, box->x + box->width / 2, box->y + box->height / 2, 0.5 * box->height, (int)row - ROW_ALARM + 1, ALARM_ACTIVE);

@@ -94,13 +94,14 @@ static void draw_alarm(struct pen *pen, const struct frame_marker *marker)
     overlay_ring(pen, marker->x_px, marker->y_px, 9.5 * pen->unit, priority, (enum alarm_status)reading->alarm_status);
 }
 
-/* Returns whether the marker's equipment has no distance to the chosen sensor: only its alarm is shown then. */
+/* Returns whether the marker's asset has no known distance to the chosen sensor; of such a marker only the alarm is drawn. */
 static bool is_elsewhere(const struct pen *pen, const struct frame_marker *marker)
 {
     return pen->view.field.show == SHOW_DISTANCE && isnan(marker->value);
 }
 
-/* Formats the label of a Bad reading. Its alarm is the one at the last value. A time more than a day ago includes the date. */
+/* Formats the label of a Bad reading. The label's alarm is the one that the last usable value raised. A time more than a day ago includes
+   the date. */
 static void format_bad(const struct pen *pen, const struct reading *reading, char out[64])
 {
     enum alarm_kind alarm = (enum alarm_kind)reading->alarm;
@@ -229,7 +230,7 @@ static void add_wanted(struct pen *pen, const struct frame_marker *marker, struc
     wanted->bad += item->rank == LABEL_BAD;
 }
 
-/* --- call-outs: the alarms of several rings together --------------------------------------------------------------------------- */
+/* --- call-outs: one label for the alarms of several rings ---------------------------------------------------------------------- */
 
 struct callout_text {
     char what[200], worst[200];
@@ -244,7 +245,8 @@ static void write_callout(const struct marker_labels *wanted, const int *members
     int asset = plant->tags[wanted->tags[members[0]]].asset, worst = -1, least = 0;
     for (size_t i = 0; i < count; i++) {
         int tag = wanted->tags[members[i]], word = (int)readings[tag].alarm_status;
-        bool gone = word == ALARM_RETURNED || word == ALARM_LATCHED; /* returned and latched alarms rank behind all others */
+        /* alarms that have returned to normal, or are latched, rank behind all others */
+        bool gone = word == ALARM_RETURNED || word == ALARM_LATCHED;
         int grave = alarm_priority(&plant->tags[tag], (enum alarm_kind)readings[tag].alarm) + (gone ? ALARM_PRIORITIES : 0);
         if (worst < 0 || grave < least || (grave == least && tag < worst)) {
             worst = tag;
@@ -374,7 +376,7 @@ bool overlay_marker_seen(const struct pen *pen, const struct frame_marker *marke
     return !marker->occluded && is_inside(pen, marker) && !is_under(pen, pen->taken_count, &mark);
 }
 
-/* Returns whether the marker is drawn in any case, however many are near. */
+/* Returns whether the marker is exempt from thinning out. */
 static bool is_kept(const struct pen *pen, const struct frame_marker *marker)
 {
     return has_alarm(pen, marker) || is_bad(marker) || quality_is_uncertain(marker->quality) ||
@@ -411,7 +413,7 @@ static size_t choose_markers(const struct pen *pen, int cards, size_t **chosen)
 
 void overlay_markers(struct pen *pen)
 {
-    int cards = pen->taken_count; /* number of areas occupied before markers are drawn */
+    int cards = pen->taken_count; /* number of occupied areas before any marker is drawn: the cards and banners */
     struct marker_labels wanted = { .pen = pen };
     size_t *chosen, count = choose_markers(pen, cards, &chosen);
     wanted.items = mem_array(count, sizeof(*wanted.items));

@@ -26,7 +26,7 @@ struct pen {
     const struct scene *scene;
     const struct snapshot *snapshot;
     const struct loop_checks *loop_checks; /* NULL: none */
-    bool bare;                             /* nothing about sensors and alarms is drawn */
+    bool bare;                             /* true: draws no markers, sensor labels and alarms */
     bool calm;                             /* labels only for alarms and Bad readings */
     double unit, text_px;
     struct burn_shift legend_shift;        /* shift of the legend, within its margin */
@@ -36,7 +36,7 @@ struct pen {
 
 /* Selects the half of a split view to draw on. */
 void pen_choose_half(struct pen *pen, int half);
-/* Returns whether a box lies inside the area and covers nothing that is taken. */
+/* Returns whether a box lies inside the pen's area and overlaps no box that is occupied already. */
 bool pen_is_free(const struct pen *pen, const struct label_box *box);
 /* Marks a box as taken. */
 void pen_take(struct pen *pen, const struct label_box *box);
@@ -65,7 +65,7 @@ double pen_rounded(double value, int decimals);
 
 /* Draws the colour bar of pen->view: MIN at the bottom, MAX at the top, ticks on the right, the group's limits on the left. */
 void overlay_bar(struct pen *pen, const struct label_box *bar);
-/* overlay_bar_width returns the width of the colour bar with all text, overlay_bar_left the part of it left of the bar. */
+/* overlay_bar_width returns the width of the colour bar with all text, overlay_bar_left the width of the text to the left of the bar. */
 double overlay_bar_width(struct pen *pen);
 double overlay_bar_left(struct pen *pen);
 /* Returns the height in pixels of the legend strip of a frame of that size; 0: the frame is too small for one. */
@@ -83,7 +83,7 @@ double overlay_legend_width(struct pen *pen);
 void overlay_halves(struct pen *pen);
 /* Draws the outline of a marker. broken: dashed, for a tag that no loop check has proven. */
 void overlay_outline(struct pen *pen, double x, double y, double radius, bool broken);
-/* Returns whether loop checks are given and none has proven the tag. */
+/* Returns true if the pen has loop checks and none of them has proven the tag's wiring; the marker is then drawn dashed. */
 bool overlay_unproven(const struct pen *pen, int tag);
 /* Draws an alarm ring. The colour shows the priority, the form the state: thick: unacknowledged; thin: acknowledged; hollow: returned to
    normal but not acknowledged. */

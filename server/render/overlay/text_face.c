@@ -11,7 +11,7 @@
 enum { FIRST_UNCOVERED = 0x590 }; /* first code point that DejaVu Sans may lack: Hebrew */
 
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
-/* --- below: under lock. What was found last, regular and bold */
+/* --- below: under the lock. Last fonts found, regular and bold */
 static struct found_face {
     FcCharSet *letters; /* NULL: no search yet */
     cairo_font_face_t *face;
@@ -26,7 +26,7 @@ static FcCharSet *letters_beyond(const char *text)
     FcChar32 letter;
     for (int count = (int)strlen(text), n; count > 0 && (n = FcUtf8ToUcs4(at, &letter, count)) > 0; at += n, count -= n) {
         FcCharSetAddChar(letters, letter);
-        beyond |= letter >= FIRST_UNCOVERED && !(letter >= 0x2000 && letter < 0x2c00); /* punctuation, arrows and symbols do not count */
+        beyond |= letter >= FIRST_UNCOVERED && !(letter >= 0x2000 && letter < 0x2c00); /* ignored: punctuation, arrows and symbols */
     }
     if (beyond)
         return letters;
