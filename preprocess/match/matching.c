@@ -405,7 +405,7 @@ static bool is_as_read(const char *path, const char *before)
     char *now = text_read_file(path, max_list_bytes, &length);
     bool is = before && now ? !strcmp(before, now) : before == now;
     mem_free(now);
-    return is || fail_at(path, "was changed by somebody else meanwhile; nothing was written: run it again");
+    return is || fail_at(path, "was changed by another program during matching; nothing was written: run the command again");
 }
 
 static bool add_one(struct file_set *set, const char *path, const char *before, const char *text)
@@ -416,7 +416,7 @@ static bool add_one(struct file_set *set, const char *path, const char *before, 
 
 static void say_written(const char *path, const char *before, const char *text)
 {
-    printf("%s: %s\n", path, before && !strcmp(before, text) ? "stays as it is" : "written");
+    printf("%s: %s\n", path, before && !strcmp(before, text) ? "unchanged" : "written");
 }
 
 /* Writes the files. The plant file comes first, because it only gains groups and a source, and is valid with the old tag list. matches.csv

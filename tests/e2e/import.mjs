@@ -124,7 +124,7 @@ for (const { file, as, chordMm, nodes, counted, assets } of [
         const check = run('plantcastd', '--check', join(out, 'plant.yaml'));
         assert.equal(check.status, 0, check.stderr);
         const again = run('plantcast', 'import', model, '-o', out, '--chord', String(chordMm));
-        assert.match(again.stdout, /plant\.yaml: stays as it is/);
+        assert.match(again.stdout, /plant\.yaml: unchanged/);
     }));
 
 test('a real export with broken attributes or numbers is one line, and leaves nothing behind', { skip }, () => inFolder((folder) => {

@@ -214,7 +214,7 @@ test('what somebody saves while tags are matched is not replaced', { skip: notBu
         if (!stopped)
             continue;
         assert.equal(status, 1, said);
-        assert.match(said, /matches\.csv: was changed by somebody else meanwhile; nothing was written/);
+        assert.match(said, /matches\.csv: was changed by another program during matching; nothing was written/);
         assert.equal(readFileSync(join(folder, 'matches.csv'), 'utf8'), mine);
         assert.doesNotMatch(readFileSync(join(folder, 'tags.csv'), 'utf8'), new RegExp(`XT-${tries},`));
     }
