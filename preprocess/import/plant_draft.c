@@ -208,7 +208,7 @@ static int write_new(const char *folder, const char *file, const char *text)
     bool there = access(path, F_OK) == 0;
     int status = there ? 0 : atomic_file_put(path, text, strlen(text));
     if (there)
-        printf("%s: stays as it is\n", path);
+        printf("%s: unchanged\n", path);
     else if (status != 0)
         fail_at(path, strerror(-status));
     mem_free(path);

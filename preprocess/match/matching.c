@@ -456,7 +456,7 @@ static void print_result(const struct matching_run *run, FILE *out)
                run->left_out,
                run->source.id ? run->source.id : "a source");
     if (run->left > 0)
-        fprintf(out, "%zu tags of before are no longer in the list; what was decided about them stays: %s%s\n", run->left,
+        fprintf(out, "%zu tags are no longer in the list; decisions about them are kept: %s%s\n", run->left,
                 run->left_names.at, run->left > LEFT_NAMED ? ", ..." : "");
     if (!run->source.id)
         fprintf(out, "the tag list has no addresses, since the plant has no source: add one with --modbus HOST\n");

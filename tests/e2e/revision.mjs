@@ -96,7 +96,7 @@ test('a real plant: rename, move, delete, add; and back', { skip: noData }, () =
     // Matching again undoes nothing; a tag that left the list is named.
     writeFileSync(join(plant, 'export.csv'), LIST.replace(/^art1111po.*\n/m, ''));
     const again = good(run('plantcast', 'match', plant, join(plant, 'export.csv')));
-    assert.match(again.stdout, /1 tags of before are no longer in the list; what was decided about them stays: art1111po\.TE-03/);
+    assert.match(again.stdout, /1 tags are no longer in the list; decisions about them are kept: art1111po\.TE-03/);
     assert.equal(readFileSync(join(plant, 'tags.csv'), 'utf8'), list);
     assert.match(readFileSync(join(plant, 'matches.csv'), 'utf8'), /^art1111po\.TE-03,sure,-ART1111PO-,/m);
     // matches.csv has changed since, so undoing requires --force.
@@ -178,7 +178,7 @@ T6;temperature;second;TT-9;;;;;f
     assert.match(said.stdout, /tags: 2 moved, 2 place lost/);
     assert.ok(review(plant).includes('node removed E'));
     // Importing the same again changes nothing, and undo still restores the state before the first import.
-    assert.match(good(run('plantcast', 'import', model, '-o', plant)).stdout, /plant\.yaml: stays as it is/);
+    assert.match(good(run('plantcast', 'import', model, '-o', plant)).stdout, /plant\.yaml: unchanged/);
     good(run('plantcast', 'import', '--undo', '-o', plant));
     assert.deepEqual(filesOf(plant), first);
     // No name of the plant is in the new model: it belongs to another plant.

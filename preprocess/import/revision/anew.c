@@ -45,7 +45,7 @@ static int add_text(struct revision_making *making, struct one_text *one, const 
     if (one->before && after && !strcmp(one->before, after)) {
         mem_free(one->after);
         one->after = NULL;
-        printf("%s: stays as it is\n", path);
+        printf("%s: unchanged\n", path);
     }
     if (one->before && one->after && versioned)
         one->kept = tag_file_keep(path, &why);

@@ -103,7 +103,7 @@ static void take_models(struct revising *r)
             before = NULL;
         }
         if (before && plant_model_hash(before, &hashes[0]) && plant_model_hash(after, &hashes[1]) && hashes[0] == hashes[1]) {
-            printf("%s: stays as it is\n", before);
+            printf("%s: unchanged\n", before);
             mem_free(before);
             mem_free(after);
             continue;
@@ -256,7 +256,7 @@ int revise(const struct revise_params *params)
     if (status == 0)
         take_models(&r);
     if (status == 0 && r.model_count == 0) {
-        printf("%s: stays as it is\n", r.plant_path);
+        printf("%s: unchanged\n", r.plant_path);
     } else if (status == 0) {
         status = plan(&r);
         if (status == 0) {
@@ -267,7 +267,7 @@ int revise(const struct revise_params *params)
             status = apply(&r);
             if (status == 0)
                 printf("%s/review.csv: %zu rows\n%s: %s; plantcast import --undo -o %s takes it back\n", params->folder,
-                       r.revision.row_count, r.plant_path, strcmp(r.plant_text, r.revision.plant_text) ? "written" : "stays as it is",
+                       r.revision.row_count, r.plant_path, strcmp(r.plant_text, r.revision.plant_text) ? "written" : "unchanged",
                        params->folder);
         }
     }
