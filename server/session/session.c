@@ -172,7 +172,8 @@ static bool on_resize(struct session *session, const struct message *message, st
     if (session_is_tile(session))
         session_tile_fit(session, &session->tile.place, message->width_px, message->height_px, &session->view, &session->tile.layout);
     session_scope_fit(session, &session->view);
-    if (session->scope.named[0] && session->identity.holder.views[0]) /* the view's author may have left the camera to the picture's size */
+    /* the view's author may have given no camera: it then depends on the picture's size */
+    if (session->scope.named[0] && session->identity.holder.views[0])
         return session_look(session, session->scope.named, &session->view, error);
     if (message->pixel_ratio > 0)
         session->pixel_ratio = message->pixel_ratio;
@@ -191,7 +192,7 @@ static bool on_ack(struct session *session, const struct message *message, int64
     return false;
 }
 
-/* Answers `fit` with a camera without moving the view: the client owns its camera. */
+/* Answers `fit` with a camera. The view does not move: the client chooses its camera itself. */
 static void on_fit(struct session *session, const struct message *message)
 {
     struct camera camera = session->view.camera;
@@ -234,8 +235,8 @@ void session_on_pick(struct session *session, const struct pick_answer *answer)
     session_reply(session, reply_picked_text(session->context->plant, &cache));
 }
 
-/* Removes the name that a signed-in user put into a message: the identity provider's name counts. A token may belong to a desk that
-   several people share, so there the name stays. */
+/* Removes the name that a signed-in user put into a message, because the identity provider's name is used instead. A token may belong to a
+   desk that several people share, so there the name stays. */
 static void clear_claimed_name(const struct session *session, struct message *message)
 {
     if (!session->identity.holder.signed_in)
@@ -306,8 +307,7 @@ static bool on_display(struct session *session, const struct message *message, s
     return true;
 }
 
-static bool on_pair(struct session *session, const struct message *message, int64_t now_ns, int64_t now_utc_ns,
-                    struct message_error *error)
+static bool on_pair(struct session *session, const struct message *message, int64_t now_ns, int64_t now_utc_ns, struct message_error *error)
 {
     const struct session_context *context = session->context;
     bool pairs = message->type == MESSAGE_PAIR;
@@ -418,8 +418,7 @@ void session_too_fast(struct session *session, int64_t count, const char *whose)
     session_reply_error(session, &error);
 }
 
-/* Messages read beyond the allowed number of a second count for the following seconds, so that a client that writes without a pause is
-   read at the allowed rate. */
+/* Limits the rate of messages: those read beyond the limit of one second count against the following seconds. */
 static void begin_second(struct message_rate *rate, int64_t most, int64_t now_ns)
 {
     int64_t seconds = (now_ns - rate->begin_ns) / NS_PER_S, allowed = seconds * most;
@@ -485,7 +484,7 @@ void session_on_oversize(struct session *session, size_t count, int64_t now_ns)
 
 static const int64_t TOKEN_NS = 3600 * NS_PER_S; /* interval at which a view token is sent again although the view has not changed */
 
-/* Sends the client a new view token if its view changed, so that another daemon can go on where this one was killed. View tokens are
+/* Sends the client a new view token if its view changed, so that another daemon can restore the view if this one dies. View tokens are
    accepted for a day, and across one restart of the core. */
 static void tell_token(struct session *session, int64_t now_ns)
 {
@@ -504,7 +503,7 @@ static void tell_token(struct session *session, int64_t now_ns)
     mem_free(token);
 }
 
-/* Returns whether a picture is due, requested, in flight or ready to send. */
+/* Returns whether a picture is wanted, requested, in flight or ready to send. */
 static bool is_owed(const struct session *session)
 {
     const struct frame_demand *demand = &session->demand;

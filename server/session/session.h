@@ -17,8 +17,8 @@
 /* Makes the session of a new connection. Never NULL. */
 struct session *session_create(const struct session_context *context, uint64_t id, int64_t now_ns);
 void session_destroy(struct session **session); /* &NULL is allowed; sets *session to NULL */
-/* Tells the session who connected. Copies `client`, but client->share must outlive the session. A session that was never introduced may
-   do everything. After the introduction the first frame waits for session_begin(), for a second at most. */
+/* Tells the session who connected. Copies `client`; client->share must outlive the session. A session without an introduction has all
+   rights. After the introduction the first frame waits for session_begin(), for a second at most. */
 void session_introduce(struct session *session, const struct session_client *client);
 /* Notes that the session's connection is lost; call it before session_destroy(). Returns the view's pixels to the admission budget and
    tells the leader. keep: keep the view for the client's return. */
@@ -27,10 +27,10 @@ void session_leave(struct session *session, bool keep, int64_t now_ns);
 void session_record_leave(const struct session *session, const char *why);
 /* Queues the answers to actions that are on disk by now or can never be written. Returns whether it queued any. */
 bool session_settle(struct session *session);
-/* Destroys a session whose client has gone. While the disk has not decided on an action on alarms, the session joins `gone` of its
-   context, so that a failure still gets into the audit trail. */
+/* Destroys a session whose client has gone. While the disk has not decided on an action on alarms, the session stays in the list `gone` of
+   its context, so that a failure is still recorded in the audit trail. */
 void session_retire(struct session **session);
-/* Settles the sessions of `gone`, and destroys those that wait for nothing more. */
+/* Records the disk's decisions for the sessions in the context's list `gone`, and destroys those with no action left to decide. */
 void session_settle_gone(struct kept_answers *answers);
 /* Asks the event loop to close the connection once all queued texts are sent. text: static. If called more than once, the first reason
    counts. */
@@ -49,7 +49,8 @@ enum pacer_state session_state(const struct session *session, int64_t now_ns);
 /* Releases everything that belongs to the old plant. Returns the parameters of the session's view as text for session_take_plant(); the
    caller frees it with mem_free. NULL: the session has no view. */
 char *session_carry(struct session *session);
-/* Switches to the plant that the context now has. carried: the text from session_carry(); names that the new plant lacks are skipped. */
+/* Switches to the plant that the context now has. carried: the view's parameters from session_carry(), by names; names that the new plant
+   lacks are skipped. */
 void session_take_plant(struct session *session, const char *carried);
 /* Writes into *out the view that the session will have in the plant of another context. */
 void session_view_in(const struct session *session, const struct session_context *context, struct view *out);
@@ -63,10 +64,10 @@ void session_on_oversize(struct session *session, size_t count, int64_t now_ns);
 /* Tells the client that it sent `count` messages, too many for one second; the event loop reads nothing more from it until this second
    is over. whose: "" or "of this address ". */
 void session_too_fast(struct session *session, int64_t count, const char *whose);
-/* Does what depends on time alone. Call it about every 100 ms, or once a second while session_rests() is true for all sessions. */
+/* Does the session's timed work. Call it about every 100 ms, or once a second while session_rests() is true for all sessions. */
 void session_on_tick(struct session *session, int64_t now_ns);
-/* Returns the monotonic time up to which the client's display is known to be current. If nothing is owed to the client, that is when its
-   last message arrived. Otherwise it is the later of two times: when nothing was owed last, and when the last acknowledged picture was
+/* Returns the monotonic time up to which the client's display is known to be current. If no picture is owed to the client, that is when its
+   last message arrived. Otherwise it is the later of two times: when last no picture was owed, and when the last acknowledged picture was
    sent. */
 int64_t session_fresh_ns(const struct session *session);
 /* Returns whether session_on_tick() has nothing to do within the next second: no frame is wanted or in flight, and no text is due. */
@@ -85,9 +86,9 @@ bool session_moves(const struct session *session, int64_t now_ns);
 bool session_next_request(const struct session *session, int64_t now_ns, struct frame_request *request);
 /* Notes that the render service accepted the request. replaced: it replaced an earlier request of this session. */
 void session_requested(struct session *session, const struct frame_request *request, bool replaced);
-/* Tells the client, once, why a frame that it wants signed comes unsigned. */
+/* Sends the client, once, the reason why a frame that it wants signed comes unsigned. */
 void session_not_signed(struct session *session, const struct message_error *why);
-/* Takes ownership of an encoded frame, or of the result that says that there is no frame. */
+/* Takes ownership of an encoded frame, or of the answer that there is no frame (nothing new, or failed). */
 void session_on_frame(struct session *session, struct encoded_frame *encoded);
 /* Returns whether session_next_frame() would return a frame now. */
 bool session_has_frame(const struct session *session);
@@ -103,7 +104,7 @@ bool session_gives_up(const struct session *session, const struct encoded_frame 
 void session_gave_up(struct session *session);
 /* Takes the first bandwidth measurement: `bytes` bytes of texts had arrived after took_ns. Chooses the quality of the first frame by it. */
 void session_begin(struct session *session, size_t bytes, int64_t took_ns);
-/* Returns the pacer if the client has newly acknowledged a frame (pacer->acked) since the last call; otherwise NULL. */
+/* Returns the pacer, with the frame in pacer->acked, if the client acknowledged a frame since the last call; otherwise NULL. */
 const struct pacer *session_take_shown(struct session *session);
 /* Records a measured round-trip time. */
 void session_on_pong(struct session *session, int64_t rtt_ns, int64_t now_ns);
@@ -126,7 +127,7 @@ void session_say(struct session *session, const char *text);
 
 /* Returns true if a pick is due, with the query for the render service in *query. */
 bool session_next_pick(struct session *session, struct pick_query *query);
-/* Queues the answer to a pick for the client. */
+/* Queues the answer to a pick (what is at a pixel) for the client. */
 void session_on_pick(struct session *session, const struct pick_answer *answer);
 
 /* --- time travel ------------------------------------------------------------------------------------------------------ */
@@ -134,9 +135,9 @@ void session_on_pick(struct session *session, const struct pick_answer *answer);
 /* Returns true if the readings of an instant should be loaded now, with the instant in *at_us. Advances playback, which may end in the
    present. */
 bool session_wants_historical_snapshot(struct session *session, int64_t now_ns, int64_t now_utc_ns, int64_t *at_us);
-/* Call it when loading the readings of at_us has ended. If the session waits for an instant, shows at_us, also when the session has
-   moved on to another instant meanwhile; otherwise does nothing. If `good` is false (loading failed) or the snapshot is no longer in the
-   cache, replies with the error no_history, stops playback and leaves the view unchanged. */
+/* Call it when loading the readings of at_us has ended. If the session waits for an instant, it now shows at_us, even if the client has
+   asked for another instant since. Otherwise does nothing. If `good` is false (loading failed) or the snapshot is no longer in the cache,
+   replies with the error no_history, stops playback and leaves the view unchanged. */
 void session_on_historical_snapshot(struct session *session, int64_t at_us, bool good, int64_t now_ns);
 
 /* --- following -------------------------------------------------------------------------------------------------------- */
@@ -147,16 +148,17 @@ void session_follow(struct session *session, struct session *leader, int64_t now
 void session_follow_nobody(struct session *session);
 /* Notes that the leader's view changed. */
 void session_on_leader(struct session *session, int64_t now_ns);
-/* Notes that the leader is about to be destroyed. Its last view stays on show until the client follows another session or nobody. */
+/* Notes that the leader is about to be destroyed. The leader's last view stays on show until the client follows another session or
+   nobody. */
 void session_leader_gone(struct session *session, int64_t now_ns);
-/* Copies the view of `session` to the heir, at the heir's own size. */
+/* Copies the view of `session` to the session `heir`, which keeps its own picture size. */
 void session_inherit(struct session *heir, const struct session *session);
 /* Replies that the lead cannot be handed to session number `heir`, because that session does not follow this one. */
 void session_lead_nobody(struct session *session, uint64_t heir);
-/* Takes out what the client asked about following since the last call. */
+/* Returns the client's request about following (follow or hand over the lead) and clears it. */
 struct follow_request session_take_follow_request(struct session *session);
-/* Give all sessions that see one view a common step of the quality ladder. Call each of the three functions for all sessions before the
-   next one: clear, count, choose. */
+/* Give all sessions that are shown the same view a common step of the quality ladder. Call each of the three functions for all sessions
+   before the next one: clear, count, choose. */
 void session_clear_steps(struct session *session);
 void session_count_step(struct session *session);
 void session_choose_step(struct session *session);
@@ -169,7 +171,8 @@ bool session_is_tile(const struct session *session);
 /* Shifts the part of the picture that this display shows, as burn-in protection. The shift takes effect with the next picture, which is
    requested for it. */
 void session_tile_move(struct session *session, struct burn_shift shift, int64_t now_ns);
-/* Drops the tile from its wall if it has delayed the others for too long, and readmits it after a pause. Returns whether that changed. */
+/* Drops the tile from its wall if it has delayed the others for too long, and readmits it after a pause. Returns true if the tile was
+   dropped or readmitted. */
 bool session_tile_judge(struct session *session, int64_t now_ns, int64_t now_utc_ns);
 /* Tells the client which displays of its wall are connected, if that changed. there, late_us: arrays indexed by display - 1. late_us:
    UTC microseconds since when that tile is dropped; 0: it takes part. leads: this session leads the wall. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Functions that queue a session's answers, note inputs and close the session. */
+/* Functions that queue a session's answers, record user input and close the session. */
 #include <string.h>
 
 #include "base/mem.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Audit trail entries for a session's messages: which user changed what, and which requests were refused. */
+/* Writes audit trail entries for a session's messages: which user changed what, and which requests were refused. */
 #include <jansson.h>
 #include <string.h>
 
@@ -75,7 +75,7 @@ void session_record_loop_check(const struct session *session, const struct messa
     json_decref(said);
 }
 
-/* Records an action; takes ownership of `what` (mem_free). The answer says whether the action was kept, and why not. */
+/* Records an action; takes ownership of `what` (mem_free). Tells from the answer whether the action succeeded, or why it failed. */
 static void record_kept(const struct session *session, const char *event, char *what, const char *answer)
 {
     json_t *said = json_loads(answer, 0, NULL);
@@ -96,12 +96,14 @@ void session_record_note(const struct session *session, const struct message *me
     const struct note_request *note = &message->note;
     const struct plant *plant = session->context->plant;
     bool adds = message->type == MESSAGE_NOTE;
-    const char *at = !adds             ? note->id
+    const char *at = !adds              ? note->id
                      : note->tag >= 0   ? plant->tags[note->tag].name
                      : note->asset >= 0 ? plant->assets[note->asset].id
                                         : "a place";
-    record_kept(session, "note", mem_printf("%s %s%s%s%s%s", adds ? "at" : "remove", at, note->name[0] ? " as " : "", note->name,
-                                            adds ? ": " : "", adds ? note->text : ""), answer);
+    record_kept(session, "note",
+                mem_printf("%s %s%s%s%s%s", adds ? "at" : "remove", at, note->name[0] ? " as " : "", note->name, adds ? ": " : "",
+                           adds ? note->text : ""),
+                answer);
 }
 
 void session_record_wall(const struct session *session, const struct message *message, const char *answer)

@@ -13,9 +13,9 @@ struct view_token_keys;
 
 enum audience_lists { LISTS_NAMED, LISTS_OPEN, LISTS_VIEWS, LISTS };
 
-/* Answers to actions that wait for the disk, of all sessions (session_kept.c). */
+/* State that all sessions share about answers that wait until the disk has their actions (session_kept.c). */
 struct kept_answers {
-    bool waiting;         /* one waits: session_settle() and session_settle_gone() are due soon */
+    bool waiting;         /* an answer waits: call session_settle() and session_settle_gone() soon */
     struct session *gone; /* sessions without a client, kept until the disk has decided on their actions */
 };
 
@@ -31,7 +31,7 @@ struct session_context {
     struct alarm_text_cache *alarm_texts;  /* cache of alarm texts; NULL: no caching */
     struct placing *placing;               /* NULL: sensors cannot be placed */
     const char *tag_list;                  /* text of the tag list in force; NULL: it could not be read */
-    bool saving;                           /* a saved tag list is being put in force */
+    bool saving;                           /* a saved tag list is being activated by a reload */
     struct loop_checks *loop_checks;       /* loop check records; NULL: loops cannot be checked */
     struct named_views *named_views;       /* changed by save_view and remove_view */
     struct notes *notes;                   /* changed by note and remove_note */
@@ -41,30 +41,30 @@ struct session_context {
        this daemon is no renderer and acts on messages itself. */
     bool (*hand_on)(void *arg, const struct session *session, const char *text);
     void *hand_on_arg;
-    bool core_up;                          /* on a renderer: the core sends readings */
+    bool core_up;                             /* on a renderer: the core sends readings */
     const struct view_token_keys *token_keys; /* keys that sign view tokens; NULL: clients get no view tokens */
-    const bool *links_up;                  /* connection state of each data source, by source index */
-    bool imports;                          /* engineers may import plants */
-    const char *signing_key;               /* id of the key that signs pictures; NULL: pictures are not signed */
-    bool live;                             /* at least one source is connected */
-    struct clock_state clock;              /* whether the wall clock is set, and its error */
-    /* monotonic: until then some camera counts as moving, and refined frames of other sessions would make it stutter */
+    const bool *links_up;                     /* connection state of each data source, by source index */
+    bool imports;                             /* engineers may import plants */
+    const char *signing_key;                  /* id of the key that signs pictures; NULL: pictures are not signed */
+    bool live;                                /* at least one source is connected */
+    struct clock_state clock;                 /* whether the wall clock is set, and its error */
+    /* monotonic: until then a camera counts as moving; refined frames of other sessions wait, because they would make it stutter */
     int64_t moving_until_ns;
-    bool overloaded; /* refining every session at each change of readings would take more than the render thread has */
-    unsigned codecs;                       /* bit mask of the codecs that work here (1 << enum wire_codec); 0: JPEG and PNG */
-    double cpu_used;                       /* busy share of all processors of the machine, 0..1 */
+    bool overloaded;  /* the render thread is too slow to refine all sessions' frames after each change of readings */
+    unsigned codecs;  /* bit mask of the codecs that work here (1 << enum wire_codec); 0: JPEG and PNG */
+    double cpu_used;  /* busy share of all processors of the machine, 0..1 */
     const char *node; /* this daemon's name behind a load balancer; NULL: it runs alone */
     const char *version;
     const struct quotas *quotas;
     const struct tokens *tokens;           /* NULL: none are configured */
     struct openid *openid;                 /* sign-in with OpenID Connect; NULL: off */
     int64_t lock_ns;                       /* monotonic duration without user activity after which the user must sign in again; 0: never */
-    struct login_throttle *login_throttle; /* changed by hello; NULL: wrong tokens are not counted */
+    struct login_throttle *login_throttle; /* counter that hello changes; NULL: wrong tokens are not counted */
     struct audit *audit;                   /* the audit trail; NULL: nothing is recorded */
-    struct kept_answers *kept_answers;     /* shared by all sessions; NULL: session_destroy() drops answers that wait */
-    struct resumes *resumes;               /* changed by hello */
-    struct admission *admission;           /* admission budget; its pixel counts are changed by hello, resize and visible */
-    struct tag_text_cache *tag_texts;      /* cache of `tags` messages; NULL: no caching */
+    struct kept_answers *kept_answers; /* list of waiting answers, shared by all sessions; NULL: session_destroy() drops waiting answers */
+    struct resumes *resumes;           /* changed by hello */
+    struct admission *admission;       /* admission budget; its pixel counts are changed by hello, resize and visible */
+    struct tag_text_cache *tag_texts;  /* cache of `tags` messages; NULL: no caching */
     /* Cached parts of `welcome`, by enum audience_lists: for clients with names, for open viewers, for tokens narrowed to views. NULL:
        no caching. */
     char **lists_said;

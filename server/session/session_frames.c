@@ -10,17 +10,19 @@ static const int64_t LOADED_STILL_NS = 1000 * NS_PER_MS;
 /* while overloaded: a refined frame is due after this long without one, even if readings keep changing */
 static const int64_t LOADED_SHARE_NS = 3 * NS_PER_S;
 static const int64_t MAX_POSTPONE_NS = 10 * NS_PER_S; /* a refined frame is postponed for at most this long while other cameras move */
-/* refined frames that the network needs longer for come in two stages: draft, then full quality */
+/* a refined frame for which the network needs longer than this is sent in two stages: draft, then full quality */
 static const int64_t SLOW_STILL_NS = 500 * NS_PER_MS;
 static const int64_t FULL_QUALITY_DELAY_NS = 1000 * NS_PER_MS; /* delay before the second stage */
 static const int64_t MAX_START_WAIT_NS = 1000 * NS_PER_MS;     /* maximum wait for the first bandwidth measurement */
-/* a refined frame whose view has changed is cut short if the rest would take longer than this */
+/* a refined frame whose view has changed is cut short if its remaining bytes would take longer than this */
 static const int64_t GIVE_UP_NS = 100 * NS_PER_MS;
 static const int64_t RETRY_DELAY_NS = 2000 * NS_PER_MS; /* delay before a frame that failed for lack of memory is requested again */
-static const double STILL_OVER_MOVING = 3; /* assumed ratio of refined to preview size in bytes before a refined frame was sent */
+/* assumed size of a refined frame divided by that of a preview, until a refined frame was sent */
+static const double STILL_OVER_MOVING = 3;
 static const struct encoder_params STILL = { .quality = 92, .full_chroma = true }, DRAFT = { .quality = 42 };
 static const struct encoder_params LOSSLESS = { .quality = 100, .full_chroma = true };
-static const int64_t CAMERA_INTERVAL_NS = 120 * NS_PER_MS; /* cameras of one movement arrive closer together than this */
+/* camera messages that arrive within this time of each other belong to one movement */
+static const int64_t CAMERA_INTERVAL_NS = 120 * NS_PER_MS;
 enum { SMALL_PX = 128 }; /* shortest side of a picture in pixels; the quality ladder does not shrink it further */
 
 /* Handles a frame that could not be drawn. A session that already shows a frame keeps it; a new session would see nothing and is closed. */
@@ -50,8 +52,8 @@ static void note_refined(struct session *session, const struct frame_request *re
         session->demand.refined = REFINED_FULL;
 }
 
-/* Returns whether an answer "nothing new" cannot be right: the client wants the refined frame, and the newest frame that came is a preview.
-   Without this check that preview would stay until the view or a reading changes. */
+/* Returns whether the render service's answer "nothing new" must be ignored: the client wants the refined frame, and the newest frame that
+   came is a preview. Without this check that preview would stay until the view or a reading changes. */
 static bool is_lost(const struct session *session, const struct encoded_frame *encoded, bool late)
 {
     const struct frame_demand *demand = &session->demand;
@@ -65,8 +67,8 @@ void session_on_frame(struct session *session, struct encoded_frame *encoded)
     if (encoded->failed)
         on_failure(session, &encoded->request);
     bool late = encoded->number < session->delivery.newest_number;
-    /* A preview replaces any refined picture. This also holds if a refined frame arrived while the preview was drawn, or if the preview
-       equals the frame already shown and therefore has no packet. */
+    /* After a preview the shown picture is no longer refined. This also holds if a refined frame arrived while the preview was drawn, or if
+       the preview equals the frame already shown and therefore has no packet. */
     if (encoded->request.view.tier == TIER_PREVIEW && !late)
         session->demand.refined = REFINED_NOT;
     if (is_lost(session, encoded, late)) {
@@ -176,8 +178,9 @@ static void make_still(const struct session *session, struct frame_request *requ
     request->quality = request->draft ? DRAFT : STILL;
 }
 
-/* Requests a refined frame for changed readings, if that is as quick as a preview; otherwise a preview (or_moving). A refined frame can
-   take a minute, for example while lighting is baked; render_thread_next.c shows a preview once readings have waited too long. */
+/* Requests a refined frame for changed readings, if drawing it is as quick as a preview; otherwise a preview (or_moving: moving quality). A
+   refined frame can take a minute, for example while lighting is baked; render_thread_next.c shows a preview once readings have waited too
+   long. */
 static void make_refreshed(const struct session *session, int64_t now_ns, struct frame_request *request)
 {
     const struct quality_ladder *ladder = &session->delivery.pacer.ladder;
@@ -187,7 +190,8 @@ static void make_refreshed(const struct session *session, int64_t now_ns, struct
     request->moving_quality.quality = quality_ladder_rung(ladder, quality_ladder_step(ladder, session->delivery.common_step)).quality;
 }
 
-/* Returns whether the next camera of a slow movement will show the new readings with its own frame. */
+/* Returns whether the camera moves slowly enough that its next frame soon shows the new readings, so that they need no frame of their
+   own. */
 static bool next_camera_brings(const struct session *session, int64_t now_ns)
 {
     return session->demand.refined == REFINED_NOT && now_ns - session->demand.input_ns < CAMERA_INTERVAL_NS;
@@ -202,7 +206,7 @@ static bool wants(const struct session *session, int64_t now_ns, struct frame_re
         make_moving(session, request);
     } else if (refine_due(session, now_ns)) {
         request->view.input_ns = now_ns;
-        /* send the frame even if it shows the same content: its quality is better */
+        /* the frame is sent even if it shows what the client already has, because its quality is better */
         request->always = session->demand.refined == REFINED_DRAFT || session->demand.lost;
         request->alone = session->demand.lost;
         make_still(session, request);
@@ -296,8 +300,8 @@ bool session_begun(const struct session *session, int64_t now_ns)
     return !starts && (!session->travel.first || session->following.leader);
 }
 
-/* Returns whether a frame may be requested. A refined frame still being drawn does not use the network yet, so new readings need not
-   wait for it, however slow the client is. */
+/* Returns whether a frame may be requested. A refined frame still being drawn does not use the network yet, so a frame for new readings may
+   be requested meanwhile, however slow the client is. */
 static bool may_ask(const struct session *session, int64_t now_ns)
 {
     const struct pacer *pacer = &session->delivery.pacer;
@@ -389,7 +393,8 @@ void session_wrote(struct session *session, bool all, int64_t now_ns)
 
 bool session_gives_up(const struct session *session, const struct encoded_frame *sending, size_t bytes_left, int64_t now_ns)
 {
-    if (sending->packet->codec == WIRE_CODEC_H264) /* the next H.264 frame would have to be a key frame, which is larger */
+    /* an H.264 client is better served later: the next frame would have to be a key frame, which is larger */
+    if (sending->packet->codec == WIRE_CODEC_H264)
         return false;
     if (pacer_state(&session->delivery.pacer, now_ns) != PACER_FLOWS || session->hidden)
         return true;
@@ -397,7 +402,7 @@ bool session_gives_up(const struct session *session, const struct encoded_frame 
     return moved && pacer_is_slower(&session->delivery.pacer, (double)bytes_left, GIVE_UP_NS);
 }
 
-/* The render thread takes a cut frame for shown, so the next frame must be drawn even if its content is the same. */
+/* The render thread counts a frame that was cut short as shown. So the next frame must be drawn even if its content is the same. */
 void session_gave_up(struct session *session)
 {
     pacer_gave_up(&session->delivery.pacer);

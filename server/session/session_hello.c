@@ -33,7 +33,7 @@ static bool judge_token(struct session *session, const char *token, int64_t now_
     return true;
 }
 
-/* Checks the token and the role. If a token is given, its role counts, even if no token is required. */
+/* Checks the token and the role. If a token is given, its role counts, even if the server requires no token. */
 static bool identify(struct session *session, const struct message *message, int64_t now_ns, int64_t now_utc_ns,
                      struct message_error *error)
 {
@@ -163,7 +163,7 @@ bool session_hello(struct session *session, const struct message *message, int64
     struct view view;
     if (!identify(session, message, now_ns, now_utc_ns, error))
         return false;
-    if (message->idle_ms >= 0) /* an automatic reconnection is no sign of user activity */
+    if (message->idle_ms >= 0) /* a hello sent by an automatic reconnection is no sign of user activity */
         session->identity.active_ns = now_ns - (int64_t)(message->idle_ms * 1e6);
     if (session->identity.holder.role != ROLE_NOBODY && session_left_alone(session, now_ns, error))
         return false;
@@ -171,11 +171,11 @@ bool session_hello(struct session *session, const struct message *message, int64
     session_scope_begin(session);
     char secret[RESUME_CHARS + 1];
     bool back = !message->tile.display && find_resumed(session, message->resume, now_ns, now_utc_ns, secret, &resumed);
-    const struct resumed *before = back && !message->anew ? &resumed : NULL; /* NULL if the client asked for a new view */
+    /* NULL if the client asked for a new view, not for a kept one */
+    const struct resumed *before = back && !message->anew ? &resumed : NULL;
     if (!begin_view(session, message, before, &view, error) ||
         !session_choose_codec(session, message->codecs.count ? &message->codecs : &resumed.codecs, error) ||
-        !session_choose_signed(session, message->signed_frames, error) ||
-        !admit(session, message, &view, error))
+        !session_choose_signed(session, message->signed_frames, error) || !admit(session, message, &view, error))
         return false;
     if (back)
         take_over(session, &resumed, secret);

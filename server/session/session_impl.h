@@ -7,7 +7,7 @@
 
 /* --- session_state.c -------------------------------------------------------------------------------------------------- */
 
-/* Queues a text for the client; takes ownership of it (mem_free). */
+/* Queues a text for the client; takes ownership of the text (mem_free). */
 void session_reply(struct session *session, char *text);
 /* Counts an error and queues its text. */
 void session_reply_error(struct session *session, const struct message_error *error);
@@ -30,7 +30,7 @@ void session_record_pair(const struct session *session, const struct message *me
 void session_record_wall(const struct session *session, const struct message *message, const char *answer);
 /* Records that a tag list is being put in force: by save_tags with `moved` moved sensors, by accept_places or by restore_tags. */
 void session_record_save(const struct session *session, const struct message *message, size_t moved);
-/* Records baselines that the message's parameters save or remove for all users, if they do. */
+/* If the message's parameters save or remove baselines for all users, records that in the audit trail. */
 void session_record_params(const struct session *session, const struct message *message);
 /* Records that an action on alarms took effect but is not on disk. */
 void session_record_not_kept(const struct session *session, const char *what, const char *why);
@@ -44,9 +44,9 @@ struct kept_action {
 };
 /* Call it before an action is carried out and recorded. */
 struct kept_action session_kept_begin(const struct session *session);
-/* Queues the answer once journal and audit trail have the action on disk. If they cannot be written, or after a second, the answer says
-   so in `not_kept` and `unaudited`. Takes ownership of the answer. alarm_what: description of an action on alarms, also taken over;
-   NULL: the action was no alarm action. */
+/* Queues the answer once journal and audit trail have the action on disk. If they cannot be written, or are not written within a second,
+   the answer's members `not_kept` and `unaudited` say so. Takes ownership of the answer. alarm_what: description of an action on alarms,
+   also taken over; NULL: the action was no alarm action. */
 void session_kept_reply(struct session *session, const struct kept_action *action, char *answer, char *alarm_what);
 /* Frees answers that still wait for the disk. */
 void session_kept_drop(struct session *session);
@@ -56,10 +56,10 @@ void session_kept_drop(struct session *session);
 /* Acts on `hello`: checks the token, admits the session and sets its first view. If the session is refused, returns false with *error,
    and sets session->close. */
 bool session_hello(struct session *session, const struct message *message, int64_t now_ns, int64_t now_utc_ns, struct message_error *error);
-/* Applies the parameters of a message to a view. Returns false with *error, and applies none of them, if one is wrong. */
+/* Applies the parameters of a message to a view. Returns false with *error if a parameter is wrong; then the view is unchanged. */
 bool session_apply_params(const struct session *session, const struct message *message, struct view *view, struct message_error *error);
 
-/* --- session_scope.c: tokens narrowed to views of the plant file, or to a wall's display ---------------------------------- */
+/* --- session_scope.c: tokens that are limited to views of the plant file, or to a wall's display ---------------------------------- --- */
 
 /* Returns whether the token allows the client to send that message. If not, *error says why. */
 bool session_scope_allows(const struct session *session, const struct message *message, struct message_error *error);
@@ -79,13 +79,13 @@ char *session_scope_text(const struct session *session, char *text);
 
 /* --- session.c --------------------------------------------------------------------------------------------------------- */
 
-/* Frees everything that the session holds of the plant. Only its answers and its identity may be used after that. */
+/* Frees everything that the session holds of the plant. Afterwards only the session's answers and identity may be used. */
 void session_let_go(struct session *session);
 
 /* Stores the client's token if this daemon forwards actions to a core, which verifies the token itself. */
 void session_keep_token(struct session *session, const char *token);
 
-/* Returns whether the session may act as that display; a paired device may act only as the display with which it was paired. If not,
+/* Returns whether the session may act as display `place`; a paired device may act only as the display with which it was paired. If not,
    sets *error and closes the session. */
 bool session_may_be(struct session *session, const struct wall_place *place, struct message_error *error);
 
@@ -97,11 +97,11 @@ bool session_begun(const struct session *session, int64_t now_ns);
 bool session_wants(const struct session *session, int64_t now_ns, struct frame_request *request);
 /* Drops the frames that are ready and not sent yet. */
 void session_drop_ready(struct session *session);
-/* Drops the frames not sent yet while the client acknowledges nothing; they are drawn again later. */
+/* Drops the frames that are ready while the client acknowledges nothing; they are requested again once it does. */
 void session_pause(struct session *session);
 /* Notes that the frame delivery.pacer.acked is on the client's screen. */
 void session_on_shown(struct session *session);
-/* Stores the client's list of codecs and uses the first that works here. Returns false with *error if none does. */
+/* Stores the client's list of codecs and uses the first that this server can encode. Returns false with *error if there is none. */
 bool session_choose_codec(struct session *session, const struct codec_list *codecs, struct message_error *error);
 /* Makes frames come signed from now on. Returns false with *error if this server cannot sign. */
 bool session_choose_signed(struct session *session, enum signed_frames frames, struct message_error *error);
@@ -126,7 +126,7 @@ void session_keep_pixels(struct session *session, int64_t now_ns);
 /* Acts on the message `time`: goes to an instant, plays, or returns to the present. Returns false with *error if it cannot. */
 bool session_on_time(struct session *session, const struct time_request *request, int64_t now_ns, int64_t now_utc_ns,
                      struct message_error *error);
-/* Makes a new session begin at an instant. */
+/* Makes a new session start at an instant of the past. */
 void session_time_begin(struct session *session, int64_t at_us, double speed);
 /* Releases the reference to the historical snapshot. */
 void session_time_end(struct session *session);
@@ -139,7 +139,7 @@ void session_tell_time(struct session *session);
 
 /* --- session_follow.c ------------------------------------------------------------------------------------------------- */
 
-/* Store what `follow` and `lead` ask for; the event loop resolves it. */
+/* Store a request of the client to follow a session, or to hand over the lead; the event loop carries it out. */
 void session_ask_follow(struct session *session, const struct message *message);
 void session_ask_lead(struct session *session, const struct message *message);
 
@@ -156,22 +156,22 @@ void session_look_again(struct session *session, const struct view *before, cons
    (any more). */
 bool session_tile_fit(const struct session *session, const struct wall_place *place, int width_px, int height_px, struct view *view,
                       struct tile_layout *layout);
-/* session_tile_unchanged(): the answer to a request had no picture because the client already shows it. session_tile_sent(): a frame is
-   being sent. */
+/* session_tile_unchanged(): call it when a request was answered without a picture because the client already shows it. session_tile_sent():
+   call it when a frame is being sent. */
 void session_tile_unchanged(struct session *session, uint64_t picture);
 void session_tile_sent(struct session *session, uint64_t picture, uint32_t seq);
-/* Notes that a frame arrived, also for an earlier answer that said "unchanged" and referred to this frame. */
+/* Call it when a frame arrived. If an earlier answer "unchanged" referred to this frame, the frame gets that answer's picture id too. */
 void session_tile_came(struct session *session, struct frame_request *request, int64_t made_ns);
 
 /* --- session_place.c -------------------------------------------------------------------------------------------------- */
 
-/* Act on `place`, `gaps`, `save_tags` (also accept_places and restore_tags) and `prove`. Return false with *error if the request is
-   refused. */
+/* Act on the messages `place`, `gaps`, `save_tags` (also accept_places and restore_tags) and `prove` (loop checks). Return false with
+   *error if the request is refused. */
 bool session_on_place(struct session *session, const struct message *message, int64_t now_ns, struct message_error *error);
 bool session_ask_coverage(struct session *session, const struct message *message, struct message_error *error);
 bool session_save_tags(struct session *session, const struct message *message, struct message_error *error);
 bool session_check_loop(struct session *session, const struct message *message, struct message_error *error);
-/* Drops the sensors moved on trial; afterwards nothing refers to the plant. */
+/* Drops the sensors moved on trial; afterwards the session's placing state has no pointer to the plant. */
 void session_place_leave(struct session *session);
 
 #endif

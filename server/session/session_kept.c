@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Answers that wait until their action is on disk. Only the answer waits, not the event loop. */
+/* Holds back answers until their action is on disk. Only the answer waits, not the event loop. */
 #include <errno.h>
 #include <jansson.h>
 
@@ -11,10 +11,10 @@
 #include "session/session_impl.h"
 
 struct kept_answer {
-    char *text, *what; /* what: description of an action on alarms for the audit trail; NULL: no alarm action */
-    /* alarm service that carried out the action; NULL: its journal has decided, or there was no alarm action */
+    char *text, *what; /* description of an action on alarms, for the audit trail; NULL: no alarm action */
+    /* alarm service that carried out the action; NULL: the journal's decision is in `journal`, or there was no alarm action */
     const struct alarm_service *alarms;
-    int journal_error;                  /* the journal's decision: 0 or -errno */
+    int journal_error; /* the journal's decision: 0 or -errno */
     struct settling_ticket journal, audit;
     struct kept_answer *next;
 };
@@ -56,7 +56,7 @@ static void answer_now(struct session *session, struct kept_answer *kept, int jo
     mem_free(kept);
 }
 
-/* Queues the answer if the disk result is known, or without waiting for it if `now`. Returns whether it did; *at is then the next
+/* Queues the answer if the disk result is known, or at once if `now`. Returns true if it was queued and removed; *at is then the next
    answer. */
 static bool try_to_answer(struct session *session, struct kept_answer **at, bool now)
 {

@@ -7,8 +7,8 @@
 #include "session/reply/reply.h"
 #include "session/session_impl.h"
 
-/* Describes the view by names, in the form of the server's `params` message. The extra object `start` gives the initial state of assets
-   that do not start as shown. */
+/* Describes the view by names, in the form of the server's `params` message. The extra object `start` lists the assets that the plant file
+   does not show at first (hidden, ghosted). */
 char *session_carried_text(const struct session_context *context, const struct view *view)
 {
     char *said = reply_params_text(context, view, 0, false);
@@ -36,7 +36,7 @@ char *session_carry(struct session *session)
     return session->hello ? session_carried_text(session->context, &session->view) : NULL;
 }
 
-/* Turns the description into a client's request with the same content. */
+/* Converts that description into the `params` message that a client would send for the same view. */
 static json_t *request_of(const char *carried)
 {
     static const char *const said_only[] = { "type", "seq", "baselines", "unit" };
@@ -81,8 +81,8 @@ static size_t place_in(const json_t *list, const char *id)
     return n;
 }
 
-/* Applies changed initial states: if the user had left an asset in its old initial state, it gets its new one; new assets also get their
-   initial state. */
+/* Applies changed initial states (shown, hidden or ghosted). An asset that the user had left in its old initial state gets its new one; so
+   does a new asset. */
 static void start_anew(const struct plant *plant, json_t *o)
 {
     static const char *const sets[] = { [PLANT_START_SHOWN] = "", [PLANT_START_GHOST] = "ghost", [PLANT_START_HIDDEN] = "hidden" };
@@ -165,12 +165,12 @@ void session_take_plant(struct session *session, const char *carried)
     if (!session->hello)
         return;
     session->owed.following |= session->following.left != 0;
-    session->following.left = 0; /* the left leader's last view belongs to the old plant */
+    session->following.left = 0; /* if the leader has gone: the last view, still shown, belongs to the old plant */
     session_look_again(session, &before, carried);
     const bool had_pictures = !session->scope.tags;
     session_scope_begin(session);
     if (had_pictures != !session->scope.tags)
-        session_close(session, 1012, "the display has other panes now"); /* the client's picture would have another size */
+        session_close(session, 1012, "the display has other panes now"); /* the client's picture would get another size */
     struct message_error error = { 0 };
     if (session->identity.holder.views[0] && !session_scope_view(session, session->scope.named, &session->view, &error))
         session_reply_error(session, &error);

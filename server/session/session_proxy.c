@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A session that exists for one forwarded message. */
+/* Implements sessions without a client: each exists for one message that another daemon forwarded. */
 #include "session/session_proxy.h"
 
 #include <stdio.h>

@@ -10,11 +10,12 @@ struct session_person {                /* the user who sent the message */
     const char *from;                  /* the user's address, as the other daemon reports it */
     const char *through;               /* name of the other daemon and of its token, for the audit trail */
 };
-/* Acts on the message in that person's name. If the message is not one that renderers forward, or the person may not send it, the answer
-   is an error. Returns a session that holds the answers, for session_answers_of(). */
+/* Acts on the message in the name of the user who sent it. If the message is not one that renderers forward, or the person may not send it,
+   the answer is an error. Returns a session that holds the answers, for session_answers_of(). */
 struct session *session_do_for(const struct session_context *context, const struct session_person *person, const char *text, int64_t now_ns,
                                int64_t now_utc_ns);
-/* Returns NULL while an answer still waits for the disk; afterwards ends the session and returns its answers, a JSON array of texts. */
+/* Returns NULL while an answer still waits for the disk; once all are on disk, destroys the session and returns its answers, a JSON array
+   of texts. */
 json_t *session_answers_of(struct session **session);
 
 #endif

@@ -21,19 +21,19 @@ enum { SESSION_MAX_REPLIES = 64 };
 struct session_identity {
     uint64_t number; /* random number by which other clients refer to this session; a resumed session keeps its number */
     enum role role;
-    uint8_t address[16];                  /* address of the client, as in struct address_usage */
-    char from[64];                        /* the same address as text; "": not known */
-    enum login login;                     /* verdict on the token in hello */
-    struct token_holder holder;           /* holder of the token; role ROLE_NOBODY: no token was given, or it was not accepted */
-    char token[TOKEN_MAX_CHARS + 1];      /* on a renderer: the client's token, for the core; "": none, or it is not forwarded */
-    char through[192];                    /* on a core: the node and the token that forwarded the message; "": not forwarded */
+    uint8_t address[16];             /* address of the client, as in struct address_usage */
+    char from[64];                   /* the same address as text; "": not known */
+    enum login login;                /* verdict on the token in hello */
+    struct token_holder holder;      /* holder of the token; role ROLE_NOBODY: no token was given, or it was not accepted */
+    char token[TOKEN_MAX_CHARS + 1]; /* on a renderer: the client's token, to be forwarded to the core; "": none, or not forwarded */
+    char through[192];               /* on a core: names of the daemon and of the token that forwarded the message; "": not forwarded */
     char resume_secret[RESUME_CHARS + 1]; /* secret with which the client can resume its view over another connection */
     int64_t active_ns;                    /* monotonic: when the user was last active at the page; 0: not since it connected */
     bool tokens;                          /* the client wants its view as a signed view token after each change */
     struct view token_view;               /* the view in the last view token that was sent */
     int64_t token_ns;                     /* monotonic: when the last view token was sent */
     bool resumed;                         /* this session resumed another session's view, as `welcome` says */
-    bool returned;                        /* as `resumed`, and the followers of the resumed session have yet to be moved to this one */
+    bool returned;                        /* true until the followers of the resumed session have been moved to this one */
 };
 
 /* The client at the other end of a new connection, for session_introduce(). */
@@ -47,7 +47,7 @@ struct session_client {
     struct address_share *share;
 };
 
-/* Why the connection is to be closed once all queued texts are sent. */
+/* Reason and code with which the connection is to be closed once all queued texts are sent. */
 struct session_close {
     int code;         /* WebSocket close code; 0: the connection stays open */
     const char *text; /* reason, static text */
@@ -81,11 +81,11 @@ struct frame_demand {
     /* a requested refined frame is outstanding; the render thread draws it between other sessions' frames, which may take a minute */
     bool refining;
     double refined_bytes; /* size in bytes of the last frame of full quality; 0: none was acknowledged */
-    bool starting; /* the first frame waits for the bandwidth from session_begin(), for a second at most */
+    bool starting;        /* the first frame waits for the bandwidth from session_begin(), for a second at most */
     int64_t starting_ns;
     bool failure_said; /* the client was told that the present view cannot be drawn */
-    int64_t failed_ns; /* monotonic: when the newest frame that failed for lack of memory, or was lost, was requested; 0: none */
-    bool lost;         /* the client never got the refined frame that the render service counts as shown: it is to be sent once more */
+    int64_t failed_ns; /* monotonic: when the newest request was made whose frame was lost, or failed for lack of memory; 0: none */
+    bool lost; /* a refined frame was lost on its way to the client, but the render service counts it as shown: it must be drawn again */
 };
 
 /* Frames between the render service and the client (session_frames.c). */
@@ -99,7 +99,7 @@ struct frame_delivery {
     int common_step;                 /* ladder step that all viewers share; negative: each viewer uses its own */
 };
 
-/* What a client asked about following, by session numbers. The event loop finds those sessions. */
+/* Requests of a client about following, by session numbers. The event loop finds those sessions. */
 struct follow_request {
     bool returned;   /* the session resumed another one, whose followers should follow it again */
     uint64_t heir;   /* number of the session that is to take the lead; 0: the lead stays */
@@ -107,7 +107,7 @@ struct follow_request {
     uint64_t wanted; /* number of the session to follow; 0: none */
 };
 
-/* Whose view the session is shown (session_follow.c). */
+/* The leader and the followers of a session (session_follow.c). */
 struct session_following {
     struct session *leader;   /* session whose view is shown; NULL: its own view. The event loop keeps it valid */
     bool asked;               /* the client asked to follow session `wanted` */
@@ -118,37 +118,38 @@ struct session_following {
     bool followers_changed;   /* the list of followers changed and is to be sent */
     int64_t followers_ns;     /* monotonic: when the list of followers was last built */
     char *followers_text;     /* list of followers, to be sent; NULL: none */
-    uint32_t told_params_seq; /* params_seq of the leader's view, as last sent to the client */
+    uint32_t told_params_seq; /* params_seq of the leader's view in the last message sent to the client */
     int told_size_px[2];
 };
 
 /* The instant that the session shows (session_time.c). The shown instant itself is view.at_us with the readings in `historical`. */
 struct travel {
-    const struct historical_snapshot *historical; /* a reference to the readings of that instant; NULL: current readings are shown */
-    int64_t wanted_us;                            /* instant to which the session is moving, UTC microseconds; 0: the session has arrived */
-    bool asked;                                   /* the readings of wanted_us are being loaded */
-    bool first;                                   /* the session began at an instant: nothing is drawn until its readings are loaded */
-    double speed;                                 /* playback speed, recorded seconds per second; 0: paused */
-    int64_t from_us, from_ns;                     /* playback was at from_us when the monotonic clock was at from_ns */
+    /* a reference to the historical readings of that instant; NULL: current readings are shown */
+    const struct historical_snapshot *historical;
+    int64_t wanted_us;        /* instant to which the session is moving, UTC microseconds; 0: the session has arrived */
+    bool asked;               /* the readings of wanted_us are being loaded */
+    bool first;               /* the session began at an instant: nothing is drawn until its readings are loaded */
+    double speed;             /* playback speed, recorded seconds per second; 0: paused */
+    int64_t from_us, from_ns; /* from_us, from_ns: playback was at instant from_us when the monotonic clock was at from_ns */
     int64_t stepped_ns;
 };
 
 /* Texts that are still to be sent to the client (session_texts.c). */
 struct owed_texts {
-    /* loop_checks: the complete list of loop checks is to be sent */
+    /* loop_checks: send the complete list of loop checks next */
     bool welcome, params, following, tags_all, tags, status, time, loop_checks;
-    uint32_t params_seq;                                                        /* sequence number that the next `params` answers */
-    int64_t tags_ns;                                                            /* monotonic: when tags were last sent */
-    uint32_t *tag_changes;                                                      /* reading.changes as last sent, by tag */
-    bool alarms_sent;                                                           /* alarms were sent at least once */
-    uint64_t alarms_number;                                                     /* number of the last change of alarms that was sent */
+    uint32_t params_seq;    /* sequence number of the client's message that the next `params` answers */
+    int64_t tags_ns;        /* monotonic: when tags were last sent */
+    uint32_t *tag_changes;  /* reading.changes as last sent, by tag */
+    bool alarms_sent;       /* true: `alarms` was sent at least once */
+    uint64_t alarms_number; /* number of the last change of alarms that was sent */
     /* numbers of the last changes that were sent: named views, notes, desks' messages to walls, pointers */
     uint64_t views_sent, notes_sent, walls_sent, pointers_sent;
-    int64_t notes_at_us; /* instant whose notes were sent, UTC microseconds; 0: the present */
-    uint64_t loop_checks_sent;                                                  /* number of the newest loop check that was sent */
-    int64_t told_at_us; /* shown instant as last sent, UTC microseconds; 0: the present */
-    bool told_beginning; /* the last `time` message included the beginning of recorded history */
-    char *replies[SESSION_MAX_REPLIES];                                         /* answers to be sent, oldest first */
+    int64_t notes_at_us;                /* instant for which notes were last sent, UTC microseconds; 0: the present */
+    uint64_t loop_checks_sent;          /* number of the newest loop check that was sent */
+    int64_t told_at_us;                 /* shown instant as last sent, UTC microseconds; 0: the present */
+    bool told_beginning;                /* the last `time` message included the beginning of recorded history */
+    char *replies[SESSION_MAX_REPLIES]; /* answers to be sent, oldest first */
     int reply_count;
 };
 
@@ -156,7 +157,7 @@ struct owed_texts {
 struct session_placement {
     struct place_set *set; /* trial positions of this session; NULL: nothing was moved */
     uint32_t seq;          /* sequence number of the newest `place` message */
-    struct tag_save *save; /* tag list that is to be put in force (session_take_save); NULL: none */
+    struct tag_save *save; /* sensor list with the engineer's changes, to be saved (session_take_save); NULL: none */
 };
 
 struct session_pick { /* a query for what is at a pixel */
@@ -167,26 +168,27 @@ struct session_pick { /* a query for what is at a pixel */
 /* A tile of one picture that spans many displays (tiles/tile_sync.h). */
 enum { TILE_HELD = 8 };
 struct session_tile {
-    struct wall_place place;   /* display of the wall; display 0: the session is no tile */
-    struct tile_layout layout; /* layout computed from the size of this display; the leader's layout is used */
+    struct wall_place place;   /* the wall's display for which this tile is; display 0: the session is no tile */
+    struct tile_layout layout; /* layout computed from the size of this session's display; only the leader's layout is used */
     struct tile_held {
         uint64_t picture; /* number of the wall's picture */
         uint32_t seq;     /* sequence number of this session's frame that shows the picture */
-    } held[TILE_HELD];    /* frames sent and not presented yet, oldest first */
+    } held[TILE_HELD];    /* frames sent and not yet shown at the wall's common instant, oldest first */
     int held_count;
     bool moved; /* the burn-in shift changed since a picture was requested: the next picture is sent even if its content is the same */
-    uint64_t unchanged; /* number of a picture that equals the frame still on its way; 0: none */
+    uint64_t unchanged; /* number of a wall's picture whose content equals a frame still under way to this client; 0: none */
     uint32_t presented_seq;
-    int64_t made_ns;       /* time from request to encoded preview, smoothed; 0: not known */
-    int64_t late_us;       /* UTC microseconds since when the tile is dropped from the wall; 0: it takes part */
-    int64_t out_ns, in_ns; /* out_ns: how long the tile is dropped; in_ns: monotonic, when the tile may be readmitted, or when it was */
-    char *told;            /* the last `tiles` message sent; NULL: none */
+    int64_t made_ns; /* time from request to encoded preview, smoothed; 0: not known */
+    int64_t late_us; /* UTC microseconds since when the tile is dropped from the wall; 0: it takes part */
+    /* out_ns: duration for which the tile is dropped; in_ns: monotonic time when it may be readmitted, or when it was readmitted last */
+    int64_t out_ns, in_ns;
+    char *told; /* the last `tiles` message sent; NULL: none */
 };
 
 struct message_rate {
     int64_t begin_ns; /* monotonic start of the second being counted */
     int count;
-    bool exceeded; /* the event loop reads nothing more until that second is over */
+    bool exceeded; /* the limit is reached: the event loop reads no message until that second is over */
 };
 
 struct session_stats { /* counts for the log and the metrics */
@@ -204,7 +206,7 @@ struct session {
     const struct session_context *context;
     struct session_identity identity;
     int64_t opened_ns;
-    bool hello, hidden; /* hello: `hello` was accepted; hidden: the client's page is not visible */
+    bool hello, hidden; /* hello: the client's hello was accepted; hidden: the client's page is not visible */
     double pixel_ratio; /* device pixels per CSS pixel of the page */
     struct view view;   /* the session's own view */
     struct session_close close;
@@ -223,13 +225,13 @@ struct session {
     struct message_rate rate;
     struct session_stats stats;
     struct session_scope scope;
-    struct wall_place display; /* wall display that this client is; display 0: none */
+    struct wall_place display; /* the wall display that this client says it is; display 0: none */
     struct session_tile tile;
-    int64_t heard_ns;          /* monotonic: when the client's last message arrived */
-    int64_t settled_ns;        /* value of heard_ns at the last tick at which nothing was owed to the client */
+    int64_t heard_ns;   /* monotonic: when the client's last message arrived */
+    int64_t settled_ns; /* heard_ns at the last tick at which no picture was owed to the client */
 };
 
-/* Returns whether the session has no token and may only watch: it gets frames, but no readings, tags or names of people. */
+/* Returns whether the session is an open viewer, without a token: it gets frames, but no readings, tags or names of people. */
 static inline bool session_is_open(const struct session *session)
 {
     return session->identity.role == ROLE_OPEN;

@@ -7,7 +7,7 @@
 #include "base/clock.h"
 
 static const int64_t WINDOW_NS = NS_PER_S;
-/* readings arrive once a second: if one waits longer for its frame, some readings are never drawn */
+/* readings arrive once a second: if a changed reading waits longer than this for its frame, some readings are never drawn */
 static const int64_t LONGEST_DATA_WAIT_NS = NS_PER_S;
 enum { BUSY_PERCENT = 85 };
 
@@ -90,9 +90,9 @@ const char *admission_refuses_pixels(const struct admission *admission, const st
     return NULL;
 }
 
-/* --- whether drawing is too busy for another moving camera ----------------------------------------------------------------- */
+/* --- whether the render thread can serve one more moving camera ------------------------------------------------------------ */
 
-/* Reads one figure of an address's share; 0: not known. */
+/* Returns one figure of the drawing statistics of an address; 0: not known. */
 typedef int64_t of_share(const struct address_share *share);
 
 static int64_t cost_of(const struct address_share *share)
@@ -113,7 +113,7 @@ static int count_below(const struct admission *admission, of_share *of, int64_t 
     return below;
 }
 
-/* Returns the lower median of a figure over all addresses, so that a single address cannot shift it. 0: no address has the figure. */
+/* Returns the lower median of a figure over all addresses; a single address cannot shift it. 0: the figure is known of no address. */
 static int64_t usual(const struct admission *admission, of_share *of)
 {
     int64_t found = 0;
@@ -124,8 +124,9 @@ static int64_t usual(const struct admission *admission, of_share *of)
     return found;
 }
 
-struct moving_sessions {  /* number of sessions whose camera moves */
-    int own, all, others; /* own: sessions of this address; all: sessions of all addresses; others: other addresses that have any */
+struct moving_sessions { /* number of sessions whose camera moves */
+    /* own: moving sessions of this address; all: moving sessions of all addresses; others: count of other addresses with moving sessions */
+    int own, all, others;
 };
 
 static struct moving_sessions count_crowd(const struct admission *admission, const struct address_share *own)

@@ -14,14 +14,15 @@ struct admission_window { /* figures about one second of drawing */
     int64_t moving_ns;    /* the part of drawing_ns spent on frames of moving cameras */
     int64_t drawn;        /* number of frames in moving_ns; a frame shared by several sessions counts once */
     int64_t moving;       /* number of frames delivered to sessions with a moving camera */
-    int64_t data_wait_ns; /* longest time from a changed reading to its frame; 0: no frame was due to a reading */
+    /* longest time from a changed reading to the frame that shows it; 0: no frame of this second showed a changed reading */
+    int64_t data_wait_ns;
 };
 
-struct address_share {  /* use of the server by one client address; zero-initialise */
-    uint64_t account;   /* value of frame_request.account in the address's sessions */
-    bool exempt_pixels; /* the limit on the pixels of one address does not apply */
+struct address_share {  /* use of the server by one client address (its share); zero-initialise */
+    uint64_t account;   /* id of the address; equals frame_request.account in the requests of its sessions */
+    bool exempt_pixels; /* true: the quota on pixels per address does not apply to this address */
     int64_t pixels;     /* pixels of all views of the address */
-    int moving;         /* sessions of the address whose camera moved within the last second */
+    int moving;         /* number of sessions of the address whose camera moved within the last second */
     int sessions;
     struct admission_window newest, now;
     struct address_share *next;
@@ -31,19 +32,20 @@ struct admission {
     const struct quotas *quotas;
     struct admission_window windows[ADMISSION_WINDOWS], now; /* finished windows, newest last; `now`: the current one */
     int64_t begin_ns;                                        /* monotonic start of `now` */
-    uint64_t last_content;        /* content number of the last frame: clients that share a frame report it one after the other */
+    /* content id of the last counted frame: clients that share a frame report it one after the other, and it counts once */
+    uint64_t last_content;
     int64_t pixels;               /* pixels of all views of all addresses */
     struct address_share *shares; /* linked list of the addresses that have sessions */
 };
 
-/* Count one session more, or one less, of an address. The share must outlive its sessions. */
+/* admission_join() adds a session to an address's share, admission_leave() removes one. The share must outlive its sessions. */
 void admission_join(struct admission *admission, struct address_share *share);
 void admission_leave(struct admission *admission, struct address_share *share);
-/* Counts the cost of a frame. share: of the client's address; NULL: the frame belongs to no address. */
+/* Counts the cost of a frame. share: the share of the client's address; NULL: no address is charged. */
 void admission_on_frame(struct admission *admission, struct address_share *share, const struct encoded_frame *encoded);
-/* Closes the current measuring window when its second is over. */
+/* Starts a new measuring window if the current one is at least a second old. */
 void admission_on_tick(struct admission *admission, int64_t now_ns);
-/* Returns the percentage of the render thread's time spent on awaited frames, in the least busy of the last windows. */
+/* Returns the percentage of the render thread's time spent on awaited frames, in the least busy of the last ADMISSION_WINDOWS seconds. */
 int admission_busy_percent(const struct admission *admission);
 /* Returns NULL if a view may grow from `before` to `pixels` pixels; otherwise the reason (static text). share NULL: only the total limit
    applies. */

@@ -6,8 +6,9 @@
 
 static const int64_t RTT_WINDOW_NS =
     15 * NS_PER_S; /* length of a measuring window: a measured round trip counts for this window and the next */
-static const int64_t MAX_RTT_NS = 1 * NS_PER_S;       /* a longer round trip is a queue somewhere, not the network's delay */
-static const int64_t MIN_TRANSFER_NS = NS_PER_MS / 4; /* shorter transfers show only that bandwidth is plentiful */
+/* a longer round trip is caused by a queue somewhere, not by the network's delay: the sample is ignored */
+static const int64_t MAX_RTT_NS = 1 * NS_PER_S;
+static const int64_t MIN_TRANSFER_NS = NS_PER_MS / 4; /* faster transfers are not measured: they show only that bandwidth is plentiful */
 /* if decoding began this soon after the previous acknowledgement, the frame had waited for the decoder */
 static const int64_t WAITED_NS = 1 * NS_PER_MS;
 static const size_t SMALL_BYTES = 4096;   /* smaller frames may only raise the bandwidth estimate, not lower it */
@@ -18,7 +19,7 @@ static void smooth(double *value, double sample)
     *value = *value > 0 ? *value + SAMPLE_WEIGHT * (sample - *value) : sample;
 }
 
-/* Adds a sample and updates *value with the minimum of the last `most` samples. Until there are more than `most` samples, *value is that
+/* Adds a sample, and updates *value from the minimum of the last `most` samples. Until there are more than `most` samples, *value is that
    minimum itself; afterwards it is smoothed. */
 static void add_sample(double *value, struct channel_last *last, int most, double sample)
 {
@@ -93,7 +94,8 @@ void channel_on_ack(struct channel *channel, const struct channel_ack *ack)
 void channel_on_bytes(struct channel *channel, size_t bytes, int64_t took_ns)
 {
     int64_t transfer_ns = more(took_ns - channel_rtt_ns(channel), MIN_TRANSFER_NS);
-    channel->ns_per_byte = (double)transfer_ns / (double)(bytes + 1); /* a rough first value: frames measure the bandwidth better */
+    /* only a rough initial value: later frames measure the bandwidth better */
+    channel->ns_per_byte = (double)transfer_ns / (double)(bytes + 1);
 }
 
 int64_t channel_transfer_ns(const struct channel *channel, double bytes)

@@ -14,17 +14,17 @@
 enum { CHANNEL_LAST = 3 };
 struct channel_last { /* ring of the last samples; zero-initialise */
     double at[CHANNEL_LAST];
-    int count; /* number of samples so far, kept small so that it cannot overflow */
+    int count; /* number of samples so far, reduced before it can overflow */
 };
 
 struct channel {                     /* zero-initialise; in all members 0 means not measured yet */
     int64_t rtt_ns[2], rtt_begin_ns; /* rtt_ns: minimum of the current measuring window, and of the previous one */
-    double ns_per_byte;              /* smoothed; reacts faster to a slowdown than to a recovery */
-    double lag_ns;    /* time from sending to acknowledgement, minus round trip and decoding, smoothed: the delay that the network adds */
-    double decode_ns; /* decoding time of a frame, smoothed */
+    double ns_per_byte; /* nanoseconds that the network needs per byte, smoothed; reacts faster to a slowdown than to a recovery */
+    double lag_ns;      /* time from sending to acknowledgement, minus round trip and decoding, smoothed: the delay that the network adds */
+    double decode_ns;   /* decoding time of a frame, smoothed */
     struct channel_last last_ns_per_byte, last_lag_ns, last_decode_ns;
     int64_t arrived_ns, acked_ns;
-    bool decoding; /* the client decodes without a pause, so frames queue up there */
+    bool decoding; /* the client decodes one frame after the other without a pause, so frames queue at its decoder */
 };
 
 struct channel_ack {
@@ -36,7 +36,7 @@ struct channel_ack {
 
 /* Updates the estimate with an acknowledgement. */
 void channel_on_ack(struct channel *channel, const struct channel_ack *ack);
-/* Updates the bandwidth estimate: `bytes` bytes of other messages had arrived after took_ns. */
+/* Updates the bandwidth estimate from messages other than frames: `bytes` bytes had arrived after took_ns. */
 void channel_on_bytes(struct channel *channel, size_t bytes, int64_t took_ns);
 /* Updates the round-trip estimate with one measurement. */
 void channel_on_pong(struct channel *channel, int64_t rtt_ns, int64_t now_ns);

@@ -7,7 +7,7 @@
 
 #include "base/clock.h"
 
-static const int64_t AHEAD_NS = 33 * NS_PER_MS; /* bytes in flight may take as long to transfer as this plus one round trip */
+static const int64_t AHEAD_NS = 33 * NS_PER_MS; /* the bytes in flight may take this time plus one round trip to transfer */
 static const int64_t STALL_NS = PACER_STALL_S * NS_PER_S, DEAD_NS = 15 * NS_PER_S; /* as in PROTOCOL.md */
 
 void pacer_init(struct pacer *pacer)

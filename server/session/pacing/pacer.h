@@ -10,7 +10,7 @@
 enum { PACER_LEAST = 2, PACER_MOST = 8 };
 
 struct pacer_note {    /* facts about a frame that are needed when it is acknowledged */
-    bool moving, full; /* moving: the frame is a preview, at ladder step `step`; full: it has full quality */
+    bool moving, full; /* moving: the frame is a preview, at ladder step `step`; full: the frame is refined, in full quality */
     int step;
     bool of_data;              /* true: made because of a changed reading; false: because of an input */
     int64_t input_ns, made_ns; /* monotonic: when the input or the changed reading happened; when the frame was encoded */
@@ -29,7 +29,7 @@ struct pacer {                              /* initialise with pacer_init() */
     struct pacer_flight flight[PACER_MOST]; /* frames sent and not acknowledged, oldest first */
     int flight_count;
     uint32_t last_seq;
-    bool cut;                  /* a frame was given up, and the end of its message is not written yet */
+    bool cut;                  /* a frame was cut short, and the end of its WebSocket message is not written yet */
     int64_t moved_on_ns;       /* monotonic: when the client last acknowledged a frame, or its socket last accepted bytes */
     struct pacer_flight acked; /* the newest acknowledged frame */
     struct channel channel;
@@ -45,7 +45,7 @@ void pacer_init(struct pacer *pacer);
 bool pacer_may_ask(const struct pacer *pacer, int64_t now_ns);
 /* Counts a frame that was requested. */
 void pacer_asked(struct pacer *pacer);
-/* Counts a requested frame that never arrives or is not sent. */
+/* Counts a requested frame that will not be sent: it never arrives, or is dropped. */
 void pacer_dropped(struct pacer *pacer);
 /* Counts a frame whose first byte is being sent. Returns the frame's sequence number in the session. */
 uint32_t pacer_sent(struct pacer *pacer, size_t bytes, const struct pacer_note *note, int64_t now_ns);
@@ -53,9 +53,9 @@ uint32_t pacer_sent(struct pacer *pacer, size_t bytes, const struct pacer_note *
 void pacer_wrote(struct pacer *pacer, bool all, int64_t now_ns);
 /* Notes that the newest frame was cut short: the client will not acknowledge it. */
 void pacer_gave_up(struct pacer *pacer);
-/* Records the acknowledgement of frame seq, which covers all earlier frames too, and updates channel and ladder. decode_ns: decoding
-   time reported by the client; negative: not reported. Returns whether that frame was newly acknowledged, was acknowledged before, or
-   was never sent. */
+/* Records the acknowledgement of frame seq, which covers all earlier frames too, and updates channel and ladder. decode_ns: decoding time
+   reported by the client; negative: not reported. Returns PACER_ACK_NEW, PACER_ACK_OLD if the frame was acknowledged before, or
+   PACER_ACK_NEVER_SENT. */
 enum pacer_ack pacer_acked(struct pacer *pacer, uint32_t seq, int64_t decode_ns, int64_t now_ns);
 /* Returns PACER_FLOWS; PACER_STALLS if the client acknowledged nothing for PACER_STALL_S (send no more); or PACER_DEAD if it should be
    disconnected. */

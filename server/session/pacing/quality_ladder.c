@@ -4,20 +4,23 @@
 
 #include "base/clock.h"
 
-static const int64_t SLOW_NS = 80 * NS_PER_MS; /* a frame that takes the network longer than this is too large */
-static const int64_t FAST_NS = 40 * NS_PER_MS; /* a better step is tried if its frames are expected to take less than this */
+/* if the network needs longer than this for a frame, the frame is too large: the ladder steps down */
+static const int64_t SLOW_NS = 80 * NS_PER_MS;
+/* the ladder steps up if a frame of the better step is expected to take the network less than this */
+static const int64_t FAST_NS = 40 * NS_PER_MS;
 static const int64_t MIN_UP_DELAY_NS = 1 * NS_PER_S, MAX_UP_DELAY_NS = 30 * NS_PER_S;
-static const int64_t LASTED_NS = 5 * NS_PER_S; /* a step up that held for this long was right */
-/* delay after a step down before the next: the network's lag falls only after some frames */
+static const int64_t LASTED_NS = 5 * NS_PER_S; /* a step up that lasted this long before the next step down counts as right */
+/* minimum delay between two steps down: the measured lag falls only some frames after a step */
 static const int64_t SETTLE_NS = 500 * NS_PER_MS;
 static const int64_t SLOW_DECODE_NS = 40 * NS_PER_MS; /* decoding that takes longer cannot keep up with 25 frames a second */
 static const int64_t FAST_DECODE_NS = 20 * NS_PER_MS;
-/* two pictures are made at a time, so a longer time means fewer than 15 pictures a second */
+/* the server makes two pictures at a time, so a longer time for one means fewer than 15 pictures a second */
 static const int64_t SLOW_MADE_NS = 130 * NS_PER_MS;
 static const int64_t FAST_MADE_NS = 90 * NS_PER_MS;
 static const int64_t HARD_FOR_NS = 500 * NS_PER_MS, EASY_FOR_NS = 3 * NS_PER_S;
 static const double SAMPLE_WEIGHT = 0.25;
-/* bytes of one frame, sent to all its viewers, that the event loop can send in some tens of milliseconds */
+/* if one frame is sent to all viewers of a view, their copies together may have this many bytes: the event loop sends that in some tens of
+   ms */
 static const double CROWD_BYTES = 30e6;
 /* MIN_VIEWERS: viewers needed to share a step; MAX_STEPS_WORSE: how much worse a viewer's own step may be than the common one */
 enum { MIN_VIEWERS = 3, MAX_STEPS_WORSE = 2 };
@@ -68,8 +71,8 @@ double quality_ladder_bytes(const struct quality_ladder *ladder)
     return ladder->unit_bytes * steps[ladder->step].bytes;
 }
 
-/* Returns the factor on a frame's permitted time at this step. A step whose next one has fewer pixels gets twice the time: viewers at
-   different picture sizes can no longer share frames. */
+/* Returns the factor by which the limit on a frame's transfer time grows at this step. A step whose next one has fewer pixels gets twice
+   the time: viewers at different picture sizes can no longer share frames. */
 static int slack_factor(int step)
 {
     return step < QUALITY_LADDER_STEPS - 1 && steps[step + 1].rung.scale < 1 ? 2 : 1;
@@ -120,7 +123,7 @@ static void follow_network(struct quality_ladder *ladder, const struct channel *
     } else if (up >= ladder->step || channel->lag_ns > SLOW_NS) {
         ladder->good_since_ns = 0;
     } else if (!ladder->known) {
-        go_up(ladder, up, now_ns); /* the first step was only a guess */
+        go_up(ladder, up, now_ns); /* no delay yet: the initial step was only a guess */
     } else if (!ladder->good_since_ns) {
         ladder->good_since_ns = now_ns;
     } else if (now_ns - ladder->good_since_ns >= ladder->patience_ns) {
@@ -160,7 +163,7 @@ void quality_ladder_on_made(struct quality_ladder *ladder, int64_t made_ns, int6
 void quality_ladder_on_ack(struct quality_ladder *ladder, const struct channel *channel, int step, size_t bytes, int64_t now_ns)
 {
     double unit = (double)bytes / steps[step].bytes;
-    /* the first measured frame size replaces the guess from the number of pixels */
+    /* the first frame's real size replaces the guess that was made from its number of pixels */
     ladder->unit_bytes = ladder->known ? ladder->unit_bytes + SAMPLE_WEIGHT * (unit - ladder->unit_bytes) : unit;
     if (channel->ns_per_byte > 0) {
         follow_network(ladder, channel, now_ns);

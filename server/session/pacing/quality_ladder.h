@@ -19,7 +19,9 @@ struct quality_ladder { /* initialise with quality_ladder_init() */
     double unit_bytes;  /* estimated size in bytes of a frame at step 0, smoothed */
     bool known;         /* at least one frame was acknowledged */
     int64_t good_since_ns, easy_since_ns,
-        bad_since_ns; /* monotonic times since when a better step would fit; a better size would fit; decoding takes too long. 0: not now */
+        /* monotonic times since when: a better step would fit; a larger picture would fit; decoding takes too long. 0: that is not so now
+           */
+        bad_since_ns;
     int64_t up_ns, down_ns; /* monotonic: when the step last went up, and down */
     int64_t patience_ns;
 };
@@ -30,16 +32,17 @@ void quality_ladder_init(struct quality_ladder *ladder);
 void quality_ladder_begin(struct quality_ladder *ladder, const struct channel *channel, double pixels);
 /* Returns the quality and scale of a step, at the ladder's own picture size. */
 struct rung quality_ladder_rung(const struct quality_ladder *ladder, int step);
-/* Returns the step for all viewers of one view, so that each frame is drawn and encoded once: the worst step that three quarters of them
-   need, but never one whose frames would occupy the event loop while they are sent to all. counts: number of viewers at each step. seen:
-   ladder of the session whose view it is. Returns a negative number if there are too few viewers to share a step. */
+/* Returns the ladder step for all viewers of one view, so that each frame is drawn and encoded once. It is the worst step that three
+   quarters of the viewers need, but never one whose frames would occupy the event loop while they are sent to all. counts: number of
+   viewers at each step. seen: ladder of the session whose view the others follow. Returns a negative number if there are too few viewers to
+   share a step. */
 int quality_ladder_common(const struct quality_ladder *seen, const int counts[QUALITY_LADDER_STEPS]);
 /* Returns the step to use: the common one, unless this client needs a much worse one. common negative: returns the client's own step. */
 int quality_ladder_step(const struct quality_ladder *ladder, int common);
 /* Records that a preview of that step and size in bytes was acknowledged, and adjusts the step. */
 void quality_ladder_on_ack(struct quality_ladder *ladder, const struct channel *channel, int step, size_t bytes, int64_t now_ns);
-/* Records how long the server took to make previews, from request to encoded frame, and adjusts the picture size. For a picture over
-   many displays, which has more pixels than any one client's picture and so has a ladder of its own. */
+/* Records how long the server took to make previews, from request to encoded frame, and adjusts the picture size. For a picture over many
+   displays: it has a ladder of its own, because it has more pixels than any client's picture. */
 void quality_ladder_on_made(struct quality_ladder *ladder, int64_t made_ns, int64_t now_ns);
 /* Returns the expected size in bytes of a preview at the ladder's own step; 0: not known. */
 double quality_ladder_bytes(const struct quality_ladder *ladder);

@@ -18,7 +18,8 @@ static void hold(struct session *session, int64_t pixels)
     session->room.pixels = pixels;
 }
 
-/* Returns the pixels that the session occupies. A tile counts only the pixels of its own display, because all tiles share one picture. */
+/* Returns the pixels that the session occupies. A tile (one display's part of a picture over many displays) occupies only the pixels of its
+   own display, because all tiles share one picture. */
 static int64_t pixels_of(const struct session *session)
 {
     const int *display_px = session->tile.layout.display_px;
@@ -63,7 +64,7 @@ static bool take_again(struct session *session, const char **why)
     return !*why;
 }
 
-/* If a session that becomes visible is not admitted, the client is told so, and gets pictures once there is capacity. */
+/* If a session that becomes visible is not admitted, sends its client an error; pictures follow once there is capacity. */
 void session_on_visible(struct session *session, bool visible, int64_t now_ns)
 {
     struct message_error error = { 0 };

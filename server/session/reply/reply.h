@@ -6,21 +6,21 @@
 #include "session/session_context.h"
 
 char *reply_welcome_text(const struct session *session, int64_t now_utc_ns);
-/* open: for clients without a token; leaves out the names of tags and baselines. */
+/* open: the text is for clients without a token; names of tags and baselines are left out. */
 char *reply_params_text(const struct session_context *context, const struct view *view, uint32_t seq, bool open);
-/* Lists the followers of a session by session number, REPLY_FOLLOWERS of them at most. */
+/* Lists the followers of a session by session number, at most REPLY_FOLLOWERS. */
 enum { REPLY_FOLLOWERS = 256 };
 char *reply_followers_text(const uint64_t *sessions, size_t count);
 /* Says whose view the session is shown, and whether that leader has gone. */
 char *reply_following_text(const struct session *session);
-/* Lists all values; or, if `all` is false, those that changed since `sent` (reading.changes by tag). Updates `sent`. */
+/* Lists all readings; if `all` is false, only those whose reading.changes differs from `sent`, an array by tag. Updates `sent`. */
 char *reply_tags_text(const struct plant *plant, const struct snapshot *snapshot, uint32_t *sent, bool all);
 char *reply_status_text(const struct session_context *context, int64_t now_utc_ns);
 char *reply_pong_text(const struct snapshot *snapshot, double t, int64_t now_utc_ns);
 char *reply_time_text(const struct session *session);
-/* reply_present_text says when a tile is to show its frame seq, which is number `picture` of the wall's pictures. reply_tiles_text says
-   which displays of the wall are connected, since when (late_us, UTC) some are dropped, and which part of the picture is this display's;
-   there, late_us: arrays indexed by display - 1. */
+/* reply_present_text tells a tile at which instant to show its frame seq; `picture`: id of the wall's picture. reply_tiles_text says which
+   displays of the wall are connected, since when (late_us, UTC) some are dropped, and which part of the picture is this display's; there,
+   late_us: arrays indexed by display - 1. */
 char *reply_present_text(uint32_t seq, uint64_t picture, int64_t at_us);
 char *reply_tiles_text(const struct wall *wall, const struct wall_place *place, const struct tile_layout *layout, const bool *there,
                        const int64_t *late_us, bool leads);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Lists the sensors of all assets and their neighbour estimates as one JSON list. */
+/* Lists the sensors of all assets, each with the estimate from its neighbouring sensors, as one JSON array. */
 #include "session/reply/reply_neighbours.h"
 
 #include <math.h>

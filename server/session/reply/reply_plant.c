@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Texts about the plant that do not change while it is loaded. */
+/* Builds texts about the plant that stay the same while the plant is loaded. */
 #include "session/reply/reply_impl.h"
 
 #include <libwebsockets.h>
@@ -186,8 +186,8 @@ static void set_home(json_t *object, const struct session_context *context, int 
     json_object_set_new(object, "plant", plant_object(context, &home.camera));
 }
 
-/* Adds the long lists that are the same for all clients of one audience. open: for clients without a token; leaves out the names of
-   people and tags. */
+/* Adds the long lists, which are the same for all clients with the same rights (enum audience_lists). open: for clients without a token;
+   leaves out the names of people and tags. */
 static void set_lists(json_t *object, const struct session_context *context, bool open)
 {
     json_object_set_new(object, "groups", groups(context->plant));
@@ -209,7 +209,7 @@ static char *lists_text(const struct session_context *context, enum audience_lis
     bool open = kind != LISTS_NAMED;
     json_t *object = json_object();
     set_lists(object, context, open);
-    if (kind == LISTS_VIEWS) /* a token narrowed to views must not learn about assets outside of them */
+    if (kind == LISTS_VIEWS) /* a token narrowed to views must not disclose assets outside of its views */
         json_object_set_new(object, "assets", json_array());
     return json_text(object, DIGITS);
 }
@@ -223,7 +223,8 @@ static char *join(char *first, char *second)
     return both;
 }
 
-/* Returns the cached lists of an audience, building them on first use; the caller frees the text with mem_free. */
+/* Returns the cached lists for clients with the same rights (enum audience_lists), building them on first use; the caller frees the text
+   with mem_free. */
 static char *lists_said(const struct session_context *context, enum audience_lists kind)
 {
     if (!context->lists_said)

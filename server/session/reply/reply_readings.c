@@ -39,7 +39,7 @@ static void add_alarm(const struct plant *plant, size_t tag, const struct readin
 char *reply_tags_text(const struct plant *plant, const struct snapshot *snapshot, uint32_t *sent, bool all)
 {
     json_t *values = json_array();
-    int64_t oldest_ns = 0; /* age of the oldest reading among those sent in the short form */
+    int64_t oldest_ns = 0; /* age of the oldest reading among those sent as a bare value */
     for (size_t i = 0; i < snapshot->count; i++) {
         const struct reading *r = &snapshot->readings[i];
         if (!all && sent[i] == r->changes)
@@ -70,7 +70,7 @@ char *reply_status_text(const struct session_context *context, int64_t now_utc_n
             json_object_set_new(link, "simulated", json_true());
         json_array_append_new(links, link);
     }
-    if (context->hand_on) /* a renderer reports its link to the core as one more source */
+    if (context->hand_on) /* on a renderer, the list of sources has one more entry: the link to the core */
         json_array_append_new(links, json_pack("{s:s,s:b}", "source", "core", "up", context->core_up));
     json_t *status = json_pack("{s:s,s:o,s:I,s:b,s:b}", "type", "status", "links", links, "time_us", us(now_utc_ns), "live", context->live,
                                "clock_set", context->clock.set);

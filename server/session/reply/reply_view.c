@@ -53,7 +53,7 @@ static json_t *baselines(const struct session_context *context)
     return all;
 }
 
-/* Adds what one half of a split view (or the whole view) shows. */
+/* Adds the parameters of the whole view, or of one half of a split view (two pictures side by side). */
 static void set_shown(json_t *object, const struct session_context *context, const struct view *view)
 {
     const struct plant *plant = context->plant;

@@ -57,7 +57,8 @@ static bool views_due(const struct session *session)
            named_views_number(session->context->named_views) > session->owed.views_sent;
 }
 
-/* Returns whether notes are to be sent: after changes, and when a session that shows the past moves to an instant with other notes. */
+/* Returns whether the list of notes is to be sent: after changes, and when a session that shows the past moves to an instant with other
+   notes. */
 static bool notes_due(const struct session *session)
 {
     const struct notes *notes = session->context->notes;
@@ -93,8 +94,8 @@ bool session_has_text(const struct session *session, int64_t now_ns)
 {
     return session->owed.welcome || session->owed.reply_count > 0 || session->owed.params || session->owed.following ||
            session->owed.time || session->following.followers_text || loop_checks_due(session) || views_due(session) ||
-           notes_due(session) || walls_due(session) || pointers_due(session) || status_due(session) ||
-           alarms_due(session) || session_tags_due(session, now_ns);
+           notes_due(session) || walls_due(session) || pointers_due(session) || status_due(session) || alarms_due(session) ||
+           session_tags_due(session, now_ns);
 }
 
 static void add_tags(struct session *session, int64_t now_ns, struct text *out)
@@ -137,8 +138,7 @@ bool session_next_text(struct session *session, int64_t now_ns, int64_t now_utc_
         session->owed.notes_at_us = session_view(session)->at_us;
         session->owed.notes_sent = notes_number(context->notes);
         int64_t at_us = session->owed.notes_at_us;
-        add_owned(session, out,
-                  at_us ? notes_text_between(context->notes, at_us, at_us) : notes_text(context->notes, now_utc_ns / 1000));
+        add_owned(session, out, at_us ? notes_text_between(context->notes, at_us, at_us) : notes_text(context->notes, now_utc_ns / 1000));
     } else if (walls_due(session)) {
         add_owned(session, out, wall_remote_text(context->wall_remote));
         session->owed.walls_sent = wall_remote_number(context->wall_remote);

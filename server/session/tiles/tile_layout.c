@@ -28,7 +28,7 @@ struct tile_layout tile_layout_scale(const struct tile_layout *layout, double sc
     struct tile_layout out = *layout;
     out.width_px = scaled(layout->width_px, scale);
     out.height_px = scaled(layout->height_px, scale);
-    /* Gaps and margins shrink with the tiles, also when the tiles have reached their minimum size. */
+    /* If tiles shrink, the gaps and margins shrink by the same factor, even where tiles are already at their minimum size. */
     double across = fmin(scale, (double)out.width_px / layout->width_px), down = fmin(scale, (double)out.height_px / layout->height_px);
     out.gap_px[0] = (int)lround(layout->gap_px[0] * across);
     out.gap_px[1] = (int)lround(layout->gap_px[1] * down);
@@ -53,7 +53,7 @@ void tile_layout_init(struct tile_layout *layout, const struct wall *wall, int w
     double scale = fmin(1, fmin(VIEW_MAX_SIDE_PX / side, sqrt((double)most_px / (width * height))));
     *layout = tile_layout_scale(&full, scale);
     while (scale > 0.01 && (tile_layout_width(layout) > VIEW_MAX_SIDE_PX || tile_layout_height(layout) > VIEW_MAX_SIDE_PX ||
-                            /* rounding up the gaps may exceed the limit again */
+                            /* the gaps are rounded up, so the picture may exceed the limit again */
                             (int64_t)tile_layout_width(layout) * tile_layout_height(layout) > most_px))
         *layout = tile_layout_scale(&full, scale *= 0.99);
 }

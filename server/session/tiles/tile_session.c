@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One tile of a picture over many displays: its size, the pictures it has, and whether it keeps up. */
+/* State of one tile of a picture over many displays: its size, the pictures it has, and whether it delays the other tiles. */
 #include <string.h>
 
 #include "base/clock.h"
@@ -10,7 +10,7 @@
 static const int64_t MAX_LATE_NS = 3 * NS_PER_S; /* the other tiles wait this long for a slow one before it is dropped */
 /* how long a slow tile is dropped; doubles each time, up to the maximum */
 static const int64_t OUT_NS = 10 * NS_PER_S, MAX_OUT_NS = 320 * NS_PER_S;
-static const int64_t KEPT_UP_NS = 60 * NS_PER_S; /* a tile that keeps up for this long is dropped for only OUT_NS the next time */
+static const int64_t KEPT_UP_NS = 60 * NS_PER_S; /* after keeping up for this long, a tile that is slow again is dropped for only OUT_NS */
 
 bool session_is_tile(const struct session *session)
 {
@@ -40,7 +40,7 @@ void session_tile_move(struct session *session, struct burn_shift shift, int64_t
     session->tile.moved = true;
     if (!session->demand.data)
         session->demand.data_ns = now_ns;
-    session->demand.data = true; /* requests the same picture, cut at another position because of the shift */
+    session->demand.data = true; /* the next picture has the same content, but the tile's part is cut out at a shifted position */
 }
 
 void session_tile_sent(struct session *session, uint64_t picture, uint32_t seq)
@@ -51,8 +51,9 @@ void session_tile_sent(struct session *session, uint64_t picture, uint32_t seq)
     tile->held[tile->held_count++] = (struct tile_held){ picture, seq };
 }
 
-/* Records that the tile's content in this picture equals the frame drawn before. That frame may still be on its way from the encoder,
-   because an answer without a frame overtakes it; then the picture number is attached to that frame when it arrives. */
+/* Records that the tile's content in this picture equals the previous frame, so that no new frame is sent. That frame may still be on
+   its way from the encoder, because an answer without a frame overtakes it; then the picture number is attached to that frame when it
+   arrives. */
 void session_tile_unchanged(struct session *session, uint64_t picture)
 {
     struct session_tile *tile = &session->tile;
@@ -81,7 +82,7 @@ void session_tile_came(struct session *session, struct frame_request *request, i
     session->tile.unchanged = 0;
 }
 
-/* --- tiles that keep up, and tiles that do not ----------------------------------------------------------------------------- */
+/* --- dropping tiles that delay the others, and readmitting them ------------------------------------------------------------ */
 
 bool session_tile_judge(struct session *session, int64_t now_ns, int64_t now_utc_ns)
 {

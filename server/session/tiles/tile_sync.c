@@ -8,7 +8,7 @@
 #include "session/reply/reply.h"
 #include "session/session_impl.h"
 
-/* time added to the slowest round trip until all tiles show a picture; MAX_FLIP_NS: maximum */
+/* time added to the slowest round trip to give the instant at which all tiles show a picture; MAX_FLIP_NS: maximum of the sum */
 static const int64_t FLIP_NS = 25 * NS_PER_MS, MAX_FLIP_NS = NS_PER_S;
 
 bool session_tile_takes_part(const struct session *session, int64_t now_ns)
@@ -19,7 +19,8 @@ bool session_tile_takes_part(const struct session *session, int64_t now_ns)
 
 /* --- requests --------------------------------------------------------------------------------------------------------------- */
 
-/* Returns whether request a goes before b: a preview before a refined picture, because somebody moves or has just connected. */
+/* Returns whether request a goes before b: a preview before a refined picture, because a preview means that a user moves the camera, or
+   that a tile has just connected. */
 static bool goes_first(const struct frame_request *a, const struct frame_request *b)
 {
     if (a->view.tier != b->view.tier)
@@ -98,15 +99,17 @@ bool session_tiles_next_request(const struct session_tiles *tiles, uint64_t numb
         requests[i].codec = member->codec.current;
         requests[i].account = member->room.share ? member->room.share->account : 0;
         requests[i].view.camera_seq = member->view.camera_seq;
-        requests[i].view.params_seq = tiles->leader->view.params_seq; /* the number that `following` reported to the client */
+        /* the params_seq that the message `following` reported to the client */
+        requests[i].view.params_seq = tiles->leader->view.params_seq;
         requests[i].part = tile_layout_part(&layout, member->tile.place.display);
     }
     return true;
 }
 
-/* --- which tile has which picture -------------------------------------------------------------------------------------------- */
+/* --- which tile has received which picture of the wall ----------------------------------------------------------------------- */
 
-/* Returns the sequence number of the session's frame that shows the wall's picture, once the client has acknowledged it; otherwise 0. */
+/* Returns the sequence number of the session's frame that holds its part of the wall's picture number `picture`, once the client has
+   acknowledged it; otherwise 0. */
 static uint32_t seq_of(const struct session *session, uint64_t picture)
 {
     for (int i = session->tile.held_count - 1; i >= 0; i--)
@@ -139,8 +142,8 @@ static uint64_t common(const struct session_tiles *tiles, uint64_t presented)
     return 0;
 }
 
-/* Requests another picture for all members if nothing is in flight and some member has a frame that was never presented. This happens if
-   a request was replaced for one member but came too late to be replaced for another. */
+/* Requests another picture for all members if nothing is in flight and some member has a frame that was never presented. Tiles differ if a
+   newer request replaced the old one for one member, but came too late for another. */
 static void ask_anew(const struct session_tiles *tiles)
 {
     bool any = false;

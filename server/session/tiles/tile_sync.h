@@ -10,7 +10,7 @@
 /* Returns whether a tile takes part now: its page is visible, and it keeps up. */
 bool session_tile_takes_part(const struct session *session, int64_t now_ns);
 
-struct session_tiles { /* the participating tiles of one wall, and the session that leads */
+struct session_tiles { /* the tiles of one wall that are not dropped or hidden, and the leading session */
     struct session *const *members;
     size_t count;
     const struct session *leader;
@@ -18,10 +18,10 @@ struct session_tiles { /* the participating tiles of one wall, and the session t
 };
 
 /* Returns true if a new picture may be requested (or may replace one in flight) and a member wants it; fills requests[] with one request
-   per member. All requests have the same view and the quality that the slowest client, or the server, can keep up with. number: of the
-   new picture, larger than the last. Call session_requested() once the render service accepts them. */
+   per member. All requests have the same view and the quality that the slowest client, or the server, can keep up with. number: sequence
+   number of the new picture, larger than the last. Call session_requested() once the render service accepts them. */
 bool session_tiles_next_request(const struct session_tiles *tiles, uint64_t number, int64_t now_ns, struct frame_request requests[]);
-/* Makes all members show, at one instant, the newest picture that all of them have, if it is newer than *presented. If nothing is in
+/* Makes all members show, at one instant, the newest picture that every member has, if its number exceeds *presented. If nothing is in
    flight and some members have pictures that others lack, requests another picture for all. */
 void session_tiles_present(const struct session_tiles *tiles, uint64_t *presented, int64_t now_ns, int64_t now_utc_ns);
 

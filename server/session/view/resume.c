@@ -18,7 +18,7 @@ struct kept_view {
 };
 
 struct resumes {
-    struct kept_view *kept; /* kept views in the order in which their clients disconnected */
+    struct kept_view *kept; /* entries of disconnected clients, earliest disconnection first */
     size_t count, capacity;
 };
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A session that is shown another session's view. Its own camera, parameters and size are kept meanwhile. */
+/* Makes a session show another session's view. Its own camera, parameters and size are kept meanwhile. */
 #include <string.h>
 
 #include "base/clock.h"
@@ -35,7 +35,7 @@ void session_leader_gone(struct session *session, int64_t now_ns)
     uint64_t called = session->following.leader->identity.number;
     session->following.own_view = session->view;
     session_inherit(session, session->following.leader);
-    view_set_trial(&session->view, 0); /* the leader's trial sensor positions went with the leader */
+    view_set_trial(&session->view, 0); /* the leader's trial sensor positions were freed with the leader's session */
     session_follow(session, NULL, now_ns);
     session->following.left = called;
 }
@@ -56,7 +56,7 @@ void session_follow(struct session *session, struct session *leader, int64_t now
 
 void session_ask_lead(struct session *session, const struct message *message)
 {
-    if (!session_is_tile(session)) /* the leader of tiles follows from their positions */
+    if (!session_is_tile(session)) /* the wall's leader follows from the displays' positions, so a tile cannot choose it */
         session->following.heir_wanted = message->follow;
 }
 
@@ -103,8 +103,7 @@ void session_say_followers(struct session *session, const uint64_t *sessions, si
 void session_follow_nobody(struct session *session)
 {
     struct message_error error = { .about = "follow" };
-    message_refuse_with(&error, "bad_field", "session", REFUSAL_GONE, "session=%llu",
-                        (unsigned long long)session->following.wanted);
+    message_refuse_with(&error, "bad_field", "session", REFUSAL_GONE, "session=%llu", (unsigned long long)session->following.wanted);
     session_reply_error(session, &error);
 }
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a session with a narrowed token may see and send: a token narrowed to views of the plant file, or a paired device restricted to
-   its display. */
+/* Decides what a narrowed token lets a session see and send. Such a token is limited to views of the plant file; a paired device is limited
+   to its display. */
 #include <jansson.h>
 #include <stdio.h>
 #include <string.h>
@@ -31,7 +31,7 @@ static const struct named_view *find_view(const struct session *session, const c
     return named;
 }
 
-/* Reads a view as its author wrote it, with the author's rights; the size of `view` stays. */
+/* Reads a view as its author wrote it, with the author's rights; keeps the size of `view`. */
 static bool read_view(const struct session *session, const struct named_view *named, struct view *view, struct message_error *error)
 {
     const struct session_context *context = session->context;
@@ -53,7 +53,7 @@ static bool read_view(const struct session *session, const struct named_view *na
     view->camera_seq = before.camera_seq;
     view->params_seq = before.params_seq;
     view->tier = before.tier;
-    view_set_instant(view, before.at_us, before.field.slot); /* a session that shows a past instant goes on doing so */
+    view_set_instant(view, before.at_us, before.field.slot); /* a session that shows a past instant stays at that instant */
     view_set_trial(view, before.field.trial);
     return true;
 }
@@ -180,11 +180,11 @@ static bool shows_note(const struct session *session, const json_t *item)
     return !session->scope.tags;
 }
 
-/* Messages that are filtered item by item: type, name of the list, and which items are kept. */
+/* Messages whose list items are filtered: message type, name of the list, and the test that an item must pass. */
 static const struct {
     const char *type, *list;
     bool (*keeps)(const struct session *session, const json_t *item);
-    bool of_tags; /* filter only if the display shows no pictures */
+    bool of_tags; /* true: filter the message only for a display without pictures */
 } filters[] = {
     { "tags", "values", shows_row, true },  { "alarms", "alarms", shows_alarm, true }, { "views", "list", shows_view, false },
     { "notes", "list", shows_note, false }, { "walls", "list", is_ours, false },       { "walls", "displays", is_own, false },
@@ -240,7 +240,7 @@ bool session_scope_allows(const struct session *session, const struct message *m
     if (holder->views[0] && !is_in(message->type, views, sizeof(views) / sizeof(views[0])))
         message_fail(error, "not_allowed", "this token is for pictures of the views %.150s: hello or look names one", holder->views);
     else if (holder->display && !is_in(message->type, displays, sizeof(displays) / sizeof(displays[0])) &&
-             /* a display with pictures picks to find a free side for an alarm's label */
+             /* a display with pictures sends picks to find a free side for an alarm's label */
              (message->type != MESSAGE_PICK || session->scope.tags))
         message_fail(error, "not_allowed", "this token is that of display %d of wall %s and allows nothing else", holder->display,
                      holder->wall);

@@ -6,8 +6,9 @@
 #include "history/history.h"
 #include "session/session_impl.h"
 
-static const int64_t STEP_NS = 100 * NS_PER_MS;      /* minimum time between two steps of playback */
-static const int64_t SLOW_STEP_NS = 500 * NS_PER_MS; /* the same at low speeds, where little changes from step to step */
+static const int64_t STEP_NS = 100 * NS_PER_MS; /* minimum time between two steps of playback */
+/* minimum time between two steps of slow playback, where readings change little from step to step */
+static const int64_t SLOW_STEP_NS = 500 * NS_PER_MS;
 static const double SLOW_SPEED = 10;
 
 void session_tell_time(struct session *session)
@@ -15,7 +16,7 @@ void session_tell_time(struct session *session)
     int64_t at_us = session_view(session)->at_us;
     session->owed.time = true;
     session->owed.tags = true;
-    /* the change counters of current and historical readings are unrelated, so all tags are sent again */
+    /* reading.changes of current and of historical readings are unrelated counters, so all tags are sent again */
     session->owed.tags_all |= (at_us != 0) != (session->owed.told_at_us != 0);
     session->owed.told_at_us = at_us;
 }
@@ -161,8 +162,7 @@ static void on_failure(struct session *session)
     session->owed.time = true;
 }
 
-/* Also shows an instant that was requested earlier on the way to a later request, so that dragging the time slider shows pictures all
-   the way. */
+/* Shows at_us even if the client has asked for a later instant since, so that dragging the time slider shows pictures all the way. */
 void session_on_historical_snapshot(struct session *session, int64_t at_us, bool good, int64_t now_ns)
 {
     struct travel *travel = &session->travel;

@@ -16,7 +16,7 @@
 #include "session/session_impl.h"
 
 enum { MAC_BYTES = 32, DIGITS = 17 };
-/* lifetime of a token; how far ahead the clock of the daemon that made it may be */
+/* lifetime of a token; how far its time may lie in the future, because another daemon's clock may be ahead */
 static const int64_t KEPT_NS = 86400 * NS_PER_S, SKEW_NS = 7200 * NS_PER_S;
 
 void view_token_add_key(struct view_token_keys *keys, const uint8_t key[VIEW_TOKEN_KEY_BYTES])
@@ -60,10 +60,10 @@ static json_t *body_of(const struct session *session, int64_t now_utc_ns)
     hex_print(session->identity.holder.hash, TOKEN_HASH_BYTES, holder);
     for (int i = 0; i < session->codec.list.count; i++)
         json_array_append_new(codecs, json_integer(session->codec.list.at[i]));
-    json_t *body = json_pack("{s:I,s:s,s:I,s:o,s:i,s:i,s:f,s:o,s:b,s:s}", "t", (json_int_t)now_utc_ns, "h", holder, "n",
-                             (json_int_t)session->identity.number, "c", camera_json(&session->view.camera), "x", session->view.width_px,
-                             "y", session->view.height_px, "r", session->pixel_ratio, "d", codecs, "a", session->codec.list.choose, "p",
-                             carried);
+    json_t *body =
+        json_pack("{s:I,s:s,s:I,s:o,s:i,s:i,s:f,s:o,s:b,s:s}", "t", (json_int_t)now_utc_ns, "h", holder, "n",
+                  (json_int_t)session->identity.number, "c", camera_json(&session->view.camera), "x", session->view.width_px, "y",
+                  session->view.height_px, "r", session->pixel_ratio, "d", codecs, "a", session->codec.list.choose, "p", carried);
     mem_free(carried);
     return body;
 }

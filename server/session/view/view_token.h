@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* View tokens: a session's view as a signed text that its client keeps, so that any daemon with the key can restore it. A token works
-   for a day, and only for the user for whom it was made. It contains no secrets and grants no access. Thread: the event loop. */
+/* View tokens: a session's view as a signed text that its client keeps, so that any daemon with the key can restore it. A token works for a
+   day, and only if the same user presents it. It contains no secrets and grants no access. Thread: the event loop. */
 #ifndef SESSION_VIEW_VIEW_TOKEN_H
 #define SESSION_VIEW_VIEW_TOKEN_H
 #include "session/session_context.h"
