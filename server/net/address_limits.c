@@ -10,9 +10,9 @@
 
 struct address_limits {
     const struct quotas *quotas;
-    struct address_usage **all; /* a few thousand at most; searched once per connection */
+    struct address_usage **all; /* addresses that are known at one time: a few thousand at most; searched once per connection */
     size_t count, capacity;
-    uint64_t payers; /* number of account ids given out so far */
+    uint64_t payers; /* counter from which address ids (account) are given out */
     bool exempt;
 };
 

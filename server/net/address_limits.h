@@ -9,34 +9,34 @@ struct address_usage {
     uint8_t address[16]; /* IPv4 addresses as ::ffff:a.b.c.d */
     bool local;          /* loopback: 127.x or ::1 */
     int refs, connections, sessions;
-    int named;               /* connections of a reverse proxy whose last request came from this address */
-    int pictures, questions; /* pictures and history queries over HTTP that are being answered */
+    int named;               /* number of a reverse proxy's connections whose last request came from this address */
+    int pictures, questions; /* count of HTTP requests for pictures and for history that are being answered */
     int64_t answer_bytes;    /* bytes of HTTP answers that the client has not read yet */
     struct address_share share;
-    int64_t rate_begin_ns, messages; /* stream messages within the second that began at rate_begin_ns (monotonic) */
+    int64_t rate_begin_ns, messages; /* number of stream messages within the second that began at rate_begin_ns (monotonic) */
 };
 
 struct address_limits;
-/* exempt: loopback addresses have no limits of their own unless the user set one; the server's total limits still apply. Never returns
-   NULL. */
+/* exempt: true: loopback addresses have no limits of their own unless the user set one; the server's total limits still apply. Never
+   returns NULL. */
 struct address_limits *address_limits_create(const struct quotas *quotas, bool exempt);
 void address_limits_destroy(struct address_limits **limits); /* &NULL is allowed; sets *limits to NULL */
 
-/* Returns the usage of a numeric address, created if needed, with a reference that the caller must release. All texts that are no
-   address share one usage. */
+/* Returns the usage of a numeric address, created if needed, with a reference that the caller must release. Texts that are not an address
+   all share one usage struct. */
 struct address_usage *address_limits_ref(struct address_limits *limits, const char *address);
 /* Releases a reference. &NULL is allowed; sets *usage to NULL. */
 void address_limits_unref(struct address_limits *limits, struct address_usage **usage);
 
-/* Return whether the address may have one more: connection; stream; connection of a proxy; history query; answer of `count` bytes;
-   picture over HTTP. */
+/* Return whether the address may have one more: connection; stream; connection of a proxy; history query; HTTP answer of `count` bytes;
+   picture over HTTP. Each function checks one of these quotas. */
 bool address_limits_may_connect(const struct address_limits *limits, const struct address_usage *usage);
 bool address_limits_may_stream(const struct address_limits *limits, const struct address_usage *usage);
 bool address_limits_may_be_named(const struct address_limits *limits, const struct address_usage *usage);
 bool address_limits_may_ask(const struct address_limits *limits, const struct address_usage *usage);
 bool address_limits_may_hold(const struct address_limits *limits, const struct address_usage *usage, size_t count);
 bool address_limits_may_draw(const struct address_limits *limits, const struct address_usage *usage);
-/* Counts a stream message. Returns false if the address has sent too many within this second. */
+/* Counts a stream message. Returns false if the address has sent more than its quota within this second. */
 bool address_limits_count_message(const struct address_limits *limits, struct address_usage *usage, int64_t now_ns);
 /* Returns how many addresses are known. */
 int address_limits_count(const struct address_limits *limits);

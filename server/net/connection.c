@@ -11,8 +11,8 @@
 #include "message/names.h"
 #include "net/tls.h"
 
-static const char LOCAL[] = "local";            /* name of a user on this machine who needs no token */
-static const char SIGNED_IN[] = " (signed in)"; /* suffix for a signed-in user if a token has the same name */
+static const char LOCAL[] = "local";            /* name in journals of a user on this machine who needs no token */
+static const char SIGNED_IN[] = " (signed in)"; /* suffix added to a signed-in user's name if a token has the same name */
 
 static const struct http_refusal NO_HOST = { 400, "HTTP/1.1 requires the header Host\n" };
 static const struct http_refusal WRONG_HOST = { 403,
@@ -20,7 +20,7 @@ static const struct http_refusal WRONG_HOST = { 403,
 static const struct http_refusal LOCAL_ONLY = { 403, "this server answers to localhost, 127.0.0.1 and [::1] only\n" };
 static const struct http_refusal PROXY = { 403, "the request came through a proxy; start the server with --behind-proxy to allow this\n" };
 static const struct http_refusal IN_QUERY = { 400, "a token does not belong in a URL, where logs and histories keep it: send it as "
-                                              "Authorization: Bearer, in the subprotocol list, or in hello\n" };
+                                                   "Authorization: Bearer, in the subprotocol list, or in hello\n" };
 static const struct http_refusal BAD_TOKEN = { 401, "this token is unknown or has expired\n" };
 static const struct http_refusal HELD = { 429, "too many wrong tokens came from this address; try again in 5 s\n" };
 static const struct http_refusal TOO_LONG = { 431, "a header is too long\n" };
@@ -40,7 +40,7 @@ bool connection_may_open(struct server_context *server, int fd)
     char address[64] = "";
     if (server->connection_count >= server->quotas->at[QUOTA_CONNECTIONS])
         return count_refusal(server, false);
-    /* behind a proxy all connections come from one address; sessions are counted by the forwarded address */
+    /* behind a proxy all connections come from one address, so sessions are counted by the address that the proxy forwards */
     if (server->params.access.behind_proxy)
         return true;
     lws_get_peer_simple_fd(fd, address, sizeof(address));
@@ -165,7 +165,7 @@ static bool find_client(struct server_context *server, struct lws *wsi, struct c
 
 static bool has_token_in_query(struct lws *wsi)
 {
-    char argument[4096]; /* larger than all headers together that libwebsockets keeps */
+    char argument[4096]; /* buffer size: larger than all headers of a request together that libwebsockets keeps */
     for (int i = 0; lws_hdr_fragment_length(wsi, WSI_TOKEN_HTTP_URI_ARGS, i) > 0; i++)
         if (lws_hdr_copy_fragment(wsi, argument, sizeof(argument), WSI_TOKEN_HTTP_URI_ARGS, i) > 0 && access_argument_is_token(argument))
             return true;
@@ -257,13 +257,14 @@ void connection_log_login(struct server_context *server, struct lws *wsi, const 
                  LOGIN_WAIT_S);
 }
 
-/* Checks a token. Returns NULL and sets connection->holder if it is accepted; otherwise the refusal. */
+/* Checks a token. Returns NULL and sets connection->holder if the token is accepted; otherwise the refusal to answer with. */
 static const struct http_refusal *judge_token(struct server_context *server, struct lws *wsi, const char *token)
 {
     struct connection *connection = connection_of(wsi);
     struct token_holder holder;
     bool good = tokens_find(server->tokens, token, clock_utc_ns(), &holder);
-    bool stream = lws_hdr_total_length(wsi, WSI_TOKEN_UPGRADE) > 0; /* an accepted token of a stream is recorded at its `hello` */
+    /* an accepted token of a stream is recorded later, at the stream's `hello` */
+    bool stream = lws_hdr_total_length(wsi, WSI_TOKEN_UPGRADE) > 0;
     enum login login =
         login_throttle_judge(server->login_throttle, connection->client->address, good ? holder.hash : NULL, clock_mono_ns());
     if (!stream || !login_is_good(login))
@@ -322,7 +323,7 @@ bool connection_identify(struct server_context *server, struct lws *wsi, struct 
     if (!has_host && !is_http_1_0(wsi))
         *refusal = NO_HOST;
     else if (has_host && (!connection_header(wsi, WSI_TOKEN_HOST, host, sizeof(host)) || !access_host_name(host, name, sizeof(name)) ||
-                     !is_ours(server, name)))
+                          !is_ours(server, name)))
         *refusal = server->local_only ? LOCAL_ONLY : WRONG_HOST;
     else if (connection->usage->local && !params->behind_proxy && has_forwarding(wsi))
         *refusal = PROXY;

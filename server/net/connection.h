@@ -5,19 +5,19 @@
 #define NET_CONNECTION_H
 #include "net/server_context.h"
 
-struct connection {               /* lives as long as the connection */
+struct connection {               /* identity of one connection; lives as long as the connection */
     struct address_usage *usage;  /* usage of the address that opened the connection; a reference */
     struct address_usage *client; /* usage of the client's address: behind a proxy, the address that the last request names; a reference */
     char address[64];             /* the client's address as text, for the log */
     enum role role;               /* role of the user, according to the last request's headers */
     struct token_holder holder;
     char token[TOKEN_MAX_CHARS + 1]; /* token of the last request; "": none */
-    bool answered; /* no request of this connection waits for its answer */
-    /* bytes received when the wait for the next request began; UINT64_MAX: not waiting (http/stuck_head.h) */
+    bool answered;                   /* no request of this connection is unanswered */
+    /* bytes received by the connection when the wait for its next request began; UINT64_MAX: not waiting (http/stuck_head.h) */
     uint64_t received_before_head;
 };
 
-/* Decides about an accepted socket before libwebsockets makes a connection of it. Returns false if it must be closed. */
+/* Decides whether an accepted socket may become a connection, before libwebsockets adopts it. Returns false if it must be closed. */
 bool connection_may_open(struct server_context *server, int fd);
 /* Create and destroy the identity of a connection. */
 void connection_open(struct server_context *server, struct lws *wsi);
@@ -41,8 +41,8 @@ const char *connection_who(const struct connection *connection);
 /* Records a request of an identified user in the audit trail. result: as in struct audit_entry; why: the reason of a refusal, or NULL. */
 void connection_record(const struct server_context *server, struct lws *wsi, const char *event, const char *result, const char *path,
                        const char *why);
-/* Logs and counts the verdict on a token, or a session that needed no token. way: static text; holder: of the token; role ROLE_NOBODY:
-   the token is unknown. */
+/* Logs and counts the verdict on a token, or a session that needed no token. way: how the client gained access (static text); holder: of
+   the token; role ROLE_NOBODY: the token is unknown. */
 void connection_log_login(struct server_context *server, struct lws *wsi, const char *way, const struct token_holder *holder,
                           enum login login);
 /* Copies a request header into out; "" if it is missing. Returns false if it is too long. */

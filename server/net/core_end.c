@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Connects a renderer's sessions with its core. */
+/* Connects the sessions of a renderer with the renderer's core. */
 #include "net/core_end.h"
 
 #include <string.h>

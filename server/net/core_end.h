@@ -5,11 +5,11 @@
 #define NET_CORE_END_H
 #include "net/server_context.h"
 
-/* Makes sessions forward actions to the plant's core_link, if there is one. */
+/* Makes sessions forward users' actions over the plant's core_link, if the plant has one (only on a renderer). */
 void core_end_bind(struct server_context *server);
 /* Returns whether this daemon polls devices and owns alarms: it is neither a renderer nor a standby core. */
 bool core_end_leads(const struct server_context *server);
-/* Takes everything that arrived from the core since the last call. */
+/* Takes over everything that the core sent since the last call: readings, alarms, answers. */
 void core_end_collect(struct server_context *server);
 
 #endif

@@ -49,7 +49,8 @@ int handed_socket_callback(struct lws *wsi, enum lws_callback_reasons reason, vo
         return 0;
     struct server_context *server = server_context_of(wsi);
     if (atomic_load(&lws_container_of(server, struct net, server)->stopping)) {
-        lws_rx_flow_control(wsi, 0); /* new connections wait for the next start of the daemon; accepted now, they would be cut off */
+        /* while the daemon stops, new connections wait in the socket for its next start; accepted now, they would be cut off */
+        lws_rx_flow_control(wsi, 0);
         return 0;
     }
     for (int i = 0; i < ACCEPTED_AT_ONCE; i++) {

@@ -26,13 +26,14 @@
 #include "session/view/resume.h"
 
 static const int64_t SETTLE_NS = 5 * NS_PER_MS; /* interval between checks whether an action is on disk */
-static const int64_t SETTLED_NS = 1500 * NS_PER_MS; /* longest wait for that at shutdown: settling_end() gives each action a second */
-/* interval between ticks; REST_NS: when no session waits for anything */
+/* longest wait at shutdown until actions are on disk: settling_end() gives each action a second */
+static const int64_t SETTLED_NS = 1500 * NS_PER_MS;
+/* interval between ticks; REST_NS: interval while no session waits for anything */
 static const int64_t TICK_NS = 100 * NS_PER_MS, REST_NS = NS_PER_S;
-static const int64_t GOODBYE_NS = 500 * NS_PER_MS;                  /* time for close frames and answers to be sent at shutdown */
+static const int64_t GOODBYE_NS = 500 * NS_PER_MS;       /* time for close frames and answers to be sent at shutdown */
 static const int64_t RECORD_INTERVAL_NS = 60 * NS_PER_S; /* minimum time between two audit entries about tokens not checked */
-static const int64_t FILE_CHECK_INTERVAL_NS = NS_PER_S; /* interval between checks of the token and certificate files */
-enum { SPARE_FILES = 256 }; /* file descriptors for other uses than connections: models, sources, the database */
+static const int64_t FILE_CHECK_INTERVAL_NS = NS_PER_S;  /* interval between checks of the token and certificate files */
+enum { SPARE_FILES = 256 }; /* file descriptors reserved for uses other than connections: models, sources, the database */
 
 static const struct lws_protocols protocols[] = {
     { .name = "http", .callback = http_callback, .per_session_data_size = sizeof(void *) },
@@ -71,7 +72,7 @@ static void look_at_files(struct net *net, int64_t now_ns)
         tls_look(server->tls);
     if (server->tokens) {
         tokens_look(server->tokens);
-        /* also ends sessions of signed-in users whose rights ended; sign-in needs configured tokens */
+        /* also ends sessions of signed-in users whose rights ended; called only if tokens are configured, which sign-in requires */
         streams_check_tokens(server, clock_utc_ns());
     }
 }
@@ -86,7 +87,7 @@ static void record_sum(const struct server_context *server, int64_t *count, cons
     *count = 0;
 }
 
-/* Records tokens and log-in answers that were not checked, once a minute. */
+/* Adds the number of tokens and of log-in answers that were not checked to the audit trail, once a minute. */
 static void record_held(struct server_context *server, int64_t now_ns)
 {
     if ((!server->logins_held && !server->unasked) || now_ns - server->held_ns < RECORD_INTERVAL_NS)
@@ -115,19 +116,19 @@ static void look_around(struct net *net, int64_t now_ns)
 static void say_status(const struct server_context *server)
 {
     if (server->params.tick)
-        server->params.tick(server->params.reload_arg, &(struct net_status){
-                                                           .render_service = server->params.plant.render_service,
-                                                           .sessions = (size_t)server->stream_count,
-                                                           .busy_percent = admission_busy_percent(&server->admission),
-                                                           .has_core = !server->params.plant.core_link || server->session_context.core_up,
-                                                           .lacks_standby = server->params.keeper && core_end_leads(server) &&
-                                                                            !renderers_have_standby(server),
-                                                           .drains = server->drain_ns != 0,
-                                                           .certificate_ends_s = server->tls ? tls_ends_s(server->tls) : 0,
-                                                       });
+        server->params.tick(server->params.reload_arg,
+                            &(struct net_status){
+                                .render_service = server->params.plant.render_service,
+                                .sessions = (size_t)server->stream_count,
+                                .busy_percent = admission_busy_percent(&server->admission),
+                                .has_core = !server->params.plant.core_link || server->session_context.core_up,
+                                .lacks_standby = server->params.keeper && core_end_leads(server) && !renderers_have_standby(server),
+                                .drains = server->drain_ns != 0,
+                                .certificate_ends_s = server->tls ? tls_ends_s(server->tls) : 0,
+                            });
 }
 
-/* Measures how long the daemon took to start: clients are told to come back after as long. */
+/* Measures how long the daemon took to start. At shutdown, clients are told to reconnect after that time. */
 static void time_start(struct server_context *server, int64_t now_ns)
 {
     if (!server->start_s && render_service_ready(server->params.plant.render_service))
@@ -159,7 +160,8 @@ static void tick(struct net *net, int64_t now_ns)
     net->ticked_ns = now_ns;
 }
 
-/* libwebsockets runs due timers before it waits. Without a timer it would then wait for long, so this wakes it at once. */
+/* libwebsockets runs due timers before it waits. A timer that became due meanwhile would not end that wait; so this wakes libwebsockets at
+   once. */
 static void on_timer(lws_sorted_usec_list_t *sul)
 {
     struct net *net = lws_container_of(sul, struct net, timer);
@@ -514,7 +516,7 @@ void net_destroy(struct net **net_ptr)
     if (!net)
         return;
     lws_sul_cancel(&net->timer);
-    history_queries_destroy(&net->server.history_queries); /* first, because its threads wake the event loop */
+    history_queries_destroy(&net->server.history_queries); /* stopped first, because the threads of this object wake the event loop */
     picture_signer_destroy(&net->server.picture_signer);
     history_loader_destroy(&net->server.history_loader);
     openid_stop(&net->server.openid);
@@ -550,7 +552,7 @@ int net_port(const struct net *net)
     return net->server.params.socket_fd >= 0 ? net->server.params.port : lws_get_vhost_listen_port(net->vhost);
 }
 
-/* Goes on serving until the disk has decided on the actions of clients, and renderers have the answers. */
+/* Continues serving until the disk has decided on the actions of clients, and renderers have the answers. */
 static void finish_actions(struct net *net)
 {
     for (int64_t now_ns = clock_mono_ns(), end_ns = now_ns + SETTLED_NS;

@@ -10,28 +10,28 @@ struct net;
 bool net_port_free(struct log *log, const char *address, int port);
 /* Returns whether the configured tokens and certificate can be used; if not, the reason is logged. */
 bool net_access_good(struct log *log, const struct access_params *access);
-/* Binds the port. Returns NULL on failure, already logged. Everything that params point to must outlive the loop. */
+/* Binds the port. Returns NULL on failure, already logged. Everything to which params point must outlive the loop. */
 struct net *net_create(const struct net_params *params);
-/* Closes all connections and frees the loop. &NULL is allowed; sets *net to NULL. */
+/* Closes all connections and frees the event loop. &NULL is allowed; sets *net to NULL. */
 void net_destroy(struct net **net);
 /* Returns the port that is bound. */
 int net_port(const struct net *net);
 /* Serves until net_stop() is called, then closes the clients' connections. */
 void net_run(struct net *net);
-/* Makes the event loop collect frames and answers. Any thread. */
+/* Makes the event loop collect frames and answers that other threads have finished. Any thread. */
 void net_wake(struct net *net);
 /* Ends net_run. Any thread; safe in a signal handler. */
 void net_stop(struct net *net);
-/* Sends all sessions to other daemons, one after the other: each is closed at some instant within 10 s, after load balancers had 2 s to
-   notice (net_status.drains). Any thread; safe in a signal handler. */
+/* Drains the daemon, so that clients move to other daemons: each session is closed at some instant within 10 s, after load balancers had 2
+   s to notice (net_status.drains). Any thread; safe in a signal handler. */
 void net_drain(struct net *net);
 /* Makes the event loop call what(arg), and returns once that is done. Any thread but the event loop's. Returns false if the event loop
    has ended. */
 bool net_call(struct net *net, void (*what)(void *arg), void *arg);
-/* Makes the event loop read the files of tokens and certificate again soon, and reload the plant. Any thread; safe in a signal handler. */
+/* Makes the event loop soon reload the plant and read the files of tokens and certificate again. Any thread; safe in a signal handler. */
 void net_check_credentials(struct net *net);
 
-/* --- in the event loop, during a plant reload --- */
+/* --- functions for a plant reload; call them in the event loop --- --- */
 
 /* Drops the pointers to the plant's historian and notifier, which are destroyed before the rest of the plant. */
 void net_release_recording(struct net *net);
@@ -48,7 +48,7 @@ bool net_take_plant(struct net *net, const struct net_plant *plant);
 size_t net_views(struct net *net, const struct net_plant *next, struct view *out, size_t most);
 /* Answers all requests for a reload with its result. */
 void net_report_reload(struct net *net, bool good, const char *text);
-/* Sends a client the text with the result of saving its tag list. */
+/* Sends a client the result (as text) of saving the client's tag list. */
 void net_report_save(struct net *net, uint64_t client, const char *text);
 
 #endif

@@ -44,7 +44,7 @@ void net_calls_run(struct net *net)
     pthread_mutex_unlock(&net->call.lock);
     if (!what)
         return;
-    what(arg); /* called without the lock: the calling thread is waiting, so nothing changes meanwhile */
+    what(arg); /* the function is called without holding the lock: its caller waits meanwhile, so `call` does not change */
     pthread_mutex_lock(&net->call.lock);
     net->call.what = NULL;
     pthread_cond_signal(&net->call.done);

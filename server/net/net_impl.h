@@ -12,19 +12,19 @@
 struct net {
     struct server_context server;
     struct lws_vhost *vhost;
-    lws_sorted_usec_list_t timer; /* wakes the event loop at timer_ns (monotonic) */
+    lws_sorted_usec_list_t timer; /* wakes the event loop at the monotonic time timer_ns */
     int64_t timer_ns;
     int64_t ticked_ns;   /* monotonic: when sessions last ran their tick */
     int64_t readings_ns; /* monotonic: when the next snapshot is due (readings.c) */
     struct cpu_meter cpu;
-    int64_t cpu_ns; /* monotonic: when cpu was last read */
+    int64_t cpu_ns; /* monotonic: when the processor load (cpu) was last read */
     _Atomic bool stopping, look, drain, readings_changed;
     struct {
-        pthread_mutex_t turn; /* taken by callers, so that there is one call at a time */
+        pthread_mutex_t turn; /* lock that a caller of net_call() holds, so that there is one call at a time */
         pthread_mutex_t lock;
         pthread_cond_t done;
         /* --- below: protected by `lock` */
-        void (*what)(void *arg); /* function to call; NULL: no call waits */
+        void (*what)(void *arg); /* function that net_call() wants called; NULL: no call waits */
         void *arg;
         bool closed; /* the event loop has ended */
     } call;
@@ -32,7 +32,7 @@ struct net {
 
 /* --- net.c; thread: the event loop --- */
 
-/* Answers actions that are on disk by now, or cannot be kept. Returns whether others still wait for the disk. */
+/* Answers actions that are on disk by now, or cannot be kept. Returns whether other actions still wait for the disk. */
 bool net_settle_answers(struct net *net);
 
 /* --- net_calls.c --- */
@@ -46,7 +46,7 @@ void net_calls_close(struct net *net);
 
 /* --- net_plant.c; thread: the event loop --- */
 
-/* Creates everything that depends on server.params.plant, except history. */
+/* Creates the parts of the event loop that depend on server.params.plant, except history. */
 void net_bind_plant(struct net *net);
 /* Starts the readers of the plant's history, if there is one. Returns false if they cannot start, already logged. */
 bool net_open_history(struct net *net);

@@ -27,7 +27,7 @@ struct net_plant { /* everything that belongs to one loaded plant; a reload repl
     struct baselines *baselines;
     struct snapshot_cache *snapshot_cache;
     struct alarm_service *alarm_service;
-    struct placing *placing;         /* NULL: sensors cannot be placed */
+    struct placing *placing; /* NULL: sensors cannot be placed */
     struct notes *notes;
     struct wall_remote *wall_remote;
     struct other_plants *other_plants; /* NULL: the plant file names none */
@@ -41,13 +41,13 @@ struct net_plant { /* everything that belongs to one loaded plant; a reload repl
     const char *history_folder;      /* NULL: nothing is recorded */
 };
 
-struct net_status { /* state of the event loop, reported with each tick */
+struct net_status { /* state of the event loop, passed to the callback at each tick */
     struct render_service *render_service;
     size_t sessions;
-    int busy_percent;            /* percentage of the render thread's time spent on awaited frames */
-    bool has_core;               /* readings arrive from the core; always true without --role render */
-    bool lacks_standby;          /* this core leads a pair, and the other core does not follow it */
-    bool drains;                 /* sessions are being sent to other daemons */
+    int busy_percent;           /* percentage of the render thread's time spent on frames that a client waits for */
+    bool has_core;              /* true: readings arrive from the core; always true without --role render */
+    bool lacks_standby;         /* true: this core leads a pair of cores, but the other core does not follow it */
+    bool drains;                /* true: sessions are being closed so that their clients move to other daemons (drain) */
     int64_t certificate_ends_s; /* expiry of the certificate in force, seconds of UTC since 1970; 0: no certificate */
 };
 
@@ -58,26 +58,27 @@ struct net_params {
     struct audit *audit; /* the audit trail; NULL: nothing is recorded */
     const char *address; /* numeric address to listen on */
     int port;            /* port to listen on; 0: any free one */
-    int socket_fd;       /* socket that listens already (net/handed_socket.h); -1: none */
+    int socket_fd;       /* socket that already listens, opened by systemd (net/handed_socket.h); -1: none */
     int64_t begun_ns;    /* monotonic: when the daemon began to start */
     struct access_params access;
     const struct signing_key *signing_key; /* NULL: pictures are not signed */
-    unsigned codecs;        /* bit mask of the codecs that work here (1 << enum wire_codec) */
-    const char *web_folder; /* folder of the web client's files; NULL: no page is served */
+    unsigned codecs;                       /* bit mask of the codecs that work here (1 << enum wire_codec) */
+    const char *web_folder;                /* folder of the web client's files; NULL: no page is served */
     const char *version;
-    const char *node;       /* as in struct session_context */
-    bool is_core;           /* renderers may connect to this daemon */
-    const char *node_name;  /* this daemon's name among several */
+    const char *node;            /* as in struct session_context */
+    bool is_core;                /* renderers may connect to this daemon */
+    const char *node_name;       /* this daemon's name among several */
     struct lease_keeper *keeper; /* leadership lease of a core that has a standby, or is one; NULL: none */
     /* reloads the plant for user `who`; called in the event loop. NULL: the plant cannot be reloaded */
     void (*reload)(void *arg, const char *who);
     /* puts a saved tag list in force and takes ownership of `save`; called in the event loop. NULL: not possible */
     void (*save)(void *arg, struct tag_save *save);
-    struct plant_import *import;                    /* imports plants; NULL: import is off */
+    struct plant_import *import; /* imports plants; NULL: import is off */
     /* an import order of user `who` was accepted; called in the event loop. Set only with `import` */
     void (*import_ordered)(void *arg, const char *who);
-    void (*tick)(void *arg, const struct net_status *status); /* called in the event loop once a second or more often; NULL: not needed */
-    void *reload_arg;                                         /* argument of the four callbacks above */
+    /* callback of the main program, called in the event loop once a second or more often; NULL: not needed */
+    void (*tick)(void *arg, const struct net_status *status);
+    void *reload_arg; /* argument of the four callbacks above */
 };
 
 #endif

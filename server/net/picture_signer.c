@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Signs pictures from a list of waiting ones into a list of finished ones. The quota on pictures keeps both short. */
+/* Moves pictures from a list of unsigned ones to a list of signed ones. The quota on pictures keeps both short. */
 #include "net/picture_signer.h"
 
 #include "base/mem.h"
@@ -11,7 +11,7 @@ struct picture_signer {
     void (*notify)(void *arg);
     void *arg;
     pthread_cond_t settled;
-    /* used only by the thread: last packet and its signed form, so that sessions of one view share one signature */
+    /* cache used only by the signing thread: last packet and its signed form, so that sessions of one view share one signature */
     struct packet *last, *last_signed;
     bool last_bare;
     /* --- below: protected by thread.lock */

@@ -7,9 +7,9 @@
 #include "service/encoded_frame.h"
 
 struct signing {
-    struct encoded_frame *encoded; /* NULL: the receiver took the frame */
-    struct picture_origin origin; /* the picture's plant, arguments and overlay for the statement; its args belong to this struct */
-    bool good;                    /* true: the frame's packet is now the signed file; false: it could not be signed */
+    struct encoded_frame *encoded; /* the frame to sign; NULL: the receiver has taken it out */
+    struct picture_origin origin;  /* the picture's plant, arguments and overlay for the signed statement; its args belong to this struct */
+    bool good;                     /* true: the frame's packet is now the signed file; false: it could not be signed */
     struct signing *next;
 };
 void signing_free(struct signing **signing); /* sets *signing to NULL */
@@ -25,7 +25,7 @@ void picture_signer_destroy(struct picture_signer **signer);
 void picture_signer_ask(struct picture_signer *signer, struct encoded_frame *encoded, const struct picture_origin *origin);
 /* Returns the list of pictures signed so far, oldest first; the caller frees each with signing_free(). NULL: none. */
 struct signing *picture_signer_collect(struct picture_signer *signer);
-/* Drops waiting pictures, and returns once the thread no longer reads anything of a plant. */
+/* Drops pictures not signed yet, and returns once the thread no longer reads anything of a plant. */
 void picture_signer_settle(struct picture_signer *signer);
 
 #endif

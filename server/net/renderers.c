@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The core's connections to its renderers: an introduction, then whatever is newer than what the renderer has. */
+/* The core's connections to its renderers: sends an introduction, then all state that is newer than the renderer's. */
 #include "net/renderers.h"
 
 #include <openssl/rand.h>
@@ -36,34 +36,34 @@ struct deed {
 struct renderer_peer {
     struct lws *wsi;
     struct renderer_peer *next;
-    char name[64];           /* name of the renderer's node, as the renderer reports it */
-    char lease[LEASE_NODE_BYTES]; /* on a standby's connection: lease id that distinguishes nodes with the same name */
-    struct text in, out;     /* in: message being received; out: message being built, after LWS_PRE spare bytes */
-    /* RENDERER_VOTES: a core that may not follow, but whose lease promises count */
+    char name[64];                /* name of the renderer's node, as the renderer reports it */
+    char lease[LEASE_NODE_BYTES]; /* on a standby's connection: lease id, which distinguishes two nodes with the same name */
+    struct text in, out;          /* in: message being received; out: message being built, after LWS_PRE spare bytes */
+    /* RENDERER_VOTES: a voting core: it may not follow this core, but its lease promises count */
     enum { RENDERER_NEW, RENDERER_TAKEN, RENDERER_VOTES, RENDERER_REFUSED } state;
-    char *refusal;           /* why the peer is refused; NULL: the peer is not refused */
-    bool refusal_sent;       /* the refusal was sent to a voting core */
+    char *refusal;     /* why the peer is refused; NULL: the peer is not refused */
+    bool refusal_sent; /* true: the voting core has been sent the reason of its refusal */
     struct core_sent sent;
     bool alarms_sent, lists_sent, links_sent;
-    bool stands_by;          /* a standby: a core that follows this one and can take over */
-    bool samples_sent;       /* all samples since the last readings message were sent */
-    bool asks;               /* the peer is to be asked for its lease promise */
+    bool stands_by;               /* a standby: a core that follows this one and can take over */
+    bool samples_sent;            /* samples not sent yet: all since the last readings message */
+    bool asks;                    /* true: the peer is to be asked for its promise not to lead (lease) */
     struct core_samples *samples; /* samples for the peer's history, to be sent; NULL: none */
-    int64_t journal_utc_ns;  /* standby: UTC time of the newest change that its journal has */
-    uint64_t told;           /* standby: number of the newest notifier state that was sent to it */
-    uint64_t rows;           /* standby: number of the last journal row that was sent to it */
-    uint64_t alarms;         /* number of the last change of alarms that was sent */
+    int64_t journal_utc_ns;       /* standby: UTC time of the newest change in the standby's journal */
+    uint64_t told;                /* standby: number of the newest notifier state that was sent to it */
+    uint64_t rows;                /* standby: number of the last journal row that was sent to it */
+    uint64_t alarms;              /* number of the last change of alarms that was sent */
     struct lists_seen lists;
-    bool *links;             /* connection state of each source, as last sent; by source index */
-    json_t *hello;           /* this core's introduction, to be sent first; NULL: already sent */
-    json_t *answers;         /* answers to be sent */
-    struct deed *deeds;      /* forwarded actions that are not on disk yet */
-    int64_t told_ns;         /* monotonic: when readings were last sent */
-    int64_t since_ns;        /* monotonic: since when something waits to be sent; 0: nothing waits */
-    const char *close_text;  /* reason to close the connection; NULL: the connection stays open */
+    bool *links;            /* connection state of each source, as last sent; by source index */
+    json_t *hello;          /* this core's introduction, to be sent first; NULL: already sent */
+    json_t *answers;        /* answers to be sent */
+    struct deed *deeds;     /* forwarded actions whose answers wait until the actions are on disk */
+    int64_t told_ns;        /* monotonic: when readings were last sent */
+    int64_t since_ns;       /* monotonic: since when a message waits to be sent; 0: none waits */
+    const char *close_text; /* reason to close the connection; NULL: the connection stays open */
 };
 
-/* Returns whether the peer is on this machine and needs no token, which gives it the role engineer. */
+/* Returns whether the peer is on this machine and needs no token; it then has the role engineer. */
 static bool is_local(const struct connection *connection)
 {
     return connection->role == ROLE_ENGINEER && !connection->holder.name[0];
@@ -93,20 +93,20 @@ static struct core_identity own_identity(const struct server_context *server)
     return (struct core_identity){ server->params.version, plant->name, plant->hash };
 }
 
-/* Returns whether the other core's lease promises count. A core with other files cannot be a standby, but it is as good a witness that
-   it does not lead. */
+/* Returns whether the other core's lease promises count. A core with other plant files cannot be a standby, but its promise not to lead is
+   just as valid. */
 static bool is_witness(const struct renderer_peer *renderer)
 {
     return renderer->stands_by && (renderer->state == RENDERER_TAKEN || renderer->state == RENDERER_VOTES);
 }
 
-/* Returns whether a core has the standby's place: it has this core's version, plant and configuration. */
+/* Returns whether a core is accepted as the standby: it has this core's version, plant and configuration. */
 static bool is_standby(const struct renderer_peer *renderer)
 {
     return renderer->stands_by && renderer->state == RENDERER_TAKEN;
 }
 
-/* Tells the lease keeper which core's promises count; there is one at most. */
+/* Tells the lease keeper which core's promises count; at most one core's do. */
 static void name_standby(struct server_context *server)
 {
     const struct renderer_peer *witness = NULL;
@@ -217,7 +217,7 @@ void renderers_close(struct server_context *server, const char *why)
 {
     for (struct renderer_peer *renderer = server->renderers; renderer; renderer = renderer->next) {
         renderer->close_text = why;
-        core_samples_end(&renderer->samples); /* the store of these samples is about to be destroyed */
+        core_samples_end(&renderer->samples); /* closes the connection: the store of these samples is about to be destroyed */
         lws_callback_on_writable(renderer->wsi);
     }
 }
@@ -241,7 +241,7 @@ static bool send_out(struct renderer_peer *renderer, enum lws_write_protocol how
     return good;
 }
 
-/* Sends a JSON message; takes ownership of it. */
+/* Sends a JSON message; takes ownership of `message`. */
 static bool send_message(struct renderer_peer *renderer, json_t *message)
 {
     char *text = json_text(message, 0);
@@ -277,7 +277,7 @@ static bool send_refusal(struct renderer_peer *renderer)
     return send_message(renderer, json_pack("{s:s,s:s,s:b}", "type", "refused", "why", renderer->refusal, "votes", votes));
 }
 
-/* A voting core gets nothing but its refusal and the questions for its promise. */
+/* A voting core is sent only its refusal and the questions about its lease promise. */
 static bool send_to_voter(const struct server_context *server, struct renderer_peer *renderer)
 {
     return !renderer->refusal_sent ? send_refusal(renderer) : !renderer->asks || send_question(server, renderer);
@@ -352,8 +352,8 @@ static bool send_answer(struct renderer_peer *renderer)
     return send_message(renderer, answer);
 }
 
-/* Sends samples to a standby. After a message that is not full, readings are sent next even if new samples have arrived; on a slow
-   network there would always be new samples. */
+/* Sends samples to a standby. After a message of samples that is not full, readings are sent next even if new samples have arrived; on a
+   slow network there would always be new samples. */
 static bool send_samples(const struct server_context *server, struct renderer_peer *renderer)
 {
     begin(renderer);
@@ -381,8 +381,8 @@ static void wake_answers(const struct server_context *server)
             lws_callback_on_writable(one->wsi);
 }
 
-/* Returns whether a standby still lacks an action. Until it has been sent, no client is told that the action is done, because the
-   standby might take over. A standby that is too slow is not waited for. */
+/* Returns whether an action has not been sent to a standby yet. Until it has been sent, no client is told that the action is done, because
+   the standby might take over. A standby that is too slow is not waited for. */
 static bool standby_lacks(const struct server_context *server)
 {
     struct lists_seen lists = lists_now(server);
@@ -401,8 +401,8 @@ static bool send_hello(struct renderer_peer *renderer)
     return send_message(renderer, hello);
 }
 
-/* Sends one message. Rarely changing content goes first and readings last, so that readings are never newer than the alarms sent with
-   them. But readings that have waited too long go first: without them the renderer takes the core for lost. */
+/* Sends one message. Alarms and other rarely changing content go first and readings last, so that readings are never newer than the alarms
+   sent with them. But readings that have waited too long go first: without them the renderer takes the core for lost. */
 static bool send_next(struct server_context *server, struct renderer_peer *renderer)
 {
     struct lists_seen lists = lists_now(server);
@@ -443,8 +443,8 @@ static bool send_next(struct server_context *server, struct renderer_peer *rende
 
 /* --- receiving ------------------------------------------------------------------------------------------------------------------------ */
 
-/* Returns why the peer's token has the wrong role, or NULL; the caller frees it with mem_free. A renderer's token must not get the
-   standby's place, whose holder takes over as core. */
+/* Returns an error message if the peer's token has the wrong role, otherwise NULL; the caller frees the message with mem_free. A renderer's
+   token must not get the standby's place, whose holder takes over as core. */
 static char *role_refusal(const struct renderer_peer *one)
 {
     const struct connection *connection = connection_of(one->wsi);
@@ -456,8 +456,9 @@ static char *role_refusal(const struct renderer_peer *one)
                       name_of(names_role, (int)role), name_of(names_role, (int)role));
 }
 
-/* Returns why `one` cannot stand by, or NULL; the caller frees it with mem_free. Names are unique and there is only one standby, so that
-   each promise has one author. matches: `one` has this core's version and files, and may replace a core that only votes. */
+/* Returns the reason why peer `one` cannot be a standby, or NULL; the caller frees the text with mem_free. Names are unique and there is
+   only one standby, so that each promise has one author. matches: `one` has this core's version and files, and may replace a core that only
+   votes. */
 static char *standby_refusal(const struct server_context *server, struct renderer_peer *one, const char *id, bool matches)
 {
     if (!server->params.keeper)
@@ -472,7 +473,7 @@ static char *standby_refusal(const struct server_context *server, struct rendere
     return NULL;
 }
 
-/* Logs a refusal unless it equals the last one: a refused peer tries again every second. */
+/* Logs a refusal unless it equals the last refusal that was logged: a refused peer tries again every second. */
 static void say_refusal(struct server_context *server, const struct renderer_peer *renderer)
 {
     char said[sizeof(server->renderer_refused)];
@@ -486,7 +487,7 @@ static void say_refusal(struct server_context *server, const struct renderer_pee
     memcpy(server->renderer_refused, said, sizeof(said));
 }
 
-/* Closes cores that only vote, once a standby with this version and these files has come. */
+/* Closes the connections of cores that only vote, once a standby with this version and these files has connected. */
 static void end_voters(struct server_context *server)
 {
     for (struct renderer_peer *one = server->renderers; one; one = one->next)
@@ -657,7 +658,7 @@ static int on_writeable(struct server_context *server, struct renderer_peer *ren
 {
     if (!renderer->close_text)
         return send_next(server, renderer) ? 0 : -1;
-    if (renderer->deeds) /* settle() asks for the next callback */
+    if (renderer->deeds) /* settle() later asks for the next callback */
         return 0;
     if (json_array_size(renderer->answers) > 0 && !server->goes_down) {
         lws_callback_on_writable(renderer->wsi);

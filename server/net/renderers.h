@@ -11,7 +11,7 @@ int renderer_callback(struct lws *wsi, enum lws_callback_reasons reason, void *u
 const char *renderers_refusal(const struct server_context *server, struct lws *wsi);
 /* Returns whether a core of this version and configuration stands by for this one. */
 bool renderers_have_standby(const struct server_context *server);
-/* Makes the key with which this core's renderers sign view tokens. */
+/* Makes the key with which this core's renderers sign view tokens; all renderers get the same key. */
 void renderers_make_key(struct server_context *server);
 /* Sends all renderers what changed. */
 void renderers_on_change(struct server_context *server);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writing to a socket, for all parts of the event loop. */
+/* Writes data to a socket, for all parts of the event loop. */
 #include "net/server_context.h"
 
 #include <string.h>

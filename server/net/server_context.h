@@ -21,7 +21,7 @@
 
 enum { SLICE_BYTES = 32 * 1024 };
 
-struct stream;  /* stream.h */
+struct stream;        /* stream.h */
 struct http_exchange; /* http_impl.h */
 struct web_site;      /* site.h */
 
@@ -31,7 +31,8 @@ struct wall_displays {
     struct wall_seen {
         char wall[NAMED_VIEW_ID_BYTES];
         int display;
-        /* connected_ns: monotonic time for which the connected display is current, 0: not connected; fresh_ns: the last such time */
+        /* connected_ns: monotonic time up to which the connected display is current, 0: not connected; fresh_ns: the last such time, kept
+           after it disconnects */
         int64_t connected_ns, fresh_ns;
         counter *age;
     } at[WALL_DISPLAYS_SEEN];
@@ -42,7 +43,7 @@ struct wall_displays {
 struct tile_wall {
     char wall[NAMED_VIEW_ID_BYTES]; /* id of the wall; "": entry is free */
     uint64_t leader;                /* id of the leading session; 0: none */
-    uint64_t asked, presented;      /* numbers of the wall's last requested and last presented picture */
+    uint64_t asked, presented;      /* numbers of the wall's picture requested last, and of the one presented last */
     struct quality_ladder made;     /* ladder of the wall; its picture size follows how long the server takes to make pictures */
 };
 
@@ -53,7 +54,7 @@ struct server_context {
     struct session_context session_context; /* state that all sessions read */
     struct snapshot *snapshot;
     uint32_t *changes;      /* reading.changes in the last snapshot, by tag */
-    int64_t data_ns;        /* monotonic: arrival of the oldest reading that the last snapshot showed as changed */
+    int64_t data_ns;        /* monotonic: arrival of the oldest reading that changed in the last snapshot */
     int64_t next_change_ns; /* monotonic: when a quality changes next by time alone; INT64_MAX: never */
     bool *links_up;         /* connection state of each source, by source index */
     struct lws_context *lws;
@@ -64,49 +65,49 @@ struct server_context {
     /* streams: list of all connections to /stream; by_client: the same, sorted by session id, ascending */
     struct stream *streams, **by_client;
     size_t by_client_capacity;
-    struct view_token_keys token_keys;               /* on a renderer: keys that sign view tokens */
-    char core_key[2 * VIEW_TOKEN_KEY_BYTES + 1];     /* on a core: the view token key for its renderers, hexadecimal; "": none */
-    char renderer_refused[300]; /* the last refusal of a renderer, as logged */
-    struct renderer_peer *renderers;                 /* list of all connections to /core (renderers.c) */
-    struct http_exchange *snapshots;                 /* list of HTTP requests that wait for a frame, a pick or a reload */
+    struct view_token_keys token_keys;           /* on a renderer: keys that sign view tokens */
+    char core_key[2 * VIEW_TOKEN_KEY_BYTES + 1]; /* on a core: the view token key for its renderers, hexadecimal; "": none */
+    char renderer_refused[300];                  /* the last refusal of a renderer, as logged */
+    struct renderer_peer *renderers;             /* list of all connections to /core (renderers.c) */
+    struct http_exchange *snapshots;             /* list of HTTP requests that wait for a frame, a pick or a reload */
     /* picture_count, question_count: HTTP requests for pictures and history that are being answered */
     int stream_count, picture_count, question_count;
-    int64_t answer_bytes;                            /* bytes of HTTP answers that clients have not read yet */
-    int64_t upload_bytes;                            /* bytes of all files that are being uploaded, at their final size */
-    int uploads;                                     /* number of uploads in progress */
+    int64_t answer_bytes; /* total bytes of HTTP answers that clients have not read yet */
+    int64_t upload_bytes; /* total size of all files that are being uploaded, counted at their full size from the start */
+    int uploads;          /* number of uploads in progress */
     const struct quotas *quotas;
     struct address_limits *limits;
     int connection_count, unanswered_count; /* unanswered_count: connections that wait for an answer or have not sent a request yet */
     bool goes_down;                         /* the server shuts down: connections are closed after their answer */
-    struct tokens *tokens; /* NULL: none are configured */
-    struct openid *openid; /* sign-in with OpenID Connect; NULL: off */
+    struct tokens *tokens;                  /* NULL: none are configured */
+    struct openid *openid;                  /* sign-in with OpenID Connect; NULL: off */
     struct login_throttle *login_throttle;
     struct web_site *site; /* the web client's files */
-    char *notice;         /* text shown before users sign in; NULL: none */
-    char *content_policy; /* header Content-Security-Policy of every answer */
-    struct tls *tls;      /* NULL: no TLS */
+    char *notice;          /* text shown before users sign in; NULL: none */
+    char *content_policy;  /* header Content-Security-Policy of every answer */
+    struct tls *tls;       /* NULL: no TLS */
     struct admission admission;
-    bool local_only;   /* bound to a loopback address, without a proxy in front */
+    bool local_only;   /* true: the server listens on a loopback address, without a proxy in front */
     char machine[256]; /* the machine's host name; "": none */
     /* logins_held: number of tokens not checked because of throttling and not recorded yet; held_ns: monotonic time of the last record
        about them */
     int64_t logins_held, held_ns;
-    int64_t unasked; /* identity provider's answers that no log-in awaited, or that failed, not recorded yet */
-    int64_t drain_ns;  /* monotonic time since when sessions are sent to other daemons; 0: sessions stay */
+    int64_t unasked;   /* number of identity provider's answers that belonged to no log-in or failed, and are not in the audit trail yet */
+    int64_t drain_ns;  /* monotonic time since when the daemon drains its sessions to other daemons; 0: it does not */
     int64_t looked_ns; /* monotonic: when the files of tokens and certificate were last checked */
     uint64_t next_client;
-    char goodbye[64];                   /* close reason that streams get at shutdown */
-    int start_s;                        /* seconds that the daemon took to start, rounded up; 0: the daemon is not ready */
+    char goodbye[64]; /* close reason that streams get at shutdown */
+    int start_s;      /* seconds that the daemon took to start, rounded up; 0: the daemon is not ready */
     struct kept_answers kept_answers;
-    bool restless;                      /* a session has work that depends on time: a tick is due soon */
-    int64_t still_ns;                   /* render time of the last refined frame that was drawn and not shared */
-    uint8_t out[LWS_PRE + SLICE_BYTES]; /* libwebsockets writes its framing into the LWS_PRE bytes before the data */
+    bool restless;                      /* true: some session has timed work soon, so ticks come at the short interval */
+    int64_t still_ns;                   /* time to render the last refined frame that was drawn for one session alone, not shared */
+    uint8_t out[LWS_PRE + SLICE_BYTES]; /* buffer for writes: libwebsockets writes its framing into the LWS_PRE bytes before the data */
     struct tag_text_cache tag_texts;
     char *lists_said[LISTS];
     struct alarm_text_cache alarm_texts;
     uint64_t told_number;                  /* number of the last notifier state that a standby was sent */
     uint64_t alarms_number;                /* number of the last change of alarms that sessions were sent */
-    struct marker_text_cache marker_lists; /* markers of the frame that was sent last */
+    struct marker_text_cache marker_lists; /* alarm markers of the frame that was sent last */
     struct neighbour_text_cache neighbour_texts;
     struct {
         struct log_pace pace; /* limits log lines about stream requests without Upgrade */
@@ -123,8 +124,7 @@ struct server_context {
     struct tile_wall tile_walls[WALLS];
     struct {
         counter *sessions, *sessions_all, *frames, *frame_bytes, *messages, *errors, *dropped, *given_up, *stalled, *requests, *refused,
-            *connections, *busy, *clock_set, *clock_error, *clock_leap,
-            *renderers, *logins_wrong, *logins_held, *logins_slowed;
+            *connections, *busy, *clock_set, *clock_error, *clock_leap, *renderers, *logins_wrong, *logins_held, *logins_slowed;
     } counters;
 };
 
@@ -144,22 +144,22 @@ void net_refresh_readings(struct server_context *server);
 
 /* --- stream.c, stream_table.c: connections to /stream --- */
 
-/* Handles the events of a connection to /stream, for libwebsockets. */
+/* Handles the events of a connection to /stream for libwebsockets. */
 int stream_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t len);
 /* Returns whether the client with that id is a connected stream and not an HTTP request. */
 bool stream_owns(const struct server_context *server, uint64_t client);
 /* Pass an answer to the stream that asked, which must be connected. stream_on_frame() takes ownership of the frame. */
 void stream_on_frame(struct server_context *server, struct encoded_frame *encoded);
 void stream_on_pick(struct server_context *server, const struct pick_answer *answer);
-/* Sends a frame, signed if that was possible; takes signing->encoded and leaves the rest of the struct to the caller. */
+/* Sends a frame, signed if that was possible; takes ownership of signing->encoded; the caller frees the rest of the struct. */
 void stream_on_signed(struct server_context *server, struct signing *signing);
 void stream_on_historical_snapshot(struct server_context *server, const struct history_loader_answer *answer);
-/* Pass sensor coverage, or a text, to the stream that asked; copy it. Do nothing if the stream has gone. */
+/* Pass a copy of the sensor coverage, or of a text, to the stream that asked. Do nothing if the stream has gone. */
 void stream_on_coverage(struct server_context *server, const struct sensor_coverage_answer *answer);
 void stream_say(struct server_context *server, uint64_t client, const char *text);
 /* Tells sessions with trial sensor positions that distances were computed. */
 void streams_on_placed(struct server_context *server);
-/* Runs the tick of all sessions, and sets server->restless if any of them has work that depends on time. */
+/* Runs the tick of all sessions, and sets server->restless if any session has work that depends on time. */
 void streams_on_tick(struct server_context *server);
 /* Tells all sessions that readings, or the connection states of sources, changed. */
 void streams_on_readings(struct server_context *server, bool data_changed, bool links_changed);
@@ -171,7 +171,7 @@ void streams_settle(struct server_context *server);
 void streams_check_tokens(struct server_context *server, int64_t now_utc_ns);
 /* Begins to close all connections, because the server shuts down. */
 void streams_close(struct server_context *server);
-/* Checks a request for a stream. Returns 0 to go on; 1: it was answered with an HTTP error. */
+/* Checks the handshake of a stream. Returns 0 to accept it; 1 if it was answered with an HTTP error. */
 int stream_check_upgrade(struct server_context *server, struct lws *wsi);
 
 /* --- http/ --- */

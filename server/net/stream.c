@@ -18,7 +18,7 @@ enum { STREAM_CLOSE_STALLED = 4000, LAST_WORDS_S = 2, BACK_MAX_S = 60, SILENT_S 
 static const int64_t SILENT_NS = SILENT_S * NS_PER_S;
 static const int64_t DRAIN_DELAY_NS = 2 * NS_PER_S; /* time for load balancers to notice that sessions are sent to other daemons */
 static const int64_t DRAIN_NS = 10 * NS_PER_S;
-static const int64_t MOVING_NS = 200 * NS_PER_MS; /* a camera counts as moving for this long after an input */
+static const int64_t MOVING_NS = 200 * NS_PER_MS; /* a session's camera counts as moving for this long after an input of its user */
 
 /* --- connecting and disconnecting ------------------------------------------------------------------------------------- */
 
@@ -47,7 +47,7 @@ static uint64_t new_number(const struct server_context *server)
     uint64_t number = 0;
     while (number == 0 || stream_called(server, number)) {
         if (RAND_bytes((unsigned char *)&number, sizeof(number)) != 1)
-            return 0; /* no random numbers available: this session cannot be followed */
+            return 0; /* no random numbers available: the session gets number 0 and cannot be followed */
         number >>= 16;
     }
     return number;
@@ -130,9 +130,9 @@ static void on_close(struct server_context *server, struct stream **slot)
     *slot = NULL;
 }
 
-/* --- after anything happened to a session ----------------------------------------------------------------------------- */
+/* --- work after each event of a session ------------------------------------------------------------------------------- */
 
-/* Advances playback and its requests; followers are moved along. */
+/* Advances playback, and requests readings for it; followers go to the same instant. */
 static void travel(struct server_context *server, struct stream *stream, int64_t now_ns)
 {
     struct session *session = stream->session;
@@ -229,7 +229,8 @@ static void watch_stall(struct server_context *server, struct stream *stream, in
         return;
     counter_inc(server->counters.stalled, 1);
     close_with(stream, STREAM_CLOSE_STALLED, "nothing was acknowledged for 15 s");
-    lws_set_timeout(stream->wsi, PENDING_TIMEOUT_CLOSE_SEND, LAST_WORDS_S); /* the socket may not even accept the close frame */
+    /* closes the socket by a timeout, because it may not even accept the close frame */
+    lws_set_timeout(stream->wsi, PENDING_TIMEOUT_CLOSE_SEND, LAST_WORDS_S);
 }
 
 void streams_on_readings(struct server_context *server, bool data_changed, bool links_changed)
@@ -461,7 +462,8 @@ static bool is_utf8(const struct text *text)
     return length > 0;
 }
 
-/* Checks UTF-8 here: libwebsockets would check the bytes of a pong after a text, too, which need not be UTF-8. */
+/* Checks that a text is UTF-8. libwebsockets' own check would also reject a pong that follows a text, although its bytes need not be
+   UTF-8. */
 static void on_receive(struct server_context *server, struct stream *stream, const void *bytes, size_t len)
 {
     if (stream->in_count == 0)
@@ -497,7 +499,8 @@ void stream_on_historical_snapshot(struct server_context *server, const struct h
 
 /* --- libwebsockets events --------------------------------------------------------------------------------------------- */
 
-/* Answers to actions leave before the server does: a client that lacks one cannot tell whether its action is in force. */
+/* At shutdown, answers to actions are sent before the connections are closed: a client that lacks one cannot tell whether its action is in
+   force. */
 static bool owes_answer(const struct stream *stream)
 {
     return stream->close_code == LWS_CLOSE_STATUS_GOINGAWAY && stream->session->owed.reply_count > 0;

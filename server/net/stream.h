@@ -10,33 +10,33 @@ struct stream {
     struct session *session;
     struct stream *next;
     struct address_usage *usage; /* usage of the client's address; the connection holds the reference */
-    int64_t in_begin_ns;         /* monotonic: when the message being received began */
+    int64_t in_begin_ns;         /* monotonic: when the first bytes of the message being received arrived */
     struct text in;              /* received part of the current message */
-    size_t in_count;             /* bytes received of the current message, stored or not */
+    size_t in_count;             /* bytes of the current message received so far, including those that were too many to store */
     struct encoded_frame *sending;
     uint32_t seq;
     enum { SEND_MARKERS, SEND_HEADER, SEND_PAYLOAD } step;
-    int packet, part;      /* index of the packet of the frame that is being sent, and of the part of that packet */
+    int packet, part;      /* which packet of the frame is being sent, and which part of that packet (indexes from 0) */
     size_t sent, sent_all; /* sent: bytes of that part; sent_all: bytes of the whole frame */
-    bool cut;              /* the frame was given up: only the end of its message is still to be sent */
+    bool cut;              /* the frame was cut short: only the end of its message is still to be sent */
     uint64_t ping, pong;   /* numbers of the last ping sent and the last pong received */
     int64_t ping_ns;       /* monotonic: when the last ping was sent */
     enum {
         FIRST_TEXTS,
         FIRST_PING,
         FIRST_DONE
-    } first; /* the texts before the first frame, followed by a ping, measure the bandwidth */
+    } first; /* true: the first bandwidth measurement runs, by the time from the first text to the pong of a ping after the texts */
     size_t first_bytes;
-    int64_t first_ns; /* monotonic: when the first of these texts was sent */
+    int64_t first_ns; /* monotonic: when the first text before the first frame was sent */
     struct known_markers known;
     char *carried;  /* during a plant reload: parameters of the view, as text */
-    bool throttled; /* the client sent too much: nothing is read for now */
+    bool throttled; /* true: the client sent too many messages, so nothing is read from it for now */
     /* monotonic time since when the client has acknowledged no picture, 0: it acknowledges pictures; INT64_MAX once the silence was
        logged */
     int64_t silent_ns;
     int close_code; /* WebSocket close code; 0: the connection stays open */
     const char *close_text;
-    int64_t messages, errors, dropped; /* the session's counts as already added to the metrics */
+    int64_t messages, errors, dropped; /* the session's counts (log and metrics) as last added to the metrics */
 };
 
 /* --- stream_table.c --- */
@@ -52,12 +52,12 @@ struct stream *stream_called(const struct server_context *server, uint64_t numbe
 
 /* --- stream_send.c --- */
 
-/* Makes at most one write: a text, a part of a frame, the end of one given up, or a ping; nothing if nothing is due. Returns false if
-   the connection is gone; the caller then makes libwebsockets close it, which frees the stream. */
+/* Makes at most one write: a text, a part of a frame, the end of a frame that was cut short, or a ping; nothing if nothing is due. Returns
+   false if the connection is gone; the caller then makes libwebsockets close it, which frees the stream. */
 bool stream_send(struct server_context *server, struct stream *stream);
 /* Returns whether there is anything to send now. */
 bool stream_has_output(const struct stream *stream, int64_t now_ns);
-/* Gives up a half-sent frame if its rest is not worth sending. */
+/* Cuts a half-sent frame short if its remaining bytes are not worth sending. */
 void stream_give_up(struct server_context *server, struct stream *stream, int64_t now_ns);
 /* Handles a pong: measures the round trip and, at the start, the bandwidth. */
 void stream_on_pong(struct stream *stream, const void *bytes, size_t count);
@@ -76,7 +76,7 @@ void tiles_on_tick(struct server_context *server);
 
 /* Resolves what the session's client asked for: to follow another session, to hand over the lead, or to return with its followers. */
 void follow_resolve(struct server_context *server, struct stream *stream);
-/* Tells all followers that the leader's view changed. Returns whether there are any followers. */
+/* Tells all followers that the leader's view changed. Returns false if there are no followers. */
 bool follow_spread(struct server_context *server, const struct stream *leader);
 /* Gives all viewers of one view the same step of the quality ladder. Call it every tick. */
 void follow_share_steps(struct server_context *server);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Resolves which session follows which. A leader never follows: following a follower means following its leader. */
+/* Resolves which session follows which. Following is one level deep: a session that asks to follow a follower follows that follower's
+   leader. */
 #include "base/clock.h"
 #include "base/mem.h"
 #include "net/stream.h"
@@ -19,7 +20,7 @@ static void take_back(struct server_context *server, struct session *session)
     }
 }
 
-/* Makes the followers of one session follow another; to NULL: nobody. */
+/* Makes the followers of one session follow another session. to NULL: they follow nobody. */
 static void hand_over(struct server_context *server, const struct session *from, struct session *to)
 {
     for (struct stream *stream = server->streams; stream; stream = stream->next)
@@ -27,7 +28,7 @@ static void hand_over(struct server_context *server, const struct session *from,
             session_follow(stream->session, to, clock_mono_ns());
 }
 
-/* Hands over the lead: the shown view stays the same, but the heir moves it now. */
+/* Hands the lead over to one of the followers (the heir): the shown view stays the same, but from now on the heir moves it. */
 static void resolve_lead(struct server_context *server, struct session *session, uint64_t number)
 {
     const struct stream *other = stream_called(server, number);
@@ -81,7 +82,8 @@ bool follow_spread(struct server_context *server, const struct stream *leader)
 void follow_forget(struct server_context *server, const struct stream *leader)
 {
     const struct stream *newer = stream_called(server, leader->session->identity.number);
-    struct session *again = newer ? newer->session : NULL; /* session that resumed the leader's view while the leader was still connected */
+    /* set if another connection resumed the leader's view while the leader was still connected */
+    struct session *again = newer ? newer->session : NULL;
     for (struct stream *stream = server->streams; stream; stream = stream->next)
         if (stream->session->following.leader == leader->session && again && again != stream->session)
             session_follow(stream->session, again, clock_mono_ns());

@@ -22,11 +22,13 @@ static const struct text *padded(struct text *text)
     return text;
 }
 
-/* Sends the markers of the frame. Returns false if the connection is gone. *wrote: there was something to send. */
+/* Sends the alarm markers of the frame before the frame. Returns false if the connection is gone. *wrote: set to true if something was
+   sent. */
 static bool write_markers(struct server_context *server, struct stream *stream, bool *wrote)
 {
     struct text text = { 0 };
-    bool open = session_is_open(stream->session) || stream->session->scope.tags; /* this client may not read the sensors' values */
+    /* sends no markers: this client may not read the sensors' values */
+    bool open = session_is_open(stream->session) || stream->session->scope.tags;
     char *markers = open ? NULL : marker_text(stream->sending->packet->frame, stream->seq, &stream->known, &server->marker_lists);
     *wrote = markers != NULL;
     if (!markers)
@@ -85,8 +87,7 @@ static uint16_t flags_of(const struct stream *stream)
     bool still = last && packet->frame->view.tier == TIER_REFINED;
     int seen = (packet->frame->view.at_us ? WIRE_FLAG_PAST : 0) | (packet->is_signed ? WIRE_FLAG_SIGNED : 0);
     return (uint16_t)((packet->key ? WIRE_FLAG_KEY : 0) | (still ? WIRE_FLAG_STILL : 0) | (live ? 0 : WIRE_FLAG_NO_LIVE_DATA) |
-                      (last ? 0 : WIRE_FLAG_MORE) | (stream->sending->request.of_data ? WIRE_FLAG_DATA : 0) |
-                      seen);
+                      (last ? 0 : WIRE_FLAG_MORE) | (stream->sending->request.of_data ? WIRE_FLAG_DATA : 0) | seen);
 }
 
 static struct wire_frame frame_header(const struct stream *stream)
@@ -172,7 +173,7 @@ static bool write_frame(struct server_context *server, struct stream *stream)
     return write_slice(server, stream);
 }
 
-/* --- frames that are given up ----------------------------------------------------------------------------------------- */
+/* --- frames that are cut short ---------------------------------------------------------------------------------------- */
 
 void stream_give_up(struct server_context *server, struct stream *stream, int64_t now_ns)
 {
@@ -185,7 +186,7 @@ void stream_give_up(struct server_context *server, struct stream *stream, int64_
     encoded_frame_destroy(&stream->sending);
 }
 
-/* Ends the frame's message early, before the length that its header gives. */
+/* Ends the frame's message early, with fewer bytes than the frame's header announces. */
 static bool write_end(struct server_context *server, struct stream *stream)
 {
     stream->cut = false;

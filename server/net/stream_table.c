@@ -19,7 +19,7 @@ static size_t place_of(const struct server_context *server, uint64_t client)
     return low;
 }
 
-/* Returns NULL if the session is not connected. */
+/* Returns the stream of that session; NULL if it is not connected. */
 struct stream *stream_find(const struct server_context *server, uint64_t client)
 {
     size_t place = place_of(server, client);

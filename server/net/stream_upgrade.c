@@ -57,7 +57,8 @@ int stream_check_upgrade(struct server_context *server, struct lws *wsi)
         return refuse(server, wsi, 431, "a header is too long\n");
     if ((core || list[0]) && !access_list_has(list, spoken))
         return refuse_protocol(server, wsi, list, spoken);
-    if (!core && access_list_has(list, CORE_SUBPROTOCOL)) /* libwebsockets chooses the handler by subprotocol and not by path */
+    /* checks the path here, because libwebsockets chooses the handler by subprotocol and not by path */
+    if (!core && access_list_has(list, CORE_SUBPROTOCOL))
         return refuse_protocol(server, wsi, CORE_SUBPROTOCOL, spoken);
     return 0;
 }

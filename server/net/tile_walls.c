@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds the sessions that are tiles of one wall; session/tiles/tile_sync.h makes them act together. */
+/* Finds the sessions that are tiles of one wall; session/tiles/tile_sync.h makes them show pictures together. */
 #include <string.h>
 
 #include "base/clock.h"
 #include "net/stream.h"
 #include "session/tiles/tile_sync.h"
 
-enum { MEMBERS = 4 * WALL_DISPLAYS }; /* a display may be open in several places, and reconnect before its old connection is found dead */
+/* more sessions than displays: a display may be open in several places, or reconnect before its old connection is found dead */
+enum { MEMBERS = 4 * WALL_DISPLAYS };
 
 static bool is_of(const struct stream *stream, const char *wall)
 {
@@ -41,8 +42,8 @@ static bool may_lead(const struct stream *stream, const struct stream *leaving)
     return stream != leaving && session->hello && !session->hidden && !session->close.code && !session->tile.late_us;
 }
 
-/* Chooses the leader: the first connected display, because the picture's title, with the chosen parameters, is on it. Among several
-   sessions of that display, the present leader stays. */
+/* Chooses the leader: the first connected display, because it shows the picture's title and chosen parameters. Among several sessions of
+   that display, the present leader stays. */
 static struct session *choose(struct server_context *server, const struct tile_wall *wall, const struct stream *leaving)
 {
     struct session *first = NULL;
@@ -50,8 +51,7 @@ static struct session *choose(struct server_context *server, const struct tile_w
         if (!is_of(stream, wall->wall) || !may_lead(stream, leaving))
             continue;
         int display = stream->session->tile.place.display;
-        if (!first || display < first->tile.place.display ||
-            (display == first->tile.place.display && stream->session->id == wall->leader))
+        if (!first || display < first->tile.place.display || (display == first->tile.place.display && stream->session->id == wall->leader))
             first = stream->session;
     }
     return first;
@@ -60,7 +60,8 @@ static struct session *choose(struct server_context *server, const struct tile_w
 static void take_lead(const struct server_context *server, struct tile_wall *wall, struct session *leader, const struct stream *leaving)
 {
     const struct stream *before = wall->leader ? stream_find(server, wall->leader) : NULL;
-    if (leaving && leaving->session->id == wall->leader) /* the leaving stream was already removed from the table */
+    /* stream_find() cannot find the leaving stream, which was already removed from the table */
+    if (leaving && leaving->session->id == wall->leader)
         before = leaving;
     if (before)
         session_inherit(leader, before->session);

@@ -20,7 +20,7 @@ struct tls {
     struct log *log;
     char *cert_path, *key_path;
     struct file_watch cert_watch, key_watch;
-    SSL_CTX *checked; /* our own: the newest certificate that can be served */
+    SSL_CTX *checked; /* certificate: the newest one that can be served */
     SSL_CTX *served;  /* the context of libwebsockets */
     time_t warned_s;  /* seconds of UTC: when the last warning about the expiry was logged; 0: none yet */
 };
@@ -67,11 +67,11 @@ static void warn_of_end(struct tls *tls, time_t now_s)
     if (left_s <= 0)
         log_event(tls->log, LOG_ERROR, EVENT_CERTIFICATE_EXPIRES, "%s: this certificate has expired", tls->cert_path);
     else if (left_s < WARN_BEFORE_S)
-        log_event(tls->log, LOG_WARN, EVENT_CERTIFICATE_EXPIRES, "%s: this certificate expires within 14 days, in %.1f %s",
-                  tls->cert_path, (double)left_s / (left_s < DAY_S ? HOUR_S : DAY_S), left_s < DAY_S ? "hours" : "days");
+        log_event(tls->log, LOG_WARN, EVENT_CERTIFICATE_EXPIRES, "%s: this certificate expires within 14 days, in %.1f %s", tls->cert_path,
+                  (double)left_s / (left_s < DAY_S ? HOUR_S : DAY_S), left_s < DAY_S ? "hours" : "days");
 }
 
-/* Returns whether to warn: once a day, once an hour on the last day, and when the certificate expires. */
+/* Returns whether to warn that the certificate expires: once a day, once an hour on the last day, and when the certificate expires. */
 static bool is_time_to_warn(const struct tls *tls, time_t now_s)
 {
     int64_t ends_s = tls_ends_s(tls);
@@ -87,7 +87,7 @@ static void warn(struct tls *tls)
     warn_of_end(tls, time(NULL));
 }
 
-/* Loads and checks the certificate. Returns false if it cannot be served; logged. */
+/* Loads the certificate and its key, and checks them. Returns false, after logging the reason, if they cannot be served. */
 static bool check(struct tls *tls)
 {
     char text[200];

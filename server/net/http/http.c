@@ -26,18 +26,18 @@ static int ready(struct server_context *server, struct http_exchange *request)
         return request_answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "this core stands by: another core leads, or none yet\n");
     if (render_service_ready(server->params.plant.render_service))
         return request_answer_text(request, HTTP_STATUS_OK,
-                                   !server->params.keeper            ? "ok\n"
+                                   !server->params.keeper           ? "ok\n"
                                    : renderers_have_standby(server) ? "ok; a standby follows\n"
-                                                                     : "ok, but no standby follows: the log says why\n");
+                                                                    : "ok, but no standby follows: the log says why\n");
     return request_answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "the GL context was lost; a new one is being made\n");
 }
 
 #define NGINX_LINES "proxy_http_version 1.1; proxy_set_header Upgrade $http_upgrade; proxy_set_header Connection \"upgrade\";"
 
-static const int64_t REFUSED_NS = 15 * NS_PER_S; /* the page asks for the reason within seconds of its failed handshake */
+static const int64_t REFUSED_NS = 15 * NS_PER_S; /* time within which the page asks for the reason after a failed handshake */
 
-/* Logs a request for the stream without Upgrade. Proxies remove Upgrade and Connection, which concern one hop, and keep the other
-   headers of a handshake. */
+/* Logs a request for the stream without the header Upgrade. Proxies drop Upgrade and Connection, because these apply to one connection
+   only, and keep the other headers of a handshake. */
 static void log_without_upgrade(struct server_context *server, struct lws *wsi, int64_t now_ns)
 {
     char more[LOG_PACE_BYTES], via[100], shown[48];
@@ -51,7 +51,7 @@ static void log_without_upgrade(struct server_context *server, struct lws *wsi, 
              named ? " (Via: " : "", named ? quoted(via, shown) : "", named ? ")" : "", NGINX_LINES, more);
 }
 
-/* Returns why the last stream handshake from this address was refused, within the last seconds; NULL: none was. A browser asks over
+/* Returns why a stream handshake from this address was refused in the last seconds (static text); NULL: none was. A browser asks over
    another connection, so the address identifies it. */
 static const char *last_refusal(const struct server_context *server, const char *address, int64_t now_ns)
 {
@@ -86,7 +86,7 @@ static int file(struct server_context *server, struct http_exchange *request, co
         return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "not found\n");
     if (lws_hdr_copy(request->wsi, seen, sizeof(seen), WSI_TOKEN_HTTP_IF_NONE_MATCH) > 0 && !strcmp(seen, found->etag))
         return request_answer(request, HTTP_STATUS_NOT_MODIFIED, found->type, NULL, 0, "etag:", found->etag);
-    char *bytes = mem_array(found->count + 1, 1); /* the answer needs a copy that it can free */
+    char *bytes = mem_array(found->count + 1, 1); /* libwebsockets' static answer must be copied, because the request frees its answer */
     memcpy(bytes, found->bytes, found->count);
     return request_answer(request, HTTP_STATUS_OK, found->type, bytes, found->count, "etag:", found->etag);
 }
@@ -97,7 +97,8 @@ static const struct {
     const char *path;
     int (*serve)(struct server_context *server, struct http_exchange *request);
     enum role least;
-    unsigned narrowed; /* bit mask of narrowed tokens that may use this path: those for views, for one display, or for renderers */
+    /* bit mask of the kinds of narrowed token that may use this path: limited to views, to one display, or to renderers */
+    unsigned narrowed;
 } routes[] = {
     { "/healthz", alive, ROLE_NOBODY, 0 },
     { "/readyz", ready, ROLE_NOBODY, 0 }, /* the event loop runs only once model, GL and store are ready; GL may be lost later */
@@ -185,7 +186,7 @@ static int serve_route(struct server_context *server, struct http_exchange *requ
 static int serve_post(struct server_context *server, struct http_exchange *request, const char *path)
 {
     enum role role = connection_of(request->wsi)->role;
-    request->close = true; /* the client may send a body that nobody will read */
+    request->close = true; /* closes the connection: the client may send a body that nobody will read */
     if (role < ROLE_ENGINEER) {
         connection_record(server, request->wsi, "access", "refused", path, "it takes the role engineer");
         return refuse_others(request, role);
@@ -204,12 +205,12 @@ static int serve(struct server_context *server, struct http_exchange *request, c
     bool get = lws_hdr_total_length(request->wsi, WSI_TOKEN_GET_URI) > 0;
     struct http_refusal refusal;
     request->head = lws_hdr_total_length(request->wsi, WSI_TOKEN_HEAD_URI) > 0;
-    request->sandboxed = false; /* libwebsockets reuses one struct for all requests of a connection */
+    request->sandboxed = false; /* libwebsockets reuses this struct for all requests of a connection, so it is cleared */
     counter_inc(server->counters.requests, 1);
     connection_set_answered(server, request->wsi, false);
     stuck_head_arrived(request->wsi);
     if (!get && !request->head && !post) {
-        request->close = true; /* the client may send a body that nobody will read */
+        request->close = true; /* closes the connection: the client may send a body that nobody will read */
         static const char text[] = "only GET and HEAD (POST: /api/v1/reload, /logout)\n";
         return request_answer(request, HTTP_STATUS_METHOD_NOT_ALLOWED, HTTP_TEXT, mem_strdup(text), strlen(text), "allow:", "GET, HEAD");
     }
@@ -296,7 +297,8 @@ int http_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user,
     case LWS_CALLBACK_HTTP_BODY: return *slot ? import_take_body(server_context_of(wsi), *slot, in, len) : 0;
     case LWS_CALLBACK_HTTP_BODY_COMPLETION: return *slot ? import_end_body(server_context_of(wsi), *slot) : 0;
     case LWS_CALLBACK_HTTP_WRITEABLE: return *slot ? on_writeable(server_context_of(wsi), *slot) : 0;
-    case LWS_CALLBACK_HTTP_DROP_PROTOCOL: /* this event also comes when the connection is upgraded to a WebSocket */
+    /* the event also comes when the connection is upgraded to a WebSocket; only other connections are handled here */
+    case LWS_CALLBACK_HTTP_DROP_PROTOCOL:
     case LWS_CALLBACK_CLOSED_HTTP: request_end(server_context_of(wsi), slot); return 0;
     case LWS_CALLBACK_TIMER: return stuck_head_look(server_context_of(wsi), wsi);
     case LWS_CALLBACK_HTTP_CONFIRM_UPGRADE:
@@ -304,7 +306,7 @@ int http_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user,
         /* streams get a close frame of their own when the server shuts down, so they do not count as unanswered */
         connection_set_answered(server_context_of(wsi), wsi, true);
         return strcasecmp(in, "websocket") == 0 ? stream_check_upgrade(server_context_of(wsi), wsi) : -1;
-    case LWS_CALLBACK_ESTABLISHED: { /* only a WebSocket without subprotocol gets here */
+    case LWS_CALLBACK_ESTABLISHED: { /* only a WebSocket without subprotocol gets here; others go to the handlers of their subprotocols */
         static unsigned char text[] = "the subprotocol is " WIRE_SUBPROTOCOL;
         lws_close_reason(wsi, LWS_CLOSE_STATUS_PROTOCOL_ERR, text, sizeof(text) - 1);
         return -1;

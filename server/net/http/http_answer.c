@@ -8,8 +8,8 @@
 #include "net/http/stuck_head.h"
 #include "net/connection.h"
 
-enum { SMALL_BYTES = 64 * 1024 }; /* answers up to this size need no quota: even one for every permitted connection fits into memory */
-enum { HEAD_BYTES = 8192 };       /* enough for the maximum number of allowed origins of 256 characters */
+enum { SMALL_BYTES = 64 * 1024 }; /* answers up to this size need no quota: memory has room for one on every permitted connection */
+enum { HEAD_BYTES = 8192 };       /* enough for a list of the maximum number of allowed origins, with 256 characters each */
 
 static const char *const security[][2] = {
     { "x-content-type-options:", "nosniff" },
@@ -22,7 +22,7 @@ static bool add_header(struct lws *wsi, const char *name, const char *value, uns
     return lws_add_http_header_by_name(wsi, (const unsigned char *)name, (const unsigned char *)value, (int)strlen(value), p, end) == 0;
 }
 
-/* Adds the status line and the body's headers. An answer in pieces has no known length. */
+/* Adds the status line and the body's headers. An answer in pieces has no Content-Length. */
 static bool add_first(struct http_exchange *request, int status, const char *type, unsigned char **p, unsigned char *end)
 {
     struct lws *wsi = request->wsi;
@@ -44,7 +44,7 @@ static bool add_policies(struct http_exchange *request, const char *content_poli
     return added;
 }
 
-/* Adds the refusal as a header, in ASCII because headers allow nothing else. */
+/* Adds the refusal's code as a header, in ASCII because headers allow nothing else. */
 static bool add_refusal(const struct refusal *refusal, struct lws *wsi, unsigned char **p, unsigned char *end)
 {
     json_t *object = refusal_json(refusal);
@@ -117,7 +117,7 @@ int request_done(struct http_exchange *request)
     return request->close || server_context_of(request->wsi)->goes_down || lws_http_transaction_completed(request->wsi) ? -1 : 0;
 }
 
-/* Takes ownership of body. Later writes follow as the socket accepts them. */
+/* Writes the answer; takes ownership of body. What the socket does not accept now follows once it can. */
 int request_answer(struct http_exchange *request, int status, const char *type, char *body, size_t count, const char *extra_name,
                    const char *extra)
 {

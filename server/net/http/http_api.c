@@ -113,7 +113,7 @@ int ask_journal(struct server_context *server, struct http_exchange *request)
     return await_history(server, request, &query);
 }
 
-/* Sends the first piece of an answer in several pieces, or a later one. */
+/* Sends the next piece (or the first) of an answer in several pieces. */
 static int take_piece(struct http_exchange *request, struct history_answer *piece, const char *type)
 {
     if (piece->first && chunked_begin(request, type) < 0)
@@ -148,7 +148,7 @@ void http_on_history_answer(struct server_context *server, struct history_answer
         request_answered(request, whole ? answer_whole(request, answer, type) : chunked_begin(request, type));
 }
 
-/* Updates the memory metrics of the whole process; only when /metrics is read. */
+/* Updates the memory metrics of the process; called only when /metrics is read, because it takes time. */
 static void count_memory(struct server_context *server)
 {
     struct counters *counters = server->params.counters;

@@ -7,7 +7,7 @@
 #include "net/http/http_impl.h"
 
 static const char END[] = "0\r\n\r\n";
-/* bytes reserved before and after a chunk; seconds for one write; seconds to make the next piece */
+/* bytes reserved before and after a chunk; seconds allowed for one write; seconds allowed to make the next piece */
 enum { CHUNK_FRAMING_BYTES = 16, WRITE_TIMEOUT_S = 20, NEXT_PIECE_TIMEOUT_S = 60 };
 
 /* HTTP/1.0 has no chunks: there the end of the connection ends the body. */

@@ -5,10 +5,10 @@
 #include "importing/export_folder.h"
 #include "net/server_context.h"
 
-struct asked { /* a frame, or a pick in a frame, for which a request waits */
+struct asked { /* the frame, or the pick in a frame, for which an HTTP request waits */
     bool picks;
     struct frame_request frame_request;
-    char **args; /* decoded query arguments, for the statement of a signed picture; freed by asked_free() */
+    char **args; /* decoded arguments of the URL, for the signed statement in a picture; freed by asked_free() */
     size_t arg_count;
     struct pick_query pick;
     /* reference to the readings of the picture's instant; NULL: present readings, or still being loaded */
@@ -17,31 +17,32 @@ struct asked { /* a frame, or a pick in a frame, for which a request waits */
 
 struct http_exchange {
     struct lws *wsi;
-    struct address_usage *usage; /* usage of the client's address while the request waits; the connection holds the reference */
-    bool head;                   /* the request is HEAD: the answer has no body */
-    bool close;                  /* close the connection after the answer */
-    bool sandboxed;              /* the answer belongs to a document with an opaque origin, which Chromium runs in a process of its own */
-    char *set_cookie;            /* value of the header Set-Cookie of the next answer; NULL: none */
-    struct refusal refusal;      /* sent in the next answer's header Plantcast-Refusal; REFUSAL_NONE: none */
+    /* usage of the client's address while the request waits; no reference of its own: the connection holds one */
+    struct address_usage *usage;
+    bool head;              /* the request is HEAD: the answer has no body */
+    bool close;             /* close the connection after this answer */
+    bool sandboxed;         /* the answer belongs to a sandboxed document (opaque origin), which Chromium runs in a process of its own */
+    char *set_cookie;       /* value of the header Set-Cookie of the next answer; NULL: none */
+    struct refusal refusal; /* sent in the next answer's header Plantcast-Refusal; REFUSAL_NONE: none */
     char *body;
     size_t count, sent;
     /* address in whose answer_bytes the body is counted; NULL: not counted. The connection holds the reference */
     struct address_usage *holder;
-    bool asks;                    /* the request is a history query being answered */
-    bool asks_instant;            /* the query comes from a renderer and asks for the readings of an instant */
+    bool asks;         /* true while a history query is being answered */
+    bool asks_instant; /* the query comes from a renderer and asks for the readings of an instant */
     enum {
         PIECES_NONE,
         PIECES_CHUNKED,
         PIECES_TO_END
-    } pieces;             /* the headers were sent and the body follows in pieces: chunked, or up to the end of the connection */
-    bool last_piece;      /* `body` is the last piece */
-    uint64_t client;      /* id under which the request waits (request_await) */
-    int64_t until_ns;     /* monotonic time at which a waiting request is answered with "not ready" */
-    bool reloads;         /* the request waits for a reload of the plant */
+    } pieces;                    /* the headers were sent and the body follows in pieces: chunked, or up to the end of the connection */
+    bool last_piece;             /* `body` is the last piece */
+    uint64_t client;             /* id under which a waiting request is found (request_await) */
+    int64_t until_ns;            /* monotonic time at which a waiting request is answered with "not ready" */
+    bool reloads;                /* the request waits for a reload of the plant */
     struct upload_body *body_in; /* upload in progress; NULL: none */
-    const char *step;     /* path of an import request (static text), for the audit trail */
-    struct asked *asked;  /* frame or pick for which the request waits; NULL: none */
-    struct http_exchange *next; /* next in server->snapshots */
+    const char *step;            /* path of a request to import a plant (static text), for the audit trail */
+    struct asked *asked;         /* frame or pick for which the request waits; NULL: none */
+    struct http_exchange *next;  /* next in server->snapshots */
 };
 
 enum { MAX_ARGS = 32, MAX_ARG_BYTES = 2048 };
@@ -62,7 +63,7 @@ int request_answer(struct http_exchange *request, int status, const char *type, 
 int request_answer_text(struct http_exchange *request, int status, const char *text);
 /* Sends the headers of an answer whose body comes in pieces (http_chunked.c). */
 int chunked_begin(struct http_exchange *request, const char *type);
-/* Adds a piece of the body once the previous piece was sent. Takes ownership of body (mem_free). */
+/* Adds a piece of the body Call it only after the previous piece was sent. Takes ownership of body (mem_free). */
 void chunked_append(struct http_exchange *request, char *body, size_t count, bool last);
 /* Writes as much of the current piece as one write takes. */
 int chunked_write(struct server_context *server, struct http_exchange *request);
@@ -70,13 +71,14 @@ int chunked_write(struct server_context *server, struct http_exchange *request);
 int request_answer_later(struct http_exchange *request, const char *why);
 /* Answers with a refusal that has no arguments; status 503 also gets Retry-After. */
 int request_refuse(struct http_exchange *request, int status, enum refusal_code code);
-/* Answers that history cannot be read: 500; or on a renderer, whose core has the history, 503 with Retry-After. */
+/* Answers that history cannot be read: with 500; on a renderer, which reads history from its core, with 503 and Retry-After. */
 int request_answer_unreadable(const struct server_context *server, struct http_exchange *request);
 /* Answers with JSON; takes ownership of text (mem_free). */
 int request_answer_json(struct http_exchange *request, char *text);
 /* Answers 400 with the error's text. */
 int request_answer_error(struct http_exchange *request, const struct message_error *error);
-/* Replaces the request's body (NULL: none); takes ownership. Counts its bytes in the totals of the server and of the address. */
+/* Sets the body of the request's answer (NULL: none) and frees the last one; takes ownership. Counts its bytes in the totals of the server
+   and of the address. */
 void request_hold(struct http_exchange *request, char *body, size_t count);
 /* Writes status line and headers. Returns false if the connection is gone. */
 bool request_write_head(struct http_exchange *request, int status, const char *type, const char *extra_name, const char *extra);
@@ -88,15 +90,15 @@ bool request_args(struct lws *wsi, struct args *args, struct message_error *erro
 /* Returns the value of the first argument with that name; NULL: there is none. */
 const char *arg_of(const struct args *args, const char *name);
 
-/* Makes the request wait: assigns request->client, and the answer is given later, outside of the request's own callback. */
+/* Makes the request wait and sets request->client. The answer is given later, outside of the request's own libwebsockets callback. */
 void request_await(struct server_context *server, struct http_exchange *request);
-/* Frees what a request asked for. &NULL is allowed; sets *asked to NULL. */
+/* Frees the data about the picture or pick that a request asked for. &NULL is allowed; sets *asked to NULL. */
 void asked_free(struct asked **asked);
 /* Returns the request that waits under that id; NULL: none. */
 struct http_exchange *request_find(const struct server_context *server, uint64_t client);
 /* Ends the request's waiting; does nothing if it does not wait. */
 void request_forget(struct server_context *server, struct http_exchange *request);
-/* Notes the result of an answer given outside of the request's callback. If it is -1, the connection is closed soon. */
+/* Takes the callback result (0 or -1) of an answer given outside of the request's own callback. -1: the connection is closed soon. */
 void request_answered(struct http_exchange *request, int result);
 
 /* Handlers by path: each answers the request or makes it wait. */
@@ -129,10 +131,11 @@ int api_tags(struct server_context *server, struct http_exchange *request);
 int api_neighbours(struct server_context *server, struct http_exchange *request);
 int metrics(struct server_context *server, struct http_exchange *request);
 
-/* Answers ask_instant() once the instant was read, or could not be. */
+/* Answers the request that called ask_instant(), once the instant's readings are loaded or loading has failed. */
 void answer_instant(struct server_context *server, struct http_exchange *request, const struct history_loader_answer *loaded);
 
-/* Returns whether the request may change something here. False for a request that another site's page made the user's browser send. */
+/* Returns whether the request may change state on the server. Returns false for a request that another site's page made the user's browser
+   send. */
 bool request_may_change(struct server_context *server, struct http_exchange *request);
 
 /* --- http_import.c: requests with which engineers import a plant; only if server->params.import is set */

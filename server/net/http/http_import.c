@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Import of a plant by engineers: uploads of exported files, import orders, and reading matches. In this mode the event loop writes
-   uploads to files, piece by piece, without waiting for the disk. */
+/* Import of a plant by engineers: uploads of exported files, import orders, and reading matches. The event loop writes uploads to files,
+   piece by piece, without waiting for the disk. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,13 +18,13 @@ static const char BUSY[] = "another import is under way; wait for its end, or ca
 
 struct upload_body {
     struct export_upload *upload;
-    int64_t left, bytes; /* left: bytes still to come; bytes: size of the whole file */
+    int64_t left, bytes; /* left: bytes of the upload still to come; bytes: size of the whole file */
     int64_t begun_ns;
     char name[256];
-    bool decides; /* the upload is a file of decisions; its end starts an import */
+    bool decides; /* the uploaded file holds the engineer's decisions; the end of the upload starts an import */
 };
 
-/* Adds an import step to the audit trail. The result of an import order is recorded by the reload thread. */
+/* Adds an import step to the audit trail. Its result is recorded later, by the reload thread. */
 static void record_file(struct http_exchange *request, const char *file, const char *result, const char *why)
 {
     char *line = why ? mem_printf("%.*s", (int)strcspn(why, "\n"), why) : NULL;
@@ -59,7 +59,7 @@ static int answer_empty(struct http_exchange *request)
     return request_answer(request, HTTP_STATUS_OK, "application/json", mem_strdup("{}"), 2, NULL, NULL);
 }
 
-/* Records the step as done and answers. file: the file that the step concerned; "": none. */
+/* Records the import step as done in the audit trail, and answers the request. file: the file that the step concerned; "": none. */
 static int answer_done(struct http_exchange *request, const char *file)
 {
     record_file(request, file, "done", NULL);
@@ -76,7 +76,7 @@ int api_import(struct server_context *server, struct http_exchange *request)
     return request_answer_json(request, plant_import_text(server->params.import, &source));
 }
 
-/* Answers with a file. path NULL: there is no import. missing: the answer while the file does not exist. */
+/* Answers with a file. path NULL: no import has been made. missing: the answer while the file does not exist. */
 static int answer_file(struct http_exchange *request, const char *path, const char *type, const char *missing)
 {
     size_t bytes;
@@ -123,7 +123,8 @@ static bool take_argument(const struct args *args, const char *name, char *out, 
     return true;
 }
 
-/* Orders an import. what=tags: keeps the models; what=anew: keeps nothing of the previous plant. */
+/* Orders an import. The argument `what` says what is kept of the previous plant: the value `tags` keeps the models, the other value keeps
+   nothing. */
 static int order_all(struct server_context *server, struct http_exchange *request, const struct args *args)
 {
     struct import_order wanted = { 0 };
@@ -300,7 +301,7 @@ void import_abandon_body(struct http_exchange *request)
 static const struct {
     const char *path;
     int (*take)(struct server_context *server, struct http_exchange *request, const struct args *args);
-    bool always; /* allowed also while an import runs */
+    bool always; /* true: the path may also be used while an import runs */
 } posts[] = {
     { "/api/v1/import/upload", begin_upload, false }, { "/api/v1/import/remove", remove_file, false },
     { "/api/v1/import/run", order_all, false },       { "/api/v1/import/decide", begin_decisions, false },

@@ -35,7 +35,7 @@ static void answer_all(struct server_context *server, bool reloads, int status, 
             continue;
         request_forget(server, request);
         request->reloads = false;
-        /* the rest of an answer in pieces will not come; closing the connection shows that it is incomplete */
+        /* closing the connection shows that the answer in pieces is incomplete, because the rest will not come */
         bool begun = request->pieces != PIECES_NONE;
         request_answered(request, begun ? -1 : request_answer(request, status, type, mem_strdup(text), strlen(text), NULL, NULL));
     }

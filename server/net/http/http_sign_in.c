@@ -99,7 +99,7 @@ int ask_login_callback(struct server_context *server, struct http_exchange *requ
     return refuse_unasked(server, request, result);
 }
 
-/* Counts failed log-ins, whether or not the browser still waits for the answer. */
+/* Counts failed log-ins, also if the browser no longer waits for the answer. */
 static void count_refused(struct server_context *server, const struct openid_answer *answer)
 {
     if (answer->result == OPENID_AWAY)
@@ -108,8 +108,10 @@ static void count_refused(struct server_context *server, const struct openid_ans
         return;
     counter_inc(server->counters.logins_wrong, 1);
     if (login_throttle_fail(server->login_throttle, answer->address, clock_mono_ns()) == LOGIN_WRONG_SLOWS)
-        log_warn(server->params.log, "login by OpenID Connect: address slowed to one answer in %d s until a minute passes without a "
-                                     "wrong one", LOGIN_WAIT_S);
+        log_warn(server->params.log,
+                 "login by OpenID Connect: address slowed to one answer in %d s until a minute passes without a "
+                 "wrong one",
+                 LOGIN_WAIT_S);
 }
 
 static void answer_sign_in(struct server_context *server, struct http_exchange *request, const struct openid_answer *answer)
@@ -169,7 +171,6 @@ int api_me(struct server_context *server, struct http_exchange *request)
         timestamp_print(holder->until_utc_ns / 1000, until);
     json_t *said = json_pack("{s:s?,s:s,s:b,s:s?,s:s?,s:s?}", "name", holder->name[0] ? holder->name : NULL, "role",
                              name_of(names_role, (int)connection->role), "signed_in", holder->signed_in, "until", has_end ? until : NULL,
-                             "sign_in", server->openid ? openid_config_of(server->openid)->label : NULL,
-                             "notice", server->notice);
+                             "sign_in", server->openid ? openid_config_of(server->openid)->label : NULL, "notice", server->notice);
     return request_answer_json(request, json_text(said, 0));
 }

@@ -181,7 +181,7 @@ int ask_snapshot(struct server_context *server, struct http_exchange *request)
     return result;
 }
 
-/* Writes the header on the age of the shown values, for programs that process the picture. */
+/* Adds a header with the age of the shown values, for programs that process the picture. */
 static void say_values(const struct frame *frame, struct text *out)
 {
     text_add(out, "data_time_us=%lld, oldest_age_ms=", (long long)(frame->data_utc_ns / 1000));
@@ -203,7 +203,7 @@ static void say_plant(const struct server_context *server, const struct http_exc
     text_add_escaped(out, name);
 }
 
-/* packet NULL: the picture could not be made. */
+/* Answers with the picture. packet NULL: the picture could not be made. */
 static void answer_picture(struct server_context *server, struct http_exchange *request, const struct packet *packet)
 {
     char *body = packet ? memcpy(mem_array(packet->count, 1), packet->bytes, packet->count) : NULL;
@@ -220,7 +220,7 @@ static void answer_picture(struct server_context *server, struct http_exchange *
     text_finish(&values);
 }
 
-/* Signs the picture if there is a key and the picture has a legend. Takes ownership of the frame. */
+/* Signs the picture if a signing key exists and the picture has a legend. Takes ownership of the frame. */
 static void sign(struct server_context *server, const struct asked *asked, struct encoded_frame *encoded)
 {
     const struct picture_origin origin = { .scene = server->params.plant.scene,

@@ -70,7 +70,8 @@ static bool is_own_script(const char *path)
     return dot && !strcmp(dot, ".js") && strncmp(path, "/vendor/", 8) != 0;
 }
 
-/* Returns whether a line of a script opens a template literal that it does not close, or closes one of a line before. */
+/* Counts the backquotes of a line of script. Returns whether the line opens a template literal without closing it, or closes one that an
+   earlier line opened. */
 static bool toggles_template(const char *line, const char *end)
 {
     bool toggles = false;
@@ -82,8 +83,9 @@ static bool toggles_template(const char *line, const char *end)
     return toggles;
 }
 
-/* Drops indentation and empties lines that hold only a comment, except the first, which is the licence: a fifth of what a page loads. Lines
-   of template literals stay as they are. Line numbers stay those of the source. Returns the bytes left of `count`. */
+/* Drops indentation and empties lines that hold only a comment, except the first, which is the licence. This saves a fifth of the bytes
+   that a page loads. Lines of template literals stay as they are. Line numbers stay those of the source. Returns the bytes left of
+   `count`. */
 static size_t drop_comments(char *bytes, size_t count)
 {
     size_t out = 0;
@@ -128,7 +130,7 @@ static void add_file(struct web_site *site, struct log *log, const char *full, c
     site->files[site->count++] = file;
 }
 
-/* path: of the folder within the site, without a trailing slash. */
+/* path: path of the folder within the site, without a trailing slash. */
 static void add_folder(struct web_site *site, struct log *log, const char *path)
 {
     char *full = mem_printf("%s%s", site->folder, path);

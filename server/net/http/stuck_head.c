@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Uses the kernel's TCP_INFO: how many bytes a connection received, and when the last one. */
+/* Uses the kernel's TCP_INFO: the number of bytes that a connection received, and the time since the last one. */
 #include "net/http/stuck_head.h"
 
 #include <linux/tcp.h>
@@ -12,7 +12,7 @@
 #include "base/clock.h"
 #include "net/connection.h"
 
-/* QUIET_MS: a lost packet is retransmitted within 1 s, unless the retransmission is lost as well */
+/* QUIET_MS: longer than 1 s, because a lost packet is retransmitted within 1 s, unless the retransmission is lost as well */
 enum { CHECK_INTERVAL_US = 500000, QUIET_MS = 2000 };
 static const uint64_t NOT_WATCHED = UINT64_MAX;
 
@@ -36,7 +36,7 @@ void stuck_head_arrived(struct lws *wsi)
     connection_of(wsi)->received_before_head = NOT_WATCHED;
 }
 
-/* Writes the answer 408, as far as the socket accepts it at once. */
+/* Writes the answer 408 with a single attempt: bytes that the socket does not accept at once are lost. */
 static void tell(struct lws *wsi)
 {
     static const char body[] = "408 Request Timeout: the head of the request did not end. Is the name of a header cut off?\n";
