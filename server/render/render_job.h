@@ -13,7 +13,7 @@ struct render_backend;
 
 struct render_job {
     const struct render_backend *backend;
-    union { /* state of the backend; NULL: none */
+    union { /* the backend's state of this job; NULL: none */
         struct gl_job *gl;
         struct soft_job *soft;
     } of;
@@ -25,7 +25,7 @@ struct render_job {
     struct fields_entry *copies;        /* copies of the shown fields, per asset; NULL: the frame is drawn at once and needs no copies */
     int *visible;
     struct isoline_points isolines;
-    bool keeps; /* after this job, a frame with the same view and other readings can be drawn quickly */
+    bool keeps; /* once the job has ended, a frame with the same view and other readings can be drawn quickly */
 };
 
 /* Takes ownership of the frame; copies the context's lists and view. */
@@ -33,7 +33,7 @@ void render_job_init(struct render_job *job, const struct frame_context *context
 /* Copies the fields so that later frames do not change them: buffers on the GPU (on_gpu) or vertex values in main memory. Returns false
    when out of memory (main or GPU), logged. */
 bool render_job_hold_fields(struct render_job *job, bool on_gpu);
-/* Frees the job but for the backend's state, and the frame if nobody took it. */
+/* Frees the job, and its frame if nobody took it, but not the backend's state. */
 void render_job_finish(struct render_job *job);
 
 #endif

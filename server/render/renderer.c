@@ -227,11 +227,11 @@ void renderer_abandon(struct renderer *renderer, struct render_job **job_ptr)
     *job_ptr = NULL;
 }
 
-/* After each frame: bakes for a while at the light that the view asks for. */
+/* After each frame: spends a while on baking the light that the view asks for. */
 static void bake_wanted_light(struct renderer *renderer, const struct view *view)
 {
     struct light_key wanted = frame_plan_wanted_light(view);
-    /* not while a user drags a section plane: each position of the plane would need a light of its own */
+    /* not while a user drags a section plane: each position of the plane would need another light set, outdated before it is ready */
     bool steady = visibility_equal(&wanted.shown, &renderer->shown);
     if (renderer->bake_budget_ns && steady)
         light_step(&renderer->light, &wanted, renderer->bake_budget_ns);

@@ -25,8 +25,8 @@ bool renderer_is_quick(struct renderer *renderer, const struct frame_plan *plan)
 /* Draws the frame at once. The caller owns it (frame_unref). NULL on failure, logged. */
 struct frame *renderer_draw(struct renderer *renderer, const struct frame_plan *plan);
 
-/* Begins a job that draws the frame in steps; other frames can be drawn in between. The job copies what it needs from the plan. Any number
-   of jobs may be under way. renderer_end() or renderer_abandon() frees the job. NULL on failure, logged. */
+/* Begins a job that draws the frame in steps; other frames can be drawn in between. The job copies everything it needs from the plan. Any
+   number of jobs may be under way. renderer_end() or renderer_abandon() frees the job. NULL on failure, logged. */
 struct render_job *renderer_begin(struct renderer *renderer, const struct frame_plan *plan);
 /* Returns whether a frame with the same view and other readings will be quick (renderer_is_quick) once this job has ended. */
 bool renderer_keeps(const struct render_job *job);
@@ -51,7 +51,7 @@ bool renderer_set_bake_budget(struct renderer *renderer, int64_t bake_ns);
 /* Bakes the default light for about budget_ns; call while no client wants a frame. Returns true when nothing is left to bake. */
 bool renderer_bake_idle(struct renderer *renderer, int64_t budget_ns);
 
-/* Lets GL draw everything (always true), also what the software backend would draw on machines without a GPU. */
+/* Argument true: GL draws all frames, also those that the software backend would draw on machines without a GPU. */
 void renderer_use_gl(struct renderer *renderer, bool always);
 /* Chooses how the field is computed: per_fragment true: at each fragment, over all sensors, on the finest level
    (render/reference/reference.h), which is slow; false: interpolated between vertices. */

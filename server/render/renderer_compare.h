@@ -12,7 +12,7 @@ struct snapshot;
 struct view;
 
 /* Occlusion culling runs only for frames with at least this many triangles; INT_MAX: never (clusters outside the frustum are still culled).
-   The initial value is where culling pays off. */
+   The initial value is the number from which culling saves time. */
 void renderer_set_occlusion_least(struct renderer *renderer, int least_triangles);
 /* Returns how many assets occlusion culling removed from the last frame that GL drew; waits for that frame. */
 size_t renderer_occluded_count(const struct renderer *renderer);

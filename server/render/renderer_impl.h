@@ -28,8 +28,8 @@ struct renderer {
     struct gl_backend *by_gl;
     struct soft *by_soft; /* software backend; NULL: a GPU draws everything */
     bool always_gl;
-    int64_t bake_budget_ns;  /* baking time per preview; 0: none */
-    struct visibility shown; /* visibility of the last frame that was drawn at once */
+    int64_t bake_budget_ns;  /* time that each preview spends on baking light; 0: a preview waits until its light is baked */
+    struct visibility shown; /* which assets the last frame that was drawn at once shows */
 };
 
 /* Uploads the context's fields to the GPU; context->fields must belong to the caller. A field that does not fit is replaced by one that

@@ -13,8 +13,8 @@ struct split_plan { /* immutable */
 };
 struct split_view; /* a frame being drawn: one job per half */
 
-/* Decides what a frame of this view shows now. Computes the field of each half for about budget_ns (INT64_MAX: until done). The caller owns
-   the plan (split_plan_destroy). NULL: a field is not ready yet. */
+/* Plans a frame of this view: one frame plan per half. Computes the field of each half for about budget_ns (INT64_MAX: until done). The
+   caller owns the plan (split_plan_destroy). NULL: a field is not ready yet. */
 struct split_plan *split_view_plan(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot, int64_t budget_ns);
 void split_plan_destroy(struct split_plan **plan); /* &NULL is fine; sets it to NULL */
 

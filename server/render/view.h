@@ -24,7 +24,7 @@ enum tier { TIER_PREVIEW, TIER_REFINED };
 #define VIEW_MAX_PIXELS (16 * 1024 * 1024)
 
 enum { VIEW_LINES = PLANT_ISOLINES };
-struct color_scale { /* colours and isolines of a scale, in addition to colour map, range and ramp. Zero: defaults */
+struct color_scale { /* colours and isolines of a scale, in addition to colour map, range and colour step. All zero: the defaults */
     bool log;
     double breaks[SCALE_BREAKS]; /* ascending values that separate bands of colour; replace the ramp */
     int break_count;
@@ -33,7 +33,7 @@ struct color_scale { /* colours and isolines of a scale, in addition to colour m
 };
 
 enum { VIEW_SPLIT_LEAST_PX = 64 };
-struct split_half { /* what the right half of a split view shows; members are named as in struct view */
+struct split_half { /* content of the right half of a split view; members have the names and meanings of those in struct view */
     struct field_params field;
     int colormap;
     double ramp_interval, range_min, range_max;
@@ -49,7 +49,7 @@ struct view {
     uint32_t camera_seq; /* the client's sequence number of this camera, echoed in the frame */
     uint32_t params_seq; /* the client's sequence number of the parameters, echoed in the frame */
     int64_t input_ns;    /* monotonic time at which the newest input arrived */
-    double pixel_ratio;  /* device pixels per CSS pixel, used only to size the area of picks; 0: 1 */
+    double pixel_ratio;  /* device pixels per CSS pixel, used only for the size of the area in which a click picks a marker; 0: 1 */
     struct field_params field;
     int colormap;                /* index of the colour map */
     double ramp_interval;        /* width of a colour step in engineering units; 0: continuous */
@@ -63,7 +63,7 @@ struct view {
     enum directions_look directions;
     enum language language; /* language of the texts in an overlay, where one is drawn */
     bool strip;             /* draws a machine-readable legend strip into the overlay */
-    int environment;        /* index of the surroundings: 0 the built-in sky, then the plant's own */
+    int environment;        /* index of the environment map: 0: the built-in sky; 1 and up: those of the plant file */
     struct visibility visibility;
     int64_t at_us;           /* the instant shown, UTC microseconds; 0: now. Set by view_set_instant */
     bool split;              /* true: two halves side by side under one camera: this struct is the left half, `right` the right half */
@@ -73,13 +73,15 @@ struct view {
 /* Returns the unit of the shown values: the group's unit, or "m" for distances. */
 const char *view_unit(const struct plant *plant, const struct view *view);
 void view_default(const struct scene *scene, int width_px, int height_px, struct view *view);
-/* Sets the default scale of what the view shows: the group's range, isolines and logarithm, or those of a distance or difference. */
+/* Sets the default scale of what the view shows: the group's range, isolines and logarithm, or those of a distance or of a difference from
+   a baseline. */
 void view_default_scale(const struct scene *scene, struct view *view);
 /* Returns whether the view shows values relative to alarm limits (SHOW_OPERATOR). Such a view has its own colours, lines and legend,
    whatever the rest of the view says. */
 bool view_is_operator(const struct view *view);
 void view_scale(const struct view *view, struct scale *scale);
-/* Fills `lines` with all values that have a line, ascending: isolines and edges of bands within the range. Returns the number of lines. */
+/* Fills `lines` with the ascending values at which a line is drawn: isolines, and edges of colour bands within the range. Returns the
+   number of lines. */
 enum { VIEW_ALL_LINES = VIEW_LINES + SCALE_EDGES };
 int view_lines(const struct view *view, double lines[VIEW_ALL_LINES]);
 /* Copies half 0 (all of a view that is not split) or half 1 into `out` as a view of its own. */
@@ -91,7 +93,7 @@ void view_set_instant(struct view *view, int64_t at_us, int slot);
    replacing the field parameters. */
 void view_set_trial(struct view *view, uint32_t trial);
 int view_left_px(const struct view *view); /* width of the left half, which is the x of the right half; pixels */
-/* Splits the view. right: a view from view_half(), or a whole view, for the right half. */
+/* Splits the view. right: what the right half shows: a view that is not split, for example one from view_half(). */
 void view_split(struct view *view, const struct view *right);
 /* Returns whether both views ask for the same picture, regardless of session and time. A new member that changes the picture must be
    compared here. */

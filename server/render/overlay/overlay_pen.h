@@ -83,7 +83,7 @@ double overlay_legend_width(struct pen *pen);
 void overlay_halves(struct pen *pen);
 /* Draws the outline of a marker. broken: dashed, for a tag that no loop check has proven. */
 void overlay_outline(struct pen *pen, double x, double y, double radius, bool broken);
-/* Returns true if the pen has loop checks and none of them has proven the tag's wiring; the marker is then drawn dashed. */
+/* Returns true if the pen has loop checks but none has proven the tag's wiring; the marker is then drawn dashed. */
 bool overlay_unproven(const struct pen *pen, int tag);
 /* Draws an alarm ring. The colour shows the priority, the form the state: thick: unacknowledged; thin: acknowledged; hollow: returned to
    normal but not acknowledged. */

@@ -40,7 +40,7 @@ static void point_of(const struct asset_view *view, const struct direction_place
     }
 }
 
-/* Adds the centres of equal parts of a triangle, each about half an arrow spacing long. */
+/* Divides a triangle into equal parts and adds their centres as arrow positions, each part about half an arrow spacing long. */
 static void add_triangle(struct arrow_candidates *candidates, const uint32_t corners[3], uint32_t triangle)
 {
     double at[3][3], normal[3];
@@ -69,14 +69,14 @@ static bool is_apart(const struct arrow_set *set, const struct asset_view *view,
     for (size_t i = 0; i < set->count; i++) {
         const float *a = set->places[i].normal, *b = place->normal;
         point_of(view, &set->places[i], there);
-        /* opposite normals are the two sides of a wall */
+        /* positions whose normals are opposite lie on the two sides of a wall, so they do not crowd each other */
         if (a[0] * b[0] + a[1] * b[1] + a[2] * b[2] > 0 && vec_distance(here, there) < least_m)
             return false;
     }
     return true;
 }
 
-/* Selects positions with the widest spacing first, so that any prefix of the list is evenly spread. */
+/* Orders the positions so that those with the widest spacing come first, so that any prefix of the list is evenly spread. */
 static void select_spread(struct arrow_set *set, const struct arrow_candidates *candidates)
 {
     set->places = mem_array(MAX_POSITIONS, sizeof(*set->places));

@@ -7,22 +7,22 @@
 #include "render/plan/fields.h"
 
 struct arrow_set {                  /* arrows of one asset; zero-initialise, free with arrows_finish() */
-    struct direction_place *places; /* positions, ordered so that any prefix of the list is evenly spread */
+    struct direction_place *places; /* positions, ordered so that the first n positions, for any n, are evenly spread */
     struct direction *found;
     size_t count;
-    double spacing_m; /* approximate distance between neighbours if all are drawn */
+    double spacing_m; /* approximate distance in metres between neighbouring arrows if all are drawn */
     float error_m;    /* error of the level of detail that contains the positions */
     bool sought;      /* `places` has been computed */
-    uint64_t content; /* hash of the directions that `found` was computed from */
+    uint64_t content; /* hash of the sensor directions from which `found` was computed */
 };
 
-/* Returns how many vertices of an asset, from the first, must have current scalars. Pure. */
+/* Returns n: the first n vertices of the asset must have current field values, because arrows read them. Pure. */
 size_t arrows_vertex_count(const struct scene_asset *asset);
 /* Updates the directions from the field entry. */
 void arrows_update(struct arrow_set *set, const struct scene *scene, int asset, const struct fields_entry *field);
 /* Returns the field's value at a position, in the field's unit; NaN where there is no data. */
 double arrows_value(const struct arrow_set *set, size_t place, const struct fields_entry *field);
-/* Returns the field's value at any position of the asset's file; NaN where there is no data. */
+/* Returns the field's value at any surface position, given as triangle and corner weights; NaN where there is no data. */
 double arrows_value_at(const struct direction_place *at, const struct fields_entry *field);
 /* Writes a position and the arrow's direction there, in the plant frame. */
 void arrows_place(const struct arrow_set *set, size_t place, const struct scene_asset *asset, double place_m[3], double along[3]);

@@ -5,8 +5,8 @@
 #include "scene/scene.h"
 
 double coarse_size_m(const struct scene_asset *asset); /* returns the longest side of the asset's bounding box */
-/* Returns the coarsest level with an error of at most a hundredth of coarse_size_m(); it belongs to the asset's file. Triangle numbers of
-   arrow positions count through the primitives of this level. */
+/* Returns the coarsest level with an error of at most a hundredth of coarse_size_m(); the result points into the asset's file. The triangle
+   indices of arrow positions count all triangles of this level, primitive after primitive. */
 const struct asset_level *coarse_level(const struct scene_asset *asset);
 
 #endif

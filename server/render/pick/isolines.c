@@ -12,7 +12,7 @@
 #include "render/pick/markers.h"
 
 enum { POINTS_PER_LINE = 16, MAX_POINTS = 2048, MAX_LABELS = 128, MAX_ARROWS = 192, MAX_STROKES = 48 };
-static const double SPACING = 0.1; /* between points, relative to the asset's size */
+static const double SPACING = 0.1;        /* minimum distance between points on isolines, relative to the asset's size */
 static const double SAME_LINE_FACTOR = 4; /* labels of one line keep this multiple of the distance between labels of different lines */
 
 void isolines_init(struct isolines *isolines, size_t asset_count)
@@ -126,7 +126,7 @@ static void update_set(struct isoline_set *set, const struct scene_asset *asset,
     search_asset(&(struct isoline_search){ .asset = asset, .field = field, .set = set });
 }
 
-/* --- which of them are seen -------------------------------------------------------------------------------------------------- */
+/* --- visibility of the points ------------------------------------------------------------------------------------------------ */
 
 static void collect_lines(struct isolines *isolines, const struct frame_context *context, struct isoline_points *out)
 {
@@ -196,14 +196,14 @@ static void add_stroke(const struct isolines *isolines, size_t place, const stru
     }
 }
 
-/* Collects the first position of each asset, then the second of each, and so on up to a limit. All assets get a share, and each share is
-   spread over its asset, because any prefix of an asset's positions is. */
+/* Collects the first position of each asset, then the second of each, and so on up to a limit. So all assets get a share, and each share is
+   evenly spread over its asset, because the first n positions of an asset always are. */
 static void collect_arrows(struct isolines *isolines, const struct frame_context *context, struct isoline_points *out)
 {
     const struct scene *scene = context->gpu_scene->scene;
     const size_t most = out->count + 2 * MAX_POINTS;
     size_t longest = 0;
-    /* during a trial, fields of assets that the trial does not change still have old directions */
+    /* during a trial, the fields of assets that the trial does not change keep directions from before it */
     if (!isolines_has_arrows(scene, context->view))
         return;
     for (size_t i = 0; i < context->visible_count; i++) {
@@ -239,7 +239,7 @@ void isolines_collect(struct isolines *isolines, const struct frame_context *con
     collect_arrows(isolines, context, out);
 }
 
-/* Writes eye-space positions and depth tolerances. */
+/* Writes the points' eye-space positions and depth tolerances, the input of the visibility test. */
 static void fill_places(const struct frame_context *context, const struct isoline_points *points, float (*places)[4])
 {
     for (size_t i = 0; i < points->count; i++) {
@@ -261,8 +261,8 @@ bool isolines_start(struct point_visibility *queries, const struct frame_context
     return point_visibility_start(queries, context, count);
 }
 
-/* Returns whether there is room for another label. Labels are sent with each frame, so their number, and that of each line, is limited by
-   the frame's size. */
+/* Returns whether there is room for another label. Labels are sent with each frame, so the frame's size limits how many there are in all
+   and on each isoline. */
 static bool has_room(const struct frame *frame, const float place[4], const struct isoline_point *point)
 {
     double lines_px = fmax(40, frame->width_px / 32.0), arrows_px = FRAME_ARROW_PX(frame->width_px);
@@ -279,7 +279,8 @@ static bool has_room(const struct frame *frame, const float place[4], const stru
     return count < (point->arrow ? MAX_ARROWS : MAX_LABELS);
 }
 
-/* Projects a unit vector at the point into the frame, as a fraction of its length if it were parallel to the image plane. */
+/* Projects a unit vector at the point into the frame, scaled so that its length is 1 if it is parallel to the image plane, and less if it
+   points towards or away from the viewer. */
 static void project_arrow(const struct frame_context *context, const struct isoline_point *point, struct frame_label *label)
 {
     const struct view_constants *constants = &context->constants;
@@ -298,19 +299,19 @@ static void project_arrow(const struct frame_context *context, const struct isol
     double length = fmax(hypot(dx, dy), 1);
     label->dx = (float)(round(100 * dx / length) / 100);
     label->dy = (float)(round(100 * dy / length) / 100);
-    /* the arrow points straight towards or away from the eye; its direction is known nevertheless */
+    /* the arrow points straight towards or away from the eye; a tiny length other than 0 shows that its direction is known */
     if (label->dx == 0 && label->dy == 0 && vec_length(point->along) > 0)
         label->dx = dx < 0 ? -0.01f : 0.01f;
 }
 
-/* The stroke being emitted. Only its first visible section is drawn. */
+/* The stroke being emitted. Only the first run of visible points of a stroke is drawn. */
 struct emitted_stroke {
     uint16_t stroke;
     bool begun, ended;
     int count;
 };
 
-/* Returns whether a point of a stroke is drawn. Starts of strokes keep the same distance as arrows. */
+/* Returns whether a point of a stroke is drawn. The starts of strokes keep the same minimum distance from each other as arrows. */
 static bool on_stroke(struct emitted_stroke *stroke, const struct frame *frame, const float place[4], const struct isoline_point *point)
 {
     if (point->stroke != stroke->stroke)
@@ -325,8 +326,8 @@ static bool on_stroke(struct emitted_stroke *stroke, const struct frame *frame, 
     for (size_t i = 0; i < frame->label_count; i++) {
         const struct frame_label *label = &frame->labels[i];
         bool first = i == 0 || label->stroke == 0 || frame->labels[i - 1].stroke != label->stroke;
-        if (label->arrow && first && hypot((double)(label->x_px - place[0]), (double)(label->y_px - place[1])) <
-            FRAME_ARROW_PX(frame->width_px))
+        if (label->arrow && first &&
+            hypot((double)(label->x_px - place[0]), (double)(label->y_px - place[1])) < FRAME_ARROW_PX(frame->width_px))
             stroke->ended = true;
     }
     stroke->ended |= stroke->count == MAX_STROKES;
@@ -343,7 +344,7 @@ static void drop_short_stroke(struct frame *frame, uint16_t next)
         frame->label_count--;
 }
 
-/* places: x, y in pixels, then whether hidden. */
+/* places: result of the visibility test by point: x and y in pixels, then 1 if hidden, else 0. */
 static void emit_labels(const struct frame_context *context, const struct isoline_points *points, float (*places)[4], struct frame *frame)
 {
     struct emitted_stroke stroke = { 0 };

@@ -12,7 +12,7 @@ struct isoline_point {
     double value, place_m[3]; /* plant frame */
     double along[3];          /* direction of an arrow, plant frame; 0: unknown */
     bool arrow, uncertain;
-    uint16_t stroke; /* number of the stroke in this frame, from 1, equal for all of its points; 0: no stroke */
+    uint16_t stroke; /* index of the stroke in this frame, from 1 up, equal for all of its points; 0: the point belongs to no stroke */
     float slack_m;   /* depth tolerance in metres: how far the point may lie behind the drawn surface */
 };
 struct isoline_set { /* points of one asset */
@@ -39,7 +39,7 @@ struct isoline_points { /* isoline points of one frame; zero-initialise, free `a
 bool isolines_has_arrows(const struct scene *scene, const struct view *view);
 void isolines_init(struct isolines *isolines, size_t asset_count);
 void isolines_finish(struct isolines *isolines);
-/* Returns how many vertices of an asset, from the first, must have current scalars for isolines_collect(). Pure. */
+/* Returns n: the first n vertices of the asset must have current field values, because isolines_collect() reads them. Pure. */
 size_t isolines_vertex_count(const struct scene_asset *asset);
 /* Collects the candidate points of all visible assets. context->fields must hold the fields shown. */
 void isolines_collect(struct isolines *isolines, const struct frame_context *context, struct isoline_points *out);
@@ -48,7 +48,7 @@ void isolines_collect(struct isolines *isolines, const struct frame_context *con
 bool isolines_start(struct point_visibility *queries, const struct frame_context *context, const struct isoline_points *points);
 void isolines_get(const struct point_visibility *queries, const struct frame_context *context, const struct isoline_points *points,
                   struct frame *frame);
-/* Tests visibility and stores the result on the CPU, from the frame's depth buffer: rows from the top, pitch_px apart. */
+/* Tests visibility and stores the result on the CPU, from the frame's depth buffer: rows from the top, pitch_px floats apart. */
 void isolines_find(const struct frame_context *context, const struct isoline_points *points, const float *depth, size_t pitch_px,
                    struct frame *frame);
 

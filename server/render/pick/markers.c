@@ -24,7 +24,7 @@ bool marker_next(struct marker_iterator *iterator, struct marker_place *out)
     return true;
 }
 
-/* Returns whether the sensor is in the shown group, and its asset neither hidden nor cut away there. */
+/* Returns whether the sensor is in the shown group, its asset is not hidden, and no section plane cuts the asset away at the sensor. */
 bool marker_is_shown(const struct scene *scene, const struct view *view, const struct marker_place *place)
 {
     return scene->plant->tags[place->tag].group == view->field.group && visibility_of(&view->visibility, place->asset) != ASSET_HIDDEN &&
@@ -37,7 +37,7 @@ static struct marker_iterator iterator_of(const struct frame_context *context, c
     return (struct marker_iterator){ .scene = context->gpu_scene->scene, .trial = *trial };
 }
 
-/* Advances to the next shown sensor. */
+/* Advances the iterator to the next sensor whose marker is shown. */
 static bool next_shown(struct marker_iterator *iterator, const struct frame_context *context, struct marker_place *place)
 {
     while (marker_next(iterator, place))
@@ -101,7 +101,7 @@ static const struct scene_sensor *sensor_on(const struct marker_iterator *iterat
     return NULL;
 }
 
-/* Returns the distance from the sensor that distances are shown of. NAN: it is on another asset, no path exists, or the distance is not
+/* Returns the marker's distance from the view's chosen sensor. NAN: the marker is on another asset, no path exists, or the distance is not
    computed yet. */
 static double distance_m(const struct marker_iterator *iterator, const struct marker_place *place, const struct field_params *params)
 {
@@ -114,7 +114,7 @@ static double distance_m(const struct marker_iterator *iterator, const struct ma
         return NAN;
     if (place->tag == params->sensor)
         return 0;
-    /* heat distances differ from the asset file's geodesic ones, which are the only ones available here */
+    /* the view uses heat distances, but only the asset file's geodesic distances are available here */
     if (params->distance == DISTANCE_HEAT)
         return NAN;
     if (params->distance == DISTANCE_EUCLIDEAN) {
@@ -156,7 +156,7 @@ void markers_measure(const struct frame_context *context, struct frame *frame)
 void markers_get(const struct point_visibility *queries, const struct frame_context *context, struct frame *frame)
 {
     size_t count = count_shown(context);
-    /* the number of markers may have changed: a trial may have ended since the test was started */
+    /* only for the markers that still exist: their number may have changed, because a trial may have ended since the test was started */
     if (count > 0 && count <= queries->capacity)
         emit_markers(context, queries->places, count, frame);
 }

@@ -5,7 +5,7 @@
 #include "render/frame.h"
 #include "render/pick/point_visibility.h"
 
-/* Iterates over all sensors and their positions: as prepared, or as moved by a trial. */
+/* Iterates over all sensors and their positions: from the prepared asset file, or as moved by a trial. */
 struct marker_iterator {
     const struct scene *scene;
     const struct trial *trial;   /* NULL: none */
@@ -28,7 +28,7 @@ bool markers_start(struct point_visibility *queries, const struct frame_context 
 void markers_get(const struct point_visibility *queries, const struct frame_context *context, struct frame *frame);
 /* Recomputes the distances that a frame's markers show; their positions stay. */
 void markers_measure(const struct frame_context *context, struct frame *frame);
-/* Tests visibility and stores the result on the CPU, from the frame's depth buffer: rows from the top, pitch_px apart. */
+/* Tests visibility and stores the result on the CPU, from the frame's depth buffer: rows from the top, pitch_px floats apart. */
 void markers_find(const struct frame_context *context, const float *depth, size_t pitch_px, struct frame *frame);
 /* Tests one point as shaders/point_visibility.comp does. place: in, eye-space position and depth tolerance in metres; out, x and y in
    pixels, then 1 if hidden, else 0. */

@@ -8,7 +8,8 @@
 #include "base/log/log.h"
 #include <glad/gl.h>
 
-enum { MEASURE_CONTEXT = -1, MEASURE_NOTHING = -2 }; /* values of the no-data channel: an asset without a field; no asset */
+/* values in the no-data channel: MEASURE_CONTEXT: an asset without a field; MEASURE_NOTHING: no asset */
+enum { MEASURE_CONTEXT = -1, MEASURE_NOTHING = -2 };
 
 struct measure_target {
     int width_px, height_px;

@@ -11,21 +11,22 @@
 #include "scene/raycast.h"
 #include "value/quality.h"
 
-static const double MARKER_PX = 9;                       /* pixels around a click within which a marker is picked */
-static const double MEASURED_PX = 3, MEASURED_M = 0.005; /* distances from a sensor within which the picked value counts as measured */
+static const double MARKER_PX = 9; /* pixels around a click within which a marker is picked */
+/* a pick nearer to a sensor than the larger of these (pixels, metres) shows a measured value, not an interpolated one */
+static const double MEASURED_PX = 3, MEASURED_M = 0.005;
 
 struct pick_spot { /* state of one pick */
     const struct scene *scene;
     const struct view *view; /* not split */
     const struct snapshot *snapshot;
     struct raycast_hit hit;
-    double meter_per_pixel; /* size of a pixel at the hit point */
+    double meter_per_pixel; /* width of a pixel at the hit point, in metres */
 };
 
 /* --- which sensor's marker --------------------------------------------------------------------------------------------------- */
 
 struct lens {
-    double right[3], up[3], forward[3], pixel_per_unit; /* pixels per metre; in perspective at a distance of 1 m */
+    double right[3], up[3], forward[3], pixel_per_unit; /* pixels per metre; with perspective, at a distance of 1 m from the eye */
 };
 
 static void lens_init(struct lens *lens, const struct view *view)
@@ -96,7 +97,7 @@ static void find_sensor(const struct pick_spot *spot, const struct trial *trial,
     }
 }
 
-/* --- what the field says ----------------------------------------------------------------------------------------------------- */
+/* --- value of the field at the pixel ----------------------------------------------------------------------------------------- */
 
 static double distance_of(const struct pick_spot *spot, const struct field_sensor *sensor, const double place_file_m[3])
 {

@@ -7,7 +7,7 @@
 #include "render/view.h"
 
 enum pick_state {
-    PICK_CONTEXT, /* the pixel shows nothing of the group: another asset, the inner side of a cut, or background */
+    PICK_CONTEXT, /* no value of the shown group: another asset, the inner side of a cut, or background */
     PICK_NO_DATA,
     PICK_BETWEEN,
     PICK_MEASURED /* a contributing sensor is there, and the interpolation reproduces its reading */
@@ -15,20 +15,20 @@ enum pick_state {
 enum { PICK_NEAREST = 4 };
 
 struct pick {
-    int asset; /* asset at the pixel; -1: none, and only `sensor` and the times are set below */
+    int asset; /* asset at the pixel; -1: none; of the members below, only `sensor` and the times are set then */
     double position_m[3], normal[3];
     enum pick_state state;
     bool uncertain, inside;
     /* field value for PICK_BETWEEN and PICK_MEASURED, in the view's unit. SHOW_OPERATOR: the reading, not its position between limits */
     double value;
-    double drawn_error; /* error bound of frames around this point, in the same unit, where they mark it uncertain; 0: they do not */
+    double drawn_error; /* error bound, in the same unit, that frames state for this point if they mark it uncertain; 0: not marked */
     int nearest_count;
     struct pick_sensor {
         int tag;
         double distance_m; /* metres, in the view's kind of distance (straight or geodesic) */
         double value;
         uint32_t quality;
-    } nearest[PICK_NEAREST]; /* sensors that contribute there, nearest first */
+    } nearest[PICK_NEAREST]; /* sensors that contribute to the value, nearest first */
     int sensor;              /* tag whose marker is at the pixel, a visible one if there is any; -1: none */
     bool sensor_occluded;
     bool assumed; /* true if the sensor's position on its asset is unknown, so that its reading is used for the whole asset */

@@ -42,7 +42,7 @@ static void find_neighbours(struct stroke_set *set, const struct asset_view *vie
         for (uint32_t i = 0; i < primitive->index_count; i += 3, tri++)
             for (uint32_t e = 0; e < 3; e++) {
                 struct triangle_side *side = &sides[3 * tri + e];
-                for (int c = 0; c < 3; c++) { /* + 0.0 turns -0 into 0 */
+                for (int c = 0; c < 3; c++) { /* adding 0.0 turns -0 into 0, so that equal positions have equal bytes */
                     side->low[c] = view->positions_m[corners[i + e]][c] + 0.0f;
                     side->high[c] = view->positions_m[corners[i + (e + 1) % 3]][c] + 0.0f;
                 }
@@ -98,7 +98,7 @@ static bool rates_of(const double at[3][3], const double normal[3], const double
     return true;
 }
 
-/* Moves a position by step_m along `along` (unit vector), straight on across edges. Returns false where the surface ends. */
+/* Moves a position by step_m along `along` (unit vector), continuing straight across edges. Returns false where the surface ends. */
 static bool step(const struct tracing *tracing, struct direction_place *place, const float along[3], double step_m)
 {
     double weights[3], v[3], at[3][3], normal[3], rates[3];
@@ -176,7 +176,7 @@ static struct direction midway(const struct stroke_point *last, const struct dir
         from[c] = (double)half->normal[c];
         to[c] = (double)last->place.normal[c];
     }
-    if (vec_dot(from, to) > 0) /* if not, the triangles are wound inconsistently */
+    if (vec_dot(from, to) > 0) /* if the corners do not match, the two triangles are wound inconsistently */
         vec_turn(v, from, to);
     for (int c = 0; c < 3; c++)
         out.along[c] = (float)v[c];

@@ -7,7 +7,7 @@
 struct culling { /* planes and eye in the coordinates of one asset's file */
     float planes[6][4];
     float eye_m[3];
-    bool cones; /* normal cones may be used, since the triangles' winding tells back faces */
+    bool cones; /* normal cones may be used, because the asset's triangles are wound consistently, so that back faces can be told */
 };
 
 void culling_init(struct culling *culling, const struct view_constants *constants, const struct scene_asset *asset);

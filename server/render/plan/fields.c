@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Keeps vertex values of fields on the GPU up to date, as far as changes are visible. */
+/* Keeps vertex values of fields on the GPU up to date, uploading only changes that are visible. */
 #include "render/plan/fields.h"
 
 #include <math.h>
@@ -13,7 +13,7 @@
 #include "render/reference/reference.h"
 
 static const uint64_t LOST = 0x6c6f7374; /* content hash of fields->lost, which no other entry has */
-/* default bound in main memory, and the same on the GPU: about 700 assets of 66,000 vertices */
+/* default bound of the cache in main memory, and again on the GPU: enough for about 700 assets of 66,000 vertices */
 static const size_t BOUND_BYTES = (size_t)384 << 20;
 
 void fields_init(struct fields *fields, struct log *log, struct field *field)
@@ -91,7 +91,7 @@ static bool take_slice(struct fields *fields, struct fields_entry *entry)
     return false;
 }
 
-/* Returns the largest change of a vertex since the shown values; stops at `enough`. */
+/* Returns the largest difference between a vertex's newest and shown value; stops searching at `enough`. */
 static double error_of(const struct fields_entry *entry, const struct scalars *now, double enough)
 {
     float most = 0;
@@ -103,7 +103,8 @@ static double error_of(const struct fields_entry *entry, const struct scalars *n
     return most;
 }
 
-/* Returns whether the change is at least half a colour step. The field's own bound usually decides; otherwise every vertex is compared. */
+/* Returns whether the change is at least half a colour step. The field's bound on its change usually decides; if not, compares every
+   vertex. */
 static bool can_be_seen(struct fields_entry *entry, const struct scalars *now)
 {
     double half = 0.5 * entry->step;
@@ -199,7 +200,7 @@ static struct fields_entry *look(struct fields *fields, const struct fields_ask 
     return entry;
 }
 
-/* Takes GPU slices for all entries without one, expected together so that they lie next to each other. */
+/* Takes GPU slices for all entries without one, after announcing them together to the pool, so that they lie next to each other. */
 static void make_room(struct fields *fields, const struct fields_ask *ask, const struct fields_entry **entries)
 {
     size_t texels = 0, slices = 0;
@@ -228,8 +229,8 @@ static void show_some(void *arg, size_t begin, size_t end)
         show(showing->entries[i]);
 }
 
-/* Uploads the sensors for shaders that compute the field at each fragment. Fields of other kinds have weights or distances that no
-   shader has. */
+/* Uploads the sensors for shaders that compute the field at each fragment. Does nothing for kinds of interpolation and distance that the
+   shaders do not implement. */
 static void take_sensors(const struct fields *fields, struct fields_entry *entry)
 {
     if (fields->reference && !entry->sensors && !interpolation_is_prepared(entry->params.interpolation) &&
@@ -237,7 +238,7 @@ static void take_sensors(const struct fields *fields, struct fields_entry *entry
         entry->sensors = reference_sensors(fields->reference, entry->asset, &entry->params);
 }
 
-/* Entries of one parameter set are first all looked up, then shown: looking up one does not evict another, however little room there is. A
+/* Entries of one parameter set are all looked up before any is shown, so that none of them evicts another, however little room there is. A
    trial may use a parameter set per asset, so its entries are shown one by one. */
 void fields_get(struct fields *fields, const struct fields_ask *ask, const struct fields_entry **entries)
 {

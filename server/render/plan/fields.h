@@ -11,16 +11,16 @@
 #include "gpu/gl.h"
 #include "gpu/pool.h"
 
-struct fields_entry { /* field of one asset; without a slice it could not be computed or kept, and is drawn as no data */
+struct fields_entry { /* field of one asset. An entry without a slice could not be computed or had no room, and is drawn as no data */
     int asset;
     struct field_params params;
     double step;            /* smallest value step that can be seen (scale_step) */
     uint64_t flags_version; /* flags version of the shown scalars */
     double travel;    /* scalars->travel at the shown values, less their known error: `scalars->travel - travel` bounds the change since */
-    uint64_t content; /* hash of the first `hashed` shown scalars, as many as the last request needs */
+    uint64_t content; /* hash of the first `hashed` shown scalars, as many as the last request needed */
     size_t hashed;
     struct scalar *shown;
-    size_t count, ready; /* vertices of the file; ready: how many of them, from the first, are shown */
+    size_t count, ready; /* count: vertices of the file; ready: the first `ready` values are shown */
     struct pool_slice *slice;
     bool uploaded;  /* true if the slice on the GPU holds the shown values */
     GLuint sensors; /* buffer of sensors for shaders that compute the field at each fragment (render/reference/reference.h); 0: none */
@@ -30,7 +30,7 @@ struct fields_entry { /* field of one asset; without a slice it could not be com
     struct sensor_direction *directions; /* sensor directions of the group, NULL if it has none (field/directions.h) */
     size_t direction_count;
     uint64_t directions_content;  /* hash of the directions */
-    const struct scalars *behind; /* newer scalars to be shown next; NULL: up to date */
+    const struct scalars *behind; /* newer values that must be copied into `shown`; NULL: `shown` is up to date */
     size_t wanted;                /* number of vertices to hash */
 };
 
@@ -49,7 +49,7 @@ void fields_init(struct fields *fields, struct log *log, struct field *field);
 void fields_finish(struct fields *fields);
 struct fields_ask {
     const int *assets;    /* indices, without duplicates */
-    const size_t *counts; /* minimum number of vertices, from the first, that must be ready, by index in `assets` */
+    const size_t *counts; /* by index in `assets`: the first counts[i] vertices at least must be ready */
     size_t asset_count;
     const struct field_params *params;
     double step;
@@ -58,7 +58,7 @@ struct fields_ask {
 /* Writes the entry of each requested asset into `entries` (indexed by asset). NULL: the asset has nothing to show. An asset that there is
    no room for gets an entry that shows no data; logged. Valid until the next fields_trim(). */
 void fields_get(struct fields *fields, const struct fields_ask *ask, const struct fields_entry **entries);
-/* Uploads the entries of these assets to the GPU, before it draws with them. Returns false if one did not fit (logged); its place in
+/* Uploads the entries of these assets; call before the GPU draws with them. Returns false if one did not fit (logged); its place in
    `entries` then holds an entry that shows no data. */
 bool fields_upload(struct fields *fields, const int *assets, size_t count, const struct fields_entry **entries);
 /* Evicts entries beyond the bound. Call between frames. */

@@ -12,16 +12,16 @@ struct frame_plan {
     struct view view; /* never a split one */
     struct view_constants constants;
     struct light_key lit_by; /* key of the light used: the one that the view asks for, or the most similar light that is ready */
-    double error_px;         /* largest error of levels of detail in pixels (lod_selection.h); 0: finest levels only */
-    int *visible;            /* indices of visible assets, nearest first */
+    double error_px; /* largest error of a level of detail's surface, in pixels of the frame (lod_selection.h); 0: finest levels only */
+    int *visible;    /* indices of visible assets, nearest first */
     size_t visible_count;
-    size_t *vertex_counts; /* number of vertices, from the first, that are drawn or examined for labels, by index in `visible` */
+    size_t *vertex_counts; /* by index in `visible`: the first n vertices of the asset are drawn or examined for labels */
     /* --- once it is complete --- */
     /* field of each asset; NULL: the asset shows no field. Valid until a plan with newer readings is completed */
     const struct fields_entry **fields;
     int64_t data_utc_ns;     /* of the snapshot */
     uint64_t content, shape; /* hashes of the frame and of its geometry and light (content_hash.h) */
-    int64_t field_ns;        /* time spent on bringing the fields up to date */
+    int64_t field_ns;        /* time spent on computing the fields */
 };
 
 #endif

@@ -26,7 +26,8 @@ static int by_distance(const void *a, const void *b, void *distance_m)
     return (first > second) - (first < second);
 }
 
-/* Returns whether any of the asset is drawn normally: neither hidden nor ghosted, nor wholly cut away. */
+/* Returns whether any part of the asset is drawn normally: it is neither hidden nor ghosted, and section planes do not cut it away
+   entirely. */
 static bool is_left(const struct visibility *visibility, int index, const struct scene_asset *asset)
 {
     return visibility_of(visibility, index) == ASSET_SHOWN && !clip_drops(&visibility->clip, asset->bounds_min_m, asset->bounds_max_m);
@@ -61,7 +62,7 @@ static struct light_key choose_light(const struct frame_planner *planner, const 
     return near ? near->key : key;
 }
 
-/* Returns how many vertices, from the first, the asset's level, labels or arrows need. */
+/* Returns n: the level of detail, labels or arrows of the asset need its first n vertices. */
 static size_t count_vertices(const struct frame_plan *plan, int asset)
 {
     double lines[VIEW_ALL_LINES];

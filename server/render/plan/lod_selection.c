@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Chooses levels of detail by counting the triangles that an error bound would draw. */
+/* Chooses levels of detail with the error bound under which a frame has few enough triangles. */
 #include "render/plan/lod_selection.h"
 
-/* Largest error of silhouettes in pixels, per tier. */
+/* Upper limit of the error bound in pixels, per tier: silhouettes may be displaced by so much. */
 static const double MAX_ERROR_PX[] = { [TIER_PREVIEW] = 1.0, [TIER_REFINED] = 0.7 };
 /* Triangle budget per tier: the error is reduced as long as the frame stays within it. Refined frames are generous because people read
-   values from them: 2.5 million triangles take 0.45 s of CPU time, 0.3 s with levels. A preview with more than one or a few finest assets
-   would be late. */
+   values from them: 2.5 million triangles take 0.45 s of CPU time, 0.3 s with levels. A preview that draws more than a few assets in their
+   finest level would take too long. */
 static const int TRIANGLE_BUDGET[] = { [TIER_PREVIEW] = 300000, [TIER_REFINED] = 3000000 };
 
 static bool has_room(const struct lod_params *params, double error_px)
@@ -19,7 +19,7 @@ static bool has_room(const struct lod_params *params, double error_px)
 
 double lod_error_px(const struct lod_params *params)
 {
-    /* Few, widely spaced error bounds: while a camera moves, an asset's level seldom changes because of other assets. */
+    /* Few, widely spaced error bounds: while a camera moves, an asset then seldom changes its level because of other assets. */
     static const double parts[] = { 0, 0.125, 0.25, 0.5 };
     double max_error_px = MAX_ERROR_PX[params->tier];
     for (size_t i = 0; i < sizeof(parts) / sizeof(parts[0]); i++)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Level-of-detail selection: the error bound for the levels of a frame. The finest level shows the field exact to one colour step; a
-   coarser level is as wrong as its surface is displaced, which is several colour steps at some pixels. So a frame with few triangles uses
-   finer levels than its silhouettes need. Thread: any. */
+/* Chooses levels of detail: the error bound of a frame, and each asset's level under it. The finest level shows the field exact to one
+   colour step; the values of a coarser level are wrong by as much as its surface is displaced: several colour steps at some pixels. So a
+   frame with few triangles uses finer levels than its silhouettes need. Thread: any. */
 #ifndef RENDER_PLAN_LOD_SELECTION_H
 #define RENDER_PLAN_LOD_SELECTION_H
 #include "render/gl/gpu_scene.h"
@@ -13,8 +13,8 @@ struct lod_params {
     const int *visible; /* assets */
     size_t visible_count;
 };
-/* Returns the largest error of the frame's levels in pixels; 0: finest levels only. The result depends only on camera and visible assets,
-   so that equal views give equal frames, and is the same for all tiles of a frame. */
+/* Returns the error bound of the frame's levels of detail, in pixels; 0: finest levels only. The result depends only on camera and visible
+   assets, so that equal views give equal frames, and is the same for all tiles of a frame. */
 double lod_error_px(const struct lod_params *params);
 /* Returns the coarsest level of the asset with an error up to error_px; with 0 the finest level. */
 const struct model_level *lod_level(const struct gpu_scene *gpu_scene, const struct view_constants *constants, int asset, double error_px);

@@ -17,7 +17,7 @@ static void set(struct view_constants *constants, const double eye_m[3], const d
     matrix_translation((double[3]){ -eye_m[0], -eye_m[1], -eye_m[2] }, eye_from_plant);
     matrix_multiply(clip_from_eye, eye_from_plant, constants->clip_from_plant);
     const double *m = constants->clip_from_plant;
-    for (int p = 0; p < 6; p++) /* w + x, w - x, w + y, w - y, z, w - z: all >= 0 inside */
+    for (int p = 0; p < 6; p++) /* clip-space planes w + x, w - x, w + y, w - y, z, w - z: all are >= 0 inside the frustum */
         for (int c = 0; c < 4; c++) {
             double row = m[4 * c + p / 2], w = m[4 * c + 3];
             constants->planes[p][c] = p == 4 ? row : p % 2 ? w - row : w + row;

@@ -12,13 +12,14 @@ struct view_constants { /* eye space: axes of the plant frame, origin at the cam
     double pixel_per_radian;
     double pixel_per_metre; /* orthographic cameras; 0: perspective */
     double back[3];         /* orthographic: unit vector towards the viewer; zero: perspective */
-    double depth_scale;     /* orthographic: near-to-far distance over camera_parallel_m(); 0: perspective */
+    double depth_scale;     /* orthographic: distance from the near to the far plane, divided by camera_parallel_m(); 0: perspective */
     double planes[6][4];    /* frustum planes, normals inward, in the plant frame */
 };
 
 /* Computes all constants for a view of the scene. Near and far planes enclose the scene's bounds. */
 void view_constants_init(struct view_constants *constants, const struct view *view, const struct scene *scene);
-/* Narrows the frustum planes to a rectangle of the frame; the matrices stay. low, high: corners, -1 to 1 over the frame. */
+/* Narrows the frustum planes to a rectangle of the frame; the matrices stay. low, high: its corners in normalised device coordinates (-1 to
+   1). */
 void view_constants_narrow(struct view_constants *constants, const double low[2], const double high[2]);
 /* Returns whether the asset's bounds intersect the frustum. */
 bool view_constants_sees(const struct view_constants *constants, const struct scene_asset *asset);

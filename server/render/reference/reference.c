@@ -78,7 +78,7 @@ GLuint reference_sensors(const struct reference *reference, int asset, const str
         const struct field_sensor *from = &sensors[i];
         blocks[i] = (struct sensor_block){ .strength = from->strength, .decay = from->decay, .value = from->value, .column = from->column };
         memcpy(blocks[i].place_m, from->surface_m, sizeof(from->surface_m));
-        /* A sensor of a trial has no column of distances, so it is ignored here. */
+        /* The asset file has no distances for a sensor that a trial moved to the asset, so this code ignores such sensors. */
         bool has_column = from->column < reference->gpu_scene->scene->assets[asset].file->view.header->sensor_count;
         blocks[i].state = (from->configured ? CONFIGURED : 0) | (from->usable ? USABLE : 0) | (from->uncertain ? UNCERTAIN : 0);
         blocks[i].state = has_column ? blocks[i].state : 0;

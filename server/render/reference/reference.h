@@ -14,13 +14,13 @@ struct reference_model { /* buffers of one asset file */
 struct reference {
     const struct gpu_scene *gpu_scene;
     struct field *field;
-    struct reference_model *models; /* buffers per model, indexed as gpu_scene->models; zero: not made yet */
+    struct reference_model *models; /* by index in gpu_scene->models: buffers with the model's distances; 0: not made yet */
 };
 
 void reference_init(struct reference *reference, const struct gpu_scene *gpu_scene, struct field *field);
 void reference_finish(struct reference *reference); /* a zeroed struct is fine */
-/* Uploads the sensors of one asset, with the values that field_scalars_of() took last for these parameters. The caller owns the buffer.
-   Returns 0 when out of memory. */
+/* Uploads the sensors of one asset, with the readings that the last call of field_scalars_of() with these parameters used. The caller owns
+   the buffer. Returns 0 when out of memory. */
 GLuint reference_sensors(const struct reference *reference, int asset, const struct field_params *params);
 /* Binds the buffers for the next draws of that asset. Returns false when out of GPU memory, logged. */
 bool reference_bind(struct reference *reference, int asset, GLuint sensors);

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Section caps: where a section plane enters a closed body, the plane is drawn. For each pixel's ray, behind the cut, exits from bodies
-   count up and entries down: a positive sum means that the ray began inside a body. */
+/* Section caps: where a section plane cuts a closed body, the plane is drawn as if the body were solid. For each pixel's ray, behind the
+   cut, exits from bodies count up and entries down: a positive count means that the ray began inside a body. */
 #include <math.h>
 #include <string.h>
 
 #include "base/mem.h"
 #include "render/soft/kernels.h"
 
-/* Returns whether a triangle of the part bounds a closed body. */
+/* Returns whether a triangle of the part (a few neighbouring triangles, soft/parts.h) belongs to a closed body. */
 static bool bounds_bodies(const struct soft_parts *parts, const struct soft_part *part)
 {
     return parts->closed && memchr(parts->closed + part->first_vertex, 1, part->vertex_count);
@@ -73,7 +73,7 @@ void soft_cap_tile(struct soft_tile *tile)
     }
 }
 
-/* --- which triangles bound closed bodies ------------------------------------------------------------------------------------------ */
+/* --- triangles of closed bodies --------------------------------------------------------------------------------------------------- */
 
 bool soft_parts_close(struct soft_parts *parts, const struct asset_view *file, const struct closed_bodies *closed, uint32_t vertex_count)
 {

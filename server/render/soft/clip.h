@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Clipping of triangles against the near plane, section planes and the guard band (one frame width to either side, one frame height above
-   and below). Corners farther out, such as those just in front of the eye, would leave an edge too few digits. Private to soft/. */
+   and below). Corners farther out, such as those just in front of the eye, would leave too few significant digits for the edge functions,
+   which are 32-bit floats. Private to soft/. */
 #ifndef RENDER_SOFT_CLIP_H
 #define RENDER_SOFT_CLIP_H
 #include "render/soft/soft_impl.h"
 
-/* NEAR_CORNERS, NEAR_TRIANGLES: the most that clipping by all planes makes of one triangle. */
+/* NEAR_CORNERS, NEAR_TRIANGLES: largest number of corners, and of triangles, into which clipping by all planes turns one triangle. */
 enum { NEAR_PLANES = 5, NEAR_CORNERS = 3 + NEAR_PLANES + CLIP_MAX_PLANES, NEAR_TRIANGLES = NEAR_CORNERS - 2 };
 
 struct near_corner { /* a corner in clip space, with x and y in pixels; a and b as in struct soft_vertex */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Triangles that do not simply hide what is behind them: those with holes, and blended ones. */
+/* Triangles that do not simply hide what is behind them: those with holes from an alpha mask, and blended (transparent) ones. */
 #include "base/mem.h"
 #include "render/soft/tile.h"
 

@@ -9,7 +9,7 @@
 
 struct raster_edge {
     float x, y, dx, dy; /* upper end of the edge, and vector to its lower end */
-    int32_t negative;   /* sign of the inside: -1: negative values of the edge function are inside; 0: non-negative ones */
+    int32_t negative;   /* -1: pixels with negative values of the edge function are inside; 0: those with non-negative values */
 };
 
 struct plane { /* a value interpolated linearly over the frame; low, high: the smallest and largest of its corners */
@@ -41,14 +41,14 @@ SOFT_INLINE float edge_row(const struct raster_edge *edge, float y)
     return edge->dx * (y - edge->y) + edge->dy * edge->x;
 }
 
-/* Returns lanes that are negative for pixels outside the edge. Only the sign bit counts, so that even -0 lies on one side only. x: pixel
-   centres. */
+/* Returns lanes that are negative for pixels outside the edge. Only the sign bit counts, so that even a value of -0 is on exactly one side.
+   x: pixel centres. */
 SOFT_INLINE lanes_int edge_side(const struct raster_edge *edge, float row, lanes x)
 {
     return (lanes_int)(row - edge->dy * x) ^ edge->negative;
 }
 
-struct slopes { /* edge vectors of the triangle, divided by twice its area */
+struct slopes { /* edge vectors of the triangle, divided by twice the triangle's area */
     float x1, y1, x2, y2;
 };
 

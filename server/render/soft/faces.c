@@ -4,11 +4,11 @@
 
 #include "render/soft/kernels.h"
 
-#define FARTHEST 1e6f /* limit of colour map columns, far outside the scale on either side */
+#define FARTHEST 1e6f /* colour map columns are clamped to plus or minus this, far outside the scale */
 
 /* --- vertices --------------------------------------------------------------------------------------------------------------- */
 
-/* Prefetches what eight vertices will carry, while they are projected and faces are found. */
+/* Prefetches field values and light of eight vertices; they are needed after projecting the vertices and finding faces. */
 SOFT_INLINE void fetch_carried(const struct soft_mesh *mesh, const uint32_t vertices[LANES])
 {
     for (int l = 0; l < LANES && mesh->scalars; l++)
@@ -52,8 +52,8 @@ void soft_place_part(struct soft_tile *tile, const struct soft_mesh *mesh, const
     corners->flat = most <= SOFT_LITTLE * least;
 }
 
-/* Computes columns and rows as colormap_column() and colormap_row() in shaders/field.glsl. numbers: vertices that carry, padded to whole
-   lanes. */
+/* Computes columns and rows as colormap_column() and colormap_row() in shaders/field.glsl. numbers: indices of the vertices, padded to a
+   multiple of LANES. */
 SOFT_INLINE void carry_field(const struct raster *raster, const struct soft_mesh *mesh, const uint32_t *vertices, const uint8_t *numbers,
                              int count, struct soft_corners *corners)
 {
@@ -107,7 +107,7 @@ SOFT_INLINE void carry_context(const struct soft_mesh *mesh, const uint32_t *ver
     corners->all_flags = 0;
 }
 
-/* Lists all vertices, padded to whole lanes. Returns their number. */
+/* Lists the indices of all vertices, padded to a multiple of LANES. Returns their number. */
 static int list_all(const struct soft_part *part, uint8_t numbers[PART_VERTICES + LANES])
 {
     for (int i = 0; i < PART_VERTICES + LANES; i++)
@@ -156,7 +156,7 @@ SOFT_INLINE lanes most_of(lanes a, lanes b, lanes c)
     return lanes_most(lanes_most(a, b), c);
 }
 
-/* First and last pixel whose centre may be covered, clamped to the tile. */
+/* Return the first and last pixel whose centre a range of x or y may cover, clamped to the tile. */
 SOFT_INLINE lanes_int first_pixel(lanes x, int low)
 {
     return lanes_whole(lanes_clamp(x + 0.4999f, (float)low, 1e5f));
@@ -167,7 +167,7 @@ SOFT_INLINE lanes_int last_pixel(lanes x, int high)
     return lanes_whole(lanes_clamp(x + 0.5f, 0, (float)high + 1)) - 1;
 }
 
-/* Returns whether the face is behind the farthest depth of every block that it touches. */
+/* Returns whether the face is behind the farthest depth of every 8 x 8 pixel block that it touches. */
 SOFT_INLINE bool is_hidden(const struct soft_tile *tile, const struct soft_face *face, float nearest)
 {
     unsigned top = (unsigned)(face->top - tile->rect.top) / BLOCK_PX, bottom = (unsigned)(face->bottom - tile->rect.top) / BLOCK_PX;
@@ -182,11 +182,13 @@ SOFT_INLINE bool is_hidden(const struct soft_tile *tile, const struct soft_face 
 struct eight { /* eight triangles */
     lanes_int corners[3];
     lanes_int left, right, top, bottom;
-    lanes_int kept, doubtful; /* doubtful: hidden in the blocks of its corners, but touches further blocks between them */
+    /* doubtful: hidden in the blocks at the corners of its rectangle, but the rectangle has other blocks between them */
+    lanes_int kept, doubtful;
     lanes nearest;
 };
 
-/* Drops triangles that are hidden, as far as the blocks at the four corners of their rectangle tell. */
+/* Drops triangles whose rectangle touches only hidden blocks; if it has blocks besides those at its four corners, marks the triangle as
+   doubtful. */
 SOFT_INLINE void hide(const struct soft_tile *tile, struct eight *eight)
 {
     const float *farthest = &tile->farthest[0][0], *depth = tile->corners.depth;
@@ -205,7 +207,8 @@ SOFT_INLINE void hide(const struct soft_tile *tile, struct eight *eight)
     eight->doubtful = hidden & wide;
 }
 
-/* Returns which of eight triangles may face the eye (eye_m on the outer side of the plane). The slack keeps rounding from losing one. */
+/* Returns which of eight triangles may face the eye (eye_m on the outer side of the plane). The tolerance keeps rounding errors from
+   dropping a front face. */
 SOFT_INLINE lanes_int may_face(const float *planes, int rounded, const float eye_m[3])
 {
     float slack_m = 1e-5f * (1 + __builtin_fabsf(eye_m[0]) + __builtin_fabsf(eye_m[1]) + __builtin_fabsf(eye_m[2]));
@@ -213,7 +216,7 @@ SOFT_INLINE lanes_int may_face(const float *planes, int rounded, const float eye
     return x * eye_m[0] + y * eye_m[1] + z * eye_m[2] + slack_m >= *(const lanes *)(planes + 3 * rounded);
 }
 
-/* first: number of the first of the eight in the part. back: FACE_BACK for back faces, where requested. */
+/* first: index, in the part, of the first of the eight triangles. back: FACE_BACK for back faces, where requested. */
 SOFT_INLINE void keep_faces(struct soft_tile *tile, const struct eight *eight, int first, lanes_int back)
 {
     uint32_t words[sizeof(struct soft_face) / sizeof(uint32_t)][LANES]; /* struct soft_face as words in memory */
@@ -266,9 +269,9 @@ void soft_find_faces(struct soft_tile *tile, const struct soft_mesh *mesh, const
     }
 }
 
-/* --- what they leave behind ---------------------------------------------------------------------------------------------------- */
+/* --- occlusion: depth that the faces leave ------------------------------------------------------------------------------------- */
 
-/* Returns the farthest depth in a block. left, top: of the block, in the tile. */
+/* Returns the farthest depth in a block. left, top: the block's position in the tile. */
 SOFT_INLINE float farthest_in(const struct soft_tile *tile, int left, int top)
 {
     int bottom = top + BLOCK_PX - 1 < tile->rect.bottom - tile->rect.top ? top + BLOCK_PX - 1 : tile->rect.bottom - tile->rect.top;

@@ -8,7 +8,7 @@
 struct view_of_depth {
     const float *depth;
     int width_px, height_px, pitch_px;
-    float scale; /* orthographic frame: view_constants.depth_scale; 0: depth is the reciprocal of distance */
+    float scale; /* orthographic frames: view_constants.depth_scale; 0: perspective, where depth is proportional to 1 / distance */
 };
 
 SOFT_INLINE lanes at(const struct view_of_depth *view, int column, int row)

@@ -4,8 +4,8 @@
 #define RENDER_SOFT_FLAGS_H
 #include "field/scalars.h"
 
-/* Bits 0 to 7 hold scalar.uncertain, 8 to 15 scalar.lacking, bit 16 no limits. SOFT_UNCERTAIN and SOFT_NO_DATA are the top bits: over
-   half. */
+/* Bits 0 to 7 hold scalar.uncertain, 8 to 15 scalar.lacking, bit 16 no limits. SOFT_UNCERTAIN and SOFT_NO_DATA are the top bits of the two
+   numbers: set if the number is over half. */
 enum { SOFT_LACKING = 8, SOFT_NO_DATA = 0x8000, SOFT_UNCERTAIN = 0x80, SOFT_NO_LIMITS = 0x10000 };
 enum { SOFT_PATTERNS = SOFT_NO_DATA | SOFT_UNCERTAIN | SOFT_NO_LIMITS };
 #define SOFT_NOTHING_KNOWN (255u << SOFT_LACKING)

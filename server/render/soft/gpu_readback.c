@@ -7,7 +7,8 @@
 #include "base/system/huge_pages.h"
 #include "render/soft/soft_impl.h"
 
-enum { SUN_BAND_TILES = 32, SUN_BAND_ROWS = SUN_BAND_TILES * SUN_TILE_STEP_PX + 1 }; /* rows of the sun map read at a time: 2 MB */
+/* number of rows of the sun map read at a time, 2 MB */
+enum { SUN_BAND_TILES = 32, SUN_BAND_ROWS = SUN_BAND_TILES * SUN_TILE_STEP_PX + 1 };
 
 static bool fail(const struct soft *soft, const char *what)
 {
@@ -44,7 +45,7 @@ static bool read_baked(const struct soft *soft, struct soft_light *light, const 
     return true;
 }
 
-struct sun_band { /* rows of the sun map, plus the first row of the next band */
+struct sun_band { /* the band's rows of the sun map, plus the first row of the next band */
     uint16_t *rows;
     int width_px, row_count;
 };
@@ -65,13 +66,13 @@ static uint32_t fill_sun_tile(const struct sun_band *band, int u, int v, uint16_
                 out[x] = row[u + x < last_u ? u + x : last_u];
     }
     if (memcmp(texels, nothing, sizeof(texels)) == 0)
-        return 0; /* an empty tile stays unwritten, and both of its bounds are 0 */
+        return 0; /* an empty tile stays unwritten, and both of its bounds (smallest and largest depth) are 0 */
     memcpy(to, texels, sizeof(texels));
     return soft_sun_bounds(texels);
 }
 
-/* Reads band by band through one buffer. Empty tiles are not written: untouched zero pages cost no memory, and for a half-empty map half of
-   the time. */
+/* Reads band by band through one buffer. Empty tiles are not written: untouched zero pages cost no memory, and skipping them halves the
+   time for a half-empty map. */
 static void fill_sun_tiles(struct soft_light *light, GLuint map, struct sun_band *band)
 {
     const int size = light->sun_map_px, tiles = light->sun_tiles;

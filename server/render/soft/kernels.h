@@ -11,19 +11,19 @@ struct shaded_items;
 struct visibility_band;
 
 struct soft_kernels {
-    /* place_part projects a part's vertices. carry_part then computes field and light for the vertices that its faces use, or for all if
-       some faces are clipped. */
+    /* place_part projects the vertices of a part (soft/parts.h). carry_part then computes field and light for the vertices that the part's
+       listed faces use, or for all if some faces are clipped. */
     void (*place_part)(struct soft_tile *tile, const struct soft_mesh *mesh, const struct soft_parts *parts, const struct soft_part *part);
     void (*carry_part)(struct soft_tile *tile, const struct soft_mesh *mesh, const struct soft_parts *parts, const struct soft_part *part);
-    /* Lists the part's faces whose corners are all projected and need no clipping. */
+    /* Lists those faces (front-facing triangles) of the part whose corners are all projected and need no clipping. */
     void (*find_faces)(struct soft_tile *tile, const struct soft_mesh *mesh, const struct soft_found *found, const struct soft_part *part);
-    /* Draws depth and marks of all listed faces. */
+    /* Draws depth and marks (contents of pixels, soft_impl.h) of all listed faces. */
     void (*raster_faces)(const struct soft_tile *tile, uint32_t mark);
     /* Counts in the marks, for all listed faces: +1 per pixel where a face looks away from the eye, -1 where it faces the eye. */
     void (*count_faces)(const struct soft_tile *tile);
     /* Recomputes the farthest depth of these blocks of the tile. */
     void (*look_again)(struct soft_tile *tile, const struct soft_rect *blocks);
-    /* Turns the marks of a rectangle into colours. The rectangle begins at a multiple of SOFT_STRETCH_MOST. */
+    /* Turns the marks of a rectangle's pixels into colours. The rectangle begins at a multiple of SOFT_STRETCH_MOST. */
     void (*color)(const struct raster *raster, const struct soft_rect *rect);
     /* --- of refined frames */
     /* Shades surfaces that show the field, and stores in `out` triangle, weights and colour map row of each. */
@@ -38,9 +38,10 @@ struct soft_kernels {
     /* Draws the feature edges of a band. */
     void (*ink_band)(const struct refined *refined, int band);
 };
-extern const struct soft_kernels soft_kernels_plain, soft_kernels_wide, soft_kernels_widest; /* _wide and _widest exist on x86 only */
+/* _wide (AVX2) and _widest (AVX-512) exist on x86 only */
+extern const struct soft_kernels soft_kernels_plain, soft_kernels_wide, soft_kernels_widest;
 
-#ifndef SOFT_SET /* suffix of the set being compiled */
+#ifndef SOFT_SET /* suffix of the kernel table being compiled */
 #define SOFT_SET _plain
 #endif
 #define SOFT_JOIN(name, set) name##set

@@ -56,12 +56,13 @@ static void aim_rays(struct raster *raster, const double clip[16])
     }
 }
 
-/* Chooses the stretch over which sky elevation is linear. Over n pixels a line deviates from the sine of a ray's elevation by at most 0.15
-   n^2 / f^2, with f the distance of eye and image plane in pixels: a ray's direction turns by at most 1 / f per pixel, and its second
-   difference is at most 1.2 / f^2. */
+/* Chooses the number of pixels over which the sky's elevation may be interpolated linearly. Over n pixels a line deviates from the sine of
+   a ray's elevation by at most 0.15 n^2 / f^2, with f the distance of eye and image plane in pixels: a ray's direction turns by at most 1 /
+   f per pixel, and its second difference is at most 1.2 / f^2. */
 static void choose_stretch(struct raster *raster)
 {
-    static const double most = 1; /* columns of the backdrop: half a grey level at the horizon, where it changes most */
+    /* largest error in columns of the backdrop table: half a grey level at the horizon, where the backdrop changes most */
+    static const double most = 1;
     const float(*m)[3] = raster->ray_from_pixel;
     double step2 = 0, area2 = 0, volume = 0;
     for (int r = 0; r < 3; r++) {
@@ -85,7 +86,7 @@ static void aim_ground(struct raster *raster, const struct light *light)
     float(*to)[3] = raster->ground_from_pixel;
     raster->has_ground = sky_sees_ground(raster->context, light);
     matrix_multiply(raster->context->constants.clip_from_plant, light->plant_from_ground, clip);
-    double h[3][3]; /* rows: x w and y w in pixels, w; columns: u, v, 1 */
+    double h[3][3]; /* maps u, v, 1 on the ground (columns) to x w and y w in pixels, and w (rows) */
     for (int c = 0; c < 3; c++) {
         const double *column = &clip[c == 2 ? 12 : 4 * c];
         h[0][c] = 0.5 * raster->width_px * (column[3] + column[0]);

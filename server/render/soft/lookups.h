@@ -31,16 +31,17 @@ SOFT_INLINE lanes byte_of(lanes_int packed, int number)
     return __builtin_convertvector(packed >> (8 * number) & 0xff, lanes);
 }
 
-/* Positions of eight points on the sun's shadow map. Bounds per tile of the map decide most points without reading texels. The lookup has
-   three steps with other work between them, each prefetching the memory of the next: sun_aim, sun_bound, sun_look. */
+/* Positions of eight points on the sun's shadow map. The smallest and largest depth of each tile of the map decide most points without
+   reading texels. The lookup has three steps with other work between them, each prefetching the memory of the next: sun_aim, sun_bound,
+   sun_look. */
 struct sun_aim {
     lanes u_part, v_part, place; /* position between texels, 0..1; depth in units of the map */
     lanes_int tile, at;          /* at: index of the upper left of the four texels */
-    lanes_int open; /* lanes whose texels must still be read; for the others `lit` is final: the visible part of the sun, 0..1 */
+    lanes_int open; /* mask of lanes whose texels must still be read; for the others `lit` is final: the visible part of the sun, 0..1 */
     lanes lit;
 };
 
-/* s_t_depth: position on the map and depth, 0..1. wanted: lanes that need a shadow. */
+/* s_t_depth: position on the map and depth, 0..1. wanted: mask of the lanes that need a shadow. */
 SOFT_INLINE void sun_aim(const struct soft_light *light, const lanes s_t_depth[3], lanes_int wanted, struct sun_aim *aim)
 {
     const float over = 1.0f / SUN_TILE_STEP_PX, size = (float)light->sun_map_px;
@@ -107,7 +108,7 @@ SOFT_INLINE lanes sun_look(const struct soft_light *light, const struct sun_aim 
     return lanes_choose(aim->open, sun_compare(light, aim, aim->at & aim->open), aim->lit);
 }
 
-/* Looks up a shadow at once, without tile bounds. Refined frames use this: their four neighbouring lookups per point do not gain from
+/* Looks up a shadow at once, without tile bounds. Refined frames use this: their four neighbouring lookups per point do not profit from the
    bounds. */
 SOFT_INLINE lanes sun_tap(const struct soft_light *light, lanes s, lanes t, lanes depth)
 {
@@ -116,8 +117,8 @@ SOFT_INLINE lanes sun_tap(const struct soft_light *light, lanes s, lanes t, lane
     return sun_compare(light, &aim, aim.at);
 }
 
-/* Elevations over the horizon as columns of the backdrop table, interpolated linearly between the ends of a stretch of raster->stretch_px
-   pixels (choose_stretch bounds the error). */
+/* A pixel row's elevations over the horizon as columns of the backdrop table, interpolated linearly between the ends of a stretch of
+   raster->stretch_px pixels (choose_stretch bounds the error). */
 struct heights {
     float first, step; /* elevation at the centre of the first pixel, and its change per pixel */
 };
@@ -134,7 +135,7 @@ static float height_at(const struct raster *raster, float x, float y)
     return up / sqrtf(square) * 1023.5f + 1024.0f;
 }
 
-/* Returns the elevations of the stretch that begins at this pixel. */
+/* Returns the elevations for the stretch (stretch_px pixels of a row) that begins at this pixel. */
 static inline struct heights heights_from(const struct raster *raster, int column, int row)
 {
     float y = (float)row + 0.5f, x = (float)column + 0.5f, first = height_at(raster, x, y);

@@ -10,7 +10,7 @@
 enum { MAX_REACH_PX = 32 };
 static const double dark_rgb[3] = { RIM_RGB };
 
-struct brush { /* effect of one rim pixel on its surroundings; reach_px: half the brush's width */
+struct brush { /* brush that is drawn around each pixel on the rim; reach_px: half the brush's width */
     int reach_px;
     uint8_t rim[2 * MAX_REACH_PX + 1][2 * MAX_REACH_PX + 1];
 };
@@ -38,7 +38,7 @@ static void stamp(const struct raster *raster, uint8_t *rim, const struct brush 
         }
 }
 
-/* Returns whether the pixel is covered and has an uncovered neighbour. */
+/* Returns whether the pixel is on the rim: the asset covers it, but not all of its neighbours. */
 static bool is_rim(const struct raster *raster, int x, int y)
 {
     const uint32_t *mark = raster->marks + (size_t)y * (size_t)raster->pitch_px + (size_t)x;

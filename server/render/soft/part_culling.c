@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds which parts of which assets a frame may show, and where in it. */
+/* Finds the parts (groups of triangles, soft/parts.h) of assets that a frame may show, and their rectangles in the frame. */
 #include <float.h>
 #include <math.h>
 
@@ -11,7 +11,7 @@
 
 #define SLACK_PX 0.02f        /* boxes and vertices round differently */
 #define SLACK_DEPTH 1e-5f     /* relative to depth */
-#define IN_FRONT_OF_NEAR 2.0f /* depth of anything in front of the near plane */
+#define IN_FRONT_OF_NEAR 2.0f /* depth used for points in front of the near plane */
 
 /* Bounds a box's rectangle in the frame and its nearest depth. Returns false if the box is outside. */
 SOFT_INLINE bool project(const struct raster *raster, const struct soft_mesh *mesh, const float low[3], const float high[3],
@@ -59,7 +59,7 @@ static void include(struct soft_rect *rect, const struct soft_rect *other)
     rect->bottom = other->bottom > rect->bottom ? other->bottom : rect->bottom;
 }
 
-/* Returns whether section planes remove the whole part, and it bounds no body that is cut open. */
+/* Returns true if section planes remove the whole part, and no triangle of the part bounds a body that is cut open. */
 static bool is_cut_away(const struct raster *raster, const struct soft_mesh *mesh, const struct asset_cluster *box, struct soft_item *item)
 {
     item->cut = item->beyond = false;
@@ -101,7 +101,7 @@ static void find_meshes(void *arg, size_t begin, size_t end)
     }
 }
 
-/* Returns the parts of a level of detail, made on first use. NULL: out of memory. */
+/* Returns the parts of a level of detail, which are made on first use. NULL: out of memory. */
 static const struct soft_parts *parts_of(struct raster *raster, const struct gl_model *model, const struct model_level *level)
 {
     struct soft_parts **of_model = &raster->soft->parts[model - raster->soft->gpu_scene->models];
@@ -116,7 +116,7 @@ static const struct soft_parts *parts_of(struct raster *raster, const struct gl_
 }
 
 /* Computes the eye position that decides which side of a surface is visible. Orthographic rays are parallel: the eye is put so far away
-   that floats cannot tell. */
+   that rays differ by less than a float can represent. */
 static void find_eye(const struct raster *raster, double eye_m[3])
 {
     const struct view_constants *constants = &raster->context->constants;
@@ -126,7 +126,7 @@ static void find_eye(const struct raster *raster, double eye_m[3])
                        : constants->eye_m[c];
 }
 
-/* Fills in the mesh of an asset and counts its vertices on from raster->vertex_count. */
+/* Fills in the mesh of an asset and adds the number of its vertices to raster->vertex_count. */
 static void fill_mesh(struct raster *raster, struct soft_mesh *mesh, int index, const struct model_level *level)
 {
     const struct frame_context *context = raster->context;
@@ -167,7 +167,7 @@ static bool add_asset(struct raster *raster, int asset, const struct model_level
     struct soft_found *found = &raster->found[raster->mesh_count++];
     found->parts = parts_of(raster, model, level);
     found->material = raster->soft->material_of_model[model - raster->soft->gpu_scene->models];
-    found->both_sides = both_sides || mesh->cut; /* cut meshes show their inner side */
+    found->both_sides = both_sides || mesh->cut; /* meshes that a section plane cuts show their inner side, so back faces are needed */
     matrix_invert(raster->soft->gpu_scene->scene->assets[asset].placement, file_from_plant);
     find_eye(raster, eye_m);
     matrix_point(file_from_plant, eye_m, eye);
@@ -228,7 +228,7 @@ bool raster_find_ghosts(struct raster *raster)
     return true;
 }
 
-/* Returns the mesh that contains this id. likely: mesh to try first. */
+/* Returns the index of the mesh that contains the triangle with this id. likely: mesh to try first. */
 static size_t mesh_of(const struct raster *raster, uint32_t id, size_t likely)
 {
     const struct soft_found *found = raster->found;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Makes parts from the clusters of an asset file: each gets vertices of its own numbering. */
+/* Makes parts from the clusters of an asset file: each part numbers its vertices locally. */
 #include "render/soft/parts.h"
 
 #include <math.h>
@@ -11,7 +11,7 @@
 struct parts_maker {
     struct soft_parts *parts;
     const struct asset_view *file;
-    uint32_t *seen; /* number (from 1) of the last part that used each vertex of the file */
+    uint32_t *seen; /* by vertex of the file: number (from 1 up) of the last part that uses it */
     uint8_t *number;
     uint8_t corners[3][PART_TRIANGLES];
 };
@@ -47,9 +47,9 @@ static bool add_triangle(struct parts_maker *maker, struct soft_part *part, cons
     return true;
 }
 
-/* --- triangles that look the same way ------------------------------------------------------------------------------------- */
+/* --- sorting by direction of the normal ----------------------------------------------------------------------------------- */
 
-/* Directions are cells of the square that an octahedron unfolds to. */
+/* Directions are numbered cells of the square into which an octahedron unfolds. */
 enum { DIRECTION_CELLS = 8, DIRECTION_COUNT = DIRECTION_CELLS * DIRECTION_CELLS };
 
 struct plane_of_triangle {
@@ -82,7 +82,7 @@ static int step_of(float x)
     return step < DIRECTION_CELLS ? step : DIRECTION_CELLS - 1;
 }
 
-/* Returns the number of the direction of a normal. Close numbers are mostly close directions. */
+/* Returns the number of the direction of a normal. Directions with close numbers are mostly similar. */
 static int direction_of(const float n[3])
 {
     float sum = fabsf(n[0]) + fabsf(n[1]) + fabsf(n[2]);

@@ -11,21 +11,22 @@ enum { PART_TRIANGLES = 256, PART_VERTICES = 256 };
 struct soft_part {
     struct asset_cluster cluster; /* bounding box and normal cone */
     uint32_t first_vertex;        /* index in soft_parts.vertices */
-    uint32_t first_corner;        /* index in soft_parts.corners: all first corners, then all second, then all third ones */
+    /* the part's first index in soft_parts.corners, which holds all first corners, then all second ones, then all third ones */
+    uint32_t first_corner;
     uint16_t vertex_count, triangle_count;
-    uint16_t rounded; /* triangle_count rounded up to whole lanes; the triangles added have no area */
+    uint16_t rounded; /* triangle_count rounded up to a multiple of LANES; the padding triangles have no area */
     uint16_t material;
     bool double_sided;
-    bool blended; /* the part's material is blended, unless the part shows a field */
+    bool blended; /* the material is transparent; the part is blended unless it shows a field */
 };
 
 struct soft_parts {
     struct soft_part *parts;
-    uint32_t *vertices; /* vertex numbers in the file; each part is padded to whole lanes with its last vertex */
+    uint32_t *vertices; /* indices of vertices in the file; the list of each part is padded to a multiple of LANES with its last vertex */
     float *places_m;    /* positions of `vertices`, three floats each; per part all x, then all y, then all z */
     uint8_t *corners;   /* local vertex numbers within the part */
     float *planes;      /* planes of triangles, four floats each; per part all normals' x, y, z, then all distances */
-    uint8_t *closed;    /* 1 for vertices of a closed body, by index in `vertices`. NULL: not computed yet */
+    uint8_t *closed;    /* by index in `vertices`: 1: the vertex belongs to a closed body, 0: not. NULL: not computed yet */
     bool blended;       /* at least one part is blended */
     size_t part_count, vertex_count, corner_count;
     size_t part_capacity, vertex_capacity, place_capacity, corner_capacity, plane_capacity;
@@ -41,7 +42,7 @@ static inline const float *soft_part_planes(const struct soft_parts *parts, cons
     return parts->planes + 4 * (size_t)(part->first_corner / 3);
 }
 
-/* Writes the file's vertex numbers of one triangle of the part. */
+/* Writes the indices, in the asset file, of the vertices of one triangle of the part. */
 static inline void soft_part_triangle(const struct soft_parts *parts, const struct soft_part *part, uint32_t triangle, uint32_t vertices[3])
 {
     const uint8_t *corners = parts->corners + part->first_corner + triangle;
@@ -51,7 +52,7 @@ static inline void soft_part_triangle(const struct soft_parts *parts, const stru
 
 /* Returns false when out of memory. Call soft_parts_finish() in either case. */
 bool soft_parts_init(struct soft_parts *parts, const struct asset_view *file, const struct model_level *level);
-/* Computes `closed` if it is NULL. vertex_count: of the level. Returns false when out of memory. */
+/* Computes `closed` if it is NULL. vertex_count: vertices of the level of detail. Returns false when out of memory. */
 bool soft_parts_close(struct soft_parts *parts, const struct asset_view *file, const struct closed_bodies *closed, uint32_t vertex_count);
 void soft_parts_finish(struct soft_parts *parts);
 

@@ -10,7 +10,7 @@ struct mark_ink {
     float pattern_px;
     bool rich; /* there are isolines, or the scale is logarithmic */
     bool log;
-    float low, over;    /* logarithmic scales: place = (log2(value) - low) * over */
+    float low, over;    /* logarithmic scales: position on the scale = (log2(value) - low) * over */
     float line_px;      /* width of isolines; 0: there are none */
     const float *lines; /* nearest isoline by position on the scale, from struct raster */
 };

@@ -11,7 +11,8 @@
 #include "render/gl/ghosts.h"
 #include "render/pick/markers.h"
 
-/* Returns whether isolines are drawn. Isolines are computed with the triangles, so such a preview is never recoloured. */
+/* Returns whether isolines are drawn. Isolines are computed with the triangles, so such a preview is redrawn, not recoloured, when readings
+   change. */
 static bool has_lines(const struct frame_context *context)
 {
     return context->colormap.lines || view_is_operator(context->view);
@@ -43,7 +44,8 @@ static bool complain(const struct raster *raster)
     return false;
 }
 
-/* Returns whether one of the last previews had this shape, that is the camera stands still. Remembers the shape. */
+/* Returns whether one of the last previews had this shape hash (content_hash_shape()), which means that the camera stands still. Stores the
+   hash. */
 static bool is_still(struct soft *soft, uint64_t shape)
 {
     for (size_t i = 0; i < SOFT_SHAPES; i++)
@@ -86,7 +88,7 @@ static bool draw_ghosts(struct raster *raster, struct visibility_buffer *buffer)
     return true;
 }
 
-/* keep: also fills a visibility buffer for recolouring, if memory allows. */
+/* keep: also stores a visibility buffer, from which the preview can be recoloured, if memory allows. */
 static bool draw_all(struct raster *raster, const struct isoline_points *points, struct frame *frame, bool keep)
 {
     if (keep)
@@ -128,7 +130,8 @@ bool preview_draw(struct soft *soft, const struct frame_context *context, const 
                   struct frame *frame)
 {
     struct raster *raster = &soft->preview;
-    bool lined = has_lines(context) || points->count > 0; /* kept visibility buffers have no depth, which labels need */
+    /* isoline labels need depth, which kept visibility buffers of previews do not have */
+    bool lined = has_lines(context) || points->count > 0;
     if (!lined && soft_resolve_again(soft, context, points, frame))
         return true;
     raster->context = context;

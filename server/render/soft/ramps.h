@@ -15,7 +15,7 @@ struct ramp_material {
    muted: greyed as context. */
 void ramp_fill(const struct environment_light *sky, const double up[3], const struct ramp_material *material, bool muted, int steps,
                uint32_t *colors);
-/* Fills `steps` colours, `stride` apart: the colour in each brightness of a glossy preview. */
+/* Fills `steps` colours, `stride` elements apart, with one colour of the glossy preview from dark to bright. */
 void ramp_fill_glossy(uint32_t color, int steps, uint32_t *colors, int stride);
 
 #endif

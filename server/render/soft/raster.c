@@ -6,7 +6,7 @@
 #include "render/soft/section_colors.h"
 #include "render/soft/sixteen.h"
 
-/* Stores which triangle a pixel shows, if ids are wanted. */
+/* Stores the id of the triangle that a pixel shows, if the sample has ids. */
 SOFT_INLINE void keep_id(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *face, size_t at,
                          lanes_int seen)
 {
@@ -25,7 +25,7 @@ struct setup {
     struct plane no_data, uncertain, no_limits; /* planes of the pattern flags as in struct near_patterns, set if the face has flags */
     uint32_t mark, flags;
     bool flat; /* perspective is negligible */
-    bool thin; /* the face is so thin that rounding may leave the range of its corners' values */
+    bool thin; /* the face is so thin that rounding may give values outside the range of its corners' values */
 };
 
 SOFT_INLINE struct soft_vertex vertex_of(const struct soft_corners *corners, int i)
@@ -86,7 +86,7 @@ SOFT_INLINE void setup_init(struct setup *setup, const struct soft_vertex v[3], 
         setup_patterns(setup, &slopes, v, patterns);
 }
 
-/* w: 1 / inverse_w at the pixels; used with perspective only. */
+/* w: 1 / inverse_w at the pixels; used only if the face needs perspective correction. */
 SOFT_INLINE lanes_int field_marks(const struct setup *setup, const struct mark_ink *ink, lanes a, lanes b, lanes w)
 {
     lanes none = { 0 }, x = none + setup->a.dx, y = none + setup->a.dy;
@@ -126,7 +126,7 @@ SOFT_INLINE lanes_int marks_at(const struct setup *setup, const struct mark_ink 
     return pattern_marks(marks, none > 0.5f, little > 0.5f, (free > 0.5f) & -(int32_t)ink->rich, b, x, y, ink);
 }
 
-/* Narrows a row to the pixels that the edges allow, plus one at each end. */
+/* Narrows the range of a row to the pixels inside the edges, plus one at each end. */
 SOFT_INLINE void narrow(const struct setup *setup, float y, int *left, int *right)
 {
     for (int e = 0; e < 3; e++) {
@@ -152,12 +152,13 @@ SOFT_INLINE lanes_int leave_out_holes(const struct soft_cutout *cutout, lanes x,
     return seen;
 }
 
-/* cutout NULL: the face has no holes. */
+/* cutout: alpha mask of the face; NULL: the face has no holes. */
 SOFT_INLINE void draw_face(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *face,
                            const struct setup *setup, const struct soft_cutout *cutout, const struct mark_ink *ink)
 {
     bool wide = face->right - face->left >= 2 * LANES;
-    int last = tile->rect.right + 1 - LANES; /* last column of a stamp: outside the tile another thread draws */
+    /* last column at which a stamp (a block of pixels drawn at once) may begin: another thread draws outside the tile */
+    int last = tile->rect.right + 1 - LANES;
     for (int row = face->top; row <= face->bottom; row++) {
         size_t start = place_in(tile, tile->rect.left, row);
         float y = (float)row + 0.5f + sample->y, from_y = y - setup->y, sides[3];
@@ -198,7 +199,7 @@ SOFT_INLINE void draw_face(const struct soft_tile *tile, const struct soft_sampl
 
 /* --- small ones ------------------------------------------------------------------------------------------------------------- */
 
-/* Draws a face of at most 4 x 2 pixels in one stamp. */
+/* Draws a face of at most 4 x 2 pixels in one stamp (a block of pixels drawn at once). */
 SOFT_INLINE void draw_by_one(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *face,
                              const struct small *small, int l, int top, uint32_t mark, const struct mark_ink *ink)
 {
@@ -207,8 +208,8 @@ SOFT_INLINE void draw_by_one(const struct soft_tile *tile, const struct soft_sam
     draw_stamp(tile, sample, face, small, l, left, top < last_top ? top : last_top, mark, ink, true, true);
 }
 
-/* Draws faces kind by kind, which keeps branches predictable. The order is the same on every machine, because at equal depth the last face
-   wins. */
+/* Draws the faces grouped by size, which keeps branches predictable. The order is the same on every machine, because at equal depth the
+   last face wins. */
 SOFT_INLINE void draw_kinds(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *const faces[LANES],
                             const struct small *small, const struct kinds *kinds, uint32_t rows, uint32_t mark, const struct mark_ink *ink)
 {

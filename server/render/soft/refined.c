@@ -12,7 +12,7 @@
 #include "render/soft/refined_impl.h"
 #include "render/gl/ghosts.h"
 
-/* Bands per core and step, a few milliseconds each: of shading, and of other work. */
+/* Number of bands (groups of pixel rows) that one step processes per core, in a few milliseconds: when shading, and in other work. */
 enum { SHADED_BANDS = 1, BANDS = 8 };
 static const double OFF_SURFACE_TEXELS = 1 + SUN_SPREAD; /* as sun_visibility() in shaders/shadow.glsl */
 
@@ -109,14 +109,14 @@ static bool take_up(struct refined *refined, const struct frame_context *context
     raster_aim_cuts(raster);
     raster->out = frame->bgrx;
     raster->out_stride_bytes = (size_t)frame->stride_bytes;
-    /* sets the light of meshes again: later steps have other meshes, those of the section caps are gone */
+    /* sets the light of the meshes again, because this step finds other meshes than the step for section caps did */
     if (refined->step > REFINED_FIND && refined->step < REFINED_INK)
         for (size_t m = 0; m < raster->mesh_count; m++)
             raster->meshes[m].baked = (const uint8_t(*)[4])raster->light->baked[raster->meshes[m].asset];
     return true;
 }
 
-/* Computes what a refined frame needs of each found mesh. */
+/* Computes data of each found mesh that only refined frames need. */
 static void note_meshes(struct refined *refined)
 {
     const struct raster *raster = &refined->raster;
@@ -219,7 +219,7 @@ static void ink_some(void *arg, size_t begin, size_t end)
         piece->refined->raster.soft->kernels->ink_band(piece->refined, (int)(piece->first + band));
 }
 
-/* Takes the next `some` pieces per core of the `all` pieces of work. Returns true when they are the last. */
+/* Chooses the range of work items for this call: `some` per core, out of `all`. Returns true if it includes the last one. */
 static bool advance(struct refined *refined, size_t all, size_t some, size_t *begin, size_t *end)
 {
     some *= (size_t)workers_count(refined->raster.soft->workers);

@@ -39,18 +39,18 @@ struct refined {
     size_t mesh_capacity;
     uint8_t *caps; /* section caps: one bit per sample, rows of pitch_px. NULL: nothing is cut */
     struct visibility_buffer *buffer;
-    /* --- of the picture, worked out anew at each step */
+    /* --- of the picture, recomputed at each step */
     const struct frame_context *context;
     struct environment_light surroundings;
     float sun_from_pixel[4][4], sun_from_ground[4][4]; /* matrices, as columns */
-    float sun_from_normal[3][3]; /* columns: from a normal to the offset on the sun's map that lifts the point off its surface */
+    float sun_from_normal[3][3]; /* matrix, as columns: maps a normal to the offset on the sun's map that lifts the point off its surface */
     float ground_step[3];        /* offset on the sun's map that lifts points off the ground */
 };
 
 struct refined_item { /* one surface within a pixel */
     struct soft_triangle triangle;
     float x, y;     /* point of the frame, in pixels, where the surface is shaded */
-    uint16_t share; /* the surface's part of the pixel, of VISIBILITY_SHARES */
+    uint16_t share; /* area of the pixel that the surface covers, 0..VISIBILITY_SHARES */
 };
 
 struct shaded_items { /* results per item that shows the field */
@@ -59,11 +59,12 @@ struct shaded_items { /* results per item that shows the field */
     struct visibility_gloss *gloss;
 };
 
-/* Finds the nearest triangle at each sample of a band; rows of pitch_px. fragments: receives the blended triangles in front of it. */
+/* Finds the nearest opaque triangle at each sample of a band; rows are pitch_px elements apart. fragments: receives the blended triangles
+   in front of the opaque ones. */
 void refined_raster_band(const struct refined *refined, int band, const struct soft_sample samples[SAMPLES],
                          struct soft_fragments *fragments);
 bool refined_shade_band(const struct refined *refined, int band); /* false: out of memory */
-/* Adds the item's triangle to the band, and writes the triangle's number and the item's weights to index `at` of `out`. */
+/* Adds the item's triangle to the band, and writes the triangle's index in the band and the item's weights to index `at` of `out`. */
 void refined_keep_place(const struct refined *refined, struct visibility_band *band, const struct refined_item *item, float w1, float w2,
                         const struct shaded_items *out, size_t at);
 

@@ -12,7 +12,7 @@ struct coloring {
     const uint32_t *colormap;
     struct resolve_lines lines;
     float pattern_px;
-    bool log, rich; /* rich: there are isolines, or the scale is logarithmic */
+    bool log, rich; /* rich: slow path: there are isolines, or the scale is logarithmic */
     struct frame *frame;
     size_t first_band;
 };
@@ -49,11 +49,11 @@ static float rule(float y, float pattern_px)
     return (fabsf(at - floorf(at) - 0.5f) - (float)RULE_EDGE) * pattern_px + 0.5f;
 }
 
-/* --- isolines: field_color in shaders/field.glsl once more ----------------------------------------------------------------------- */
+/* --- isolines, as field_color() in shaders/field.glsl ---------------------------------------------------------------------------- */
 
 static const float MIN_SLOPE = 1e-7f, MAX_LINE_COVERAGE = (float)ISOLINE_MOST;
 
-/* Returns how much the position on the scale changes per pixel. carried: at the corners; here: at the pixel. */
+/* Returns how much the position on the scale changes per pixel. carried: values at the triangle's corners; here: value at the pixel. */
 static float slope_at(const struct coloring *coloring, const struct visibility_slopes *slopes, const float carried[3], float w1, float w2,
                       float here, float x, float y)
 {
@@ -66,7 +66,7 @@ static float slope_at(const struct coloring *coloring, const struct visibility_s
     return slope * (1 / COLUMNS_OF_RANGE);
 }
 
-/* Returns a pixel's coverage by an isoline, 0..1. column: with its fraction. */
+/* Returns a pixel's coverage by an isoline, 0..1. column: position on the scale as a colour map column, with fraction. */
 static float line_part(const struct coloring *coloring, float column, float slope)
 {
     float place = (column - (1 + SLACK * COLUMNS_OF_RANGE)) * (1 / COLUMNS_OF_RANGE);
@@ -212,7 +212,7 @@ SOFT_INLINE lanes_int may_be_lined(const struct coloring *coloring, const struct
     return ~(away > slope * (0.5f * coloring->lines.line_px + 0.51f));
 }
 
-/* Returns the colours of eight pixels of the field. *known is false where a corner has flags. */
+/* Returns the colours of eight pixels of the field. *known: false where a corner has flags; the colour is not valid there. */
 SOFT_INLINE lanes_int field_colors(const struct coloring *coloring, const struct visibility_band *band, lanes_int triangles,
                                    lanes_int weights, uint64_t rows, lanes_int *known)
 {
@@ -233,12 +233,12 @@ SOFT_INLINE lanes_int field_colors(const struct coloring *coloring, const struct
 /* 64-bit colour sums: blue from bit 0, red from bit 16, green from bit 32 */
 typedef uint64_t sums __attribute__((vector_size(32), aligned(8)));
 
-/* Parts are coloured in advance, eight at a time; pixels use them in the order of storage. */
+/* The surfaces of such pixels are coloured in advance, eight at a time; pixels use them in the order of storage. */
 enum { PARTS_AHEAD = 64 };
 struct ahead {
     size_t first, end;
-    bool all_known;                                   /* no corner of these parts has flags, and there are no isolines */
-    uint32_t known[PARTS_AHEAD];                      /* 0: a corner has flags */
+    bool all_known;                                       /* no corner of these parts has flags, and there are no isolines */
+    uint32_t known[PARTS_AHEAD];                          /* 0: a corner has flags */
     uint64_t colors[PARTS_AHEAD + VISIBILITY_MOST_PARTS]; /* colour times share */
 };
 
@@ -285,7 +285,7 @@ SOFT_INLINE void color_parts(const struct coloring *coloring, const struct visib
     ahead->all_known = !lanes_any(~all_known) && !(coloring->lines.line_px > 0);
 }
 
-/* gloss NULL: returns the colour unchanged. */
+/* Adds glossy light to a colour. gloss NULL: returns the colour unchanged. */
 SOFT_INLINE uint32_t glossed(const struct coloring *coloring, uint32_t color, const struct visibility_gloss *gloss)
 {
     struct visibility_gloss all_of[LANES];

@@ -7,7 +7,7 @@
 #include "render/soft/section_colors.h"
 
 /* Prefetch distances in pixels: first the shadow bounds, then the texels that the bounds leave undecided; both are scattered in memory.
-   AIMS: ring buffer of lookups between their start and the colouring. */
+   AIMS: size of the ring buffer of started lookups. */
 enum { BOUNDS_AHEAD = 8 * LANES, SHADOWS_AHEAD = 4 * LANES, AIMS = 16 };
 
 /* Computes positions on the sun's map, 0..1, and their depths. */

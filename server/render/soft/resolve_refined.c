@@ -21,14 +21,14 @@ enum { SAMPLE_SHARE = VISIBILITY_SHARES / SAMPLES };
 struct mixed { /* a pixel with several surfaces, and its items in the row */
     int column;
     uint8_t field_count, surface_count;
-    uint16_t sky, cap; /* shares of the pixel, of VISIBILITY_SHARES */
+    uint16_t sky, cap; /* area of the pixel that shows sky, and section caps; 0..VISIBILITY_SHARES */
     uint16_t over[3];  /* colour of blended triangles times share: blue, green, red */
     uint32_t first_field, first_surface;
 };
 
 struct refined_row { /* a row of pixels; item arrays hold SAMPLES per pixel */
     struct refined_item *field, *surfaces;
-    int *field_columns, *surface_columns; /* column of the item's pixel, if the pixel shows nothing else; -1: a mixed pixel */
+    int *field_columns, *surface_columns; /* column of the item's pixel; -1: the pixel shows several surfaces and is composed later */
     struct mixed *mixed;
     uint8_t *sky;  /* 1 for pixels that show some of the sky */
     uint8_t *caps; /* 1 for pixels whose samples all show a section cap */
@@ -96,8 +96,8 @@ static bool share_edge(const struct soft_triangle *a, const struct soft_triangle
     return a->mesh == b->mesh && shared >= 2;
 }
 
-/* Groups the samples of a pixel by surface. under: share of each sample. triangles: storage for the groups' triangles. Returns the number
-   of groups. */
+/* Groups the samples of a pixel by surface. under: area of the pixel that each sample represents. triangles: receives the groups'
+   triangles. Returns the number of groups. */
 static int group_samples(struct recent *recent, const struct soft_sample samples[SAMPLES], size_t at, const uint16_t under[SAMPLES],
                          struct soft_triangle triangles[SAMPLES], struct sample_group groups[SAMPLES])
 {
@@ -184,7 +184,8 @@ static void layers_finish(struct layers *layers)
     mem_free(layers->alphas);
 }
 
-/* Composites the fragments of one pixel. over: their colour times share; under: the share that each sample keeps. */
+/* Composites the fragments of one pixel. over: receives the sum of their colours times coverage; under: receives the share of each sample
+   that they leave visible. */
 static void blend(const struct layers *layers, size_t first, size_t end, uint16_t over[3], uint16_t under[SAMPLES])
 {
     float left[SAMPLES] = { 1, 1, 1, 1 }, sum[3] = { 0 }, gone = 0;
@@ -252,7 +253,7 @@ static void add_mixed(struct recent *recent, struct refined_row *row, const stru
     row->any_sky |= mixed->sky > 0;
 }
 
-/* Sorts the pixels of a row by what they show. layered: index of the next blended fragment; advanced past this row. */
+/* Sorts the pixels of a row by what they show. layered: index of the next blended fragment; on return it is past this row. */
 static void sort_row(struct recent *recent, struct refined_row *row, const struct soft_sample samples[SAMPLES], size_t start, int y,
                      const struct layers *layers, size_t *layered)
 {

@@ -22,7 +22,7 @@ SOFT_INLINE lanes_int cap_color(lanes x, float y, float pattern_px)
     return pack_color(cap[0] - stripe * part, cap[1] - stripe * part, cap[2] - stripe * part);
 }
 
-/* Returns the colour of a surface's inner side. v: unit vectors towards the viewer; n: normals of any length and either sign. */
+/* Returns the colour of a surface's inner side. v: unit vectors towards the viewer; n: normals of any length, pointing to either side. */
 SOFT_INLINE lanes_int inside_color(const lanes v[3], const lanes n[3], const float up[3])
 {
     lanes none = { 0 }, square = n[0] * n[0] + n[1] * n[1] + n[2] * n[2], towards = n[0] * v[0] + n[1] * v[1] + n[2] * v[2];

@@ -39,7 +39,7 @@ SOFT_INLINE void many_put_floats(float *at, size_t pitch, int width, sixteen val
     }
 }
 
-/* Stores the lanes whose bit in `seen` is set; other pixels are not accessed. */
+/* Stores the lanes whose bit in `seen` is set; the memory of other pixels is not accessed. */
 SOFT_INLINE void many_put_ints(uint32_t *at, size_t pitch, int width, uint32_t seen, sixteen_int value)
 {
     __m512i all = (__m512i)value;

@@ -8,7 +8,7 @@
 
 enum { SMALL_PX = 4 * LANES };
 
-/* Faces one or two pixels high may have any width: their stamps cover few pixels in vain. */
+/* Faces one or two pixels high count as small at any width, because few pixels of their stamps are wasted. */
 SOFT_INLINE bool is_small(const struct soft_face *face)
 {
     return face->bottom - face->top < SMALL_PX && (face->right - face->left < SMALL_PX || face->bottom - face->top < 2);
@@ -26,7 +26,7 @@ SOFT_INLINE bool is_plain(const struct soft_corners *corners, const struct soft_
     return !corners->all_flags || !((corners->flags[i] | corners->flags[j] | corners->flags[k]) & SOFT_PATTERNS);
 }
 
-struct small { /* eight faces; each row of lanes is one number of each */
+struct small { /* eight faces, as structure of arrays: lane i belongs to face i */
     lanes x, y;
     lanes edge_y[3], edge_dx[3], edge_dy[3], edge_row[3]; /* edge functions as in struct raster_edge; edge_row: dy times x */
     lanes_int negative[3];
@@ -147,7 +147,7 @@ SOFT_INLINE size_t place_in(const struct soft_tile *tile, int column, int row)
     return (size_t)(row - tile->rect.top) * (size_t)tile->pitch_px + (size_t)(column - tile->rect.left);
 }
 
-/* Draws one stamp of eight pixels. left, top: of the stamp, in the frame. two, thin: compile-time constants. */
+/* Draws one stamp of eight pixels. left, top: the stamp's position in the frame. two, thin: compile-time constants. */
 SOFT_INLINE void draw_stamp(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *face,
                             const struct small *small, int l, int left, int top, uint32_t mark, const struct mark_ink *ink, bool two,
                             bool thin)
@@ -181,7 +181,7 @@ SOFT_INLINE void draw_stamp(const struct soft_tile *tile, const struct soft_samp
 }
 
 /* Stamps stay within the tile, because other threads draw outside. The last stamps of a row or column therefore overlap earlier ones, which
-   changes nothing. */
+   is harmless: drawing a pixel twice has no effect. */
 SOFT_INLINE void draw_small(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *face,
                             const struct small *small, int l, uint32_t mark, const struct mark_ink *ink, bool two)
 {
@@ -199,9 +199,10 @@ SOFT_INLINE void draw_small(const struct soft_tile *tile, const struct soft_samp
     }
 }
 
-struct kinds {          /* sizes of eight faces, one bit each */
-    uint32_t one, four; /* bits of faces: one: at most 4 wide and 2 high; four: else, at most 4 wide and 4 high */
-    uint32_t two, low;  /* bits of faces: two: else, fewer stamps of two rows than of one cover the face; low: else, one pixel high */
+struct kinds {          /* classes of faces by size, as bit masks with one bit per face */
+    uint32_t one, four; /* one: at most 4 x 2 pixels; four: larger, but at most 4 x 4 */
+    /* two: larger; two-row stamps (4 x 2) need fewer stamps than one-row stamps (8 x 1); low: the others that are one pixel high */
+    uint32_t two, low;
 };
 
 SOFT_INLINE struct kinds kinds_of(const struct soft_tile *tile, const struct eight_faces *eight, int count)

@@ -9,7 +9,7 @@
 #include "render/soft/ramp_rows.h"
 #include "render/soft/tones.h"
 
-/* About five previews of 1920x1080, and ten refined frames. */
+/* Bounds of kept visibility buffers: room for about five previews and ten refined frames of 1920x1080. */
 static const size_t PREVIEWS_BYTES = (size_t)128 << 20, REFINED_BYTES = (size_t)256 << 20;
 
 /* Returns the kernels of the widest instruction set that this machine has. */
@@ -65,7 +65,7 @@ struct soft *soft_create(struct workers *workers, const struct gpu_scene *gpu_sc
     soft->environments = environments;
     soft->kept[TIER_PREVIEW].bound_bytes = PREVIEWS_BYTES;
     soft->kept[TIER_REFINED].bound_bytes = REFINED_BYTES;
-    /* changed readings can then always be shown by recolouring the newest refined frame, however large it is */
+    /* keeps the buffer of the newest refined frame, however large, so that changed readings can always be shown by recolouring it */
     soft->kept[TIER_REFINED].keeps_newest = true;
     soft->parts = mem_array(gpu_scene->model_count, sizeof(*soft->parts));
     soft->backdrops = sky->texels[0];

@@ -42,10 +42,10 @@ bool refined_step(struct refined *refined, const struct frame_context *context, 
 bool refined_keep(struct refined *refined, const struct frame_context *context, const struct isoline_points *points, struct frame *frame);
 void refined_end(struct refined **refined); /* &NULL is fine; sets it to NULL */
 
-/* Returns whether the visibility buffer of a refined frame is kept that differs only in values and colours. */
+/* Returns whether a visibility buffer is kept from a refined frame that differs from this one only in values and colours. */
 bool soft_has_refined(struct soft *soft, const struct frame_context *context);
-/* Colours a frame from a kept visibility buffer: pixels, markers and labels. points: of its isolines. Returns false when no buffer is
-   kept. */
+/* Colours a frame from a kept visibility buffer: pixels, markers and labels. points: candidate points of its isolines. Returns false when
+   no buffer is kept. */
 bool soft_resolve_again(struct soft *soft, const struct frame_context *context, const struct isoline_points *points, struct frame *frame);
 
 #endif

@@ -63,12 +63,13 @@ static bool take_up(struct renderer *renderer, struct render_job *job)
     return true;
 }
 
-/* A step on all cores takes a few milliseconds; the next one may take twice as long as the last. */
+/* Starts another step only if twice the duration of the last step fits in the budget, since steps (a few milliseconds on all cores) vary by
+   as much. */
 static bool step(struct renderer *renderer, struct render_job *job, int64_t budget_ns)
 {
     struct refined *refined = job->of.soft->refined;
     int64_t start_ns = clock_mono_ns(), spent_ns = 0, last_ns = 0;
-    bool done = !refined || !take_up(renderer, job); /* end() fails as well if take_up() failed */
+    bool done = !refined || !take_up(renderer, job); /* a failure of take_up() counts as done: end() will fail as well and report it */
     while (!done && spent_ns + 2 * last_ns <= budget_ns) {
         done = refined_step(refined, &job->context, &renderer->light, job->frame);
         last_ns = clock_mono_ns() - start_ns - spent_ns;

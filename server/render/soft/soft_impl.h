@@ -28,8 +28,10 @@ enum { MOST_RAMPS = 1 << 14 };
 struct soft_vertex {
     float x, y, depth; /* pixels from the top left; depth 1 near, 0 far */
     float inverse_w;   /* 1/w; 0: the vertex is in front of the near plane or beyond the guard band (clip.h) */
-    float a, b;        /* field: column and row of the colour map (logarithmic scale: value and row); context: ambient light, sunlight */
-    uint32_t flags;    /* from soft_flags() */
+    /* a, b: of vertices with a field: column and row of the colour map (logarithmic scale: value and row); of other vertices: ambient
+       light, sunlight */
+    float a, b;
+    uint32_t flags; /* from soft_flags() */
 };
 
 struct soft_mesh { /* one asset in this frame */
@@ -39,10 +41,10 @@ struct soft_mesh { /* one asset in this frame */
     /* field at the vertices; NULL: an asset without a field, or a field that could not be computed (no data) */
     const struct scalar *scalars;
     const uint8_t (*baked)[4];
-    float place[4][4]; /* columns; gives x w and y w in pixels, z and w of clip space */
+    float place[4][4]; /* matrix, as columns, from the file to x w and y w in pixels, and z and w of clip space */
     uint32_t first_vertex, vertex_count;
     bool mirrored;
-    bool cut;      /* section planes cut something off: the rest shows its inner side */
+    bool cut;      /* section planes cut something off, so the inner side of the rest is drawn */
     float turn[9]; /* rotation of normals from file to plant, columns; for cut meshes only */
 };
 
@@ -51,7 +53,7 @@ struct soft_rect { /* rectangle in pixels; right and bottom are included */
 };
 
 struct soft_item { /* a part that may be visible */
-    float near;    /* depth of its nearest point; over 1: it reaches in front of the near plane */
+    float near;    /* depth of its nearest point; over 1: the part reaches in front of the near plane */
     struct soft_rect rect;
     uint32_t part;
     bool cut;    /* true if a section plane cuts through the part */
@@ -60,11 +62,11 @@ struct soft_item { /* a part that may be visible */
 
 struct soft_found { /* parts of one mesh that may be visible; its memory is reused from frame to frame */
     const struct soft_parts *parts;
-    uint32_t material; /* number of the mesh's first material */
+    uint32_t material; /* index, among the materials of all models, of the mesh's first material */
     bool both_sides;
     float eye_m[3]; /* eye position in the file's coordinates */
     struct soft_rect rect;
-    uint32_t first_id; /* id of its first triangle; each item takes PART_TRIANGLES ids */
+    uint32_t first_id; /* id of the first triangle of the first item; each item reserves PART_TRIANGLES ids */
     struct soft_item *items;
     size_t count, capacity;
 };
@@ -73,7 +75,7 @@ struct soft_light {       /* copy of a light_set, read back from the GPU */
     uint64_t id;          /* id of the light set; 0: an empty entry */
     uint8_t (**baked)[4]; /* per asset, then per vertex */
     uint16_t *sun_map;    /* shadow map in square tiles of two cache lines, each tile row by row, so that neighbours share cache lines */
-    uint32_t *sun_bounds; /* bounds of each tile: smallest texel | largest << 16 */
+    uint32_t *sun_bounds; /* by tile: smallest texel | largest texel << 16 */
     int sun_map_px;       /* width and height of the map on the GPU */
     int sun_tiles;        /* number of tiles in a row */
     uint32_t *ground; /* brightness of the ground, four bytes: this texel and its right, lower and lower right neighbours; 255: no shadow */
@@ -117,18 +119,20 @@ struct raster { /* source and target of one frame's rasterization; its memory is
     size_t mesh_count, vertex_count;
     size_t mesh_capacity;
     int width_px, height_px, pitch_px; /* pitch_px: row length, a multiple of LANES */
-    float reach_px;                    /* distance of samples from the pixel's centre, for finding parts; previews: 0 */
+    /* largest distance of a sample from the pixel's centre along x or y, by which rectangles of parts are enlarged; previews: 0 */
+    float reach_px;
     float *depth;
     uint32_t *marks;
-    uint32_t *ids; /* triangle of each pixel with a mark: first_id of its part + its number; NULL: not needed */
+    uint32_t *ids; /* by pixel that has a mark: id of its triangle (first_id of the part + index in the part); NULL: not needed */
     size_t pixel_capacity;
     uint8_t *out;
     size_t out_stride_bytes;
-    /* section planes, for (x w, y w, z, w) with x and y in pixels; those through which rays enter come first */
+    /* section planes, as factors of (x w, y w, z, w), x and y in pixels; first the `entry_count` planes through which rays enter the space
+       that is left */
     float cuts[CLIP_MAX_PLANES][4];
     int cut_count, entry_count;
     float shift_px[2];  /* offset of the samples from pixel centres */
-    bool counts_bodies; /* section planes show which bodies are solid (caps.c) */
+    bool counts_bodies; /* the frame has section caps, so closed bodies are counted (caps.c) */
     bool blends;        /* true if some of the found parts are blended */
     bool has_ground;
     bool greys;                                                                /* context is drawn grey */
@@ -144,20 +148,21 @@ struct soft { /* shared by all frames */
     const struct soft_kernels *kernels;
     const struct gpu_scene *gpu_scene;
     const struct environments *environments;
-    size_t material_count;       /* number of materials of all models */
-    uint32_t *material_of_model; /* number of the first material of each model */
-    /* ramps: RAMP_STEPS colours per row; ramp_of_material: row by number of the material */
+    size_t material_count;       /* count of all materials of all models */
+    uint32_t *material_of_model; /* by model: index, among all materials, of its first material */
+    /* ramps: RAMP_STEPS colours per row; ramp_of_material: by index of the material: its row */
     uint32_t *muted_ramps, *own_ramps, *ramp_of_material;
     struct soft_materials materials;
-    lanes *shading;            /* attributes of each material: BASE, ... of refined_impl.h */
+    lanes *shading;            /* by material: its attributes, indexed by BASE, ... of refined_impl.h */
     const uint32_t *backdrops; /* from struct sky */
     struct soft_tones *tones;
-    uint32_t *glossy; /* glossy colour map; its rows are brightness steps. glossy_version: of the colour map that it is made from */
+    /* glossy colour map; its rows are brightness steps. glossy_version: version of the colour map from which it was made */
+    uint32_t *glossy;
     uint64_t glossy_version;
     struct soft_light lights[SOFT_LIGHTS];
     uint64_t uses;
     struct soft_parts **parts;                      /* parts by model, then by level; made when first needed */
-    struct visibility_store kept[TIER_REFINED + 1]; /* struct visibility_buffer of views with still cameras, per tier */
+    struct visibility_store kept[TIER_REFINED + 1]; /* by tier: visibility buffers of views whose camera stands still */
     uint64_t shapes[SOFT_SHAPES];                   /* content_hash_shape() of the last previews drawn */
     size_t shape_count;
     struct raster preview;
@@ -167,7 +172,7 @@ struct soft { /* shared by all frames */
 /* Returns the copy of a light set, read from the GPU if needed. NULL: out of memory, logged. */
 const struct soft_light *soft_get_light(struct soft *soft, const struct light_set *set);
 void soft_free_light(const struct soft *soft, struct soft_light *light);
-/* Returns the table of colours for this colour map, which must outlive the use of the table. */
+/* Returns the table of colours for this colour map; valid as long as the colour map. */
 const uint32_t *soft_colormap(struct soft *soft, const struct shaded_colormap *colormap, bool glossy);
 void raster_finish(struct raster *raster); /* frees its memory; the raster can be used again */
 size_t raster_bytes(const struct raster *raster);
@@ -178,29 +183,31 @@ void raster_aim(struct raster *raster, const struct light *light); /* computes t
 void raster_aim_cuts(struct raster *raster);                       /* computes the section planes; call first */
 /* returns whether a point is cut off; at: x w and y w in pixels, z, w; planes: number of section planes to test */
 bool raster_is_cut_off(const struct raster *raster, const float at[4], int planes);
-/* Tests a box of the mesh against one section plane. Returns true if the box is cut away entirely; sets *cut to true if the plane cuts
-   through the box. */
+/* Tests a box in the mesh's coordinates against one section plane. Returns true if the box is cut away entirely; sets *cut to true if the
+   plane cuts through the box. */
 bool raster_cuts_box(const struct raster *raster, const struct soft_mesh *mesh, int plane, const float low[3], const float high[3],
                      bool *cut);
 /* Returns the depth at which the ray through this point of the frame enters the uncut space. 0: it never does, or the eye is within. */
 float raster_entry_depth(const struct raster *raster, float x, float y);
 /* Finds meshes and their parts that may be visible. bodies: also parts that bound bodies cut open. Returns false when out of memory. */
 bool raster_find(struct raster *raster, bool bodies);
-bool raster_find_only(struct raster *raster, int asset); /* finds one asset's parts, both sides */
+bool raster_find_only(struct raster *raster, int asset); /* finds one asset's parts, whose back faces are drawn, too */
 bool raster_find_ghosts(struct raster *raster);          /* finds the parts of ghosted assets */
 /* computes how much of a ghost line covers each pixel, 0..255; veil has rows of width_px; destroys the marks. Returns false when out of
    memory */
 bool raster_ghosts(struct raster *raster, uint8_t *veil, uint8_t bgr[3]);
 void raster_paint_ghosts(const struct raster *raster, const uint8_t *veil, const uint8_t bgr[3]);
-enum soft_output { SOFT_CAPS, SOFT_DEPTH, SOFT_COLORS };                 /* marks of caps only; marks and depth; marks, depth and colours */
+enum soft_output { SOFT_CAPS, SOFT_DEPTH, SOFT_COLORS }; /* output: marks of section caps only; marks and depth; marks, depth and colours */
 void raster_tiles(struct raster *raster, enum soft_output output);       /* rasterizes the found parts */
 bool raster_make_room(struct raster *raster, const struct frame *frame); /* false: out of memory */
 enum soft_rim { RIM_NONE, RIM_LIGHT, RIM_DARK };
-const uint8_t *raster_rim(const struct raster *raster); /* returns the state of the rim in each pixel, rows of pitch_px; overwrites depth */
-/* Returns a visibility buffer for recolouring the frame. Call while raster->ids is valid and the frame has everything but rims: neither ink
-   nor markers. NULL: out of memory. */
+/* returns an enum soft_rim per pixel, rows pitch_px apart; overwrites raster->depth */
+const uint8_t *raster_rim(const struct raster *raster);
+/* Returns a visibility buffer for recolouring the frame. Call while raster->ids is valid, before ink, rims and markers are drawn. NULL: out
+   of memory. */
 struct visibility_buffer *raster_keep(struct raster *raster);
-void raster_keep_rim(const struct raster *raster, struct visibility_buffer *buffer); /* adds the rim to the buffer; destroys depth */
+/* adds the rim to the buffer; overwrites raster->depth */
+void raster_keep_rim(const struct raster *raster, struct visibility_buffer *buffer);
 /* Puts the buffer, with the frame's markers, into the store of kept buffers. */
 void soft_keep(struct soft *soft, const struct frame_context *context, struct visibility_buffer *buffer, const struct frame *frame);
 struct soft_triangle {
@@ -208,11 +215,12 @@ struct soft_triangle {
     uint32_t mesh, material;
     uint32_t vertices[3]; /* vertex numbers in the file */
 };
-/* Finds the triangle with this id among the found parts. Before the call triangle->mesh holds the mesh to try first: a neighbour's, or
-   0. */
+/* Finds the triangle with this id among the found parts. On entry triangle->mesh is the index of the mesh to try first: that of a
+   neighbouring pixel, or 0. */
 void raster_find_triangle(const struct raster *raster, uint32_t id, struct soft_triangle *triangle);
-/* Writes planes over the frame that give the triangle's corner weights at a point, up to a common factor. vertices: of the file. */
+/* Writes planes over the frame that give the triangle's corner weights at a point, up to a common factor. vertices: their indices in the
+   asset file. */
 void soft_weights(const struct soft_mesh *mesh, const uint32_t vertices[3], double weights[3][3]);
-void raster_outline(const struct raster *raster); /* outlines everything that has a mark; destroys depth */
+void raster_outline(const struct raster *raster); /* outlines everything that has a mark; overwrites raster->depth */
 
 #endif

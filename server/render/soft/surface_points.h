@@ -15,8 +15,8 @@ struct eight_points {    /* eight surface points */
     lanes x, y, depth; /* position in the frame */
     lanes weights[3];
     lanes_int back;     /* -1: the surface looks away */
-    lanes_int mirrored; /* -1: the surface belongs to a mirrored mesh */
-    lanes_int cut;      /* -1: the mesh is cut, so back faces show the inner side; set with the material */
+    lanes_int mirrored; /* -1: the surface belongs to a mirrored mesh; else 0 */
+    lanes_int cut;      /* -1: a section plane cuts the mesh, so back faces show the inner side; else 0. Set together with the material */
     vec normal;
 };
 
@@ -25,7 +25,7 @@ struct eight_points {    /* eight surface points */
 struct corners {                    /* corners of eight triangles relative to the points, from which weights are computed */
     float a[3][LANES], b[3][LANES]; /* vector to the corner in pixels; times w if a corner of the triangle cannot be projected */
     float w[3][LANES];              /* 1/w; 1 if a corner cannot be projected */
-    float z[3][LANES], g[3][LANES]; /* z: depth times g; g: 1, or w if a corner cannot be projected */
+    float z[3][LANES], g[3][LANES]; /* g: 1, or w if a corner cannot be projected; z: depth times g */
 };
 
 /* Projects corners as soft_place_part() in faces.c does. A corner that cannot be projected may lie behind the eye. */
@@ -60,8 +60,8 @@ SOFT_INLINE lanes load(const float at[LANES])
 }
 
 /* Moves points outside their triangle to the nearest point on its rim. e: twice the areas opposite to the corners, negative outside an
-   edge. Clamping weights at 0 instead would give a point far along a sliver. Triangles with corners that cannot be projected are clamped
-   all the same. */
+   edge. Clamping weights at 0 instead would give a point far along a sliver. Triangles with corners that cannot be projected are clamped as
+   well. */
 SOFT_INLINE void keep_within(const struct corners *corners, lanes e[3])
 {
     lanes_int outside = (e[0] < 0.0f) | (e[1] < 0.0f) | (e[2] < 0.0f);
@@ -156,7 +156,7 @@ SOFT_INLINE void attributes_at(const struct refined *refined, const struct soft_
     out[OPEN] = baked[2] * (1 / 255.0f);
 }
 
-/* Computes surface points of up to eight items; the last item fills the remaining lanes. */
+/* Computes surface points of up to eight items; unused lanes repeat the last item. */
 SOFT_INLINE void look(const struct refined *refined, const struct refined_item *items, size_t count, bool with_material,
                       struct eight_points *spot)
 {

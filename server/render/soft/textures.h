@@ -19,7 +19,7 @@ struct soft_texture {
 struct soft_material {
     const struct asset_material *of;
     const struct soft_texture *maps[MODEL_MAPS]; /* NULL: none */
-    bool mapped;                                 /* at least one map is set */
+    bool mapped;                                 /* at least one texture map is set */
     bool blended;
     bool cut_out; /* the alpha of the base colour cuts holes */
 };

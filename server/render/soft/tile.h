@@ -13,9 +13,10 @@ enum { MOST_FACES = NEAR_TRIANGLES * PART_TRIANGLES, MOST_CORNERS = PART_VERTICE
 
 struct soft_corners { /* vertices of a part, as struct soft_vertex, then those that clipping added */
     float x[MOST_CORNERS], y[MOST_CORNERS], depth[MOST_CORNERS], inverse_w[MOST_CORNERS], a[MOST_CORNERS], b[MOST_CORNERS];
-    uint32_t flags[MOST_CORNERS]; /* vertices added by clipping have SOFT_PATTERNS flags only; their interpolated patterns follow */
+    /* vertices that clipping added have only SOFT_PATTERNS flags; their interpolated patterns are in cut_patterns */
+    uint32_t flags[MOST_CORNERS];
     struct near_patterns cut_patterns[MOST_CORNERS - PART_VERTICES];
-    int count, placed;  /* placed: the first ones, not made by clipping */
+    int count, placed;  /* placed: number of vertices that clipping did not add; they come first */
     uint32_t all_flags; /* the OR of all flags */
     bool flat;          /* perspective is negligible */
     bool cut;           /* some vertices are in front of the near plane or beyond the guard band */
@@ -23,7 +24,7 @@ struct soft_corners { /* vertices of a part, as struct soft_vertex, then those t
 
 struct soft_face { /* a triangle that faces the eye and covers a pixel centre of the tile; its area in pixels is positive */
     uint16_t corners[3];
-    uint16_t triangle;                /* number in the part; for cut meshes also FACE_BACK */
+    uint16_t triangle;                /* index of the triangle in the part; for cut meshes also the flag FACE_BACK */
     int16_t left, right, top, bottom; /* in pixels of the frame */
 };
 
@@ -32,8 +33,8 @@ enum { FACE_BACK = 0x8000, FACE_TRIANGLE = PART_TRIANGLES - 1 }; /* FACE_BACK: t
 enum { MOST_SAMPLES = 4 };
 struct soft_sample { /* one sample of every pixel of a tile, row by row from the tile's upper left */
     float *depth;
-    uint32_t *marks; /* mark of each sample; NULL: not needed; the same holds for ids */
-    uint32_t *ids;   /* first_id of the part + number of the triangle | ID_BACK */
+    uint32_t *marks; /* mark of each sample; NULL (marks, ids): not needed */
+    uint32_t *ids;   /* first_id of the part + index of the triangle in the part, and the flag ID_BACK */
     float x, y;      /* offset from the pixel's centre */
 };
 #define ID_BACK 0x80000000u /* flag of an id, for cut meshes: the triangle looks away */
@@ -54,9 +55,9 @@ struct soft_tile {
     const struct raster *raster;
     struct soft_rect rect; /* rectangle of the tile; its width is a multiple of LANES */
     struct soft_sample samples[MOST_SAMPLES];
-    int sample_count, pitch_px;                /* pitch_px: length of the samples' rows */
+    int sample_count, pitch_px;                /* pitch_px: distance between the starts of two rows of samples */
     float reach_px;                            /* largest distance of a sample from the pixel's centre along either axis */
-    float farthest[BLOCK_ROWS][BLOCK_COLUMNS]; /* farthest depth in each block: anything behind is hidden */
+    float farthest[BLOCK_ROWS][BLOCK_COLUMNS]; /* farthest depth in each block of pixels: surfaces behind it are hidden */
     struct soft_corners corners;
     struct soft_face faces[MOST_FACES];
     int face_count;
@@ -93,12 +94,12 @@ bool soft_is_hole(const struct soft_cutout *cutout, float x, float y); /* x, y: 
 /* column, row: pixel of the frame. */
 void soft_add_fragment(const struct soft_tile *tile, int sample, const struct soft_face *face, int column, int row, float depth);
 
-/* Counts in the marks the closed bodies that the part bounds. */
+/* Counts, in the marks of the pixels, the closed bodies that the part bounds. */
 void soft_count_part(struct soft_tile *tile, const struct soft_found *found, const struct soft_item *item);
-void soft_cap_tile(struct soft_tile *tile); /* turns these counts into marks and depth of section caps */
+void soft_cap_tile(struct soft_tile *tile); /* turns the counts of soft_count_part() into marks and depth of section caps */
 /* Marks the vertices of the tile's part that a section plane cuts off (inverse_w 0). */
 void soft_cut_corners(struct soft_tile *tile);
-/* Lists the faces of a part with clipping; its vertices must be projected and carry field and light. */
+/* Clips the faces of the tile's part and lists the results; its vertices must be projected and carry field and light. */
 void soft_cut_faces(struct soft_tile *tile, bool both_sides);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draws tile by tile: in each the parts that may be visible, nearest first, skipping those behind what is drawn. */
+/* Draws tile by tile: in each tile the parts that may be visible, nearest first, skipping parts behind surfaces drawn already. */
 #include "render/soft/kernels.h"
 
 #include <stdlib.h>
@@ -8,7 +8,7 @@
 #include "base/mem.h"
 
 struct tile_entry { /* a part in the list of a tile */
-    uint64_t order; /* sort key: nearest first, then in the order of finding */
+    uint64_t order; /* sort key: nearest first; equally near parts in the order in which they were found */
     uint32_t mesh, item;
 };
 
@@ -97,7 +97,7 @@ static void begin_part(struct soft_tile *tile, const struct soft_found *found, c
     tile->cuts = cuts;
 }
 
-/* Prepares vertices of a pass without colours: nothing is carried, no patterns. */
+/* Prepares vertices of a pass without colours: they have no values, light or patterns. */
 static void carry_nothing(struct soft_tile *tile)
 {
     size_t count = (size_t)tile->corners.count;
@@ -201,7 +201,7 @@ static int columns_of(const struct raster *raster)
 
 static void draw_tile(const struct raster *raster, int number, enum soft_output output, struct tile_list *list)
 {
-    struct soft_tile tile; /* the tile stays uninitialised: corners and faces are large, and only few are used */
+    struct soft_tile tile; /* the struct is not zeroed: its arrays of corners and faces are large, and mostly little used */
     int left = number % columns_of(raster) * TILE_WIDTH_PX, top = number / columns_of(raster) * TILE_HEIGHT_PX;
     tile.raster = raster;
     tile.rect = (struct soft_rect){ left, top, left + TILE_WIDTH_PX - 1, top + TILE_HEIGHT_PX - 1 };

@@ -19,7 +19,8 @@ uint32_t soft_pack_light(const float light[3])
     const float min_light = 0x1p-16f, max_light = 65408; /* range of the shared exponent */
     float brightest = fmaxf(fmaxf(light[0], light[1]), fmaxf(light[2], min_light));
     int exponent;
-    frexpf(fminf(brightest, max_light) * (1 + 0x1p-9f), &exponent); /* values that would round up to 512 take the next exponent */
+    /* a value that would round up to 512 does not fit in nine bits, so the exponent is raised */
+    frexpf(fminf(brightest, max_light) * (1 + 0x1p-9f), &exponent);
     uint32_t packed = (uint32_t)(exponent + 15) << 27;
     for (int c = 0; c < 3; c++)
         packed |= (uint32_t)(ldexpf(fminf(fmaxf(light[c], 0), max_light), 9 - exponent) + 0.5f) << (9 * c);

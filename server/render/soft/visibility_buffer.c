@@ -112,11 +112,11 @@ void visibility_buffer_add_mesh(struct visibility_buffer *buffer, const struct v
     buffer->meshes[buffer->mesh_count++] = *mesh;
 }
 
-/* --- once its pixels are known ---------------------------------------------------------------------------------------------------- */
+/* --- once all pixels are known ---------------------------------------------------------------------------------------------------- */
 
 struct band_settling {
     struct visibility_buffer *buffer;
-    uint32_t *numbers; /* number of each vertex of the frame: 0: not visible; else one more than its number among the kept vertices */
+    uint32_t *numbers; /* by vertex of the frame: 0: not visible; else 1 + its index among the kept vertices */
 };
 
 static void settle_inks(struct visibility_buffer *buffer, size_t begin, size_t end)

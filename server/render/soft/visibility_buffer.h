@@ -9,11 +9,12 @@
 #include "render/frame_context.h"
 
 /* surfaces[] of a pixel holds one of: VISIBILITY_FIXED | a colour that no reading changes (blue | green << 8 | red << 16); VISIBILITY_MIXED
-   | number, in the band, of a pixel with several surfaces; or the number, in the band, of one triangle of the field. */
+   | index, in the band, of a pixel with several surfaces; or the index, in the band, of one triangle of the field. */
 #define VISIBILITY_FIXED 0x80000000u
 #define VISIBILITY_MIXED 0x40000000u
 
-/* Ink: what is drawn over the colours. Up to VISIBILITY_INK: coverage by a dark line; above: the rim of the selected asset. */
+/* Ink of a pixel: lines drawn over its colour. 0 to VISIBILITY_INK: coverage by a dark line; above: dark or light rim of the selected
+   asset. */
 enum { VISIBILITY_INK = 253, VISIBILITY_RIM_DARK, VISIBILITY_RIM_LIGHT };
 
 struct soft_tones;
@@ -26,7 +27,7 @@ struct visibility_gloss {
 struct visibility_part { /* one surface of the field in a pixel with several surfaces */
     uint32_t triangle, weights;
     uint8_t row;
-    uint16_t share; /* the surface's part of the pixel, of VISIBILITY_SHARES */
+    uint16_t share; /* area of the pixel that the surface covers, 0..VISIBILITY_SHARES */
 };
 enum { VISIBILITY_SHARES = 256, VISIBILITY_MOST_PARTS = 4 };
 
@@ -42,9 +43,11 @@ struct visibility_slopes {
     float w1_x, w1_y, w2_x, w2_y, sum_x, sum_y, sum;
 };
 
-struct visibility_band {      /* a band of rows; written by one worker */
-    uint32_t (*triangles)[3]; /* vertex numbers: of the frame, and after visibility_buffer_settle() of the kept vertices */
-    float (*corners)[4];      /* values carried by each triangle now: the first corner's, and the second's and third's minus the first's */
+struct visibility_band { /* a band of rows; written by one worker */
+    /* indices of vertices: among all of the frame, and after visibility_buffer_settle() among the kept (visible) ones */
+    uint32_t (*triangles)[3];
+    /* present values of each triangle: that of the first corner, and the differences of the second and third corner from it */
+    float (*corners)[4];
     struct visibility_slopes *slopes; /* slopes of each triangle; only filled in where there are isolines */
     struct visibility_part *parts;
     struct visibility_gloss *gloss; /* per part, for glossy frames */
@@ -55,9 +58,10 @@ struct visibility_band {      /* a band of rows; written by one worker */
 
 struct visibility_mesh { /* an asset with a field */
     int asset;
-    uint32_t first_vertex, vertex_count; /* range of vertices: of the frame, and after visibility_buffer_settle() of the kept vertices */
-    bool read;                           /* true if the kept vertices hold the field version `content` */
-    uint64_t content;                    /* hash from struct fields_entry */
+    /* range of vertices: among all of the frame, and after visibility_buffer_settle() among the kept (visible) ones */
+    uint32_t first_vertex, vertex_count;
+    bool read;        /* true if `carried` has the values of the field version `content` */
+    uint64_t content; /* hash from struct fields_entry */
 };
 
 struct visibility_buffer {
@@ -76,12 +80,12 @@ struct visibility_buffer {
     struct visibility_mesh *meshes;
     size_t mesh_count, mesh_capacity, vertex_count;
     float scale[4];     /* scale in struct frame_uniforms when the vertices were read */
-    uint32_t *vertices; /* kept vertices, mesh by mesh: number in the asset's file */
+    uint32_t *vertices; /* kept vertices, mesh by mesh: index in the asset's file */
     /* carried value of each kept vertex: column of the colour map (logarithmic scale: the value); NAN: it has a pattern's flag */
     float *carried;
     float *plain;                 /* the same without NAN */
     uint32_t *flags;              /* from soft_flags() */
-    struct frame_marker *markers; /* positions, and whether they are occluded */
+    struct frame_marker *markers; /* positions of markers, and whether they are occluded */
     size_t marker_count;
 };
 
@@ -96,14 +100,14 @@ struct resolve_lines {
     const float *nearest; /* COLORMAP_PLACES entries, from struct shaded_colormap */
 };
 
-/* Adds a triangle, unless it equals the last one. Returns its number in the band. Runs on a worker. */
+/* Adds a triangle, unless it equals the last one. Returns its index in the band. Runs on a worker. */
 uint32_t visibility_add_triangle(struct visibility_band *band, const uint32_t vertices[3]);
 void visibility_buffer_add_mesh(struct visibility_buffer *buffer, const struct visibility_mesh *mesh);
 /* Completes the buffer once all pixels and ink are set: drops vertices that no pixel shows and renumbers the others. Returns false when out
    of memory. */
 bool visibility_buffer_settle(struct visibility_buffer *buffer, struct workers *workers);
 
-/* Reads the fields of the frame into the values that the kept vertices carry. */
+/* Reads the fields of the frame into buffer->carried and the other values of the kept vertices. */
 void resolve_read(struct visibility_buffer *buffer, const struct frame_context *context, struct workers *workers);
 /* Stores the slopes of the triangle that visibility_add_triangle() added last. weights: planes of its corner weights, up to a factor. Runs
    on a worker. */

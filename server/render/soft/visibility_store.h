@@ -18,12 +18,13 @@ struct visibility_slot {
 };
 struct visibility_store { /* zero-initialise, then set bound_bytes */
     size_t bound_bytes, bytes;
-    bool keeps_newest; /* keeps the newest buffer alone even if it exceeds the bound, until visibility_store_bound() is called */
+    /* the newest buffer is kept, as the only one, even if it alone exceeds the bound, until visibility_store_bound() is called */
+    bool keeps_newest;
     struct visibility_slot buffers[VISIBILITY_SLOTS];
     uint64_t uses;
 };
 
-/* Returns the buffer of that shape, valid until the next give or drop. NULL: none. */
+/* Returns the buffer with that shape hash, valid until the next give or drop. NULL: none. */
 void *visibility_store_find(struct visibility_store *store, uint64_t shape);
 /* Takes ownership of a buffer and replaces any other of that shape. Destroys it at once if it exceeds the bound and keeps_newest is
    false. */
