@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Queue of frames that the GPU is drawing. */
+/* Implements the queue of frames that were submitted to the GPU and not read back yet. */
 #include "service/awaited_frames.h"
 
 #include <string.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Awaited frames: completely submitted to the GPU and not read back yet, oldest first, so that the next frame can be drawn meanwhile.
-   Thread: the render thread. */
+/* Awaited frames: frames completely submitted to the GPU whose pixels are not read back yet, oldest first. The next frame can be drawn
+   meanwhile. Thread: the render thread. */
 #ifndef SERVICE_AWAITED_FRAMES_H
 #define SERVICE_AWAITED_FRAMES_H
 #include "render/split_view.h"
@@ -22,12 +22,12 @@ struct awaited_frames {
     int count;
 };
 
-/* Allocates the snapshots, each with tag_count readings. */
+/* Allocates the memory of the list's snapshots, each with tag_count readings. */
 void awaited_frames_init(struct awaited_frames *in_flight, size_t tag_count);
-/* Frees the snapshots; no frame may be in flight. */
+/* Frees the memory of the list's snapshots; no frame may be in the list. */
 void awaited_frames_finish(struct awaited_frames *in_flight);
-/* Adds a frame; the list must not be full. Takes over the frame's split view, historical snapshot and group; without a historical
-   snapshot also *snapshot. Leaves an empty group, and another snapshot with unspecified content, in their place. */
+/* Adds a frame; the list must not be full. Takes over the frame's split view, historical snapshot and group; without a historical snapshot
+   also *snapshot. Afterwards *group is empty, and *snapshot is a different one with unspecified content. */
 void awaited_frames_push(struct awaited_frames *in_flight, const struct awaited_frame *frame, struct request_group *group,
                          struct snapshot **snapshot);
 /* Returns the frame with that content hash, skipping frames that get an overlay; NULL: none. The frame stays in the list, and valid

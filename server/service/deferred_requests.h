@@ -6,18 +6,19 @@
 
 enum { DEFERRED_MOST = 16 };
 struct deferred_requests { /* zero-initialise; free with deferred_requests_finish() */
-    /* deferred groups, oldest first; entries from `count` on are empty and keep their memory for reuse */
+    /* deferred groups, oldest first; the groups from index `count` on are empty and keep their memory for reuse */
     struct request_group groups[DEFERRED_MOST];
     size_t count;
-    bool due; /* the next turn belongs to a deferred group */
+    bool due; /* true: the next turn of the render thread belongs to a deferred group */
 };
 
-/* Moves the group's tickets to the end of the queue and leaves the group empty. Returns false, and changes nothing, if the queue is
-   full. */
+/* Moves the group's tickets (requests) to the end of the queue and leaves the group empty. Returns false, and changes nothing, if the queue
+   is full. */
 bool deferred_requests_push(struct deferred_requests *deferred, struct request_group *group);
 /* Replaces the content of `group` by the oldest deferred group; there must be one. */
 void deferred_requests_pop(struct deferred_requests *deferred, struct request_group *group);
-/* Returns whether the next turn belongs to a deferred group: every second turn if there is other work, otherwise every turn. */
+/* Returns whether the next turn belongs to a deferred group: this is so at every second turn if there is other work, otherwise at every
+   turn. */
 bool deferred_requests_due(struct deferred_requests *deferred, bool others);
 /* Frees the memory. */
 void deferred_requests_finish(struct deferred_requests *deferred);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which sensors of a group on an asset drifted in the week before an instant (field/drift.h), judged from recorded history, and the
+/* Judges from recorded history which sensors of a group on an asset drifted in the week before an instant (field/drift.h), and writes the
    result as text (PROTOCOL.md, /api/v1/drift). Thread: one that reads history. */
 #ifndef SERVICE_DRIFT_REPORT_H
 #define SERVICE_DRIFT_REPORT_H
@@ -8,11 +8,12 @@
 #include "history/history.h"
 
 struct drift_report {
-    struct neighbours *neighbours;  /* NULL: no sensor has a known position */
-    size_t count;                   /* number of sensors */
-    struct drift *drifts;           /* verdict of each sensor */
-    double *values, *predicted;     /* hourly means and their estimates, [hour][sensor]; NaN: none */
-    int64_t from_us;                /* start of the first of DRIFT_HOURS hours, UTC microseconds */
+    struct neighbours *neighbours; /* NULL: no sensor has a known position */
+    size_t count;                  /* number of sensors */
+    struct drift *drifts;          /* verdict of each sensor */
+    /* hourly means of the readings, and their estimates from the neighbouring sensors, [hour][sensor]; NaN: none */
+    double *values, *predicted;
+    int64_t from_us; /* start of the first of DRIFT_HOURS hours, UTC microseconds */
 };
 
 /* Reads the history and judges the sensors. reader: reads the history of the scene's plant. Returns false if history cannot be read,
@@ -21,8 +22,8 @@ bool drift_report_read(struct drift_report *report, struct history_reader *reade
                        int64_t to_us);
 void drift_report_finish(struct drift_report *report);
 
-/* Write the beginning of the text, one report, and the end. tag: list only that tag, with its hours; -1: all. *any: whether a sensor was
-   listed before; updated. */
+/* Append to the text: its beginning, one report, its end. tag: list only that tag, with its hours; -1: all. *any: true once a sensor is
+   listed, so that a comma comes next; updated. */
 void drift_text_begin(struct text *out, const struct plant *plant, int group, int64_t to_us);
 void drift_text_add(struct text *out, const struct plant *plant, const struct drift_report *report, int tag, bool *any);
 void drift_text_end(struct text *out);

@@ -26,7 +26,7 @@ struct encode_queue {
     struct idle_encoder *idle;
     struct encode_streams streams;
     int jobs;
-    int heavy; /* number of running jobs for HTTP or signed frames, which may be large and lossless */
+    int heavy; /* number of running jobs for HTTP or signed frames; these are limited because they may be large and lossless */
     struct encode_job *heavy_waiting, **heavy_last;
     struct request_group rest; /* scratch memory of encode_queue_submit() */
     struct encode_plan plan;
@@ -36,7 +36,7 @@ struct encode_job {
     struct encode_queue *queue;
     struct encode_stream *stream;
     struct frame *frame;        /* NULL: nothing needs encoding */
-    struct request_group group; /* requests of one codec and quality */
+    struct request_group group; /* requests that have the same codec and quality */
     struct encoder_params quality;
     bool again;
     uint64_t number, *from;
@@ -47,7 +47,7 @@ struct encode_job {
 struct stream_work {                  /* state of the encoding of one stream */
     struct encode_job *first, **last; /* queue of jobs, protected by the lock; the first job is running */
     struct encoder *encoder; /* encoder of a codec that keeps state between frames; this and the members below belong to the running job */
-    struct frame *before;      /* the frame that the stream's clients show, in this quality */
+    struct frame *before;    /* the newest frame of the stream, in this quality: clients that keep up show it */
     struct encoder_params quality;
 };
 
@@ -220,7 +220,7 @@ static bool encode(struct encode_job *job, struct packet **out)
     return good;
 }
 
-/* Returns the lowest packet number that this and later jobs still have to deliver. The caller holds the lock. */
+/* Returns the lowest packet number that this job and those after it still have to deliver. The caller holds the lock. */
 static uint64_t still_needed(const struct encode_job *job)
 {
     uint64_t least = UINT64_MAX;
@@ -232,7 +232,7 @@ static uint64_t still_needed(const struct encode_job *job)
 
 struct packet_run {
     struct packet *packets[ENCODE_STREAM_KEPT];
-    int count; /* number of packets; negative: the packets are no longer kept */
+    int count; /* number of packets to deliver; negative: some packets are no longer kept */
 };
 
 static void take_run(struct encode_job *job, size_t ticket, struct packet_run *run)
@@ -347,7 +347,7 @@ static bool same_coding(const struct request_ticket *ticket, void *arg)
            same_part(&a->part, &b->part);
 }
 
-/* Makes a job from the queue's plan. The caller holds the lock. */
+/* Makes a job from the plan in the encode queue. The caller holds the lock. */
 static struct encode_job *make_job(struct encode_queue *queue, struct frame *frame, struct request_group *tickets)
 {
     struct encode_plan *plan = &queue->plan;

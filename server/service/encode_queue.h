@@ -14,7 +14,8 @@ struct encode_queue_params {
     struct counters *counters;
     const char *h264_library; /* name of the libavcodec encoder */
     /* Called on a worker for each ticket, with the packets that bring its client up to date, oldest first. count 0: the client already
-       shows this content; or with `failed`, the frame could not be encoded. The packets are borrowed for the duration of the call. */
+       shows this content, or, if `failed` is true, the frame could not be encoded. The packets are borrowed for the duration of the
+       call. */
     void (*done)(void *arg, const struct request_ticket *ticket, struct packet *const *packets, int count, bool failed);
     void (*all_done)(void *arg); /* called after the last ticket of a frame */
     void *done_arg;              /* argument of both callbacks */
@@ -23,8 +24,8 @@ struct encode_queue_params {
 struct encode_queue *encode_queue_create(const struct encode_queue_params *params); /* never returns NULL */
 /* Waits for running jobs, then frees everything. &NULL is allowed; sets *queue to NULL. */
 void encode_queue_destroy(struct encode_queue **queue);
-/* Queues jobs that encode the frame: one for each codec and quality in the group, and one for each client that cannot share a stream.
-   Takes its own reference to the frame; empties the group. */
+/* Queues jobs that encode the frame: one for each codec and quality in the group, and one for each client that cannot share a packet
+   stream. Takes its own reference to the frame; empties the group. */
 void encode_queue_submit(struct encode_queue *queue, struct frame *frame, struct request_group *group);
 /* Destroys encoders that no stream uses. */
 void encode_queue_drop_idle(struct encode_queue *queue);

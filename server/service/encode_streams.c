@@ -7,11 +7,11 @@
 #include "base/clock.h"
 #include "base/mem.h"
 
-/* time between key frames that are made only so that clients can join; doubles for clients that often fall behind */
+/* time between key frames that are made only so that clients can join a stream; doubles for clients that often fall behind */
 static const int64_t JOIN_NS = 2 * NS_PER_S, JOIN_MAX_NS = 64 * NS_PER_S;
-/* number of packets that a client may lag behind and still catch up; frames are planned ahead by as many at most */
+/* maximum number of packets that a client may lag behind and still catch up; also the maximum number of frames planned but not encoded */
 enum { MAX_LAG_PACKETS = ENCODE_STREAM_KEPT / 2 };
-/* half of the limit on the bytes of packets kept per stream; a larger last key frame replaces it */
+/* half of the limit on the bytes of packets kept per stream; if the last key frame alone is larger, its size is the limit's half */
 static const size_t KEPT_BYTES = 64 * 1024;
 
 /* --- members of streams ----------------------------------------------------------------------------------------------- */
@@ -57,7 +57,7 @@ void encode_streams_forget(struct encode_streams *streams, uint64_t client)
     memmove(link, link + 1, (size_t)(streams->links + --streams->link_count - link) * sizeof(*link));
 }
 
-/* --- packets that a client lacks -------------------------------------------------------------------------------------- */
+/* --- packets that a client has not received --------------------------------------------------------------------------- */
 
 static bool same_coding(const struct encode_stream *stream, const struct frame *frame, const struct frame_request *request)
 {
@@ -82,7 +82,7 @@ static bool reaches(const struct encode_stream *stream, const struct encode_stre
 
 /* --- planning --------------------------------------------------------------------------------------------------------- */
 
-/* Returns the stream to which most of these clients already belong and in which they can continue. */
+/* Returns the stream to which most of these clients already belong and still get all packets that they lack. */
 static struct encode_stream *most_common(struct encode_streams *streams, const struct request_group *tickets)
 {
     struct encode_stream *best = NULL;
@@ -106,7 +106,7 @@ static bool shows(const struct encode_stream *stream, const struct frame *frame,
            stream->content == frame->content && same_coding(stream, frame, request);
 }
 
-/* Returns a stream that already shows this frame; NULL: none. whole: only one whose newest packet is a key frame. */
+/* Returns a stream that already shows this frame; NULL: none. whole: accept only a stream whose newest packet is a key frame. */
 static struct encode_stream *showing(const struct encode_streams *streams, const struct frame *frame, const struct frame_request *request,
                                      bool whole)
 {
@@ -116,7 +116,7 @@ static struct encode_stream *showing(const struct encode_streams *streams, const
     return stream;
 }
 
-/* Returns whether most of the up-to-date members of the stream look at another view. */
+/* Returns whether most of the stream's up-to-date clients now request another view. */
 static bool belongs_to_others(const struct encode_streams *streams, const struct encode_stream *stream, const struct frame *frame)
 {
     size_t all = 0;
@@ -169,8 +169,8 @@ static size_t count_outside(struct outsiders *outsiders, const struct request_gr
     return count;
 }
 
-/* Returns whether clients outside of the stream may join with a key frame, which costs the members bandwidth. If not, moves their
-   tickets to `rest`. */
+/* Returns whether clients outside of the stream may join it by a key frame, which costs the bandwidth of its present clients. If not, moves
+   the joining clients' tickets to `rest`. */
 static bool let_in(struct encode_streams *streams, const struct encode_stream *stream, struct request_group *tickets, int64_t now_ns,
                    struct request_group *rest)
 {
@@ -200,7 +200,7 @@ static void join(struct encode_stream_member *link, struct encode_stream *stream
     link->join_after_ns = now_ns + link->patience_ns;
 }
 
-/* Determines the packets that each client needs; after them all clients are up to date. */
+/* Determines the packets that each client needs. A client that has got them is up to date. */
 static void give(struct encode_streams *streams, const struct request_group *tickets, int64_t now_ns, struct encode_plan *plan)
 {
     struct encode_stream *stream = plan->stream;
@@ -223,7 +223,7 @@ static struct encode_stream *choose(struct encode_streams *streams, const struct
     if (stream && !shows(stream, frame, request))
         other = showing(streams, frame, request, true);
     if (other)
-        return other; /* that key frame was just made for clients that asked earlier: reuse it */
+        return other; /* that key frame was just made for clients that joined earlier, so it is reused */
     if (!stream)
         stream = showing(streams, frame, request, false);
     else if (stream->content != frame->content && belongs_to_others(streams, stream, frame))
@@ -233,7 +233,8 @@ static struct encode_stream *choose(struct encode_streams *streams, const struct
     return stream ? stream : add_chain(streams);
 }
 
-/* Returns whether a client that already shows this content must get it again. A request with `alone` gets the kept packets instead. */
+/* Returns whether a client that already shows this content must get it again. A request with `alone` (no dependence on earlier packets)
+   gets the kept packets, from the key frame on. */
 static bool must_again(const struct request_group *tickets)
 {
     for (size_t i = 0; i < tickets->count; i++)
@@ -242,8 +243,8 @@ static bool must_again(const struct request_group *tickets)
     return false;
 }
 
-/* Returns whether the frame is complete anyway: after a camera move JPEG and PNG send the whole picture, so that clients can join
-   without cost. */
+/* Returns whether the frame is complete without earlier packets in any case: after a camera move JPEG and PNG send the whole picture, so
+   clients can join at no cost. */
 static bool is_whole(const struct encode_stream *stream, const struct frame *frame, const struct frame_request *request)
 {
     return request->codec != WIRE_CODEC_H264 && !view_equal(&stream->shown.view, &frame->view);
@@ -295,7 +296,7 @@ void encode_stream_keep(struct encode_stream *stream, struct packet *packet, uin
     while (stream->kept_count > 0 && stream->oldest < needed &&
            (key || stream->kept_count == ENCODE_STREAM_KEPT || stream->kept_bytes > most_bytes(stream)))
         drop_oldest(stream);
-    if (stream->kept_count == ENCODE_STREAM_KEPT) /* more packets than a client may have in flight */
+    if (stream->kept_count == ENCODE_STREAM_KEPT) /* the list is full although it holds more packets than a client may have in flight */
         drop_oldest(stream);
     stream->kept[stream->kept_count++] = packet ? packet_ref(packet) : NULL;
     stream->kept_bytes += packet ? packet->count : 0;

@@ -9,14 +9,15 @@
 enum { ENCODE_STREAM_KEPT = 32 };
 struct encode_stream {
     struct encode_stream *next;
-    void *work;                              /* state of the encode queue; NULL in a new stream */
-    uint64_t planned;                        /* number of the newest frame, counted from 1, encoded or not */
-    uint64_t oldest;                         /* lowest number whose packet is kept */
-    uint64_t key;                            /* number of the newest key frame; 0: none */
-    int64_t key_ns;                          /* monotonic: when the newest key frame was planned */
-    struct frame_request shown;              /* request for which the newest frame was made: view, codec, quality */
-    uint64_t content;                        /* content hash of the newest frame */
-    struct packet *kept[ENCODE_STREAM_KEPT]; /* packets number `oldest` to oldest + kept_count - 1; NULL where nothing had changed */
+    void *work;                 /* data that the encode queue attaches to the stream; NULL in a new stream */
+    uint64_t planned;           /* sequence number of the newest frame, counted from 1, also of frames that were not encoded */
+    uint64_t oldest;            /* lowest sequence number whose packet is kept */
+    uint64_t key;               /* sequence number of the newest key frame; 0: none */
+    int64_t key_ns;             /* monotonic: when the newest key frame was planned */
+    struct frame_request shown; /* request that caused the newest frame: its view, codec and quality */
+    uint64_t content;           /* content hash of the newest frame */
+    /* the kept packets: of frame numbers `oldest` to oldest + kept_count - 1; NULL where nothing had changed */
+    struct packet *kept[ENCODE_STREAM_KEPT];
     int kept_count;
     size_t kept_bytes, key_bytes;
     /* members: number of clients in the stream; present: number of those that have a ticket in the group being planned */
@@ -27,8 +28,8 @@ struct encode_stream_member {
     uint64_t client;
     struct encode_stream *stream;
     uint64_t position; /* number of the newest packet that the client was given */
-    /* joined_ns: when the client joined; patience_ns: delay before it may join again, longer if it often falls behind; join_after_ns:
-       end of that delay */
+    /* joined_ns: when the client joined; patience_ns: delay before the client may join again by a key frame, longer if it often falls
+       behind; join_after_ns: end of that delay */
     int64_t joined_ns, join_after_ns, patience_ns;
 };
 
@@ -43,18 +44,18 @@ struct encode_plan { /* zero-initialise */
     bool encode;     /* true: encode the frame; false: the stream's newest packet already shows this content */
     bool key;        /* encode the frame as a key frame */
     bool again;      /* send the frame even if nothing changed in it */
-    uint64_t number; /* number of the frame in the stream */
-    /* for each ticket, number of the first packet to give to its client; a number above `number`: nothing new for that client */
+    uint64_t number; /* sequence number of the frame in the stream */
+    /* for each ticket, sequence number of the first packet that its client needs; a number above `number`: the client needs none */
     uint64_t *from;
     size_t from_capacity;
 };
 
-/* Plans how a frame reaches the clients of tickets with one codec and quality; fills *plan. Tickets that cannot share the stream are
-   moved to `rest`, to be planned by another call. */
+/* Plans how a frame reaches the clients of tickets with one codec and quality; fills *plan. Tickets whose clients cannot share one stream
+   are moved to `rest`; the caller plans them by another call. */
 void encode_streams_plan(struct encode_streams *streams, const struct frame *frame, struct request_group *tickets, int64_t now_ns,
                          struct encode_plan *plan, struct request_group *rest);
-/* Stores the next packet of the stream and takes a reference to it; NULL: nothing had changed. Packets below `needed`, the lowest number
-   that some client still has to get, may be dropped. */
+/* Stores the stream's next packet and takes a reference to it. packet NULL: nothing had changed in the frame. Packets below `needed`, the
+   lowest number that some client still has to get, may be dropped. */
 void encode_stream_keep(struct encode_stream *stream, struct packet *packet, uint64_t needed);
 /* Writes the packets from..to that bring a client up to date into out, oldest first, borrowed. Returns their count; -1: they are no
    longer kept. */
@@ -63,8 +64,8 @@ int encode_stream_catch_up(const struct encode_stream *stream, uint64_t from, ui
 void encode_stream_break(struct encode_stream *stream);
 /* Removes the client from its stream. */
 void encode_streams_forget(struct encode_streams *streams, uint64_t client);
-/* Removes from the list, and returns, a stream without members that is not busy; NULL: there is none. The caller frees the stream's work
-   and then calls encode_stream_destroy(). */
+/* Removes from the list, and returns, a stream that has no clients and no running job; NULL: there is none. The caller frees the stream's
+   work and then calls encode_stream_destroy(). */
 struct encode_stream *encode_streams_take_empty(struct encode_streams *streams, bool (*busy)(const struct encode_stream *stream));
 /* Releases the stream's packets and frees it; sets *stream to NULL. */
 void encode_stream_destroy(struct encode_stream **stream);

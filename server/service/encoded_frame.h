@@ -6,8 +6,8 @@
 
 struct encoded_frame { /* owned by the code that collected it; free with encoded_frame_destroy() */
     uint64_t client;
-    uint64_t number;         /* number of the client's request, counted when drawing begins: a larger number shows a newer state */
-    struct packet *packet;   /* NULL: the client already shows this content, or the frame could not be made */
+    uint64_t number;       /* sequence number of the client's request, assigned when drawing begins: a larger number shows a newer state */
+    struct packet *packet; /* NULL: the client already shows this content, or the frame could not be made */
     struct packet **earlier; /* packets of a shared stream that the client missed and must decode first, oldest first */
     int earlier_count;
     bool failed; /* the frame could not be made */
@@ -19,7 +19,7 @@ struct encoded_frame { /* owned by the code that collected it; free with encoded
 
 /* Frees the frame and drops its references to packets, which other frames may share. Any thread. &NULL is allowed; sets *frame to NULL. */
 void encoded_frame_destroy(struct encoded_frame **frame);
-/* Returns the bytes of all its packets. */
+/* Returns the number of bytes of all packets of the frame. */
 size_t encoded_frame_bytes(const struct encoded_frame *frame);
 /* Returns whether the client can decode the frame without any packet sent before. */
 bool encoded_frame_stands_alone(const struct encoded_frame *frame);

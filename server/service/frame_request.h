@@ -12,25 +12,26 @@ struct frame_request {
     enum wire_codec codec;
     struct encoder_params quality; /* only quality and full_chroma are used; the rest is zero */
     enum urgency urgency;
-    /* time account that the frame is charged to: the client's address; 0: one account for all requests without an address */
+    /* id of the account to which drawing time is charged: the client's address; 0: one account for all requests without an address */
     uint64_t account;
     int64_t asked_ns; /* monotonic: when the request was made */
-    int64_t read_ns;  /* monotonic: the client knows the readings up to this time; readings changed later bring another request */
+    int64_t read_ns;  /* monotonic: the client knows the readings up to this time; later changes of readings cause another request */
     int step;         /* step of the quality ladder, for previews */
-    bool draft;       /* refined, but of lower quality than the final frame */
+    bool draft;       /* refined draft: of lower quality than the final refined frame */
     bool of_data;     /* made because a reading changed, at view.input_ns */
     bool or_moving;   /* draw refined only if that is as quick as a preview; otherwise draw a preview with moving_quality */
     struct encoder_params moving_quality;
-    /* codec of the preview that is drawn instead, which then has no record; 0: codec and record as requested */
+    /* codec of the preview that may be drawn in place of a refined frame, without a record of inputs; 0: codec and record as requested */
     enum wire_codec moving_codec;
-    struct frame_part part; /* rectangle of the picture that the client gets; the picture is drawn once for all its parts */
-    uint64_t picture;       /* number of the tiles' common picture (session/tiles/tile_sync.h), from 1; 0: no tile */
-    /* only valid as a replacement of a request that was not begun, because the client may have no more frames in flight */
+    struct frame_part part; /* rectangle of the picture that the client gets; one drawing serves the requests for all rectangles */
+    uint64_t picture; /* sequence number of the wall's picture that all its tiles share (session/tiles/tile_sync.h), from 1; 0: no tile */
+    /* the request is only valid in place of an earlier one whose drawing has not begun, because the client may have no more frames in
+       flight */
     bool only_replace;
-    bool always;       /* draw and send even if the client already shows the content */
-    bool alone;        /* the frame must decode without any packet sent before */
-    bool record;       /* the frame includes the record of its inputs (render/frame_record.h), for signing; PNG only */
-    /* what is drawn on top: FULL: legend, clock, sensors and alarms; BARE: legend and clock */
+    bool always; /* draw and send even if the client already shows the content */
+    bool alone;  /* the frame must decode without any packet sent before */
+    bool record; /* the frame includes the record of its inputs (render/frame_record.h), for signing; PNG only */
+    /* overlay on top of the scene: FULL: legend, clock, sensors and alarms; BARE: legend and clock */
     enum { OVERLAY_NONE, OVERLAY_FULL, OVERLAY_BARE } overlay;
 };
 

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Frame sharing: one frame for all clients that request the same content, even at different times. */
+/* Frame sharing: one drawing serves all clients that request the same content, even at slightly different times. */
 #include "base/clock.h"
 #include "service/render_thread_impl.h"
 
 struct content_of {
     struct render_service *service;
     uint64_t content;
-    int64_t cost_ns; /* drawing time charged to each client */
+    int64_t cost_ns; /* drawing time that is charged to each client that shares the frame */
 };
 
 /* Returns whether the client already shows this frame. The caller holds the lock. */
@@ -21,7 +21,8 @@ static bool has_it(const struct request_ticket *ticket, void *arg)
 }
 
 /* Returns whether a frame for a later request of the client was handed to the encoders already: a deferred request or a long job may be
-   drawn after it. The client would not show the older frame, so its encode stream must not count it as shown. The caller holds the lock. */
+   drawn after a later one. The client would not show the older frame, so its encode stream must not count it as shown. The caller holds the
+   lock. */
 static bool is_overtaken(const struct request_ticket *ticket, void *arg)
 {
     const struct content_of *now = arg;
@@ -29,8 +30,8 @@ static bool is_overtaken(const struct request_ticket *ticket, void *arg)
     return client && client->has_content && ticket->number < client->content_number;
 }
 
-/* Notes the frame's content for a client that is still connected, and charges the client. Returns false if the client has gone. The
-   caller holds the lock. */
+/* Stores the frame's content hash as the newest of a client that is still connected, and charges the client. Returns false if the client
+   has gone. The caller holds the lock. */
 static bool remember(const struct request_ticket *ticket, void *arg)
 {
     const struct content_of *now = arg;
@@ -63,7 +64,7 @@ void frame_sharing_submit(struct render_service *service, struct frame *frame, s
     request_group_finish(&overtaken);
 }
 
-/* Answers "nothing new" to the clients that already have this content. */
+/* Answers "nothing new" to the clients of the group that already show this content. */
 static void answer_same(struct render_thread *thread, struct request_group *group, uint64_t content)
 {
     struct render_service *service = thread->service;
@@ -75,7 +76,8 @@ static void answer_same(struct render_thread *thread, struct request_group *grou
     render_service_answer_without_frame(service, &thread->same, false);
 }
 
-/* Returns whether the frame can answer the group: a frame drawn for others may lack the record of its inputs. */
+/* Returns whether a frame that was drawn for others can answer the group: the frame may lack the record of its inputs, which some requests
+   want. */
 static bool answers(const struct frame *frame, const struct request_group *group)
 {
     return frame && (frame->record || !request_group_wants_record(group));
@@ -88,7 +90,7 @@ static void answer_with(struct render_service *service, struct frame *frame, str
         frame_sharing_submit(service, frame, group, 0);
 }
 
-/* Adds the requests to the frame of the same content that is in flight, if there is one. */
+/* Adds the group's requests to the submitted frame with the same content, if there is one. */
 static void join_awaited(struct render_thread *thread, struct request_group *group, uint64_t content)
 {
     struct awaited_frame *flight = awaited_frames_find(&thread->in_flight, content);

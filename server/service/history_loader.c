@@ -14,8 +14,8 @@
 #include "history/history.h"
 
 static const int64_t SPAN_INTERVAL_NS =
-    60 * NS_PER_S; /* the span of recorded history is read again this often: old files are removed rarely */
-static const int64_t RETRY_DELAY_NS = 2 * NS_PER_S; /* interval between checks while nothing is recorded */
+    60 * NS_PER_S; /* interval at which the beginning of recorded history is read again; long, as old files are removed rarely */
+static const int64_t RETRY_DELAY_NS = 2 * NS_PER_S; /* interval between checks for recorded history while nothing is recorded */
 
 struct wanted_instant {
     uint64_t client;
@@ -25,8 +25,9 @@ struct wanted_instant {
 struct history_loader {
     struct history_loader_params params;
     _Atomic bool stop;
-    struct history_reader *reader; /* used only by the thread, like the members below; NULL: the core is asked */
-    struct core_history *core;     /* NULL: the history is on this machine */
+    /* reader of the history; this and the members below are used only by the thread; NULL: history is read from the core */
+    struct history_reader *reader;
+    struct core_history *core; /* link to the core; NULL: the history is on this machine */
     struct history_tag *tags;
     int64_t spanned_ns;
     struct thread thread;
@@ -46,7 +47,7 @@ static void remove_at(struct history_loader *loader, size_t i)
     memmove(&loader->wanted[i], &loader->wanted[i + 1], (loader->count - i) * sizeof(*loader->wanted));
 }
 
-/* Returns the index of the client's request, or count if it has none. The caller holds the lock. */
+/* Returns the index of the client's request, or the list's count if the client has none. The caller holds the lock. */
 static size_t find(const struct history_loader *loader, uint64_t client)
 {
     size_t i = 0;
@@ -140,7 +141,8 @@ static void look_at_span(struct history_loader *loader)
     pthread_mutex_unlock(&loader->thread.lock);
 }
 
-/* Waits for a request. Returns false if there is none and it is time to look for the beginning of recorded history again, or to stop. */
+/* Waits for a request. Returns false if there is none because it is time to look for the beginning of recorded history again, or to
+   stop. */
 static bool next_wanted(struct history_loader *loader, struct wanted_instant *out, bool *stopping)
 {
     int64_t until_ns = clock_mono_ns() + RETRY_DELAY_NS;

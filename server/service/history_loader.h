@@ -18,7 +18,7 @@ struct history_loader_answer { /* free with mem_free */
 struct history_loader_params {
     struct log *log;
     const struct plant *plant;
-    const char *folder; /* folder of the history; NULL: the core has the history */
+    const char *folder;          /* folder of the recorded history; NULL: the core has the history */
     struct core_link *core_link; /* on a renderer: link to the core, which must outlive the loader; otherwise NULL */
     struct snapshot_cache *snapshot_cache;
     void (*notify)(void *arg); /* called on the loader's thread when there is an answer */
@@ -28,13 +28,13 @@ struct history_loader_params {
 struct history_loader;
 /* Starts the thread. Returns NULL if it cannot, already logged. Everything that params point to must outlive the loader. */
 struct history_loader *history_loader_create(const struct history_loader_params *params);
-/* Ends the thread. &NULL is allowed; sets *loader to NULL. */
+/* Ends the history thread. &NULL is allowed; sets *loader to NULL. */
 void history_loader_destroy(struct history_loader **loader);
 /* Requests an instant, in UTC microseconds. Replaces the client's last request if that still waits. */
 void history_loader_ask(struct history_loader *loader, uint64_t client, int64_t at_us);
 /* Drops the client's request and answers. */
 void history_loader_forget(struct history_loader *loader, uint64_t client);
-/* Returns all answers, oldest first; the caller frees each with mem_free. NULL: none. */
+/* Returns all answers so far, oldest first; the caller frees each with mem_free. NULL: no answer. */
 struct history_loader_answer *history_loader_collect(struct history_loader *loader);
 /* Returns the beginning of recorded history, UTC microseconds; 0: not known yet, or nothing is recorded. */
 int64_t history_loader_first_us(struct history_loader *loader);

@@ -16,18 +16,18 @@
 #include "service/drift_report.h"
 #include "service/remote_history.h"
 
-enum { THREADS = 2 }; /* each address uses one thread at a time, so that its queries do not block another address */
-static const size_t PIECE_BYTES = 256 * 1024;    /* bytes after which a piece of an answer ends, with the tag that is being read, */
-static const int64_t PIECE_NS = 100 * NS_PER_MS; /* and time after which it ends */
+enum { THREADS = 2 };                         /* each address uses one thread at a time, so that its queries do not block another address */
+static const size_t PIECE_BYTES = 256 * 1024; /* a piece of an answer ends with the tag after which it has this many bytes, */
+static const int64_t PIECE_NS = 100 * NS_PER_MS; /* or has taken this time */
 
 struct pending_query {
     struct history_query query;
     int next_tag; /* next tag to read; for drift queries, the next asset */
-    bool buckets; /* columns of the CSV output so far: buckets or single values */
+    bool buckets; /* number of columns in the last line of CSV output: buckets or single values */
     bool listed;  /* a drifting sensor was listed already */
-    bool wanted;  /* the client wants the next piece */
+    bool wanted;  /* the client requested the next piece */
     bool forgotten;
-    uint64_t served; /* turn number at which the query's newest piece was begun; 0: none yet */
+    uint64_t served; /* number of the turn in which the query's newest piece was begun; turns are counted over all queries; 0: none yet */
     struct pending_query *next;
 };
 
@@ -35,7 +35,7 @@ struct history_queries {
     struct log *log;
     const struct plant *plant;
     const struct scene *scene;
-    char *folder; /* folder of the history; NULL: the core is asked */
+    char *folder; /* folder of the recorded history; NULL: history is read from the core */
     struct core_link *core_link;
     _Atomic bool stop;
     void (*notify)(void *arg);
@@ -45,11 +45,11 @@ struct history_queries {
     pthread_mutex_t lock;
     pthread_cond_t wake;
     /* --- below: protected by `lock` */
-    struct pending_query *questions; /* waiting queries, newest first; without those that a thread is working on */
-    uint64_t at_work[THREADS];  /* accounts whose queries the threads work on; 0: none */
+    struct pending_query *questions; /* queries that wait for a thread, newest first */
+    uint64_t at_work[THREADS];       /* account of the query on which each thread works; 0: none */
     struct pending_query *working[THREADS];
-    uint64_t served; /* number of pieces begun so far */
-    int count;       /* number of queries, including those being worked on */
+    uint64_t served; /* number of pieces begun so far, over all queries */
+    int count;       /* number of queries that exist, including those on which a thread works */
     struct history_answer *answers, **last;
     bool stopping;
 };
@@ -78,7 +78,7 @@ static void print_json(const struct pending_query *question, const struct plant_
         text_add(out, "]}\n");
 }
 
-/* Appends the query's next tag as the core writes it, which is the same as this daemon would write. */
+/* Appends the text of the query's next tag, requested from the core: the same bytes as this daemon would write. */
 static bool fetch_tag(const struct history_queries *queries, struct core_history *core, struct pending_query *question, struct text *out)
 {
     const struct history_query *query = &question->query;
@@ -89,7 +89,7 @@ static bool fetch_tag(const struct history_queries *queries, struct core_history
                       : remote_history_json(core, query, tag, first, last, out);
 }
 
-/* Returns how many times history is read for an answer in pieces. */
+/* Returns the number of steps (tags, or assets for drift) of an answer in pieces, each of which reads history once. */
 static int steps_of(const struct history_queries *queries, const struct history_query *query)
 {
     return !query->drift ? query->tag_count : query->tag >= 0 ? 1 : (int)queries->scene->asset_count;
@@ -191,7 +191,7 @@ static bool is_at_work(const struct history_queries *queries, uint64_t account)
     return any;
 }
 
-/* Returns the turn number of the newest piece for the query's account. The caller holds the lock. */
+/* Returns the turn number of the newest piece of all queries with the query's account. The caller holds the lock. */
 static uint64_t served_of(const struct history_queries *queries, const struct pending_query *question)
 {
     uint64_t served = question->served;
@@ -204,7 +204,7 @@ static uint64_t served_of(const struct history_queries *queries, const struct pe
 static bool goes_before(const struct history_queries *queries, const struct pending_query *a, const struct pending_query *b)
 {
     uint64_t a_served = served_of(queries, a), b_served = served_of(queries, b);
-    /* the list is newest first, so among equals the later entry is older and wins */
+    /* the list is newest first, so of two equal entries the later one is older, and is chosen */
     return a_served < b_served || (a_served == b_served && a->served <= b->served);
 }
 
@@ -221,7 +221,7 @@ static struct pending_query *take_next(struct history_queries *queries)
     return question;
 }
 
-/* Delivers a piece. The caller holds the lock. */
+/* Puts a finished piece into the list of answers. The caller holds the lock. */
 static void give(struct history_queries *queries, struct pending_query *question, struct history_answer *piece)
 {
     bool last = piece->last;

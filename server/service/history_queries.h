@@ -19,8 +19,8 @@ enum { HISTORY_QUERIES_MOST = 128 };
 struct history_answer { /* one piece of an answer; free with history_answer_free() */
     uint64_t client;
     bool csv;
-    bool first, last; /* first piece of the answer; last piece */
-    char *text;       /* NULL: history could not be read, and no more pieces come */
+    bool first, last; /* first: this is the first piece of the answer; last: the last piece */
+    char *text;       /* text of the piece; NULL: history could not be read, and no more pieces come */
     size_t length;
     struct history_answer *next;
 };
@@ -30,8 +30,8 @@ struct history_queries;
 void history_answer_free(struct history_answer **answer);
 
 /* Starts the threads; they call notify(arg) when a piece is ready. Returns NULL if they cannot start, already logged. plant, scene and
-   core_link must outlive the queries. scene NULL: drift queries are not used. folder: of the history; NULL: the core has the history and
-   is asked through core_link. */
+   core_link must outlive the queries. scene NULL: drift queries are not used. folder: folder of the recorded history; NULL: the core has
+   the history and is asked through core_link. */
 struct history_queries *history_queries_create(struct log *log, const struct plant *plant, const struct scene *scene, const char *folder,
                                                struct core_link *core_link, void (*notify)(void *arg), void *arg);
 /* Ends the threads. &NULL is allowed; sets *queries to NULL. */
@@ -42,7 +42,7 @@ bool history_queries_ask(struct history_queries *queries, const struct history_q
 void history_queries_continue(struct history_queries *queries, uint64_t client);
 /* Drops the client's query and pieces. */
 void history_queries_forget(struct history_queries *queries, uint64_t client);
-/* Returns all finished pieces, oldest first; the caller owns them. NULL: none. */
+/* Returns all finished pieces so far, oldest first; the caller owns them. NULL: no piece. */
 struct history_answer *history_queries_collect(struct history_queries *queries);
 
 #endif

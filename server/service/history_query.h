@@ -14,15 +14,16 @@ enum { HISTORY_QUERY_TAGS = 64, HISTORY_QUERY_POINTS = 20000 };
 
 struct history_query {
     uint64_t client;
-    uint64_t account; /* account whose turn the query uses: the client's address; 0: one account for all queries without an address */
+    /* id of the account in whose turn the query is served: the client's address; 0: one account for all queries without an address */
+    uint64_t account;
     int tags[HISTORY_QUERY_TAGS]; /* indices into the plant's tags */
     int tag_count, max_points;
     int64_t from_us, to_us;
     bool csv;
-    bool drift;   /* instead of series, the query asks which sensors drifted in the week before to_us (service/drift_report.h) */
-    int group, tag; /* of a drift query: index of the group, or of a single tag; otherwise -1 */
-    bool gaps;    /* instead of series, the query asks when nothing was recorded */
-    bool journal; /* instead of series, the query asks for the alarm journal, filtered by `alarms` */
+    bool drift;     /* instead of series, the query asks which sensors drifted in the week before to_us (service/drift_report.h) */
+    int group, tag; /* for a drift query: index of the group, or of a single tag; otherwise -1 */
+    bool gaps;      /* instead of series, the query asks for the periods in which nothing was recorded */
+    bool journal;   /* instead of series, the query asks for the alarm journal, filtered by `alarms` */
     struct alarm_query alarms;
 };
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Queries and answers in two lists under one lock. */
+/* Keeps pick queries and their answers in two lists under one lock. */
 #include "service/pick_queue.h"
 
 #include <pthread.h>
@@ -38,7 +38,7 @@ void pick_queue_destroy(struct pick_queue **picks_ptr)
     *picks_ptr = NULL;
 }
 
-/* Returns the index of the client's query, or count if it has none. The caller holds the lock. */
+/* Returns the index of the client's query, or the list's count if the client has none. The caller holds the lock. */
 static size_t find(const struct pick_queue *queue, uint64_t client)
 {
     size_t i = 0;

@@ -7,7 +7,7 @@
 
 struct pick_query {
     uint64_t client;
-    uint32_t seq; /* the client's number for the query; 0: none */
+    uint32_t seq; /* sequence number that the client gave its query; 0: none */
     struct view view;
     double x_px, y_px;
 };
@@ -22,13 +22,13 @@ struct pick_queue;
 struct pick_queue *pick_queue_create(void);         /* never returns NULL */
 void pick_queue_destroy(struct pick_queue **queue); /* &NULL is allowed; sets *queue to NULL */
 
-/* Queues a copy of the query. Replaces the client's last query if that still waits. */
+/* Queues a copy of the query. Replaces the client's last query if the last one still waits. */
 void pick_queue_ask(struct pick_queue *queue, const struct pick_query *query);
 /* Drops the client's query and answers. */
 void pick_queue_forget(struct pick_queue *queue, uint64_t client);
 /* Returns whether a query waits. */
 bool pick_queue_has_query(struct pick_queue *queue);
-/* Takes out the oldest query. Returns false if there is none. */
+/* Removes the oldest query from the queue and writes it to the out parameter. Returns false if there is none. */
 bool pick_queue_take(struct pick_queue *queue, struct pick_query *out);
 /* Adds an answer. Returns true if it is the first since the last pick_queue_collect(), so that the collector must be notified. */
 bool pick_queue_answer(struct pick_queue *queue, const struct pick_query *query, const struct pick *pick);

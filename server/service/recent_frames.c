@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A few recent frames, found by their content. */
+/* Implements the recent-frame cache: an array of frames, searched by content hash. */
 #include "service/recent_frames.h"
 
 #include "base/clock.h"
 
-static const int64_t KEPT_NS = 500 * NS_PER_MS; /* maximum age of a cached frame: ages and times drawn into the frame are late by as much */
-#define KEPT_BYTES ((size_t)32 * 1024 * 1024)   /* maximum bytes of all kept frames; a single frame may be larger */
+/* maximum age of a cached frame: clock and ages in a frame from the cache are up to this much too old */
+static const int64_t KEPT_NS = 500 * NS_PER_MS;
+#define KEPT_BYTES ((size_t)32 * 1024 * 1024) /* maximum bytes of all kept frames; a single frame may be larger */
 
 static size_t bytes_of(const struct frame *frame)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The recent-frame cache: the last frames drawn, for clients that request the same view a moment later. So any number of clients of one
-   view cost one rendering, although they never ask at the same time. Thread: the render thread. */
+   view cost one rendering, even if their requests come at different times. Thread: the render thread. */
 #ifndef SERVICE_RECENT_FRAMES_H
 #define SERVICE_RECENT_FRAMES_H
 #include "render/frame.h"
@@ -10,7 +10,7 @@ struct recent_frames { /* zero-initialise; free with recent_frames_finish() */
     struct {
         struct frame *frame; /* a reference; NULL: empty entry */
         int64_t drawn_ns;
-        int64_t read_ns; /* monotonic: when the frame's readings were taken */
+        int64_t read_ns; /* monotonic: when the snapshot of readings that the frame shows was taken */
     } kept[RECENT_FRAMES];
 };
 
@@ -18,7 +18,7 @@ struct recent_frames { /* zero-initialise; free with recent_frames_finish() */
 void recent_frames_add(struct recent_frames *recent, struct frame *frame, int64_t read_ns, int64_t now_ns);
 /* Returns the frame with that content hash if it is recent enough, borrowed; NULL: none. */
 struct frame *recent_frames_find(struct recent_frames *recent, uint64_t content, int64_t now_ns);
-/* Returns a frame of that view whose readings were taken at read_ns or later, borrowed; NULL: none. */
+/* Returns a frame of that view whose snapshot of readings was taken at read_ns or later, borrowed; NULL: none. */
 struct frame *recent_frames_find_view(struct recent_frames *recent, const struct view *view, int64_t read_ns, int64_t now_ns);
 /* Empties the cache. */
 void recent_frames_finish(struct recent_frames *recent);

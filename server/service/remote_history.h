@@ -7,10 +7,10 @@
 #include "service/history_query.h"
 
 /* All functions append to *out and return false if the core did not answer, already logged. */
-/* Appends the series of a tag as JSON. first, last: also append the beginning of the whole answer, or its end. */
+/* Appends the series of a tag as JSON. first: also append the beginning of the whole answer; last: also append its end. */
 bool remote_history_json(struct core_history *core, const struct history_query *query, const char *tag, bool first, bool last,
                          struct text *out);
-/* Appends the series of a tag as CSV. *buckets: the columns of the previous line; receives those of this one. */
+/* Appends the series of a tag as CSV. *buckets: number of columns in the last line written; updated. */
 bool remote_history_csv(struct core_history *core, const struct history_query *query, const char *tag, bool first, bool *buckets,
                         struct text *out);
 /* Appends the complete answer to a query for gaps, drifting sensors or the journal. */

@@ -6,12 +6,13 @@
 #include "base/mem.h"
 #include "service/render_service_impl.h"
 
-/* time without a sign of life after which the render thread counts as stuck; the second while it rebuilds a lost context */
+/* time without a sign of life after which the render thread counts as stuck; the second value applies while it rebuilds a lost GL
+   context */
 static const int64_t STUCK_NS = 12 * NS_PER_S, REBUILDING_NS = 120 * NS_PER_S;
 
 /* --- requests, from any thread ---------------------------------------------------------------------------------------- */
 
-/* Replaces a request by a newer one: the newer view counts, and the urgency of the older one is kept. */
+/* Replaces a request by a newer one: the result has the newer view, and the more urgent of both urgencies. */
 static void replace(struct frame_request *old, const struct frame_request *request)
 {
     struct frame_request merged = *request;
@@ -93,7 +94,7 @@ void render_service_forget(struct render_service *service, uint64_t id)
     render_service_remove_client(service, id);
     encode_queue_forget(service->queue, id);
     if (service->client_count == 0)
-        pthread_cond_broadcast(&service->wake); /* wakes the render thread, which may release its caches soon if there are no clients */
+        pthread_cond_broadcast(&service->wake); /* wakes the render thread: without clients it may have to release its caches soon */
     pthread_mutex_unlock(&service->lock);
     encode_queue_sweep(service->queue);
 }
@@ -163,7 +164,7 @@ static void give_back(struct render_service *service, struct encoded_frame *enco
     pthread_mutex_unlock(&service->lock);
 }
 
-/* Calls params.notify if there is something to collect that was not announced yet. Any thread. */
+/* Calls params.notify if frames or answers can be collected of which the collector was not notified yet. Any thread. */
 static void announce(void *arg)
 {
     struct render_service *service = arg;
@@ -182,7 +183,7 @@ void render_service_answer_without_frame(struct render_service *service, const s
     announce(service);
 }
 
-/* Notes that the client does not show the frame, because it could not be encoded: its next request is drawn even if the content is the
+/* Records that the client does not show the frame, because it could not be encoded: its next request is drawn even if the content is the
    same. */
 static void forget_content(struct render_service *service, uint64_t id)
 {

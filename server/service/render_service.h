@@ -16,20 +16,21 @@ struct render_service;
 struct render_service_params {
     struct log *log;
     enum gl_kind gl;
-    bool per_fragment;                 /* compute the field for each fragment; for comparison */
-    bool by_gl;                        /* draw all frames with GL, even if GL runs on a processor; for comparison */
-    const struct gl_device *gl_device; /* GPU to use; NULL: the first working one that is hardware */
+    bool per_fragment; /* compute the field for each fragment instead of each vertex; for comparison in tests */
+    bool by_gl;        /* draw all frames with GL, even if the GL implementation is a software renderer; for comparison in tests */
+    const struct gl_device *gl_device; /* GPU to use; NULL: the first hardware GPU that works */
     const struct scene *scene;
     struct store *store;
-    struct baselines *baselines;           /* NULL: differences to baselines cannot be shown */
+    struct baselines *baselines;           /* stored baselines; NULL: differences to baselines cannot be shown */
     struct snapshot_cache *snapshot_cache; /* readings of past instants; NULL: past instants cannot be shown */
-    struct trials *trials;                 /* sensors moved on trial; NULL: trials cannot be shown */
+    struct trials *trials;                 /* sensors that engineers move on trial; NULL: trials cannot be shown */
     struct workers *workers;
     size_t memory_bytes;      /* limit on the daemon's memory in bytes, models included; 0: chosen for the machine */
     const char *h264_library; /* name of the libavcodec encoder; NULL: the default one */
     struct counters *counters;
-    bool keeps_records;       /* frames with overlays include the record of their inputs (render/frame_record.h), for signing */
-    const struct view *first; /* views drawn once in render_service_create(), so that they are quick later; read only during that call */
+    bool keeps_records; /* true: frames with overlays include the record of their inputs (render/frame_record.h), for signing */
+    /* views that render_service_create() draws once, so that their caches and shaders are ready for requests; read only during that call */
+    const struct view *first;
     size_t first_count;
     void (*notify)(void *arg); /* called when frames or pick answers can be collected; by any thread */
     void *notify_arg;
@@ -46,23 +47,23 @@ enum request_outcome { REQUEST_ADDED, REQUEST_REPLACED, REQUEST_REFUSED };
    REQUEST_REPLACED: it replaced one that was not begun, and shares its answer. REQUEST_REFUSED: it was only valid as a replacement
    (only_replace), and there was none to replace. Drawing begins with render_service_wake(). */
 enum request_outcome render_service_request(struct render_service *service, uint64_t client, const struct frame_request *request);
-/* Queues requests of several clients at once: requests for equal views are begun together, so that one frame answers all of them. */
+/* Queues requests of several clients at once: requests for equal views are begun together, so that one frame answers all these clients. */
 void render_service_request_all(struct render_service *service, size_t count, const uint64_t *clients, const struct frame_request *requests,
                                 enum request_outcome *outcomes);
-/* Makes the render thread begin with the requests queued since the last call, if there are any. Call it after all requests of one event,
-   so that equal requests share a frame. */
+/* Wakes the render thread if requests were queued since the last call. Call it after all requests of one event, so that equal requests
+   share a frame. */
 void render_service_wake(struct render_service *service);
 /* Drops all waiting requests and encoded frames of the client. */
 void render_service_forget(struct render_service *service, uint64_t client);
-/* Makes all later frames mark tags whose loop was not checked, where the server draws markers. loop_checks must outlive the service;
-   NULL: no tag is marked. */
+/* Makes all later frames show a mark on each tag whose measuring loop was not checked, if the server draws the markers. loop_checks must
+   outlive the service; NULL: no tag is marked. */
 void render_service_set_loop_checks(struct render_service *service, const struct loop_checks *loop_checks);
 /* Notes that readings changed: a new snapshot is taken before the next frame. */
 void render_service_on_data(struct render_service *service);
 /* Returns false while a lost GL context is being rebuilt; requests wait meanwhile. */
 bool render_service_ready(struct render_service *service);
-/* Returns whether the render thread has given no sign of life for 12 s, or 2 minutes while a lost GL context is rebuilt; also asks it
-   for the next sign of life. Call it every few seconds. */
+/* Returns whether the render thread has given no sign of life for 12 s, or 2 minutes while a lost GL context is rebuilt; also requests the
+   next sign of life from it. Call it every few seconds. */
 bool render_service_is_stuck(struct render_service *service, int64_t now_ns);
 /* Destroys the GL context in the middle of the next frame, like a GPU reset. For tests. */
 void render_service_lose_context(struct render_service *service);

@@ -9,15 +9,16 @@
 #include "service/time_accounts.h"
 
 struct render_client {
-    uint64_t id, number; /* number: counts the client's requests, incremented when drawing begins */
-    bool pending;        /* `request` is waiting to be begun */
+    uint64_t id, number; /* number: sequence number of the client's requests, incremented when drawing of one begins */
+    bool pending;        /* true: `request` waits for its drawing to begin */
     bool has_content;
     bool left; /* the client no longer wants the frame that the long job draws for it */
-    int64_t patience_ns; /* how long changed readings wait for the client's long job; 0: the initial delay */
+    /* how long changed readings wait for the client's long job (a frame drawn in steps) before they get a preview; 0: the initial delay */
+    int64_t patience_ns;
     struct frame_request request;
     /* content hash of the newest frame drawn for the client; number of the client's request that was answered last */
     uint64_t content, content_number;
-    int64_t spent_ns[SCHEDULER_SHARES]; /* drawing time charged to the client, by scheduler_share() */
+    int64_t spent_ns[SCHEDULER_SHARES]; /* drawing time charged to the client, indexed by share (scheduler_share()) */
     struct time_account *account;       /* account of the client's address */
 };
 
@@ -34,14 +35,14 @@ struct render_service {
     enum { STARTING, RUNNING, FAILED, STOPPING } state;
     bool has_news;                         /* requests were queued since the render thread was last woken */
     bool new_data;                         /* readings changed since the last snapshot */
-    const struct loop_checks *loop_checks; /* NULL: no tag is marked as unchecked */
+    const struct loop_checks *loop_checks; /* loop check records; NULL: no tag is marked as unchecked */
     bool lost;                             /* the GL context is lost and being rebuilt */
-    int64_t asked_ns;                      /* monotonic: since when a sign of life is awaited; 0: not awaited */
-    bool lose;                             /* a test wants the context lost in the middle of the next frame */
+    int64_t asked_ns;                      /* monotonic: since when the render thread owes a sign of life; 0: none was requested */
+    bool lose;                             /* set by a test: the GL context is destroyed in the middle of the next frame */
     struct render_client **clients;        /* sorted by id, ascending */
     size_t client_count, client_capacity;
     struct time_accounts accounts;
-    int64_t spent_ns[SCHEDULER_SHARES];      /* drawing time that the client served last had been charged before */
+    int64_t spent_ns[SCHEDULER_SHARES];      /* drawing time with which the client served last had been charged before that turn */
     struct encoded_frame *done, **done_last; /* encoded frames not collected yet, oldest first */
     bool announced;                          /* params.notify was called for them */
 };

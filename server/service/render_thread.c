@@ -5,16 +5,19 @@
 #include "render/frame_record.h"
 #include "render/overlay/overlay.h"
 
-static const int64_t STEP_NS = 10 * NS_PER_MS; /* time for a step of a long job before other requests get a turn */
-static const int64_t LIGHT_NS = 4 * NS_PER_MS; /* time per frame of a moving session for baking a light that the session chose */
-static const int64_t FIELD_NS = 6 * NS_PER_MS; /* time per frame for computing a field that takes long */
-static const int64_t REBUILD_NS = 100 * NS_PER_MS, REBUILD_MAX_NS = 5 * NS_PER_S; /* delay between attempts to create a new context */
-static const int64_t MAX_READINGS_DELAY_NS = 4 * NS_PER_S; /* longest wait of changed readings for a refined frame in a view that had one */
-/* how long to wait for the same kind of GPU after a driver restart before another renderer is used */
+/* time for one step of a long job (a frame drawn in steps); afterwards other requests get a turn */
+static const int64_t STEP_NS = 10 * NS_PER_MS;
+/* drawing time that each frame of a moving session may spend on baking a light that the session chose */
+static const int64_t LIGHT_NS = 4 * NS_PER_MS;
+static const int64_t FIELD_NS = 6 * NS_PER_MS; /* drawing time that each frame may spend on computing a field that takes long */
+static const int64_t REBUILD_NS = 100 * NS_PER_MS, REBUILD_MAX_NS = 5 * NS_PER_S; /* delay between attempts to create a new GL context */
+/* longest wait of changed readings for a refined frame, if the view already had one; then a preview is drawn */
+static const int64_t MAX_READINGS_DELAY_NS = 4 * NS_PER_S;
+/* how long to wait for a GPU of the same kind after a driver restart, before a different renderer is used */
 static const int64_t DRIVER_RESTART_TIMEOUT_NS = 60 * NS_PER_S;
 
-/* Makes the ticket's request pending again. Returns true if that is not needed: the client has gone, or has a newer request. The caller
-   holds the lock. */
+/* Makes the ticket's request wait for drawing again. Returns true if there is nothing to draw: the client has gone, or has a newer request.
+   The caller holds the lock. */
 static bool request_again(const struct request_ticket *ticket, void *arg)
 {
     struct render_client *client = render_service_find(arg, ticket->client);
@@ -25,7 +28,7 @@ static bool request_again(const struct request_ticket *ticket, void *arg)
     return false;
 }
 
-/* Fails the group's requests. If the context was lost, the requests are drawn again with the next context. */
+/* Answers the group's requests with a failure. If the cause is a lost GL context, makes them wait for the next context instead. */
 static void fail(struct render_thread *thread, struct request_group *group)
 {
     struct render_service *service = thread->service;
@@ -42,7 +45,8 @@ static void fail(struct render_thread *thread, struct request_group *group)
     group->count = 0;
 }
 
-/* Returns whether the frame is valid: pixels read back after a context loss are not. Frees an invalid frame. */
+/* Returns whether the frame's pixels are valid: they are not if the GL context was lost before they were read back. Frees an invalid
+   frame. */
 static bool is_good(struct render_thread *thread, struct frame *frame)
 {
     bool good = frame && !gl_lost(thread->gl);
@@ -92,7 +96,7 @@ static void deliver(struct render_thread *thread, struct frame *frame, const str
     frame_unref(&frame);
 }
 
-/* --- frames that the GPU draws while earlier pixels are read back ----------------------------------------------------- */
+/* --- submitted frames: the GPU draws one while the pixels of earlier ones are read back ------------------------------- */
 
 /* Submits a frame to the GPU; takes over the reference *historical. */
 static void submit(struct render_thread *thread, struct request_group *group, const struct historical_snapshot **historical,
@@ -116,7 +120,7 @@ static void drop_oldest(struct render_thread *thread)
     awaited_frames_pop(&thread->in_flight);
 }
 
-/* Waits for the oldest submitted frame and delivers it. */
+/* Waits until the oldest submitted frame is complete and passes it to the encode queue. */
 static void finish_oldest(struct render_thread *thread)
 {
     struct awaited_frame *encoded = &thread->in_flight.at[0];
@@ -128,7 +132,7 @@ static void finish_oldest(struct render_thread *thread)
     drop_oldest(thread);
 }
 
-/* Delivers all complete frames; waits for the oldest if the list is full. */
+/* Passes all complete frames to the encode queue; if the list is full, waits for the oldest. */
 static void finish_complete(struct render_thread *thread)
 {
     struct awaited_frames *in_flight = &thread->in_flight;
@@ -138,7 +142,7 @@ static void finish_complete(struct render_thread *thread)
 
 /* --- frames that take long (long jobs) -------------------------------------------------------------------------------- */
 
-/* Clears `left` for the group's clients: they left the previous long job, not this one. */
+/* Clears `left` for the group's clients: it says that they left the previous long job, and must not apply to the new one. */
 static void stay(struct render_service *service, const struct request_group *group)
 {
     pthread_mutex_lock(&service->lock);
@@ -150,7 +154,7 @@ static void stay(struct render_service *service, const struct request_group *gro
     pthread_mutex_unlock(&service->lock);
 }
 
-/* Exchanges the long job with the parked one. */
+/* Exchanges the long job with the parked one (suspended in favour of another). */
 static void long_job_swap(struct render_thread *thread)
 {
     struct long_job parked = thread->parked;
@@ -158,7 +162,7 @@ static void long_job_swap(struct render_thread *thread)
     thread->long_job = parked;
 }
 
-/* Parks the running long job if the group's first client may overtake it. */
+/* Parks (suspends) the running long job if the frame of the group's first client may overtake it. */
 static void long_job_park(struct render_thread *thread, const struct request_group *group)
 {
     struct render_service *service = thread->service;
@@ -210,8 +214,8 @@ static void long_job_begin(struct render_thread *thread, struct request_group *g
     thread->stale = true;
 }
 
-/* Redraws the refined frame with newer readings, which its clients may have seen in previews meanwhile. Returns the new frame; NULL: not
-   possible. */
+/* Redraws the refined frame with newer readings, because previews may have shown those to its clients meanwhile. Returns the new frame;
+   NULL: not possible. */
 static struct frame *long_job_with_new_readings(struct render_thread *thread)
 {
     struct render_service *service = thread->service;
@@ -242,7 +246,8 @@ static const struct snapshot *long_job_readings(const struct render_thread *thre
     return thread->long_job.historical ? &thread->long_job.historical->snapshot : thread->long_job.snapshot;
 }
 
-/* Shortens the delay of readings again for clients that now have a refined frame. */
+/* Limits the delay before changed readings get a preview to MAX_READINGS_DELAY_NS, for clients that just got a refined frame. Refined
+   frames that were given up had doubled it. */
 static void calm(struct render_service *service, const struct request_group *group)
 {
     pthread_mutex_lock(&service->lock);
@@ -296,7 +301,7 @@ static bool has_left(const struct request_ticket *ticket, void *arg)
     return !client || client->left || (client->pending && client->request.urgency == URGENCY_INPUT);
 }
 
-/* Removes clients that moved on from the long job; abandons the job once it has no clients. */
+/* Removes clients that no longer want the frame from the long job; abandons the job once it has no clients. */
 static void long_job_leave(struct render_thread *thread)
 {
     struct render_service *service = thread->service;
@@ -313,10 +318,10 @@ static void long_job_leave(struct render_thread *thread)
     long_job_forget_instant(thread);
 }
 
-/* Turns requests that preferred a refined frame if it were quick (or_moving) into previews, and other refined requests into long jobs. */
+/* Turns the group's refined requests into previews if the first request allows that (or_moving); otherwise prepares them for a long job. */
 static void choose_other(struct request_group *group)
 {
-    bool moving = group->tickets[0].request.or_moving; /* one frame answers all tickets: none may claim another tier */
+    bool moving = group->tickets[0].request.or_moving; /* one frame answers all tickets, so all tickets get the same tier */
     for (size_t i = 0; i < group->count; i++) {
         struct frame_request *request = &group->tickets[i].request;
         if (!moving) {
@@ -333,7 +338,7 @@ static void choose_other(struct request_group *group)
     }
 }
 
-/* Draws the planned frame at once if it is quick; otherwise begins a long job. */
+/* Draws the planned frame at once if that is quick; otherwise begins a long job. */
 static void draw_plan(struct render_thread *thread, struct request_group *group, const struct snapshot *snapshot,
                       const struct historical_snapshot **historical, const struct split_plan *plan, bool quick)
 {
@@ -382,7 +387,7 @@ static bool draw_of(struct render_thread *thread, struct request_group *group, c
     return true;
 }
 
-/* Draws the group's frame, or answers it from the cache; returns as draw_of(). */
+/* Answers the group from the cache, or draws its frame; returns the result of draw_of(). */
 static bool draw(struct render_thread *thread, struct request_group *group)
 {
     const struct historical_snapshot *historical;
@@ -401,9 +406,9 @@ static bool draw(struct render_thread *thread, struct request_group *group)
     return done;
 }
 
-/* --- life of the render thread ---------------------------------------------------------------------------------------- */
+/* --- start, main loop and end of the render thread -------------------------------------------------------------------- */
 
-/* Creates GL and everything that depends on it. kind: GL_AUTO, or the kind of the lost context; hardware: a software renderer is not
+/* Creates GL and everything that depends on it. kind: GL_AUTO, or the kind of the lost context; hardware true: a software renderer is not
    accepted. */
 static bool gl_begin(struct render_thread *thread, enum gl_kind kind, bool hardware)
 {
@@ -479,7 +484,7 @@ static void set_lost(struct render_service *service, bool lost)
     pthread_mutex_unlock(&service->lock);
 }
 
-/* Waits. Returns false if the render service is stopping. */
+/* Waits until pause_ns have passed. Returns false if the render service is stopping. */
 static bool pause_for(struct render_service *service, int64_t pause_ns)
 {
     int64_t until_ns = clock_mono_ns() + pause_ns;
@@ -493,8 +498,8 @@ static bool pause_for(struct render_service *service, int64_t pause_ns)
     return running;
 }
 
-/* Rebuilds a lost GL context. A device that was reset needs a moment, a driver that restarts some seconds; until then nothing is drawn,
-   and the daemon otherwise goes on. The long job in progress is requested again. */
+/* Rebuilds a lost GL context. Attempts are repeated, because a restarting driver takes some seconds. Meanwhile nothing is drawn; all else
+   in the daemon continues. The long job in progress is requested again. */
 static void rebuild(struct render_thread *thread)
 {
     struct render_service *service = thread->service;
@@ -519,7 +524,7 @@ static void rebuild(struct render_thread *thread)
             hardware = false;
         }
     }
-    renderer_bake_idle(thread->renderer, INT64_MAX); /* bake lights completely, so that frames look as before */
+    renderer_bake_idle(thread->renderer, INT64_MAX); /* lights are baked completely, so that frames look the same as before the loss */
     set_lost(service, false);
     log_info(service->params.log, "gl: drawing with a new context after %.1f s", (double)(clock_mono_ns() - lost_ns) / NS_PER_S);
 }

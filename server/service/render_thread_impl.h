@@ -11,23 +11,23 @@
 struct thread_memory { /* memory of the caches (render_thread_memory.c) */
     counter *stores[RENDER_STORES], *fields, *frames, *bound;
     size_t other;           /* recent peak of the process memory besides models and caches, in bytes; decays slowly */
-    int64_t looked_ns;      /* monotonic: when memory was last counted */
+    int64_t looked_ns;      /* monotonic: when the memory in use was last measured */
     int64_t trimmed_ns;     /* monotonic: when free heap memory was last returned to the system */
-    int64_t alone_since_ns; /* monotonic time since when there has been no client; 0: there are clients */
-    bool released;          /* the caches were released and nothing was drawn since */
+    int64_t alone_since_ns; /* monotonic time since when the service has had no client; 0: there are clients */
+    bool released;          /* the caches were released, and no frame was drawn since */
 };
 
 struct long_job {                                 /* a frame that is drawn in steps, between other clients' frames */
-    struct split_view *split;                     /* NULL: no such frame is being drawn */
+    struct split_view *split;                     /* the frame; NULL: no long job is running */
     struct request_group group;                   /* requests that the frame answers */
     const struct historical_snapshot *historical; /* reference to the readings of a past instant; NULL: the readings are in `snapshot` */
     struct snapshot *snapshot;
     enum urgency urgency;
     int64_t asked_ns;
-    int64_t px, spent_ns;     /* px: pixels of the frame; spent_ns: drawing time so far */
+    int64_t px, spent_ns;     /* px: number of pixels of the frame; spent_ns: drawing time so far */
     uint64_t account;         /* time account that is charged */
-    int64_t account_spent_ns; /* drawing time that was charged to that account before the job began */
-    bool keeps;               /* once the frame is done, frames with new readings are quick, so the job is not abandoned for them */
+    int64_t account_spent_ns; /* drawing time that had been charged to the address's account before the job began */
+    bool keeps; /* true: later frames with new readings will reuse the job's work, so that new readings do not abandon the job */
 };
 
 struct render_thread {
@@ -36,15 +36,15 @@ struct render_thread {
     struct field *field;
     struct renderer *renderer;
     struct snapshot *snapshot; /* the newest readings taken */
-    bool stale;                /* a frame took over `snapshot`: take a new one before the next use */
-    struct request_group same; /* scratch memory: requests that are answered without drawing */
+    bool stale;                /* a submitted frame took `snapshot` away: a new one must be taken before the next use */
+    struct request_group same; /* scratch memory: requests that are answered without drawing a frame */
     struct recent_frames recent;
     struct long_job long_job;
-    struct long_job parked; /* a large long job that waits for a smaller one of another address */
+    struct long_job parked; /* a suspended long job for a large frame: it continues after the smaller one of another address */
     bool warm;              /* the warm-up is complete */
-    int64_t turn_began_ns;  /* monotonic time at which the thread's present work began, after waiting or other work */
+    int64_t turn_began_ns;  /* monotonic: since when the thread has been drawing without a wait or other work */
     struct awaited_frames in_flight;
-    /* groups whose field is not computed yet; the thread computes a part of a field in each of their turns */
+    /* groups that wait until their field is computed; each of their turns computes a part of the field */
     struct deferred_requests deferred;
     struct thread_memory memory;
 };
@@ -57,8 +57,8 @@ void frame_sharing_submit(struct render_service *service, struct frame *frame, s
 /* Answers, and removes from the group, the requests that need no drawing: clients that already show this content get no frame; others
    share a frame of the same content, recent or in flight. content: content hash of the planned frame. */
 void frame_sharing_answer_unchanged(struct render_thread *thread, uint64_t content, struct request_group *group);
-/* Answers the whole group with a recent frame of the same view, if the frame's readings are as new as those its clients know of, and
-   empties the group. Call it before the field is updated. */
+/* Answers the whole group with a recent frame of the same view, if that frame's readings are as new as those that the group's clients have
+   been told of, and empties the group. Call it before the field is updated. */
 void frame_sharing_answer_from_recent(struct render_thread *thread, struct request_group *group);
 
 /* --- render_thread_memory.c: memory of the caches --------------------------------------------------------------------- */
@@ -67,19 +67,19 @@ void frame_sharing_answer_from_recent(struct render_thread *thread, struct reque
 void render_thread_memory_init(struct thread_memory *memory, struct render_service *service);
 /* Measures the caches and shrinks them to their limit. */
 void render_thread_bound_memory(struct render_thread *thread);
-/* Notes that caches were filled, so that they are released only after another idle period. */
+/* Call it when caches were filled: they are then released only after another period without clients. */
 void render_thread_note_work(struct render_thread *thread);
-/* Does both of the above; measures at most once a second. Call it after each turn. */
+/* Limits the caches (at most once a second) and records that they are filled. Call it after each turn. */
 void render_thread_check_memory(struct render_thread *thread);
-/* Returns true if there has been no client for 10 s and the caches hold something. Otherwise lowers *wait_until_ns to the time at which
-   to ask again. The caller holds the service's lock. */
+/* Returns true if there has been no client for 10 s and the caches are not empty. Otherwise lowers *wait_until_ns to the time of the next
+   check. The caller holds the service's lock. */
 bool render_thread_may_release_memory(struct render_thread *thread, int64_t *wait_until_ns);
 /* Empties all caches. No frame may be in flight. */
 void render_thread_release_memory(struct render_thread *thread);
 
 /* --- render_thread_warm_up.c: costs of the first frames, paid in advance ---------------------------------------------- */
 
-/* Draws the views of params.first, so that their fields, buffers and shaders exist before the first requests. */
+/* Draws the views of params.first before the first requests, so that their fields, buffers and shaders exist. */
 void render_thread_draw_first(struct render_thread *thread);
 /* Draws a small frame of that tier and discards it, which compiles the tier's shaders. */
 void render_thread_warm_tier(struct render_thread *thread, enum tier tier);
@@ -91,8 +91,8 @@ void render_thread_warm_up(struct render_thread *thread);
 /* Returns whether the client's small frame may be drawn before another address's large long job ends. The caller holds the service's
    lock. */
 bool render_thread_overtakes(const struct render_thread *thread, const struct render_client *client);
-/* Waits for work and moves the requests to be answered next into the group. The group stays empty if a step of the long job, or a frame
-   in flight, is due instead. Returns false if the thread must end. */
+/* Waits for work and moves the requests to be answered next into the group. The group stays empty if the thread must instead draw a step of
+   the long job, or deliver a submitted frame. Returns false if the thread must end. */
 bool render_thread_next(struct render_thread *thread, const struct scheduler *scheduler, struct request_group *group);
 /* Updates thread->snapshot if readings changed or it is too old. */
 void render_thread_refresh(struct render_thread *thread);

@@ -8,10 +8,10 @@
 
 static const int64_t MEASURE_INTERVAL_NS = 1 * NS_PER_S; /* interval between measurements */
 static const int64_t IDLE_TIMEOUT_NS = 10 * NS_PER_S;    /* time without clients after which caches are released */
-static const double FIELD_SHARE = 0.3;                   /* share of the limit for the values and weights of all fields */
-/* Minimum reserved besides models and caches: shaders, threads, the plant, and temporary memory of a frame or a light. */
+static const double FIELD_SHARE = 0.3;                   /* share of the limit that values and weights of all fields may take */
+/* Minimum reserved for memory other than models and caches: shaders, threads, the plant, and temporary memory of a frame or a light. */
 static const size_t OTHER_BYTES = (size_t)576 << 20;
-static const size_t FREE_BYTES = (size_t)64 << 20; /* bytes free in the heap and still resident that make trimming worthwhile */
+static const size_t FREE_BYTES = (size_t)64 << 20; /* the heap is trimmed if this many bytes in it are free but still resident */
 static const int64_t TRIM_NS = 5 * NS_PER_S;       /* minimum time between two trims */
 static const size_t FADES = 64; /* decay: at each measurement the peak loses 1 / FADES of its excess over the present value */
 
@@ -33,8 +33,8 @@ void render_thread_memory_init(struct thread_memory *memory, struct render_servi
                                  "Limit of all caches together; the picture being drawn may exceed it.");
 }
 
-/* Returns the recent peak of memory that the process needs besides `counted`, the bytes of models and caches. Near the limit `all`, free
-   heap memory is returned to the system first. */
+/* Returns the recent peak of memory that the process needs besides `counted`, the bytes of models and caches. If memory is close to the
+   limit `all`, first returns free heap memory to the system. */
 static size_t other_bytes(struct thread_memory *memory, size_t all, size_t counted)
 {
     struct memory_use use;
@@ -50,12 +50,12 @@ static size_t other_bytes(struct thread_memory *memory, size_t all, size_t count
     size_t other = use.anonymous > counted ? use.anonymous - counted : 0;
     if (other < memory->other)
         memory->other -= (memory->other - other) / FADES;
-    else if (!loose) /* otherwise a cache may just have freed memory that the heap has not returned to the system yet */
+    else if (!loose) /* without the trim, memory that a cache has just freed would count as other memory, because the heap still holds it */
         memory->other = other;
     return memory->other > OTHER_BYTES ? memory->other : OTHER_BYTES;
 }
 
-/* Returns what models and other memory leave of `all`, but at least a quarter of it. */
+/* Returns the bytes that remain for caches: `all` less models and other memory, but at least a quarter of `all`. */
 static size_t bound_of(size_t all, size_t models, size_t other)
 {
     return models + other < all - all / 4 ? all - models - other : all / 4;
@@ -71,7 +71,8 @@ void render_thread_bound_memory(struct render_thread *thread)
         counted += bytes[i];
     all = all ? all : memory_default_bytes();
     size_t bound = bound_of(all, bytes[STORE_MODELS], other_bytes(memory, all, counted));
-    size_t caches = bound > 2 * frames ? bound - frames : bound / 2; /* frames are not limited: their number follows from the sessions */
+    /* frames are not limited here: their number follows from the number of sessions */
+    size_t caches = bound > 2 * frames ? bound - frames : bound / 2;
     field_set_cache_limit(thread->field, (size_t)(FIELD_SHARE * (double)caches));
     renderer_bound_memory(thread->renderer, caches - (size_t)(FIELD_SHARE * (double)caches));
     renderer_measure_memory(thread->renderer, bytes);

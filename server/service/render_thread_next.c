@@ -3,10 +3,11 @@
 #include "base/clock.h"
 #include "service/render_thread_impl.h"
 
-/* How long changed readings wait for a refined frame of the same client. Doubles each time that they give up on it, so that one gets
-   finished. */
+/* How long changed readings wait for a refined frame of the same client. After that the refined frame is given up for a preview and the
+   delay doubles, so that at some time one gets finished. */
 static const int64_t OWN_DATA_NS = 1 * NS_PER_S, OWN_DATA_MAX_NS = 16 * NS_PER_S;
-/* a frame may overtake a long job that has this many times its pixels: memory suffices for one more of that size, not for two */
+/* a frame may overtake a long job that has this many times its pixels: memory suffices for one more frame of the smaller size, but not for
+   two large ones */
 enum { OVERTAKE_SMALLER = 4 };
 /* maximum age of a snapshot, which limits the error of the clock and of the ages in a frame */
 static const int64_t SNAPSHOT_MAX_AGE_NS = 100 * NS_PER_MS;
@@ -32,7 +33,7 @@ static bool waits_for_long_job(const struct render_thread *thread, const struct 
 }
 
 struct render_turn {
-    bool step;                    /* true: draw a step of the long job; false: see `client` */
+    bool step;                    /* true: draw a step of the long job; false: serve `client` */
     struct render_client *client; /* client to serve next; NULL: none before wait_until_ns */
     int64_t wait_until_ns;
 };
@@ -47,8 +48,8 @@ bool render_thread_overtakes(const struct render_thread *thread, const struct re
     return px * OVERTAKE_SMALLER <= long_job->px && client->account->spent_ns[kind] < long_job->account_spent_ns + long_job->spent_ns;
 }
 
-/* Returns whether the client was charged less time than the other: compares addresses first, then clients of one address. The caller
-   holds the lock. */
+/* Returns whether the client was charged less drawing time than the other: compares the totals of their addresses first, then those of the
+   clients. The caller holds the lock. */
 static bool has_had_less(const struct render_client *client, const struct render_client *other, int kind)
 {
     const int64_t *a = client->account->spent_ns, *b = other->account->spent_ns;
@@ -69,7 +70,7 @@ static bool goes_before(const struct render_thread *thread, const struct render_
     return !other || has_had_less(client, other, scheduler_share(urgency));
 }
 
-/* Chooses the next turn. The caller holds the lock. */
+/* Chooses what the next turn draws. The caller holds the lock. */
 static struct render_turn next_turn(const struct render_thread *thread, const struct scheduler *scheduler)
 {
     const struct render_service *service = thread->service;
@@ -94,8 +95,8 @@ static struct render_turn next_turn(const struct render_thread *thread, const st
     return turn;
 }
 
-/* Adjusts how long readings wait for a refined frame: an input resets the delay, and giving up a refined frame for readings doubles it.
-   The caller holds the lock. */
+/* Adjusts how long readings wait for a refined frame: an input resets the delay to its initial value; giving up a refined frame because of
+   readings doubles it. The caller holds the lock. */
 static void change_patience(const struct render_thread *thread, struct render_client *client)
 {
     int64_t twice_ns = 2 * (client->patience_ns ? client->patience_ns : OWN_DATA_NS);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Lists of requests that one frame answers. */
+/* Lists of requests that are answered by the same frame. */
 #include "service/request_group.h"
 
 #include "base/mem.h"

@@ -15,7 +15,7 @@ struct request_group { /* zero-initialise; free with request_group_finish() */
     size_t count, capacity;
 };
 
-/* Appends a copy of the ticket. */
+/* Appends a copy of the ticket to the group. */
 void request_group_add(struct request_group *group, const struct request_ticket *ticket);
 /* Moves the tickets for which belongs(ticket, arg) returns true into `into`, which is emptied first. Both lists keep their order. */
 void request_group_split(struct request_group *group, bool (*belongs)(const struct request_ticket *ticket, void *arg), void *arg,

@@ -4,9 +4,11 @@
 
 #include "base/clock.h"
 
-static const int64_t INPUT_PAUSE_NS = 150 * NS_PER_MS; /* pause after a moving frame in which the same session's next camera is awaited */
-static const int64_t LONG_TURN_NS = 3 * NS_PER_S;      /* long-running frames get a turn after at most this long, even while cameras move */
-static const int64_t SNAPSHOT_TURN_NS = 1 * NS_PER_S;  /* the same for a snapshot over HTTP, whose client has no frame yet */
+/* pause after a frame of a moving session, in which the scheduler waits for the same session's next camera */
+static const int64_t INPUT_PAUSE_NS = 150 * NS_PER_MS;
+static const int64_t LONG_TURN_NS = 3 * NS_PER_S; /* long-running frames get a turn at least this often, even while cameras move */
+/* the same interval for a snapshot over HTTP, whose client has no frame to look at yet */
+static const int64_t SNAPSHOT_TURN_NS = 1 * NS_PER_S;
 
 int scheduler_share(enum urgency urgency)
 {

@@ -16,17 +16,17 @@ struct time_account {
 struct time_accounts { /* zero-initialise; free with time_accounts_finish() */
     struct time_account **all;
     size_t count, capacity;
-    int64_t served_ns[SCHEDULER_SHARES]; /* drawing time by share that had been charged to the account served last, before its turn */
+    int64_t served_ns[SCHEDULER_SHARES]; /* drawing time, by share, with which the account served last had been charged before that turn */
 };
 
 /* Adds a client to the account with that id; creates the account if needed. Returns it; time_accounts_leave() releases it. */
 struct time_account *time_accounts_join(struct time_accounts *accounts, uint64_t id);
 /* Removes a client from the account and sets *account to NULL. An account without clients is kept until the others have been charged as
-   much, so that reconnecting does not clear it. */
+   much, so that a client cannot clear the charge by reconnecting. */
 void time_accounts_leave(struct time_accounts *accounts, struct time_account **account);
-/* Notes that a client of the account made a request: time unused until now is not saved up. */
+/* Call it when a client of the account makes a request: drawing time that the account left unused until now is lost. */
 void time_accounts_asked(const struct time_accounts *accounts, struct time_account *account, int share);
-/* Notes that a request of the account is drawn next. */
+/* Call it when a request of the account is drawn next. */
 void time_accounts_served(struct time_accounts *accounts, const struct time_account *account, int share);
 /* Frees all accounts; they must have no clients. */
 void time_accounts_finish(struct time_accounts *accounts);
