@@ -14,8 +14,8 @@ struct alarm_text_cache {
     uint64_t since, number;
 };
 void alarm_text_cache_finish(struct alarm_text_cache *cache);
-/* Returns the message `alarms`: the changes after *number (0: all alarms that are not normal). Sets *number to the newest change. cache
-   NULL: the text is not cached. */
+/* Returns the message `alarms`: the changes with sequence numbers above *number (0: all alarms that are not normal). Sets *number to the
+   newest change's. cache NULL: the text is not cached. */
 char *alarms_text(struct alarm_text_cache *cache, struct alarm_service *alarm_service, const struct plant *plant, int64_t now_utc_ns,
                   uint64_t *number);
 

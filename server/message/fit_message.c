@@ -59,7 +59,7 @@ static json_t *given_json(const json_t *list, struct message_error *error)
     return camera;
 }
 
-/* Sets the camera of a view from the members of a query. lens: applies `projection` and `height_m` too. */
+/* Sets the camera of a view from the members of a query. lens: true: applies the members `projection` and `height_m`, too. */
 static bool parse_given(const json_t *o, bool lens, struct view *view, struct message_error *error)
 {
     const json_t *list = json_object_get(o, "camera"), *height = json_object_get(o, "height_m");

@@ -4,11 +4,11 @@
 #define MESSAGE_FIT_MESSAGE_H
 #include "message/message.h"
 
-/* Reads `id`, `side` and `projection` into *out. Returns false with *error naming the wrong member. */
+/* Reads the members `id`, `side` and `projection` of a `fit` message into *out. Returns false with *error naming the wrong member. */
 bool fit_parse(const struct plant *plant, const json_t *o, struct fit_message *out, struct message_error *error);
 /* Reads the members of a `camera` message, all but seq, into *out. Returns false with *error naming the wrong member. */
 bool camera_parse(const json_t *object, struct camera *out, struct message_error *error);
-/* Moves the camera so that each half of the view shows everything that the fit asks for. */
+/* Moves the camera so that each half of the view shows the asset, tag or plant that the `fit` message asks for. */
 void fit_apply(const struct scene *scene, const struct fit_message *fit, const struct view *view, struct camera *camera);
 /* Sets view->camera from the members `camera`, `projection`, `height_m`, `fit` and `side` of a query; without them it uses the plant's
    initial camera, or one that shows the whole plant. bare: the picture has no legend and no clock, for which a fit otherwise leaves

@@ -6,7 +6,7 @@
 #include "message/message.h"
 #include "message/names.h"
 
-/* need_...: a missing member is an error. may_...: a missing member leaves *out unchanged and returns true; *given, if not NULL,
+/* Names: need_...: a missing member is an error; may_...: a missing member leaves *out unchanged and returns true. *given, if not NULL,
    receives whether the member was present. */
 bool need_number(const json_t *o, const char *name, double low, double high, double *out, struct message_error *error);
 bool may_number(const json_t *o, const char *name, double low, double high, double *out, bool *given, struct message_error *error);
@@ -14,7 +14,7 @@ bool may_number(const json_t *o, const char *name, double low, double high, doub
 bool need_seq(const json_t *o, uint32_t *out, struct message_error *error);
 bool need_vector(const json_t *o, const char *name, double out[3], struct message_error *error);
 bool may_vector(const json_t *o, const char *name, double out[3], bool *given, struct message_error *error);
-/* Reads a member that is one of the names, as the name's value. */
+/* Reads a member whose text is one of the names of a table; *out receives the name's value. */
 bool may_name(const json_t *o, const char *name, const struct name *names, int *out, bool *given, struct message_error *error);
 /* Reads a text of 1 to size - 1 printable ASCII characters. */
 bool may_text(const json_t *o, const char *name, char *out, size_t size, bool *given, struct message_error *error);

@@ -11,8 +11,8 @@ bool loop_check_parse(const struct plant *plant, const json_t *o, struct message
 /* Compares the tag's current reading with the expected value and records the result. who: the user's name. Returns the answer; free with
    mem_free(). */
 char *loop_check_do(struct loop_checks *loop_checks, const struct plant *plant, const struct snapshot *now, const struct message *message,
-               const char *who);
-/* Returns the message `proofs`: all loop checks, or those after the number `since`; free with mem_free(). */
+                    const char *who);
+/* Returns the message `proofs`: the latest checks of all tags, or only those with sequence numbers above `since`; free with mem_free(). */
 char *loop_checks_text(const struct loop_checks *loop_checks, const struct plant *plant, uint64_t since, bool all);
 
 #endif

@@ -53,7 +53,7 @@ static bool same_places(const struct frame *frame, const struct known_markers *k
     return true;
 }
 
-/* Returns the next label of an isoline, or of an arrow, from *at on; NULL: none. */
+/* Returns the next label of isolines, or of arrows, at or after index *at; NULL: none. */
 static const struct frame_label *next_label(const struct frame_label *labels, size_t count, size_t *at, bool arrow)
 {
     while (*at < count && labels[*at].arrow != arrow)
@@ -70,8 +70,7 @@ static bool same_labels(const struct frame *frame, const struct known_markers *k
         if (!a || !b)
             return !a && !b && (known->any || arrow);
         if (a->value != b->value || a->half != b->half || a->uncertain != b->uncertain || a->dx != b->dx || a->dy != b->dy ||
-            a->stroke != b->stroke ||
-            !(fabsf(a->x_px - b->x_px) < SAME_PX) || !(fabsf(a->y_px - b->y_px) < SAME_PX))
+            a->stroke != b->stroke || !(fabsf(a->x_px - b->x_px) < SAME_PX) || !(fabsf(a->y_px - b->y_px) < SAME_PX))
             return false;
     }
 }
@@ -164,7 +163,7 @@ static void add_list(struct text *text, const char *name, const char *list)
     text_add_bytes(text, list, strlen(list));
 }
 
-/* Appends the changes of the markers: all markers, or only values if the client knows their positions. */
+/* Appends the markers that the client needs: all of them with positions, or only changed values if the client knows the positions. */
 static void add_markers(struct text *text, struct frame *frame, const struct known_markers *known, struct marker_text_cache *lists)
 {
     if (!same_places(frame, known)) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The message `markers` that precedes a frame: positions of its sensors and labels and the values shown there; after the first message
-   only changes. Pure. Thread: the loop. */
+/* The message `markers` that precedes a frame: positions and values of the frame's markers and labels. The first message has all of them,
+   later ones only changes. Pure. Thread: the loop. */
 #ifndef MESSAGE_MARKER_TEXT_H
 #define MESSAGE_MARKER_TEXT_H
 #include "render/frame.h"
@@ -20,8 +20,8 @@ struct marker_text_cache {
     char *markers, *labels, *arrows;
 };
 
-/* Returns the message for the frame with number seq; free with mem_free(). Returns NULL if nothing changed for the client. Updates
-   *known. */
+/* Returns the message for the frame with sequence number seq; free with mem_free(). Returns NULL if nothing changed for the client. Updates
+   known. */
 char *marker_text(struct frame *frame, uint32_t seq, struct known_markers *known, struct marker_text_cache *lists);
 void marker_text_cache_finish(struct marker_text_cache *lists);
 void known_markers_finish(struct known_markers *known);

@@ -94,7 +94,7 @@ enum baseline_change { BASELINE_STAYS, BASELINE_NONE, BASELINE_NAMED, BASELINE_N
 struct params_change {
     uint32_t seq;
     unsigned given;            /* bit mask of enum params_given */
-    struct field_params field; /* here and below only the members in `given` are set */
+    struct field_params field; /* only those of the following members are set that `given` names */
     int colormap;
     double ramp_interval;
     struct color_scale color_scale;
@@ -109,8 +109,8 @@ struct params_change {
     double light_dir[3];
     int environment;
     int selected_asset;
-    /* field.overrides, with GIVEN_SENSORS: the named sensors. An omitted strength or decay is FIELD_AS_CONFIGURED; both are, to remove a
-       sensor's override */
+    /* with GIVEN_SENSORS: field.overrides lists the sensors that the message names. An omitted strength or decay is FIELD_AS_CONFIGURED; if
+       both are, the sensor's override is removed */
     bool only_these_sensors; /* the message had `sensors: null`: all other overrides are removed */
     enum baseline_change baseline;
     char baseline_name[BASELINE_NAME_BYTES];
@@ -129,7 +129,7 @@ struct split_change {
 
 struct pick_request {
     double x_px, y_px;
-    bool has_camera; /* `camera` is set; otherwise the newest camera is used */
+    bool has_camera; /* true: `camera` is set; false: the pick refers to the newest camera */
     struct camera camera;
 };
 
@@ -144,7 +144,7 @@ struct alarm_request {
 
 #define TIME_MOST_SPEED 3600
 struct time_request {
-    bool has_at;   /* at_us is set; otherwise play starts from the instant shown */
+    bool has_at;   /* true: at_us is set; false: play starts from the instant shown now */
     int64_t at_us; /* microseconds UTC; 0: the present */
     double speed;  /* seconds of history per second of play; negative: backwards; 0: paused */
 };
@@ -153,7 +153,7 @@ enum { CODEC_LIST_MOST = 4 };
 struct codec_list { /* codecs that a client decodes, in order of preference */
     enum wire_codec at[CODEC_LIST_MOST];
     int count;
-    bool choose; /* the server may choose among them, and change its choice */
+    bool choose; /* true: the server may choose any of these codecs, and change its choice later */
 };
 
 struct place_request {
@@ -162,7 +162,7 @@ struct place_request {
 };
 
 struct coverage_request {
-    int group;    /* index of the group; -1: the group that is shown */
+    int group;    /* index of the group; -1: the group that the view shows */
     double far_m; /* metres beyond which a surface counts as uncovered; 0: the default */
 };
 
@@ -175,7 +175,7 @@ struct loop_check_request {
 
 struct note_request {
     char id[NOTE_ID_BYTES], text[NOTE_TEXT_BYTES], name[ALARM_NAME_BYTES - 24];
-    int tag, asset; /* where the note is attached; -1: to no tag, no asset */
+    int tag, asset; /* index of the tag or asset to which the note is attached; -1: none */
     bool has_position;
     double position_m[3];
     int64_t until_us; /* end of the note, microseconds UTC; 0: until it is removed */
@@ -200,7 +200,7 @@ struct message {
     char token[TOKEN_MAX_CHARS + 1], resume[RESUME_MOST_CHARS + 1]; /* hello; "": none */
     double idle_ms;                  /* hello: milliseconds since the user was last active; negative: not stated */
     bool tokens;                     /* hello: the server sends the view as a token whenever it changes */
-    bool anew;                       /* hello: resume only the session's number and its followers, not its view */
+    bool anew;                       /* hello: resume only the session's id and the sessions that follow it, not its view */
     char named[NAMED_VIEW_ID_BYTES]; /* hello, look: id of a view in the plant file; hello: "": none */
     bool has_camera, has_params;     /* hello */
     struct camera camera;            /* camera, hello */
@@ -213,7 +213,7 @@ struct message {
     double decode_ms; /* ack: milliseconds for decoding; negative: not stated */
     double t;         /* ping */
     bool active;      /* ping: the user was active since the last ping */
-    uint64_t follow;  /* follow, lead: number of a session; 0: none */
+    uint64_t follow;  /* follow, lead: id of a session; 0: none */
     struct alarm_request alarm;
     struct time_request time; /* time, hello */
     struct place_request place;
@@ -222,7 +222,7 @@ struct message {
     struct assumed_filter accept; /* accept_places */
     char kept[65];                /* restore_tags: name of the stored version */
     struct loop_check_request loop_check;
-    struct named_view_edit view_edit; /* save_view; remove_view: id only; send_to_wall: view and title */
+    struct named_view_edit view_edit; /* save_view: all members; remove_view: only the id; send_to_wall: only view and title */
     struct note_request note;         /* note, remove_note */
     struct wall_request wall;         /* display, send_to_wall, point */
     struct pair_request pair;         /* pair, unpair */
@@ -243,15 +243,16 @@ struct params_context {
     int64_t now_us;                  /* UTC; for queries */
     bool bare;                       /* for queries: the picture has no legend and no clock */
 };
-/* Applies a change to a view completely, or not at all: then returns false with *error. A new group first brings its own settings. */
+/* Applies a change to a view. If part of it is wrong, returns false with *error and leaves the view unchanged. A change of the group first
+   resets the view to that group's settings. */
 bool params_apply(const struct params_context *context, const struct params_change *change, struct view *view, struct message_error *error);
-/* Parts of params_parse() and params_apply(): `show`, `sensor`, `baseline` and `sensors` (params_show.c). */
+/* Called by params_parse() and params_apply() for the members `show`, `sensor`, `baseline` and `sensors` (params_show.c). */
 bool params_parse_show(const struct plant *plant, const json_t *o, struct params_change *out, struct message_error *error);
 bool params_apply_show(const struct params_context *context, const struct params_change *change, const struct view *before,
                        struct view *view, struct message_error *error);
-/* Stores or removes the baseline of a change; the last step, after all checks. */
+/* Stores or removes the baseline that a change names. Called last, because it cannot be undone, after all checks of the change. */
 void params_apply_baseline(const struct params_context *context, const struct params_change *change, struct view *view);
-/* Parts of params_parse() and params_apply(): `scale`, `breaks` and `isolines` (params_paint.c). */
+/* Called by params_parse() and params_apply() for the members `scale`, `breaks` and `isolines` (params_paint.c). */
 bool params_parse_paint(const json_t *o, struct params_change *out, struct message_error *error);
 bool params_apply_paint(const struct plant *plant, const struct params_change *change, struct view *view, struct message_error *error);
 /* Parse and apply `split`, the right half of a split view (params_split.c). */

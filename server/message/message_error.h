@@ -7,7 +7,7 @@
 struct message_error {
     const char *code; /* error code of PROTOCOL.md, static */
     char text[REFUSAL_TEXT_BYTES];
-    struct refusal refusal; /* REFUSAL_NONE: an error of the client program, described in English only */
+    struct refusal refusal; /* code of the refusal; REFUSAL_NONE: an error in the client program, described only by the English text */
     char about[24];         /* type of the refused message; "": unknown */
     int retry_after_s;      /* seconds until the client should retry; 0: not stated */
 };

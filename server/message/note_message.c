@@ -6,7 +6,8 @@
 #include "base/text/json_text.h"
 #include "message/json_fields.h"
 
-/* Looks up the tag or asset that the member names; *out is -1 if the member is absent. Returns false with *error if the name is unknown. */
+/* Looks up the index of the tag or asset that the member names; *out is -1 if the member is absent. Returns false with *error if the name
+   is unknown. */
 static bool find_named(const json_t *o, const struct plant *plant, const char *member,
                        int (*find)(const struct plant *plant, const char *name), enum refusal_code missing, int *out,
                        struct message_error *error)
@@ -63,8 +64,8 @@ char *note_do(struct notes *notes, const struct plant *plant, const struct messa
     bool adds = message->type == MESSAGE_NOTE;
     enum refusal_code why = adds ? notes_add(notes, &note, person, now_us, id) : notes_end(notes, request->id, person, now_us);
     mem_free(person);
-    json_t *answer = json_pack("{s:s,s:I,s:s,s:b}", "type", "noted", "seq", (json_int_t)message->seq, "id", adds ? id : request->id, "kept",
-                               !why);
+    json_t *answer =
+        json_pack("{s:s,s:I,s:s,s:b}", "type", "noted", "seq", (json_int_t)message->seq, "id", adds ? id : request->id, "kept", !why);
     refusal_add(answer, why);
     return json_text(answer, 0);
 }

@@ -34,7 +34,7 @@ static bool take_list(const json_t *list, double *numbers, int most, int *count)
     return json_is_array(list);
 }
 
-/* Fills *error with the reason why take_list() returned false. */
+/* Fills *error with the reason for which take_list() returned false. */
 static void fail_list(const json_t *list, const char *name, int most, struct message_error *error)
 {
     for (size_t i = 0; i < json_array_size(list); i++)

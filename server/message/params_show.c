@@ -145,8 +145,8 @@ static bool apply_sensors(const struct params_change *change, struct field_param
     return true;
 }
 
-/* Finds the id of the baseline that the change names; a baseline yet to be stored gets a placeholder, replaced in
-   params_apply_baseline(). */
+/* Finds the id of the baseline that the change names; a baseline that is not stored yet gets a placeholder id, which
+   params_apply_baseline() replaces. */
 static bool find_baseline(const struct params_context *context, const struct params_change *change, struct field_params *field,
                           struct message_error *error)
 {
@@ -187,7 +187,8 @@ static void take_quantity(const struct params_context *context, const struct fie
         view->colormap = now->show == SHOW_DIFFERENCE ? colormap_find("diverging") : 0;
 }
 
-/* Returns whether the view can be drawn correctly: with undivided triangles (single sensors) only a constant field can. */
+/* Returns whether the view can be drawn correctly. Where surfaces are not subdivided for a single sensor (plant_cuts_singles()), `paper`
+   and distances from that sensor cannot. If not, fills *error. */
 static bool may_show(const struct plant *plant, const struct field_params *field, struct message_error *error)
 {
     char group[48], asset[48];

@@ -73,7 +73,7 @@ bool save_tags_parse(const struct plant *plant, const json_t *o, struct message 
     return need_seq(o, &out->seq, error) && may_text(o, "confirm", out->confirm, sizeof(out->confirm), NULL, error);
 }
 
-/* Returns whether matching a glob is cheap: each star multiplies the time that a long name may take. */
+/* Returns whether a glob pattern has few enough stars to be matched quickly: each star multiplies the time that a long name may take. */
 static bool is_simple(const char *pattern)
 {
     int stars = 0;

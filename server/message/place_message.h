@@ -12,13 +12,13 @@ bool save_tags_parse(const struct plant *plant, const json_t *o, struct message 
 bool accept_places_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 bool restore_tags_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 
-/* Returns `placed`, the answer to `place`, with the current trial positions of the sensors; free with mem_free(). */
+/* Returns `placed`, the answer to `place`, with the positions of the sensors that are moved on trial; free with mem_free(). */
 char *placed_text(const struct plant *plant, const struct place_set *set, uint32_t seq);
 /* Returns `gaps`, the answer to `coverage`, with the surfaces that no sensor covers; free with mem_free(). */
 char *coverage_text(const struct scene *scene, const struct place_set *set, const struct sensor_coverage_answer *answer);
-/* Returns how the current list, `before`, would change by a save_tags (the moves of the set), accept_places or restore_tags, for the
-   client to confirm; free with mem_free(). If the message already confirms that very list, *order is a request to save it
-   (tag_save_free); else NULL. set: NULL for the last two. who: the user's name. */
+/* Returns how the current list, `before`, would be changed by the message: save_tags (applies the moves of `set`), accept_places or
+   restore_tags, for the client to confirm; free with mem_free(). If the message already confirms that very list, *order is a request to
+   save it (tag_save_free); else NULL. set: NULL for accept_places and restore_tags. who: the user's name. */
 char *tags_diff_text(const struct scene *scene, const char *before, const struct place_set *set, const struct message *message,
                      const char *who, struct tag_save **order);
 /* Returns `tags_saved` for a list that was not saved; free with mem_free(). */

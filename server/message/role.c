@@ -5,11 +5,12 @@
 #include "message/names.h"
 
 const struct name names_role[] = {
-    { "nobody", ROLE_NOBODY },     { "renderer", ROLE_RENDERER }, { "standby", ROLE_STANDBY }, { "open", ROLE_OPEN },
+    { "nobody", ROLE_NOBODY }, { "renderer", ROLE_RENDERER }, { "standby", ROLE_STANDBY },   { "open", ROLE_OPEN },
     { "viewer", ROLE_VIEWER }, { "operator", ROLE_OPERATOR }, { "engineer", ROLE_ENGINEER }, { NULL, 0 },
 };
 
-/* Parameters of the field computation: each set of them costs the server another field, and using them needs expertise. */
+/* Parameters of the field computation: each combination of values makes the server compute another field, and using them needs
+   expertise. */
 static const unsigned ENGINEERS = GIVEN_FILL | GIVEN_STRENGTH | GIVEN_DECAY | GIVEN_POWER | GIVEN_RADIUS | GIVEN_REACH | GIVEN_SENSORS;
 
 static bool params_allowed(enum role role, const struct params_change *change, struct message_error *error)

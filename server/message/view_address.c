@@ -8,7 +8,8 @@
 
 #include "base/mem.h"
 
-enum { CAMERA_NUMBERS = 11 }; /* numbers of a camera: eye, target, up, angle, and the height of a parallel projection */
+/* a camera's numbers, in the order of the address: eye, target, up, angle, and the height of a parallel projection */
+enum { CAMERA_NUMBERS = 11 };
 
 static const struct {
     const char *name, *of_query; /* name in a query; NULL: the field is dropped */

@@ -9,7 +9,7 @@
 
 /* Callback for one field, decoded; value "" if the field has none. Returns false to stop. */
 typedef bool view_address_field(void *arg, const char *name, char *value);
-/* Calls `take` for each field of an address. Returns false if `take` did. */
+/* Calls `take` for each field of an address. Returns false if a call of `take` returned false. */
 bool view_address_each(const char *address, view_address_field *take, void *arg);
 
 enum { VIEW_ADDRESS_ARGS = 40 };

@@ -11,9 +11,9 @@
    form, or unknown argument. */
 json_t *view_query_value(const char *name, const char *text);
 
-/* Builds *view from `args`, decoded `name=value` texts, as far as the role permits. An instant (`at`) is stored in view->at_us; its
-   readings are not loaded yet. place: receives the required `x` and `y` of a pick; NULL: these arguments are refused. Returns false with
-   *error saying what is wrong. */
+/* Builds *view from `args`, decoded `name=value` texts, refusing arguments that the role may not use. An instant (`at`) is stored in
+   view->at_us; its readings are not loaded yet. place: receives the required `x` and `y` of a pick; NULL: these arguments are refused.
+   Returns false with error saying what is wrong. */
 bool view_query_parse(const struct params_context *context, enum role role, const char *const *args, size_t count, struct view *view,
                       double place[2], struct message_error *error);
 

@@ -24,7 +24,7 @@ static void add_numbers(struct text *text, const double *values, size_t count)
         add_number(text, i > 0 ? "," : "", values[i]);
 }
 
-/* Adds NAME=text, and empties the text. */
+/* Adds the argument NAME=text, and empties the text buffer for the next one. */
 static bool flush(struct view_address *out, const char *name, struct text *text)
 {
     bool good = view_address_add(out, name, text->length > 0 ? text->at : "");
@@ -65,9 +65,9 @@ static bool put_overrides(struct view_address *out, const struct plant *plant, c
         const struct field_override *override = &field->overrides[i];
         text_add(&text, "%s%s=", i > 0 ? "," : "", plant->tags[override->tag].name);
         if (override->strength >= 0)
-            add_number(&text, "", (double)override->strength);
+            add_number(&text, "", (double) override->strength);
         if (override->decay >= 0)
-            add_number(&text, ":", (double)override->decay);
+            add_number(&text, ":", (double) override->decay);
     }
     bool good = field->override_count == 0 || flush(out, "sensors", &text);
     text_finish(&text);
@@ -104,8 +104,7 @@ static bool put_field(struct view_address *out, const struct params_context *con
 static bool put_half(struct view_address *out, const struct params_context *context, const struct view *half, struct message_error *error)
 {
     const struct color_scale *scale = &half->color_scale;
-    return put_field(out, context, &half->field, error) &&
-           view_address_add(out, "colormap", colormap_at((size_t)half->colormap)->name) &&
+    return put_field(out, context, &half->field, error) && view_address_add(out, "colormap", colormap_at((size_t)half->colormap)->name) &&
            put_number(out, "ramp_interval", half->ramp_interval) &&
            put_numbers(out, "range", (double[2]){ half->range_min, half->range_max }, 2) &&
            view_address_add(out, "scale", name_of(names_scale, scale->log)) && put_list(out, "breaks", scale->breaks, scale->break_count) &&
@@ -222,8 +221,8 @@ bool view_query_write(const struct params_context *context, const struct view *v
         return false;
     }
     view_half(view, 0, &left);
-    bool good = put_number(out, "width", view->width_px) && put_number(out, "height", view->height_px) &&
-                put_camera(out, &view->camera) && put_half(out, context, &left, error) && put_split(out, context, view, error) &&
+    bool good = put_number(out, "width", view->width_px) && put_number(out, "height", view->height_px) && put_camera(out, &view->camera) &&
+                put_half(out, context, &left, error) && put_split(out, context, view, error) &&
                 put_common(out, context->scene->plant, view);
     if (!good && !error->code)
         message_fail(error, "not_signed", "the view has more arguments than fit");

@@ -9,7 +9,7 @@ bool save_view_parse(const struct plant *plant, const json_t *o, struct message 
 bool remove_view_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 /* Saves or removes the view. who: the user's name; time_us: UTC. Returns the answer; free with mem_free(). */
 char *view_edit_do(struct named_views *views, const struct message *message, const char *who, int64_t time_us);
-/* Restricts what a client may read about walls, if its token is limited. */
+/* Limits of a client's token on the walls that the client may read. */
 struct walls_reader {
     const char *wall; /* wall of a paired device, and its display; NULL: all walls */
     int display;

@@ -8,7 +8,7 @@
 bool visibility_parse(const struct plant *plant, const json_t *o, struct params_change *out, struct message_error *error);
 /* Applies the change to a view's visibility. */
 void visibility_apply(const struct params_change *change, struct visibility *visibility);
-/* Adds the four members to an object. */
+/* Adds the members `hidden`, `isolate`, `ghost` and `clip` to an object. */
 void visibility_print(const struct plant *plant, const struct visibility *visibility, json_t *into);
 
 #endif
