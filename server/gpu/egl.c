@@ -46,9 +46,9 @@ static void egl_lose(struct gl *gl)
     egl->context = EGL_NO_CONTEXT;
 }
 
-/* Destroys a context. A driver that was used stays loaded, since leaks are suppressed by the driver's name (tests/leaks.txt), which an
-   unloaded one has lost. A display outlives the loss of a context; if it does not, the next attempt fails and closes it for the one
-   after. */
+/* Destroys a context. Does not unload a driver that was used: the leak checker suppresses leaks by the driver's name (tests/leaks.txt) and
+   could not name an unloaded one. The display is kept after the loss of a context. If the display is lost as well, the next attempt to
+   create a context fails and closes it, and the attempt after that opens it again. */
 static void egl_destroy(struct gl *gl)
 {
     struct egl *egl = (struct egl *)gl;
@@ -75,13 +75,18 @@ static bool load_client(const char *name, struct text *why)
 /* Creates a context that reports its loss, where the driver supports that. */
 static EGLContext create_context(EGLDisplay display, EGLConfig config)
 {
-    static const EGLint telling[] = {
-        EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5, EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-        EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY, EGL_LOSE_CONTEXT_ON_RESET, EGL_NONE
-    };
+    static const EGLint telling[] = { EGL_CONTEXT_MAJOR_VERSION,
+                                      4,
+                                      EGL_CONTEXT_MINOR_VERSION,
+                                      5,
+                                      EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                      EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                      EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY,
+                                      EGL_LOSE_CONTEXT_ON_RESET,
+                                      EGL_NONE };
     static const EGLint silent[] = {
-        EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5, EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-        EGL_NONE
+        EGL_CONTEXT_MAJOR_VERSION,           4,       EGL_CONTEXT_MINOR_VERSION, 5, EGL_CONTEXT_OPENGL_PROFILE_MASK,
+        EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE
     };
     EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, telling);
     return context ? context : eglCreateContext(display, config, EGL_NO_CONTEXT, silent);
@@ -209,11 +214,15 @@ static struct gl *egl_surfaceless_create(const struct gl_device *device, bool so
     return egl_from_display(impl, eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, NULL), why);
 }
 
-const struct gl_impl gl_egl_device_impl = {
-    .kind = GL_EGL_DEVICE, .name = "egl-device", .current = egl_current, .lose = egl_lose,
-    .create = egl_device_create, .destroy = egl_destroy
-};
-const struct gl_impl gl_egl_surfaceless_impl = {
-    .kind = GL_EGL_SURFACELESS, .name = "egl-surfaceless", .current = egl_current, .lose = egl_lose,
-    .create = egl_surfaceless_create, .destroy = egl_destroy
-};
+const struct gl_impl gl_egl_device_impl = { .kind = GL_EGL_DEVICE,
+                                            .name = "egl-device",
+                                            .current = egl_current,
+                                            .lose = egl_lose,
+                                            .create = egl_device_create,
+                                            .destroy = egl_destroy };
+const struct gl_impl gl_egl_surfaceless_impl = { .kind = GL_EGL_SURFACELESS,
+                                                 .name = "egl-surfaceless",
+                                                 .current = egl_current,
+                                                 .lose = egl_lose,
+                                                 .create = egl_surfaceless_create,
+                                                 .destroy = egl_destroy };

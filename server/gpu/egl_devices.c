@@ -35,7 +35,7 @@ static bool has_word(const char *all, const char *name)
     return false;
 }
 
-/* Asks EGL itself: the loader's flags describe the display that was initialised last. */
+/* Asks EGL itself, because the flags of the function loader (glad) describe the display that was initialised last. */
 bool egl_client_has(const char *name)
 {
     return has_word(eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS), name);

@@ -12,7 +12,8 @@
 
 struct attempt {
     const struct gl_impl *impl;
-    /* software: may use a software device if none is requested; again: differs from an earlier attempt in that alone */
+    /* software: may use a software device if none is requested; again: the attempt repeats an earlier one, except that a software device
+       may be used */
     bool software, again;
 };
 static const struct attempt attempts[] = {
@@ -106,7 +107,7 @@ static void set_conventions(struct gl *gl)
     glDebugMessageCallback(on_debug_message, gl->log);
 }
 
-/* Tries all kinds. why: receives the reasons of failed attempts, each after "; ". */
+/* Tries all kinds of contexts (enum gl_kind). why: the reasons of failed attempts are appended, each preceded by "; ". */
 static struct gl *attempt_all(enum gl_kind kind, const struct gl_device *device, struct text *why)
 {
     bool asked = kind != GL_AUTO || device; /* a caller that asks for a kind or device gets a software device at once */
@@ -177,7 +178,7 @@ static GLenum next_error(void)
 
 void gl_clear_errors(void)
 {
-    for (int i = 0; i < 8 && next_error() != GL_NO_ERROR; i++) { /* a lost context reports errors forever */
+    for (int i = 0; i < 8 && next_error() != GL_NO_ERROR; i++) { /* leaves the loop, because a lost context reports errors forever */
     }
 }
 

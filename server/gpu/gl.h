@@ -33,7 +33,8 @@ bool gl_device_parse(const char *text, struct gl_device *device);
 /* Prints one line per EGL device: index, PCI address, renderer. Returns their number. Leaves no context current. */
 int gl_list_devices(FILE *out);
 /* Creates a context. Tries EGL device (device NULL: the first working hardware), EGL surfaceless, OSMesa, in this order, or only the
-   requested kind; with a device only EGL devices. While other contexts exist, only their kind. NULL: none works; all reasons are logged. */
+   requested kind; with a device only EGL devices. While other contexts exist, tries only their kind. NULL: none works; all reasons are
+   logged. */
 struct gl *gl_create(struct log *log, enum gl_kind kind, const struct gl_device *device);
 void gl_destroy(struct gl **gl); /* &NULL is fine; sets it to NULL */
 
@@ -44,9 +45,9 @@ bool gl_lost(const struct gl *gl);
 void gl_lose(struct gl *gl);
 
 void gl_clear_errors(void); /* discards errors of earlier calls, so that the next error belongs to later ones */
-bool gl_no_errors(void);    /* returns whether GL reported no error since the last check */
-/* Returns how often this thread's contexts ran out of GPU memory, as far as the functions above and below noticed. Anything created or
-   drawn while the count rose is invalid. */
+bool gl_no_errors(void);    /* returns true if GL has reported no error since the last check */
+/* Returns how often this thread's contexts ran out of GPU memory, as far as the functions of this header noticed. Anything created or drawn
+   while the count rose is invalid. */
 unsigned gl_out_of_memory_count(void);
 /* Brackets everything a pass does: opens and closes a debug group. gl_pass_leave() logs the pass's GL errors under its name, and returns
    false if there was one. */

@@ -95,7 +95,7 @@ static int16_t to_short(float part)
     return (int16_t)lrintf(32767 * part);
 }
 
-/* Folds a normal into two 16-bit numbers. A zero normal becomes up, an arbitrary choice. */
+/* Packs a normal into two 16-bit numbers (octahedral mapping). A zero normal is packed as "up", an arbitrary choice. */
 static void fold(const float n[3], int16_t out[2])
 {
     float sum = fabsf(n[0]) + fabsf(n[1]) + fabsf(n[2]);
@@ -119,7 +119,7 @@ static GLuint upload_normals(struct gpu_mesh *mesh, struct log *log, const char 
     return buffer;
 }
 
-/* is_short: set to whether the coordinates were packed into 16 bits: they can be, and there was memory for it. */
+/* is_short: receives true if the coordinates were packed into 16 bits; false if they are outside 0..1 or there was no memory. */
 static GLuint upload_texcoords(struct gpu_mesh *mesh, struct log *log, const char *name, size_t count, const float (*texcoords)[2],
                                bool *is_short)
 {
@@ -151,8 +151,7 @@ bool mesh_init(struct gpu_mesh *mesh, const struct gl *gl, const char *name, con
     if (params->texcoords)
         mesh->texcoords = upload_texcoords(mesh, log, name, vertices, params->texcoords, &mesh->short_texcoords);
     if (params->second_texcoords)
-        mesh->second_texcoords =
-            upload_texcoords(mesh, log, name, vertices, params->second_texcoords, &mesh->short_second_texcoords);
+        mesh->second_texcoords = upload_texcoords(mesh, log, name, vertices, params->second_texcoords, &mesh->short_second_texcoords);
     if (params->colors)
         mesh->colors = kept_buffer(mesh, gl, name, vertices * 4, params->colors);
     if (!mesh->positions || !mesh->normals || !mesh->indices || (params->texcoords && !mesh->texcoords) ||

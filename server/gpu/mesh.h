@@ -11,9 +11,18 @@
 #include "gpu/gl.h"
 
 /* Locations of vertex attributes, equal in every shader. */
-enum mesh_attribute { MESH_POSITION, MESH_NORMAL, MESH_TEXCOORD, MESH_COLOR, MESH_INSTANCE_NORMALS, MESH_SECOND_TEXCOORD = 7,
-                      MESH_INSTANCE_PLACES };
-enum { MESH_INSTANCE_VECTORS = 10 }; /* vectors of 4 floats per instance: 3 from the location of normals on, 7 from that of placements on */
+enum mesh_attribute {
+    MESH_POSITION,
+    MESH_NORMAL,
+    MESH_TEXCOORD,
+    MESH_COLOR,
+    MESH_INSTANCE_NORMALS,
+    MESH_SECOND_TEXCOORD = 7,
+    MESH_INSTANCE_PLACES
+};
+/* number of 4-float vectors per instance: 3 at the attribute locations that begin with that of normals, 7 at those that begin with that of
+   placements */
+enum { MESH_INSTANCE_VECTORS = 10 };
 
 /* Input of mesh_init(). Pointers need only live for the call, except positions, colours and indices: GL on a processor reads these in place
    (gl.reads_in_place), so they must stay unchanged until mesh_finish(). */
@@ -32,14 +41,14 @@ struct mesh_params {
    are in 0..1, with errors up to 1/131,070. */
 struct gpu_mesh {
     GLuint vao, instanced_vao, positions, normals, texcoords, second_texcoords, colors, indices;
-    size_t vertex_count, index_count, bytes; /* bytes: of its own buffers, without data read in place */
+    size_t vertex_count, index_count, bytes; /* bytes: size of the mesh's own GPU buffers, without data that GL reads in place */
     bool short_texcoords, short_second_texcoords;
 };
 
 bool mesh_init(struct gpu_mesh *mesh, const struct gl *gl, const char *name,
                const struct mesh_params *params); /* params: data to upload; mesh_init() returns false when out of memory, logged */
 void mesh_finish(struct gpu_mesh *mesh);
-void mesh_bind(const struct gpu_mesh *mesh);                             /* binds the mesh for the next draws */
+void mesh_bind(const struct gpu_mesh *mesh); /* binds the mesh for the next draws */
 /* instances: a buffer of MESH_INSTANCE_VECTORS vectors per instance */
 void mesh_bind_instances(const struct gpu_mesh *mesh, GLuint instances);
 

@@ -11,7 +11,7 @@ struct pool {
     GLenum format;
     size_t texel_bytes, max_texels; /* most_texels: of a page */
     GLbitfield flags;
-    size_t expected, texels; /* expected: texels for the next page; texels: sum over all pages */
+    size_t expected, texels; /* expected: texels announced for the next page; texels: sum of the sizes of all pages */
     struct pool_page **pages;
     size_t page_count, page_capacity;
 };
@@ -53,7 +53,8 @@ static size_t whole_blocks(size_t texels)
     return (texels + POOL_BLOCK - 1) / POOL_BLOCK * POOL_BLOCK;
 }
 
-/* Finds a gap of that size after *before or, where that is NULL, at the beginning of the page. Returns false if there is none. */
+/* Finds a free gap of at least that size in the page. *before: receives the slice in front of the gap; NULL: the gap is at the beginning.
+   Returns false if there is none. */
 static bool find_gap(const struct pool_page *page, size_t count, struct pool_slice **before, size_t *first)
 {
     *before = NULL;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Per-vertex numbers of many assets in few GPU buffers that shaders read as texels, so that one draw can show many assets. Slices begin at
-   whole blocks, the unit in which shaders count. Thread: the one of the GL context. */
+/* Per-vertex numbers of many assets in few GPU buffers that shaders read as texels, so that one draw can show many assets. Each slice
+   (range of a buffer) begins at a multiple of a block, because shaders address slices by the index of a block. Thread: the one of the GL
+   context. */
 #ifndef GPU_POOL_H
 #define GPU_POOL_H
 #include <stdbool.h>
@@ -10,7 +11,8 @@
 
 #include "base/log/log.h"
 
-/* texels; must match shaders/instance.glsl. With 4-byte texels a block satisfies GL's largest alignment of storage buffer offsets */
+/* texels per block; must match shaders/instance.glsl. With 4-byte texels a block satisfies GL's largest alignment of storage buffer
+   offsets */
 enum { POOL_BLOCK = 64 };
 
 struct pool;
@@ -22,12 +24,12 @@ struct pool_page {
 };
 struct pool_slice {
     struct pool_page *page;
-    size_t block, count; /* block: number of its first block; count: of texels */
+    size_t block, count; /* block: index of the slice's first block in the page; count: number of texels */
     int holds;
     struct pool_slice *next;
 };
 
-/* Creates a pool. format: of a texel. Release all slices before destroying the pool. */
+/* Creates a pool. format: GL format of a texel. Release all slices before destroying the pool. */
 struct pool *pool_create(struct log *log, const char *name, GLenum format, size_t texel_bytes, GLbitfield flags);
 void pool_destroy(struct pool **pool); /* &NULL is fine; sets it to NULL */
 /* Announces slices that will be taken next, so that they share one page if possible. texels: their total size. */

@@ -6,7 +6,8 @@
 
 #include "gpu/mesh.h"
 
-static const GLuint64 TIMEOUT_NS = 20ull * 1000000000; /* much longer than any frame takes: the context hangs */
+/* timeout, much longer than any frame takes; if it expires, the context is treated as hanging */
+static const GLuint64 TIMEOUT_NS = 20ull * 1000000000;
 enum { GRAIN_ROWS = 128 };
 
 static bool fit(struct readback *readback, struct log *log, size_t bytes)

@@ -13,7 +13,7 @@
 struct target {
     int width_px, height_px, samples;
     GLuint framebuffer, color, depth; /* framebuffer that is drawn to, and its textures */
-    /* resolved framebuffer with one sample; the same objects if samples is 1 */
+    /* resolved framebuffer with one sample per pixel, and its textures; the same objects as above if samples is 1 */
     GLuint resolved_framebuffer, resolved_color, resolved_depth;
     GLuint over_framebuffer; /* resolved colour only, for drawing over the picture while reading its depth */
 };
