@@ -7,7 +7,7 @@
 
 #include "base/mem.h"
 
-static const long PART_COST_PX = 4096; /* cost of header and tables of one more rectangle, in pixels with as many bytes */
+static const long PART_COST_PX = 4096; /* cost of one more rectangle's header and tables, as the number of pixels that take as many bytes */
 
 static const uint8_t *row(const struct frame *frame, int x_px, int y_px)
 {
@@ -62,7 +62,7 @@ static bool overlap(const struct dirty_rect *a, const struct dirty_rect *b)
            b->y_px < a->y_px + a->height_px;
 }
 
-/* Returns how many pixels more one rectangle around both costs than the two. */
+/* Returns the cost, in pixels, of replacing two rectangles by one that encloses both; negative: the single one is cheaper. */
 static long growth(const struct dirty_rect *a, const struct dirty_rect *b)
 {
     struct dirty_rect all = around(a, b);

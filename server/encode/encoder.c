@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The table of codecs, and code common to all of them. */
+/* The table of codecs, and code common to all codecs. */
 #include "encode/encoder.h"
 
 #include <errno.h>
@@ -65,8 +65,8 @@ static bool find_dirty_rects(const struct encoder *encoder, const struct frame *
     return true;
 }
 
-/* Returns whether arrows are equal. They are not in the pixels but are sent with the frame, so a turned or lost arrow requires a new
-   one. */
+/* Returns whether arrows are equal. They are not in the pixels but are sent with the frame, so a frame whose arrows changed must be sent
+   even if its pixels did not change. */
 static bool arrows_equal(const struct frame *a, const struct frame *b)
 {
     if (a->label_count != b->label_count)

@@ -11,10 +11,11 @@
 struct encoder;
 struct encoder_params {
     int quality;             /* 1..100, for codecs that have a quality */
-    bool full_chroma;        /* 4:4:4 instead of 4:2:0, for codecs that have both */
+    bool full_chroma;        /* chroma at full resolution (4:4:4) instead of subsampled (4:2:0), for codecs that have both */
     bool key;                /* makes a key frame: its packet does not depend on earlier ones */
     struct workers *workers; /* threads for encoding in parallel; may be NULL */
-    /* frame that the client shows, in this quality; unchanged parts are not sent. NULL: unknown, everything is sent */
+    /* frame that the client shows now, sent in the same quality; only parts that differ from it are encoded. NULL: unknown, everything is
+       sent */
     struct frame *before;
 };
 

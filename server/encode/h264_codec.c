@@ -15,7 +15,7 @@
    no finer than others, which would only cause a spike in the bit rate. */
 struct library {
     const char *name, *options;
-    bool has_crf; /* quality can change per frame; others use the quality in `options` */
+    bool has_crf; /* true: quality can change per frame; false: the encoder uses the quality in `options` */
 };
 static const struct library libraries[] = {
     { "libx264",
@@ -156,15 +156,14 @@ static int codec_begin(struct h264_codec *h264, int width_px, int height_px, str
         close_codec(h264);
         return status;
     }
-    *planes = (struct h264_planes){ { p->data[0], p->data[1], p->data[2] },
-                                    { p->linesize[0], p->linesize[1], p->linesize[2] },
-                                    p->width,
-                                    p->height };
+    *planes = (struct h264_planes){
+        { p->data[0], p->data[1], p->data[2] }, { p->linesize[0], p->linesize[1], p->linesize[2] }, p->width, p->height
+    };
     return 0;
 }
 
-/* Maps quality to x264's rate factor: JPEG's 92 looks like 18, 78 like 25. Below, the bit rate falls with quality as JPEG's does, and the
-   look more slowly: from 40 on nearly all blocks of a moving picture would be skipped and show outdated content. */
+/* Maps quality to x264's rate factor: JPEG's 92 looks like 18, 78 like 25. Below 78, the bit rate falls with quality as JPEG's does, and
+   the look gets worse more slowly: from 40 on nearly all blocks of a moving picture would be skipped and show outdated content. */
 static double rate_factor(int quality)
 {
     static const double fine = 18, moving = 25;

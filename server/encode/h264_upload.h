@@ -10,7 +10,7 @@ struct h264_upload;
    h264_upload_destroy(). */
 int h264_upload_create(AVCodecContext *context, struct h264_upload **out);
 void h264_upload_destroy(struct h264_upload **upload); /* &NULL is fine; sets it to NULL */
-/* Converts a frame (YUV 4:2:0, with its time and type) and sends it to the encoder. Returns 0 or an AVERROR. */
+/* Converts a frame (YUV 4:2:0, with its timestamp and picture type) and sends it to the encoder. Returns 0 or an AVERROR. */
 int h264_upload_send(struct h264_upload *upload, AVCodecContext *context, AVFrame *picture);
 
 #endif

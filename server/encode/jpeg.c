@@ -56,7 +56,7 @@ static int padded(int px)
     return (px + JPEG_PAD_PX - 1) / JPEG_PAD_PX * JPEG_PAD_PX;
 }
 
-/* Returns an upper bound of the JPEG's size, as TurboJPEG's. */
+/* Returns an upper bound of the JPEG's size, as large as the bound that TurboJPEG gives. */
 static size_t max_bytes(const struct dirty_rect *part)
 {
     return (size_t)padded(part->width_px) * (size_t)padded(part->height_px) * 6 + 2048;

@@ -2,7 +2,7 @@
 /* Writes baseline JPEG with libjpeg and its own chroma quantization tables. A field's colours differ by chroma, of which the standard
    tables, made for photographs, lose most within a few pixels. At quality 80, on parts a few pixels wide, the standard tables misread
    values by 3.9 % of the range, these by 2.3 %, for 8 % more bytes. From JPEG_READ_QUALITY up, the chroma tables allow at most a fifth of
-   luma's error if chroma is subsampled, and half of it if not. Private to jpeg.c. Thread: one at a time per writer. */
+   luma's error if chroma is subsampled, and half of luma's error if not. Private to jpeg.c. Thread: one at a time per writer. */
 #ifndef ENCODE_JPEG_WRITE_H
 #define ENCODE_JPEG_WRITE_H
 #include <stdbool.h>

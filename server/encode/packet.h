@@ -9,7 +9,7 @@
 #include "render/frame.h"
 
 enum { PACKET_PARTS = 8, PACKET_SHA256_BYTES = 32 };
-struct packet_part { /* a rectangle of the frame, and the range of its bytes */
+struct packet_part { /* a rectangle of the frame, and the range of the packet's bytes that encodes it */
     int x_px, y_px, width_px, height_px;
     size_t begin, count;
 };
@@ -22,7 +22,8 @@ struct packet {
     bool is_signed; /* the bytes are a PNG file with statement and signature (provenance/signed_picture.h) */
     uint8_t *bytes;
     size_t count;
-    /* SHA-256 of the pixels (red, green, blue, rows from the top), for PNG of a frame with a record */
+    /* SHA-256 of the pixels (red, green, blue, rows from the top), only for PNG packets of frames with a record of their readings
+       (render/frame_record.h) */
     uint8_t pixels_sha256[PACKET_SHA256_BYTES];
     struct packet_part parts[PACKET_PARTS];
     int part_count;

@@ -9,8 +9,8 @@
 #include "base/math/simd.h"
 
 enum { TILE_W = 16, TILE_H = PLANES_BAND_PX / 2 }; /* size of a tile in chroma samples */
-enum { COLOUR = 16 };         /* smallest chroma, in steps, that counts as a colour */
-static const float GREY = 4;  /* weight of a pixel without colour; others have this plus the square of their chroma */
+enum { COLOUR = 16 };                              /* smallest chroma, in 8-bit steps from grey, that counts as a colour */
+static const float GREY = 4; /* weight of a grey pixel in the mean; a coloured pixel weighs this plus the square of its chroma */
 
 size_t planes_bands(int height_px)
 {
@@ -115,8 +115,8 @@ void planes_convert(const struct yuv_planes *planes, size_t begin, size_t end)
     ptrdiff_t y = (ptrdiff_t)begin * PLANES_BAND_PX;
     int rows = least((int)end * PLANES_BAND_PX, planes->height_px) - (int)y;
     ARGBToJ420(planes->bgrx + y * planes->stride_bytes, planes->stride_bytes, planes->plane[0] + y * planes->pitch[0], planes->pitch[0],
-               planes->plane[1] + y / 2 * planes->pitch[1], planes->pitch[1], planes->plane[2] + y / 2 * planes->pitch[2],
-               planes->pitch[2], planes->width_px, rows);
+               planes->plane[1] + y / 2 * planes->pitch[1], planes->pitch[1], planes->plane[2] + y / 2 * planes->pitch[2], planes->pitch[2],
+               planes->width_px, rows);
     for (int band = (int)begin; band < (int)end; band++)
         for (int x = 0; x < (planes->width_px + 1) / 2; x += TILE_W)
             mend_tile(planes, x, band * TILE_H);
