@@ -13,7 +13,7 @@ struct import_source {                                   /* texts as `plantcast 
 /* Returns whether the texts are safe as program arguments: a host name or numeric IPv4 address, numbers within their limits, a byte
    order. */
 bool import_source_good(const struct import_source *source);
-/* Returns the source of a plant; without a host if the plant has none, several, or one of another kind. */
+/* Returns the source of a plant; the host is empty if the plant has no source, several sources, or one of another kind. */
 struct import_source import_source_of_plant(const struct plant *plant);
 /* Returns the source as an object of texts, { host, port, unit, order, base }; the caller owns it. NULL: the source has no host. */
 json_t *import_source_json(const struct import_source *source);

@@ -19,7 +19,8 @@
 enum { MAX_OUTPUT_BYTES = 64 * 1024 };
 
 struct plant_import {
-    char *exports, *matches, *report, *choice; /* choice: path of the file that stores units and axis for the next start */
+    /* choice: path of the file in which units, axis and encoding are stored across restarts of the daemon */
+    char *exports, *matches, *report, *choice;
     pthread_mutex_t lock;
     /* --- below: under `lock` */
     struct import_order order; /* the order in progress, else the last one */
@@ -89,7 +90,7 @@ void plant_import_destroy(struct plant_import **pointer)
     *pointer = NULL;
 }
 
-/* --- called from the loop ----------------------------------------------------------------------------------------------- */
+/* --- functions that the event loop calls -------------------------------------------------------------------------------- */
 
 const char *plant_import_exports(const struct plant_import *import)
 {
@@ -133,7 +134,7 @@ bool plant_import_order(struct plant_import *import, const struct import_order *
     bool taken = !import->busy;
     if (taken) {
         import->order = *order;
-        /* these two kinds of orders state no encoding: keep the one with which the list was read */
+        /* an order to apply decisions or to set the source states no encoding: keeps the one with which the list was read */
         if (order->decides || *order->source.host)
             strcpy(import->order.encoding, import->read.encoding);
         import->ordered = import->busy = true;
@@ -189,7 +190,7 @@ char *plant_import_text(struct plant_import *import, const struct import_source 
     return json_text(object, 0);
 }
 
-/* --- called from the reload thread -------------------------------------------------------------------------------------- */
+/* --- functions that the reload thread calls ----------------------------------------------------------------------------- */
 
 /* Appends the output of a program, which may contain arbitrary bytes in names of files and tags. */
 static void add_printable(struct text *out, const char *text)
@@ -245,8 +246,7 @@ void plant_import_end(struct plant_import *import, bool in_force, const char *wh
         import->read = import->order;
     if (in_force)
         strcpy(import->read.encoding, import->order.encoding);
-    char *choice = mem_printf("%s/%s/%s/%s", import->read.units, import->read.up, import->read.encoding,
-                              import->read.mesh_units);
+    char *choice = mem_printf("%s/%s/%s/%s", import->read.units, import->read.up, import->read.encoding, import->read.mesh_units);
     import->phase = IMPORT_IDLE;
     import->busy = false;
     mem_free(import->why);

@@ -10,7 +10,7 @@
 enum { IMPORT_CHOICE_BYTES = 4, IMPORT_ENCODING_BYTES = 24 };
 
 struct import_order {
-    bool models;                          /* read the models again and match the tags; otherwise only match */
+    bool models;                          /* true: read the models again, and match the tags to assets; false: only match the tags */
     bool anew;                            /* create plant file and tag list from scratch instead of updating them */
     bool decides;                         /* without `models`: apply the uploaded match decisions */
     char units[IMPORT_CHOICE_BYTES];      /* unit of models that do not state one: m, mm, cm, in, ft; "": the reader's default */
@@ -42,7 +42,7 @@ const char *plant_import_exports(const struct plant_import *import);
 const char *plant_import_matches(const struct plant_import *import);
 /* Returns the path of the report that plantcast import writes; the file may be absent. Valid as long as `import`. */
 const char *plant_import_report(const struct plant_import *import);
-/* Returns the name, in the exports folder, of the file with match decisions that an order without models applies; static. */
+/* Returns the name, in the exports folder, of the file with match decisions, which an order with `models` false applies; static. */
 const char *plant_import_decisions(void);
 /* Accepts an order. Returns false while another one is in progress. */
 bool plant_import_order(struct plant_import *import, const struct import_order *order);
@@ -54,7 +54,7 @@ char *plant_import_text(struct plant_import *import, const struct import_source 
 /* Returns whether units, axis, encoding and source of an order have valid values. */
 bool import_order_good(const struct import_order *order);
 
-/* --- called from the reload thread */
+/* --- functions that the reload thread calls */
 
 /* Returns whether an order waits to be carried out, and copies it. */
 bool plant_import_next(struct plant_import *import, struct import_order *order);
@@ -62,7 +62,7 @@ void plant_import_set_phase(struct plant_import *import, enum import_phase phase
 /* Appends the output of a program, which engineers can read. */
 void plant_import_say(struct plant_import *import, const char *text);
 bool plant_import_cancelled(struct plant_import *import);
-/* Ends the order. in_force: the plant that it made is in use. why: one line about the error; NULL: no error. */
+/* Ends the order. in_force: true if the plant that the order made is in use now. why: one line about the error; NULL: no error. */
 void plant_import_end(struct plant_import *import, bool in_force, const char *why);
 
 #endif
