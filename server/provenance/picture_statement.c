@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Hashes of the data that a statement refers to. */
+/* Hashes of data to which a signed statement about a picture refers. */
 #include "provenance/picture_statement.h"
 
 #include <openssl/evp.h>

@@ -87,7 +87,7 @@ static bool has_keyword(const uint8_t *data, size_t length, const char *keyword)
     return length > n + 2 && memcmp(data, keyword, n + 1) == 0 && data[n + 1] == 0;
 }
 
-/* a chunk of a PNG file, or its end */
+/* position of one chunk in a PNG file */
 struct png_chunk {
     const uint8_t *type, *data;
     size_t length;
@@ -118,8 +118,7 @@ struct plain_chunk {
 static const struct plain_chunk plain[] = {
     { "sRGB", true, false, "\0", 1 },
     { "gAMA", false, false, "\0\0\xb1\x8f", 4 },
-    { "cHRM", false, false,
-      "\0\0\x7a\x26\0\0\x80\x84\0\0\xfa\0\0\0\x80\xe8\0\0\x75\x30\0\0\xea\x60\0\0\x3a\x98\0\0\x17\x70", 32 },
+    { "cHRM", false, false, "\0\0\x7a\x26\0\0\x80\x84\0\0\xfa\0\0\0\x80\xe8\0\0\x75\x30\0\0\xea\x60\0\0\x3a\x98\0\0\x17\x70", 32 },
     { "IDAT", true, true, NULL, 0 },
     { "IEND", true, false, "", 0 },
 };
@@ -127,7 +126,8 @@ enum { PLAIN_CHUNKS = sizeof(plain) / sizeof(*plain) };
 
 #define FAIL(...) (snprintf(why, PNG_PLAIN_WHY_BYTES, __VA_ARGS__), false)
 
-/* Returns whether the header is 8-bit RGB, not interlaced: viewers show other formats differently from their bytes. */
+/* Returns whether the header is 8-bit RGB, not interlaced: a viewer may show pixels of other formats with other values than those
+   stored. */
 static bool is_plain_header(const struct png_chunk *chunk, char why[PNG_PLAIN_WHY_BYTES])
 {
     static const uint8_t format[] = { 8, 2, 0, 0, 0 };

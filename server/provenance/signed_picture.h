@@ -10,9 +10,9 @@
 #include "render/frame_record.h"
 #include "scene/scene.h"
 
-struct picture_origin { /* what the server knows about a picture besides the picture itself */
+struct picture_origin { /* data of the server about a picture that the picture itself lacks */
     const struct scene *scene;
-    const char *const *args; /* the query that it answers, as name=value */
+    const char *const *args; /* the query that the picture answers, as name=value */
     size_t arg_count;
     bool bare;           /* the viewer may not see readings, so the statement omits them */
     const char *overlay; /* overlay drawn on the picture: `full`, `bare` (no sensors and alarms) or `none` */

@@ -10,7 +10,8 @@
 #include "field/lab.h"
 
 enum { RUNS = 5, FINDER_CELLS = 7, GREY = 128 };
-static const double SLACK = 0.6;      /* tolerance of a finder's runs, as a fraction of a cell */
+/* tolerance for the lengths of a finder pattern's runs of dark and light pixels, as a fraction of a cell */
+static const double SLACK = 0.6;
 static const double STRANGE = 7;      /* CIELAB distance beyond which a colour is not in the legend */
 static const double INDISTINCT = 1.2; /* CIELAB distance within which two colours cannot be told apart; noise adds to it */
 static const double NOISES = 1.5;
@@ -45,7 +46,7 @@ static bool is_finder(const int runs[RUNS], double *cell_px)
     return good;
 }
 
-/* Finds all finder patterns of a row. Returns their number, at most `most`. */
+/* Finds all finder patterns of a row. Returns the number found, at most `most`. */
 static int find_in_row(const struct strip_picture *picture, int y, struct finder *out, int most)
 {
     int runs[RUNS] = { 0 }, count = 0, length = 0;
@@ -219,7 +220,8 @@ static double to_segment(const double p[3], const double a[3], const double b[3]
     return sqrt(square);
 }
 
-/* Returns the distance of a colour from a legend column. Lighting moves a colour along the line through its three shades. */
+/* Returns the distance of a colour from a legend column. Lighting moves a colour along the line through the three shades in which the
+   legend shows that colour. */
 static double off_of(const struct strip_found *found, int column, const double lab[3])
 {
     return fmin(to_segment(lab, found->ramp[0][column], found->ramp[1][column]),
@@ -264,7 +266,8 @@ bool strip_read(const struct strip_picture *picture, const struct strip_found *f
     else if (best >= STRIP_BEYOND + STRIP_RAMP)
         out->state = STRIP_ABOVE;
     else {
-        /* Colours at both ends of the scale may be similar: then the mean of their places would be meaningless. */
+        /* Colours at both ends of the scale may be similar: then the mean of their positions on the scale would be meaningless, and no
+           value is returned. */
         double place = abs(high - low) > STRIP_RAMP / 4 ? best - STRIP_BEYOND + 0.5 : sum / total;
         out->value = value_of(&found->strip, place / STRIP_RAMP);
         out->low = value_of(&found->strip, (double)(low - STRIP_BEYOND - 1) / STRIP_RAMP);

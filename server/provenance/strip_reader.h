@@ -16,17 +16,18 @@ struct strip_picture {
 struct strip_found {
     struct strip strip;
     double left_px, top_px, cell_px, row_px; /* position of the strip, and width and height of its cells */
-    int mended;                              /* number of wrong bytes in its code that were corrected */
-    /* CIELAB of its colours as they appear in this picture, MIN to MAX between the out-of-range colours */
+    int mended;                              /* number of wrong bytes in the strip's code that error correction repaired */
+    /* CIELAB of the strip's colours as they appear in this picture: below range, MIN to MAX, above range */
     double ramp[STRIP_SHADES][STRIP_INNER][3];
     double noise; /* CIELAB deviation of pixels that should have one colour, caused by compression */
 };
 
 enum strip_state { STRIP_VALUE, STRIP_BELOW, STRIP_ABOVE, STRIP_NO_COLOR };
 struct strip_value {
-    enum strip_state state;  /* NO_COLOR: not a colour of the legend: background, a label, no data */
-    double value, low, high; /* with VALUE: the pixel's value, and the bounds within which its colour is indistinguishable */
-    double off;              /* CIELAB distance from the nearest colour of the legend */
+    enum strip_state state; /* NO_COLOR: not a colour of the legend: background, a label, no data */
+    /* only for VALUE: the pixel's value, and bounds: values within them have colours that cannot be told from the pixel's */
+    double value, low, high;
+    double off; /* CIELAB distance from the nearest colour of the legend */
 };
 
 /* Finds the strip. Returns false, with the reason in *why (static text), if the picture has no readable strip. */
