@@ -11,7 +11,7 @@
 
 struct kept_list_kind {
     const char *file, *key;           /* file name, and the name of the member that holds the list */
-    const char *members;              /* members of an entry, for the log */
+    const char *members;              /* names of members of an entry, which the log names */
     bool (*good)(const json_t *list); /* returns whether a list from a file is valid */
 };
 
@@ -32,10 +32,10 @@ void kept_list_open(struct kept_list *kept, struct log *log, const char *folder,
 void kept_list_close(struct kept_list *kept);
 /* Returns the index of the entry with that id; the length of the list if none has it. */
 size_t kept_list_find(const json_t *list, const char *id);
-/* Returns why the list cannot be changed, or REFUSAL_NONE. */
+/* Returns REFUSAL_NONE if the list can be changed, else the reason why not. */
 enum refusal_code kept_list_refusal(const struct kept_list *kept);
-/* Replaces the list, once the new one is on disk (at once, if there is no folder). Takes ownership of `list`. Returns REFUSAL_NONE, or
-   why it failed. */
+/* Writes the new list to disk, and then replaces the list in memory; without a folder only the latter. Takes ownership of `list`. Returns
+   REFUSAL_NONE, or why it failed. */
 enum refusal_code kept_list_put(struct kept_list *kept, json_t *list);
 
 /* Replaces the list by that of another daemon; only a standby core writes it to disk. Returns false, with nothing changed, if the list

@@ -29,10 +29,10 @@ void named_views_close(struct named_views **views); /* Frees the views. &NULL is
 enum refusal_code named_views_save(struct named_views *views, const struct named_view_edit *edit, const char *who, int64_t time_us);
 /* Removes a saved view with its earlier versions, and writes the file. Returns REFUSAL_NONE, or why it failed. */
 enum refusal_code named_views_remove(struct named_views *views, const char *id);
-/* Returns the change counter; 0: there has been no view. */
+/* Returns a counter that increases with each change of the views; 0: there has been no view. */
 uint64_t named_views_number(const struct named_views *views);
-/* Returns the message `views` with all views; the view `id` has its earlier versions as `before` (NULL: no view has). The caller owns
-   it. */
+/* Returns the message `views` with all views; only the view `id` includes its earlier versions, as `before` (id NULL: none does). The
+   caller owns it. */
 json_t *named_views_message(const struct named_views *views, const char *id);
 /* For a core and its renderers: return the list of saved views, owned by `views`; replace it by that of the other daemon (false:
    invalid, nothing changed). */

@@ -10,14 +10,15 @@
 #include "base/log/log.h"
 #include "base/refusal.h"
 
-enum { NOTES = 100, NOTES_ENDED = 400 /* number of the newest ended notes that are stored */, NOTE_TEXT_BYTES = 401, NOTE_ID_BYTES = 24 };
+/* maximum number of ended notes that are stored: the newest ones */
+enum { NOTES = 100, NOTES_ENDED = 400, NOTE_TEXT_BYTES = 401, NOTE_ID_BYTES = 24 };
 #define NOTES_FILE "notes.json"
 
 struct note {
     const char *text;
-    const char *tag, *asset; /* where it is attached: one of the two, or position_m */
+    const char *tag, *asset; /* id of the tag or asset to which the note is attached; both NULL: at position_m */
     const double *position_m;
-    int64_t until_us; /* UTC; 0: until it is removed */
+    int64_t until_us; /* end, UTC; 0: until the note is removed */
 };
 
 struct notes;
@@ -29,10 +30,10 @@ void notes_close(struct notes **notes); /* Frees the notes. &NULL is fine; leave
 enum refusal_code notes_add(struct notes *notes, const struct note *note, const char *who, int64_t now_us, char id[NOTE_ID_BYTES]);
 /* Ends a note and writes the file. Returns REFUSAL_NONE, or why it failed. */
 enum refusal_code notes_end(struct notes *notes, const char *id, const char *who, int64_t now_us);
-/* Returns the change counter; 0: there has been no note. */
+/* Returns a counter that increases with each change of the notes; 0: there has been no note. */
 uint64_t notes_number(const struct notes *notes);
-/* Return the message `notes` with the notes valid at an instant, or with all notes valid at some time in a span and how they ended. Free
-   with mem_free(). */
+/* Return the message `notes` with the notes valid at an instant, or with all notes valid at some time between two instants, and how they
+   ended. Free with mem_free(). */
 char *notes_text(const struct notes *notes, int64_t now_us);
 char *notes_text_between(const struct notes *notes, int64_t from_us, int64_t to_us);
 /* Returns whether the sets of notes valid at two instants differ. */

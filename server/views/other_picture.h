@@ -9,7 +9,7 @@
 enum { OTHER_NAME_BYTES = 257 };
 
 struct other_picture {
-    int64_t oldest_age_ms;       /* age of the oldest reading in it when it was drawn; -1: no readings */
+    int64_t oldest_age_ms;       /* age of the oldest reading in the picture when it was drawn; -1: no readings */
     char name[OTHER_NAME_BYTES]; /* name of the plant; "": not stated by its server */
 };
 

@@ -23,9 +23,15 @@ static const int64_t WANTED_NS = 30 * NS_PER_S;
 
 /* reasons for a missing picture, as sent to clients; the log has details */
 enum why { WHY_NONE, WHY_WAITING, WHY_UNREACHABLE, WHY_TLS, WHY_TOKEN, WHY_REFUSED, WHY_BUSY, WHY_SLOW, WHY_LARGE, WHY_NO_PICTURE };
-static const char *const why_names[] = { [WHY_NONE] = "",     [WHY_WAITING] = "waiting", [WHY_UNREACHABLE] = "unreachable",
-                                         [WHY_TLS] = "tls",   [WHY_TOKEN] = "token",     [WHY_REFUSED] = "refused",
-                                         [WHY_BUSY] = "busy", [WHY_SLOW] = "slow",       [WHY_LARGE] = "large",
+static const char *const why_names[] = { [WHY_NONE] = "",
+                                         [WHY_WAITING] = "waiting",
+                                         [WHY_UNREACHABLE] = "unreachable",
+                                         [WHY_TLS] = "tls",
+                                         [WHY_TOKEN] = "token",
+                                         [WHY_REFUSED] = "refused",
+                                         [WHY_BUSY] = "busy",
+                                         [WHY_SLOW] = "slow",
+                                         [WHY_LARGE] = "large",
                                          [WHY_NO_PICTURE] = "no_picture" };
 
 struct other {
@@ -35,13 +41,13 @@ struct other {
     int64_t due_ns, begun_ns, begun_us; /* begun_us: the plant's time */
     bool running, failing;
     /* --- below: under `lock` */
-    int64_t wanted_ns; /* monotonic time of a client's last request for it; 0: none */
+    int64_t wanted_ns; /* monotonic time of a client's last request for this plant's picture; 0: none */
     struct other_picture about;
     char *png; /* picture; NULL: none */
     size_t bytes;
-    int64_t asked_ns, asked_us; /* request time of the last picture; asked_us is also its number; 0: none has come */
-    int64_t since_us;           /* plant's time since which there is no picture */
-    enum why why;               /* WHY_NONE: there is a picture */
+    int64_t asked_ns, asked_us; /* request time of the last picture; asked_us also serves as the picture's id; 0: no picture has arrived */
+    int64_t since_us; /* request time of the last good picture, or the time since which none is available; by this plant's clock */
+    enum why why;     /* WHY_NONE: there is a picture */
 };
 
 struct other_plants {
@@ -234,7 +240,7 @@ static int begin_due(struct other_plants *others)
         struct other *other = &others->at[i];
         pthread_mutex_lock(&others->lock);
         bool wanted = other->wanted_ns && now_ns - other->wanted_ns < WANTED_NS;
-        if (!wanted && other->wanted_ns && !other->running) { /* no display shows it any more: drop the picture */
+        if (!wanted && other->wanted_ns && !other->running) { /* no display has asked for the picture lately: drop it */
             mem_free(other->png);
             other->png = NULL;
             other->wanted_ns = other->asked_us = 0;

@@ -15,7 +15,7 @@ void other_plants_stop(struct other_plants **others); /* Ends the thread, aborti
 /* Returns the state of these plants, given by index, and keeps requesting their pictures for the next half a minute:
    /api/v1/other_plants in PROTOCOL.md. now_ns: monotonic. Returns JSON; free with mem_free(). */
 char *other_plants_text(struct other_plants *others, const int *which, size_t count, int64_t now_ns);
-/* Returns the picture with that number (mem_free), or NULL if it is no longer shown. */
+/* Returns the picture with that id (free with mem_free()), or NULL if it is no longer the current one. */
 char *other_plants_picture(struct other_plants *others, int which, int64_t number, int64_t now_ns, size_t *bytes);
 
 #endif

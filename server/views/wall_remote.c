@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Each pane has at most one order: the newest. */
+/* Stores, for each wall pane, the newest order that a desk gave; older orders are replaced. */
 #include "views/wall_remote.h"
 
 #include <stdio.h>
@@ -127,7 +127,7 @@ static bool same_place(const struct wall_place *a, const struct wall_place *b)
 
 static void set_pointer(struct wall_remote *remote, const struct wall_place *place, const double *position_m, const char *by)
 {
-    struct pointer *pointer = &remote->pointers[0]; /* the pane's own pointer, else the one moved least recently */
+    struct pointer *pointer = &remote->pointers[0]; /* reuses the pane's own pointer, else the one moved least recently */
     for (int i = 0; i < WALL_POINTERS; i++) {
         if (same_place(&remote->pointers[i].place, place)) {
             pointer = &remote->pointers[i];

@@ -30,7 +30,8 @@ struct wall_remote;
    (logged) and is not overwritten. Never returns NULL. `plant` and `folder` must outlive the result. */
 struct wall_remote *wall_remote_open(struct log *log, const struct plant *plant, const char *folder);
 void wall_remote_close(struct wall_remote **remote); /* Frees the orders. &NULL is fine; leaves NULL. */
-/* Returns why a place cannot be controlled: it is missing in the plant file, or its pane has no views (static). NULL: it can. */
+/* Returns the reason why a pane cannot be controlled: it is missing in the plant file, or has no views (static text). NULL: the pane can be
+   controlled. */
 const char *wall_place_wrong(const struct plant *plant, const struct wall_place *place);
 /* Carries out an order and writes the file. The place must exist in the plant file. Returns REFUSAL_NONE, or why it failed. */
 enum refusal_code wall_remote_order(struct wall_remote *remote, const struct wall_order *order, const char *who, int64_t now_us);
@@ -41,10 +42,10 @@ void wall_remote_point(struct wall_remote *remote, const struct wall_place *plac
 bool wall_remote_mirror_pointers(struct wall_remote *remote, const json_t *pointed);
 /* Records whether a display is connected. */
 void wall_remote_see(struct wall_remote *remote, const char *wall, int display, bool there);
-/* Return the change counters of the two texts below. */
+/* Return counters that increase with each change of the two messages below. */
 uint64_t wall_remote_number(const struct wall_remote *remote);
 uint64_t wall_remote_pointer_number(const struct wall_remote *remote);
-/* Return the message `walls`, and the message `pointed` with the changes after that number. Free with mem_free(). */
+/* Return the message `walls`, and the message `pointed` with the changes whose counter is above `after`. Free with mem_free(). */
 char *wall_remote_text(const struct wall_remote *remote);
 char *wall_remote_pointers_text(const struct wall_remote *remote, uint64_t after);
 /* For a core and its renderers: return the list of orders, owned by `remote`; replace it by that of the other daemon (false: invalid,
