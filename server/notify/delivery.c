@@ -120,7 +120,7 @@ static void set_common(struct delivery *delivery, struct transfer *transfer, con
     curl_easy_setopt(handle, CURLOPT_CONNECTTIMEOUT, (long)CONNECT_S);
     curl_easy_setopt(handle, CURLOPT_TIMEOUT_MS, (long)(delivery->notify->timeout_s * 1000));
     curl_easy_setopt(handle, CURLOPT_SSLVERSION, (long)CURL_SSLVERSION_TLSv1_2);
-    curl_easy_setopt(handle, CURLOPT_QUICK_EXIT, 1L); /* a hanging name server does not keep the daemon from ending */
+    curl_easy_setopt(handle, CURLOPT_QUICK_EXIT, 1L); /* keeps a hanging name server from delaying the end of the daemon */
     if (ca_file)
         curl_easy_setopt(handle, CURLOPT_CAINFO, ca_file);
 }
@@ -145,7 +145,7 @@ static char *set_mail(struct delivery *delivery, struct transfer *transfer, cons
     for (size_t i = 0; i < recipient->addresses.count; i++)
         transfer->list = curl_slist_append(transfer->list, recipient->addresses.at[i]);
     curl_easy_setopt(handle, CURLOPT_MAIL_RCPT, transfer->list);
-    /* a mailbox that the server refuses does not stop the mail to the others */
+    /* sends the mail to the other mailboxes if the server refuses one */
     curl_easy_setopt(handle, CURLOPT_MAIL_RCPT_ALLLOWFAILS, 1L);
     curl_easy_setopt(handle, CURLOPT_DEBUGFUNCTION, hear_refusals);
     curl_easy_setopt(handle, CURLOPT_DEBUGDATA, transfer);
@@ -206,8 +206,8 @@ char *delivery_start(struct delivery *delivery, int recipient, char *body, size_
 
 /* --- waiting for results ---------------------------------------------------------------------------------------------------- */
 
-/* Returns NULL, or why an ended transfer did not reach its recipient (mem_free). A redirection counts as failure: it may lead to a login
-   page. */
+/* Returns NULL if an ended transfer reached its recipient; else the reason, which the caller frees with mem_free(). A redirection counts as
+   failure: it may lead to a login page. */
 static char *why_not(const struct transfer *transfer, CURLcode code)
 {
     long status = 0;

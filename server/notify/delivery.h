@@ -14,7 +14,8 @@ struct delivery *delivery_create(struct log *log, const struct plant_notify *not
 void delivery_destroy(struct delivery **delivery); /* Aborts transfers in progress and frees the delivery. &NULL is fine; leaves NULL. */
 
 bool delivery_is_idle(const struct delivery *delivery, int recipient);
-/* Starts sending to an idle recipient. Takes ownership of `body` (mem_free). Returns NULL, or why sending cannot start (mem_free). */
+/* Starts sending to an idle recipient. Takes ownership of `body` (mem_free). Returns NULL on success, or the reason why sending cannot
+   start (free with mem_free()). */
 char *delivery_start(struct delivery *delivery, int recipient, char *body, size_t bytes);
 /* Waits up to timeout_ms for activity, and calls `each` for deliveries that have ended; `why` is NULL if the message was accepted. */
 void delivery_wait(struct delivery *delivery, int timeout_ms, void (*each)(void *arg, int recipient, const char *why), void *arg);

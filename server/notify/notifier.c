@@ -37,7 +37,7 @@ struct notifier {
     struct recipient_counters *counters; /* by index of the recipient */
     counter *lost, *spool_good;
     bool *failing;   /* by index of the recipient: its last delivery failed */
-    uint64_t number; /* number of the last alarm change processed */
+    uint64_t number; /* sequence number of the last alarm change processed */
     bool looked, unsaved;
     int64_t lost_before; /* alarms lost by outboxes before a reload */
 };
@@ -139,7 +139,7 @@ static void on_end(void *arg, int recipient, const char *why)
             log_err(log, "notify: %s cannot be reached: %s; messages wait, and are sent again", id, why);
     } else {
         outbox_sent(notifier->outbox, recipient, now_us());
-        save(notifier); /* save at once: a daemon killed before would send the message again */
+        save(notifier); /* saves at once: if the daemon were killed before saving, the next one would send the message again */
         counter_inc(notifier->counters[recipient].sent, 1);
         if (notifier->failing[recipient])
             log_info(log, "notify: %s accepts messages again", id);

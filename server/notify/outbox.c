@@ -99,7 +99,7 @@ static void queue_item(struct outbox *outbox, int recipient, const struct episod
 {
     struct recipient_box *box = &outbox->boxes[recipient];
     int index = (int)(episode - outbox->episodes);
-    bool may_wait = step > 0 || episode->told_us; /* the alarm may be in the queue already */
+    bool may_wait = step > 0 || episode->told_us; /* if the alarm is in the queue already, it is not queued again */
     for (size_t i = 0; may_wait && i < box->waiting.count; i++)
         if (box->waiting.at[i].episode == index)
             return;
@@ -263,7 +263,7 @@ void outbox_tick(struct outbox *outbox, int64_t now_us)
     }
     for (size_t i = 0; i < outbox->plant->notify->recipient_count; i++) {
         struct recipient_box *box = &outbox->boxes[i];
-        /* Alertmanager gets the current alarms, so old messages need not be dropped */
+        /* messages to Alertmanager always contain the current alarms, so they are never too old to send */
         bool keeps = outbox->plant->notify->recipients[i].kind == NOTIFY_ALERTMANAGER;
         if (!keeps && box->batch_count > 0 && box->attempts > 0 && now_us - box->batch_us > OUTBOX_KEEP_US)
             give_up(outbox, box);
@@ -377,9 +377,7 @@ bool outbox_next(struct outbox *outbox, int recipient, int64_t now_us, struct ou
     } else if (now_us < box->retry_us && box->retry_us - now_us <= RETRY_MAX_US) {
         return false;
     }
-    *out = (struct outbox_message){
-        .items = box->batch, .count = box->batch_count, .left_out = box->left_out, .made_us = box->batch_us
-    };
+    *out = (struct outbox_message){ .items = box->batch, .count = box->batch_count, .left_out = box->left_out, .made_us = box->batch_us };
     memcpy(out->id, box->id, sizeof(out->id));
     return box->batch_count > 0;
 }

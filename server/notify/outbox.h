@@ -19,10 +19,10 @@ struct outbox_item { /* one alarm in a message */
     char *name;      /* name of the tag or device */
     int tag;         /* index of the tag; -1: a device */
     enum alarm_kind kind;
-    int priority, step; /* step: 0, or the number of the escalation */
+    int priority, step; /* step: 0: first notification; 1 and up: index of the escalation step */
     enum alarm_status status;
     double value, limit;         /* NaN: none */
-    int64_t raised_us, ended_us; /* UTC microseconds; ended_us: when the cause went or the alarm was acknowledged; 0: still active */
+    int64_t raised_us, ended_us; /* UTC microseconds; ended_us: when the alarm returned to normal or was acknowledged; 0: still active */
 };
 
 struct outbox_message {
@@ -38,11 +38,11 @@ struct outbox;
 struct outbox *outbox_create(const struct plant *plant);
 void outbox_destroy(struct outbox **outbox); /* Frees the outbox. &NULL is fine; leaves NULL. */
 
-/* Processes the current state of an alarm. restored: the state is from the journal after a restart; then an alarm that needs no action
-   is not notified. */
+/* Processes the current state of an alarm. restored: the state is from the journal after a restart; an alarm that needs no action is then
+   not notified. */
 void outbox_put(struct outbox *outbox, const struct alarm *alarm, bool restored, int64_t now_us);
-/* Ends the alarms that were restored and not put since: they returned to normal, or lost their limits, while the daemon was down. Call
-   it once all alarms that are not normal have been put. */
+/* Ends the alarms that were restored and for which outbox_put() was not called since: they returned to normal, or lost their limits, while
+   the daemon was down. Call it once all alarms that are not normal have been put. */
 void outbox_end_unseen(struct outbox *outbox, int64_t now_us);
 /* Processes the passing of time: escalation, and dropping of old messages. */
 void outbox_tick(struct outbox *outbox, int64_t now_us);
@@ -58,7 +58,7 @@ struct outbox_counts {
     int64_t lost;    /* alarms lost for all recipients since the start: queue full, or dropped */
 };
 struct outbox_counts outbox_counts(const struct outbox *outbox, int recipient);
-bool outbox_rests(const struct outbox *outbox); /* Returns whether nothing will happen until an alarm is put. */
+bool outbox_rests(const struct outbox *outbox); /* Returns whether no notification can become due until outbox_put() is called. */
 bool outbox_is_changed(struct outbox *outbox);  /* Returns whether the state to be saved has changed since the last call. */
 
 /* --- outbox_json.c: saving the state across a restart --- */

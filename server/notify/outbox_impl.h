@@ -4,14 +4,14 @@
 #define NOTIFY_OUTBOX_IMPL_H
 #include "notify/outbox.h"
 
-struct episode { /* history of one alarm: from when it needs attention until it no longer does, and some time after that */
+struct episode { /* episode of one alarm: begins when the alarm needs attention; removed some time after it no longer does */
     char *name;
     int tag;
     enum alarm_kind kind;
     int priority;
     enum alarm_status status;
     double value, limit;
-    int64_t raised_us; /* start of the alarm, when last put */
+    int64_t raised_us; /* start of the alarm, as of the last call of outbox_put() */
     int64_t began_us;
     int64_t ended_us;            /* UTC microseconds; 0: the alarm still needs attention */
     int64_t cleared_us;          /* when the alarm stopped being annunciated; 0: still annunciated */
@@ -19,8 +19,8 @@ struct episode { /* history of one alarm: from when it needs attention until it 
     uint32_t rules;              /* bit mask of the rules that applied when the episode began */
     uint32_t told;               /* bit mask of the recipients notified */
     uint8_t steps[NOTIFY_RULES]; /* by rule: number of escalation steps taken */
-    bool aside;                  /* shelved, suppressed or out of service */
-    bool seen;                   /* put since the start, not only restored */
+    bool aside;                  /* the alarm is shelved, suppressed or out of service, so it is not notified */
+    bool seen;                   /* outbox_put() was called for the alarm since the daemon started; false: it was only restored */
 };
 
 struct queued_item {
@@ -44,7 +44,7 @@ struct recipient_box { /* messages queued for one recipient */
     int64_t retry_us;
     int last_priority; /* highest priority in the last message */
     int attempts;
-    int64_t left_out; /* alarms left out since the last message */
+    int64_t left_out; /* number of alarms left out since the last message, because there were too many */
     bool changed;     /* for Alertmanager: some changes of alarms have not been sent yet */
 };
 

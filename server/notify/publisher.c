@@ -25,7 +25,7 @@ static const int64_t CONNECT_NS = 10 * NS_PER_S;
 
 struct topic {
     char *name, *unit;       /* unit: a JSON object */
-    int64_t received_utc_ns; /* time of the last published reading */
+    int64_t received_utc_ns; /* by tag: time of the last published reading */
     uint32_t quality;
     bool is_published; /* published on the current connection */
 };

@@ -16,7 +16,7 @@ struct publisher_params {
 struct publisher;
 /* Starts a publisher. Returns NULL if the thread cannot be started (logged). */
 struct publisher *publisher_start(const struct publisher_params *params);
-/* Ends the connection; the broker publishes "offline" for us. &NULL is fine; leaves NULL. */
+/* Ends the connection; the broker then publishes our last-will message "offline". &NULL is fine; leaves NULL. */
 void publisher_stop(struct publisher **publisher);
 
 #endif
