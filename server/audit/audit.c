@@ -17,7 +17,7 @@ enum { MAX_QUEUED = 10000, FILE_BYTES = 64 << 20 };
 static const int64_t RETRY_NS = NS_PER_S;
 
 struct queued_entry {
-    struct audit_entry entry; /* its texts are stored in the same allocation, directly after the struct */
+    struct audit_entry entry; /* the texts of the entry are stored in the same allocation, directly after the struct */
     int64_t utc_us;
     bool said; /* the entry was logged already, because the file could not be written */
     struct queued_entry *next;
@@ -50,9 +50,9 @@ static struct queued_entry *copy_entry(const struct audit_entry *entry)
     for (size_t i = 0; i < COUNT; i++)
         bytes += lengths[i] = texts[i] ? strlen(texts[i]) + 1 : 0;
     struct queued_entry *waiting = mem_new(sizeof(*waiting) + bytes);
-    const char **members[COUNT] = { &waiting->entry.event, &waiting->entry.result,  &waiting->entry.who,  &waiting->entry.role,
-                                    &waiting->entry.from,  &waiting->entry.how,     &waiting->entry.through, &waiting->entry.what,
-                                    &waiting->entry.why };
+    const char **members[COUNT] = { &waiting->entry.event,   &waiting->entry.result, &waiting->entry.who,
+                                    &waiting->entry.role,    &waiting->entry.from,   &waiting->entry.how,
+                                    &waiting->entry.through, &waiting->entry.what,   &waiting->entry.why };
     char *at = (char *)(waiting + 1);
     for (size_t i = 0; i < COUNT; at += lengths[i++])
         if (texts[i])
@@ -136,8 +136,8 @@ static void log_entry(struct audit *audit, const struct audit_entry *entry, cons
     log_event(audit->params.log, LOG_INFO, EVENT_AUDIT, "%s: %s %s: %s%s%s from %s%s%s%s%s%s%s%s%s%s%s", head, entry->event, entry->result,
               entry->who ? entry->who : "(nobody)", entry->role ? ", " : "", entry->role ? entry->role : "",
               entry->from ? entry->from : "this daemon", entry->how ? " by " : "", entry->how ? entry->how : "",
-              entry->through ? " through " : "", entry->through ? entry->through : "", *what ? ": " : "", what,
-              *why ? ": " : "", why, *tail ? "; " : "", tail);
+              entry->through ? " through " : "", entry->through ? entry->through : "", *what ? ": " : "", what, *why ? ": " : "", why,
+              *tail ? "; " : "", tail);
 }
 
 static void say_written(struct audit *audit, const char *why)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Lines of the audit trail: each is a JSON object with a number, the hash of the previous line, and its own hash, the SHA-256 of the
-   line's text before it. Pure. Thread: one per chain. */
+/* Lines of the audit trail: each is a JSON object with a sequence number, the hash of the previous line, and its own hash, the SHA-256 of
+   the line's text before it. Pure. Thread: one per chain. */
 #ifndef AUDIT_AUDIT_CHAIN_H
 #define AUDIT_AUDIT_CHAIN_H
 #include <stdbool.h>
@@ -11,8 +11,8 @@
 enum { AUDIT_HASH_CHARS = 64, AUDIT_LINE_BYTES = 32768 };
 
 struct audit_chain {                 /* the end of a trail */
-    uint64_t seq;                    /* number of its last line; 0: the trail is empty */
-    char hash[AUDIT_HASH_CHARS + 1]; /* hash of its last line; 64 zeros: the trail is empty */
+    uint64_t seq;                    /* sequence number of the trail's last line; 0: the trail is empty */
+    char hash[AUDIT_HASH_CHARS + 1]; /* hash of the trail's last line; 64 zeros: the trail is empty */
 };
 
 /* One event. Texts may be NULL (not known) and are shortened if too long. */
@@ -20,11 +20,11 @@ struct audit_entry {
     const char *event;  /* login, logout, access, alarm and so on: AUDIT.md has the list */
     const char *result; /* done, refused or failed */
     const char *who, *role;
-    const char *from; /* the client's address */
-    const char *how;  /* by which way or means */
-    const char *through; /* renderer that forwarded the action, and its token; NULL: none */
-    const char *what; /* what was changed or requested */
-    const char *why;  /* reason of a refusal */
+    const char *from;    /* the client's address */
+    const char *how;     /* by which way or means */
+    const char *through; /* renderer (a daemon that draws for clients) that forwarded the action, and the name of its token; NULL: none */
+    const char *what;    /* what was changed or requested */
+    const char *why;     /* reason of a refusal */
 };
 
 /* Initialises the chain of an empty trail. */

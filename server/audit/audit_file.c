@@ -56,7 +56,7 @@ static int find_chain(struct audit_file *file, char **finding)
     return ftruncate(file->fd, (off_t)file->bytes) == 0 ? 0 : -errno;
 }
 
-/* Returns whether the trail up to its head was rotated away and nothing was written since. */
+/* Returns true if the last line that PATH.head names is the end of a rotated file, and no line was written after it. */
 static bool is_rotated(const struct audit_file *file, const struct audit_chain *head)
 {
     char *full = mem_printf("%s.%012" PRIu64, file->path, head->seq);
@@ -65,8 +65,8 @@ static bool is_rotated(const struct audit_file *file, const struct audit_chain *
     return rotated;
 }
 
-/* Compares the file with PATH.head. If the head says that there were more lines, numbering continues after them, so that the gap stays
-   visible. */
+/* Compares the file with PATH.head. If PATH.head names a later line than the file has, numbering continues after that line, so that the gap
+   stays visible. */
 static void compare_head(struct audit_file *file, char **finding)
 {
     struct audit_chain head;
@@ -107,8 +107,8 @@ void audit_file_close(struct audit_file *file)
     *file = (struct audit_file){ .fd = -1 };
 }
 
-/* Checks whether PATH is still the file that this process has open. Another program may rename it, which is fine; if it changed the
-   content, *finding says so. */
+/* Checks whether PATH is still the file that this process has open. Another program may rename it, which is fine; if the file's content
+   changed, *finding receives a message about it. */
 static int look_at_path(struct audit_file *file, char **finding)
 {
     struct stat ours, there;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The audit trail's file. PATH is being written; full files stay next to it as PATH.NUMBER, named after their last line's number.
-   PATH.head says where the trail ends, so that removed last lines are detected. Functions that return int return 0 or -errno. Thread:
-   one. */
+/* The audit trail's file. PATH is being written; full files stay next to it as PATH.NUMBER, where NUMBER is the sequence number of their
+   last line. PATH.head says where the trail ends, so that removed last lines are detected. Functions that return int return 0 or -errno.
+   Thread: one. */
 #ifndef AUDIT_AUDIT_FILE_H
 #define AUDIT_AUDIT_FILE_H
 #include <stddef.h>
@@ -11,8 +11,8 @@
 struct audit_file {
     char *path, *head_path;
     int fd;                   /* file descriptor; -1: not open */
-    size_t bytes;             /* size of the file so far */
-    size_t most_bytes;        /* size at which the file is rotated */
+    size_t bytes;             /* present size of PATH in bytes */
+    size_t most_bytes;        /* size in bytes at which the file is rotated */
     struct audit_chain chain; /* where the trail ends */
 };
 
@@ -20,8 +20,8 @@ struct audit_file {
    the caller frees it with mem_free. */
 int audit_file_open(struct audit_file *file, const char *path, size_t most_bytes, char **finding);
 void audit_file_close(struct audit_file *file); /* the struct may also be a zeroed one that was never opened */
-/* Appends an entry. Either all of it is on disk, or none and the chain is unchanged. line: receives the entry's text, appended.
-   *finding: as in audit_file_open(), if another program changed the file meanwhile. */
+/* Appends an entry. On success the whole entry is on disk; on failure no part of the entry is, and the chain is unchanged. The entry's line
+   is appended to `line`. *finding: as in audit_file_open(), about changes that another program made meanwhile. */
 int audit_file_append(struct audit_file *file, const struct audit_entry *entry, int64_t utc_us, struct text *line, char **finding);
 
 struct audit_report {
@@ -31,8 +31,8 @@ struct audit_report {
     bool good;
     char *text; /* description of the fault and of its place; NULL: no fault. Free it with mem_free */
 };
-/* Verifies the trail: full files, PATH, and PATH.head. known: number and hash of a line, kept elsewhere (seq 0: none); reports a trail
-   that ends before that line or has another one there. */
+/* Verifies the trail: full files, PATH, and PATH.head. known: sequence number and hash of a line, noted in another place (seq 0: none);
+   reports a trail that ends before that line or has another one there. */
 void audit_file_verify(const char *path, const struct audit_chain *known, struct audit_report *report);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* PATH.head: number and hash of the audit trail's last line. It has a fixed length and is overwritten in place, so that it can be
+/* PATH.head: sequence number and hash of the audit trail's last line. It has a fixed length and is overwritten in place, so that it can be
    written on a full disk, too. Thread: one. */
 #ifndef AUDIT_AUDIT_HEAD_H
 #define AUDIT_AUDIT_HEAD_H

@@ -32,7 +32,7 @@ struct audit_syslog {
     /* --- below: protected by `lock` */
     struct framed *first, **last;
     size_t waiting;
-    int64_t stop_ns; /* monotonic time at which the thread must end; 0: the thread goes on */
+    int64_t stop_ns; /* monotonic time at which the thread must end; 0: the thread keeps running */
 };
 
 void audit_syslog_frame(struct text *out, const char *host, int pid, const char *event, bool good, int64_t utc_us, const char *line,

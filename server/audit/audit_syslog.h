@@ -14,7 +14,8 @@ void audit_syslog_stop(struct audit_syslog **syslog);
 /* Queues a copy of a line. Any thread. */
 void audit_syslog_send(struct audit_syslog *syslog, const char *event, bool good, int64_t utc_us, const char *line, size_t count);
 
-/* Appends to `out` a message with its length in front, the framing of syslog over a stream. host: "-" if it is not known. Pure. */
+/* Appends to `out` the length of a message and then the message, the framing of syslog over a stream. host: "-" if it is not known.
+   Pure. */
 void audit_syslog_frame(struct text *out, const char *host, int pid, const char *event, bool good, int64_t utc_us, const char *line,
                         size_t count);
 

@@ -26,7 +26,7 @@ static void set_fault(struct audit_report *report, char *text)
     report->good = false;
 }
 
-/* Reports a line whose hash differs from the one that is known from elsewhere. */
+/* Reports a line whose hash differs from the hash that the caller knows from another place. */
 static void compare(struct audit_walk *walk, const struct audit_chain *with, const char *path, const char *whose)
 {
     const struct audit_chain *end = &walk->report->end;
