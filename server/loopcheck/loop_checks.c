@@ -30,7 +30,7 @@ struct loop_checks {
     const struct plant *plant;
     char *folder, *path;
     struct loop_check *at; /* latest check by tag */
-    uint64_t *numbers;     /* number of the latest check by tag */
+    uint64_t *numbers;     /* by tag: sequence number of the tag's latest check, as loop_checks_number() counts */
     uint64_t number;
     bool begun;
     atomic_bool *unproven; /* atomic flags by tag, for threads that draw: the tag must be marked as unproven */
@@ -188,8 +188,8 @@ void loop_checks_close(struct loop_checks **pointer)
     *pointer = NULL;
 }
 
-/* Appends a row. If the last line is incomplete, for example after a power failure, it is ended first. The historian creates the folder
-   too, on a thread of its own, and may not have done so yet. */
+/* Appends a row. If the last line is incomplete, for example after a power failure, it is ended with a newline first. Creates the folder if
+   needed: the historian's thread creates it, too, but may not have done so yet. */
 static bool append(struct log *log, const char *folder, const char *path, const struct text *row)
 {
     mkdir(folder, 0777); /* if this fails, opening the file reports the reason */
@@ -204,7 +204,7 @@ static bool append(struct log *log, const char *folder, const char *path, const 
         good = fseek(file, 0, SEEK_END) == 0 && fputc('\n', file) != EOF;
     good = good && fwrite(row->at, 1, row->length, file) == row->length && fflush(file) == 0 && fsync(fileno(file)) == 0;
     int error = errno;
-    /* remove the row, or a part of it, because the caller reports it as not stored */
+    /* removes what was written of the row, because the caller reports it as not stored */
     if (!good && size >= 0 && ftruncate(fileno(file), size) != 0)
         log_err(log, "%s: %s", path, strerror(errno));
     fclose(file);
