@@ -36,11 +36,12 @@ struct relocation {
     /* --- below: under lock */
     enum relocation_state state;
     struct surface *surface; /* surface of the asset; once warm, read without the lock */
-    /* embedding of the shape's vertices; once warm, read without the lock. NULL: the surface's vertices are the shape's */
+    /* embedding of the shape's vertices; once warm, read without the lock. NULL: not needed, because the surface was built from the shape's
+     * vertices */
     struct vertex_embedding *embedding;
     struct relocation_ask *asks; /* waiting or running requests, oldest first */
     uint64_t last_ticket;
-    size_t jobs; /* jobs submitted to the workers and not finished */
+    size_t jobs; /* count of jobs submitted to the workers and not finished */
 };
 
 static void corner(const struct relocation_shape *shape, size_t t, size_t i, double out[3])
@@ -60,7 +61,7 @@ static double size_of(const struct relocation_shape *shape)
 
 /* --- places ----------------------------------------------------------------------------------------------------------------- */
 
-/* Projects without the surface: tries all triangles, which takes a few milliseconds. */
+/* Projects a point while the surface is not built yet: tries all triangles, which takes only a few milliseconds. */
 static bool project_onto_triangles(const struct relocation *relocation, const double point_m[3], struct relocation_place *place)
 {
     double best_m = relocation->size_m;

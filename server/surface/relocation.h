@@ -12,18 +12,19 @@
 
 struct relocation;
 
-/* An asset's finest level. What it points to must outlive the relocation object. */
+/* An asset's finest level. The arrays must outlive the relocation object. */
 struct relocation_shape {
     const float (*positions_m)[3];
-    const float (*normals)[3]; /* decide the side of vertices that only coarser levels have; NULL: the nearest face decides */
+    /* vertex normals, which decide on which side of a wall vertices of coarser levels lie; NULL: the nearest face decides */
+    const float (*normals)[3];
     size_t vertex_count;
     const uint32_t *triangles; /* three vertex indices each */
     size_t triangle_count;
-    double tolerance_m; /* tolerance for gaps, as in the plant file, so that the same gaps are bridged; 0: chosen from the model */
+    double tolerance_m; /* tolerance for gaps, as in the plant file, so that relocation bridges the same gaps; 0: chosen from the model */
     /* The surface that plantcast-prep stored for the asset (surface_store.h). With it, distances equal those that plantcast-prep would
-       store (except for a few vertices where coincident faces belong to two parts), and warm-up is faster. Without it the surface is built
-       from the triangles: where parts are within the tolerance of each other, these have more vertices than the model, and so more bridges.
-       Distances then differ by 0.03 % of the largest on average, by a few percent at single points. */
+     * store (except for a few vertices where coincident faces belong to two parts), and warm-up is faster. Without it the surface is built
+     * from the triangles: where parts are within the tolerance of each other, the asset's triangles have more vertices than the model,
+     * which causes more bridges. Distances then differ by 0.03 % of the largest on average, by a few percent at single points. */
     const char *surface_path; /* path of the stored surface; NULL: none. Only read during relocation_create() */
     uint64_t surface_key;
 };
@@ -39,14 +40,14 @@ enum relocation_state {
     RELOCATION_WARM,
     RELOCATION_BROKEN
 }; /* RELOCATION_BROKEN: no triangle has an area, or out of memory; logged */
-/* Returns whether the surface is still being built, ready, or impossible to build. */
+/* Returns the state of the surface: being built, ready, or impossible to build. */
 enum relocation_state relocation_state(struct relocation *relocation);
 
 /* Position of a sensor on the asset. */
 struct relocation_place {
-    double surface_m[3]; /* nearest point on the asset; once warm, only on surfaces not hidden inside another part */
+    double surface_m[3]; /* nearest point on the asset; once the surface is built, only on surfaces not hidden inside another part */
     double distance_m;   /* distance from the requested point to surface_m, metres */
-    uint32_t vertex;     /* vertex near surface_m; once warm, the nearest one */
+    uint32_t vertex;     /* index of a vertex near surface_m; once the surface is built, the nearest vertex */
 };
 
 enum relocation_status {
@@ -73,8 +74,8 @@ bool relocation_place(struct relocation *relocation, const double point_m[3], st
    ticket, or 0 if relocation_place() refuses the point: then done is not called. */
 uint64_t relocation_request(struct relocation *relocation, const double point_m[3],
                             void (*done)(void *arg, struct relocation_result *result), void *arg);
-/* Cancels the request of this ticket: at once if it waits, after its computation if it is under way. A finished ticket is fine. While a
-   sensor is dragged, each request is cancelled before the next. */
+/* Cancels the request of this ticket: at once if it waits, or after its computation if it is being processed. Ignores a finished ticket.
+ * While a sensor is dragged, each request is cancelled before the next. */
 void relocation_cancel(struct relocation *relocation, uint64_t ticket);
 
 #endif

@@ -18,11 +18,11 @@
 #include "surface/surface_impl.h"
 #include "surface/mesh/decimate.h"
 
-#define WELD_OF_SIZE 1e-6 /* welding distance of vertices relative to the model's size: float positions are no finer */
+#define WELD_OF_SIZE 1e-6 /* welding distance of vertices relative to the model's size: the resolution of float positions */
 #define TOLERANCE_OF_SIZE 5e-4
-#define SAMPLES 15000.0        /* points of an evenly sampled surface, besides the model's own */
-#define SPACING_GROWTH 1.25             /* growth of the spacing while there are too many points */
-#define POINTS_PER_SPACING 2.7 /* points per square of the spacing, for a surface sampled by halving edges; measured */
+#define SAMPLES 15000.0        /* target number of points of an evenly sampled surface, in addition to the model's vertices */
+#define SPACING_GROWTH 1.25    /* factor by which the spacing grows while there are too many points */
+#define POINTS_PER_SPACING 2.7 /* points per square of the spacing if a surface is sampled by halving edges; measured */
 
 static double seconds_since(int64_t *since_ns)
 {
@@ -122,7 +122,7 @@ static bool close_seams(struct surface *surface, char *why)
     return made.k >= 0 || no_surface(surface, why, "out of memory for neighbours of %zu points", surface->mesh.point_count);
 }
 
-/* Puts visible triangles first. Returns their number. */
+/* Moves visible triangles to the front. Returns the number of visible triangles. */
 static size_t sort_hidden(struct trimesh *mesh, char *hidden)
 {
     size_t front = 0;
@@ -143,8 +143,8 @@ static size_t sort_hidden(struct trimesh *mesh, char *hidden)
     return front;
 }
 
-/* Merges coincident crossing points: where edges cross at an edge, each of its faces got its own point, a crack that distances would have
-   to go around. */
+/* Merges coincident crossing points: where edges cross at an edge, each face got a point of its own, which leaves a crack that paths would
+ * have to go around. */
 static void merge_twins(struct surface *surface, uint32_t *crossings, size_t crossing_count)
 {
     uint32_t *target = mem_array(surface->mesh.point_count, sizeof(*target));
@@ -170,18 +170,17 @@ static void decimate(struct surface *surface, const uint32_t *part, size_t added
         keep[surface->vertex_point[v]] = 1;
     surface->plane = mem_array(surface->report.triangles, sizeof(*surface->plane));
     decimate_mesh(mesh, hidden,
-                  &(struct decimate_params){
-                      .part = part,
-                      .keep = keep,
-                      .within_m = surface->report.size_m * WELD_OF_SIZE / 4,
-                      .longest_m = surface->report.spacing_m },
+                  &(struct decimate_params){ .part = part,
+                                             .keep = keep,
+                                             .within_m = surface->report.size_m * WELD_OF_SIZE / 4,
+                                             .longest_m = surface->report.spacing_m },
                   surface->plane, surface->report.triangles, target);
     follow(surface, target);
     mem_free(target);
     mem_free(keep);
 }
 
-/* Closes rims that hiding triangles opened. */
+/* Closes rims: edges that became open because triangles at them were hidden. */
 static void close_rims(struct surface *surface, const struct body_parts *parts, char **hidden)
 {
     struct repair_report made = { 0 };
@@ -226,7 +225,7 @@ static void join_parts(struct surface *surface, struct body_parts *parts)
     mem_free(made.crossings);
 }
 
-/* Moves triangles with an edge longer than the asset's main part to the end. Returns their number. */
+/* Moves triangles with an edge longer than the asset's main part to the end. Returns the number of moved triangles. */
 static size_t set_aside_needles(struct surface *surface)
 {
     struct trimesh *mesh = &surface->mesh;

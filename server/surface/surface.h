@@ -14,7 +14,7 @@
    long that the heat would underflow. The gradient is taken of the logarithm of heat, which is nearly linear within a triangle, unlike
    heat.
    5. The heat method errs by 0.05 to 0.4 % on average and up to 4 % at borders and ridges. So the distances returned come from propagation
-   over the same triangulation (propagation.h), with errors of 0.01 to 0.12 % on average. surface_check() compares some of them with the
+   over the same triangulation (propagation.h), with errors of 0.01 to 0.12 % on average. surface_check() compares some distances with the
    heat method, which shares nothing with propagation but the mesh; the report states differences of more than a few percent. Distances are
    stored at the model's own vertices. */
 #ifndef SURFACE_SURFACE_H
@@ -37,13 +37,13 @@ struct surface_params { /* zero: chosen from the model */
 
 struct surface_report {
     double size_m;                          /* diagonal of the main part (gap_split.h) */
-    double tolerance_m, spacing_m, time_m2; /* values used; time_m2: t of the heat method */
+    double tolerance_m, spacing_m, time_m2; /* tolerance and spacing that were used; time_m2: diffusion time t of the heat method */
     size_t triangles, welded_vertices, degenerate_triangles, repeated_triangles;
     size_t border_edges, border_edges_after; /* edges with one face, before and after bridging */
     size_t components, components_after;     /* connected components, before and after bridging */
     size_t bridges;                          /* vertices joined to another point of the surface */
     double longest_bridge_m;
-    int k;                  /* neighbours requested per point; 0: nothing to bridge */
+    int k;                  /* count of neighbours requested per point (point_cloud.h); 0: there was nothing to bridge */
     size_t samples;         /* points added */
     size_t hidden_vertices; /* model vertices inside another closed part, or covered by one */
     /* root mean square difference from the heat method, relative to the largest distance, of the worst source checked. NaN until
@@ -87,8 +87,9 @@ void surface_nearest(const struct surface *surface, const double point_m[3], str
 
 /* A point on the surface, by triangle and barycentric weights. */
 struct surface_point {
-    uint32_t tri;                              /* of the sampled surface */
-    double weights[3], point_m[3], distance_m; /* weights: of tri's corners; distance_m: from the requested point */
+    uint32_t tri; /* of the sampled surface */
+    /* weights: barycentric weights of tri's corners; distance_m: distance from the requested point */
+    double weights[3], point_m[3], distance_m;
 };
 /* Finds the surface point nearest to point_m. With `normal`, prefers a triangle that faces along it among those about equally near, so that
    the far side of a thin wall is not taken (NULL: no preference). */

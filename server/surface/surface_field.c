@@ -33,7 +33,8 @@ static const struct stray *stray_of(const struct surface *surface, uint32_t vert
     return low < surface->stray_count && surface->strays[low].vertex == vertex ? &surface->strays[low] : NULL;
 }
 
-/* distances_m: of a source at all points, `apart` elements from one to the next. */
+/* Returns the distance at a stray vertex. distances_m: distances of one source at all points, `apart` elements from one point to the
+ * next. */
 static float at_stray(const struct stray *stray, const float *distances_m, size_t apart)
 {
     double sum = 0;
@@ -65,7 +66,7 @@ struct abreast { /* sources that are propagated together */
     size_t source[PROPAGATION_ABREAST], count;
 };
 
-/* block: columns of the sources from `first` on, if a field is filled. */
+/* block: buffer for the columns of the sources from `first` on, used only if a field is filled. */
 static bool propagate(const struct solve *solve, struct abreast *abreast, float *block, size_t first)
 {
     const struct surface *surface = solve->surface;
@@ -181,8 +182,8 @@ void surface_field_at_vertex(const struct surface_field *field, const struct sur
         out[s] = at_stray(stray, field->distances_m + s, field->source_count);
 }
 
-/* An edge of a surface point's triangle, from corner a to corner b, as seen from the point: its length, and the point's position with a at
-   (0, 0) and b at (side, 0). */
+/* An edge of the triangle that contains a surface point, from corner a to corner b: the edge's length, and the point's position with a at
+ * (0, 0) and b at (side, 0). */
 struct edge_window {
     float side, half, per, x, y;
 };
@@ -195,15 +196,15 @@ static struct edge_window sight_of(double ab, double to_a, double to_b)
     return (struct edge_window){ (float)ab, (float)ab / 2, 1 / (2 * (float)ab), (float)x, (float)y };
 }
 
-/* Returns the squared distance through the edge, with the source laid out beyond it, if its ray crosses the edge and is shorter than best2;
-   else best2. */
+/* Returns the smaller one of best2 and the squared distance through the edge, with the source laid out beyond the edge. The latter counts
+ * only if the ray from the source crosses the edge. */
 SIMD_BODY float through_edge(const struct edge_window *sight, float da, float db, float best2)
 {
     const float x = sight->x, y = sight->y;
     float sx = (da - db) * (da + db) * sight->per + sight->half, sy2 = (da - sx) * (da + sx), sy = sqrtf(sy2 > 0 ? sy2 : 0);
     float dx = x - sx, dy = y + sy, cut = sx * y + x * sy; /* cut: where the source's ray crosses the edge, times dy */
     float straight2 = dx * dx + dy * dy;
-    straight2 = cut >= 0 ? straight2 : INFINITY; /* the comparison is false where da or db is INFINITY */
+    straight2 = cut >= 0 ? straight2 : INFINITY; /* this comparison is false where da or db is INFINITY */
     straight2 = cut <= sight->side * dy ? straight2 : INFINITY;
     return straight2 < best2 ? straight2 : best2;
 }

@@ -17,9 +17,9 @@ struct surface {
     struct workers *workers;
     size_t vertex_count;
     uint32_t *vertex_point; /* per model vertex */
-    struct trimesh mesh;    /* welded, bridged, sampled; visible triangles first */
+    struct trimesh mesh;    /* mesh after welding, bridging and sampling; visible triangles first */
     struct trimesh visible; /* mesh of the visible triangles only; its arrays are those of `mesh` */
-    /* component of each point, over visible triangles; NULL: the surface was read from a file, and components were not needed yet */
+    /* connected component of each point, by visible triangles; NULL: not computed yet, because the surface was read from a file */
     uint32_t *component;
     struct stray *strays; /* sorted by vertex */
     size_t stray_count;

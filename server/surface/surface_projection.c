@@ -9,8 +9,9 @@
 #define SPOT_ON_SURFACE 1e-3 /* distance in mean edges below which a point counts as on its triangle */
 #define ON_PIECE 1e-5        /* distance in mean edges below which no nearer piece is searched for */
 #define MAX_TRIED_PIECES 24  /* largest number of a model triangle's pieces that are tried one by one */
-#define FACING_FACTOR 4.0    /* a triangle that faces the right way may be this many times as far as the nearest one */
-#define ROUNDING 1e-9        /* rounding allowance of a distance, relative */
+/* a triangle that faces the right way is preferred if it is at most this many times as far as the nearest one */
+#define FACING_FACTOR 4.0
+#define ROUNDING 1e-9 /* rounding allowance of a distance, relative */
 
 void surface_nearest(const struct surface *surface, const double point_m[3], struct surface_place *place)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Packs the results that took long to compute; the rest is recomputed when unpacking. */
+/* Packs the results that are slow to compute; all others are computed again when unpacking. */
 #include "surface/surface_store.h"
 
 #include "base/mem.h"
@@ -11,7 +11,7 @@ struct surface_totals {
     struct surface_report report;
 };
 
-/* Glued sides have equal lengths: only that of the lower-numbered side is stored. */
+/* Two glued sides have the same length, which is stored only with the side of the lower index. */
 static bool is_kept(const struct intrinsic *in, uint32_t side)
 {
     uint32_t other = in->glue[side / 3][side % 3];
@@ -78,11 +78,9 @@ struct surface *surface_unpack(struct unpack *from, struct log *log, struct work
     struct surface_totals numbers = { 0 };
     size_t vertices, sources, planes, glues;
     unpack_into(from, &numbers, 1, sizeof(numbers));
-    *surface = (struct surface){ .log = log,
-                                 .workers = workers,
-                                 .vertex_count = numbers.vertex_count,
-                                 .edge_m = numbers.edge_m,
-                                 .report = numbers.report };
+    *surface = (struct surface){
+        .log = log, .workers = workers, .vertex_count = numbers.vertex_count, .edge_m = numbers.edge_m, .report = numbers.report
+    };
     surface->vertex_point = unpack_array(from, &vertices, sizeof(*surface->vertex_point));
     mesh->points = unpack_array(from, &mesh->point_count, sizeof(*mesh->points));
     mesh->tris = unpack_array(from, &mesh->tri_count, sizeof(*mesh->tris));

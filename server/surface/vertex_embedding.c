@@ -11,10 +11,10 @@
 #include "surface/surface_impl.h"
 
 #define GRAIN 512
-#define ON_SURFACE 1e-3 /* distance in mean edges below which a vertex counts as on a face */
+#define ON_SURFACE 1e-3 /* distance in mean edge lengths below which a vertex counts as on a face */
 
 struct anchor {
-    uint32_t point; /* surface point; TRIMESH_NONE: attached at `hit` */
+    uint32_t point; /* index of the surface point that the vertex is attached to; TRIMESH_NONE: it is attached at `hit` */
     struct surface_point hit;
 };
 
@@ -65,7 +65,8 @@ struct embedding_job {
     struct point_table table;
     const float (*positions_m)[3];
     double (*normals)[3]; /* not normalised */
-    char *is_off;         /* 1 for vertices of coarser levels only: such a vertex may be nearer to another side of a wall than to its own */
+    /* by vertex: 1: only coarser levels use it, so it may be nearer to the other side of a wall than to its own side */
+    char *is_off;
 };
 
 static bool find_normals(struct embedding_job *job, const float (*normals)[3], const uint32_t *triangles, size_t triangle_count)
@@ -95,8 +96,7 @@ static bool find_normals(struct embedding_job *job, const float (*normals)[3], c
     return true;
 }
 
-static void project(const struct surface *surface, const double place_m[3], const double normal[3], bool is_off,
-                    struct surface_point *hit)
+static void project(const struct surface *surface, const double place_m[3], const double normal[3], bool is_off, struct surface_point *hit)
 {
     struct bvh_place at;
     const struct surface_facing facing = { &surface->visible, normal };

@@ -11,8 +11,8 @@
 #include "surface/geodesic/laplacian.h"
 #include "surface/geodesic/solver.h"
 
-/* L is singular on each connected component. Adding this fraction of M, relative to the component's area, changes distances by a
-   millionth. */
+/* L is singular on each connected component. Adding this fraction of M, relative to the component's area, makes L regular and changes
+ * distances by a millionth only. */
 #define REGULARISATION 1e-6
 
 struct heat {
@@ -24,7 +24,7 @@ struct heat {
     cholmod_common common;
 };
 
-/* Returns the mass to add per row, relative to the area of its component. */
+/* Returns for each row the mass to add, relative to the area of the row's component. */
 static double *regularisation(const struct heat *heat, const uint32_t *component)
 {
     double *area_m2 = mem_array(heat->in->point_count, sizeof(*area_m2)), *share = mem_array(heat->laplacian.row_count, sizeof(*share));

@@ -20,8 +20,8 @@ struct heat_source {
     double weights[3];
 };
 
-/* Computes distances up to a constant per source: out[source * point_count + point]; points without a triangle get 0. Returns false if out
-   of memory, logged. Thread: any number of calls at a time. */
+/* Computes distances up to a constant per source: out[source * point_count + point]. Points without a triangle get 0. Returns false if out
+ * of memory, logged. Thread: any number of calls at a time. */
 bool heat_solve(const struct heat *heat, const struct heat_source *sources, size_t source_count, double *out);
 
 #endif

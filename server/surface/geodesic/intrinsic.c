@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Glues triangles into patches, and flips edges until they are Delaunay. */
+/* Glues triangles into patches, and flips edges until the triangulation is Delaunay. */
 #include "surface/geodesic/intrinsic.h"
 
 #include <math.h>
@@ -33,13 +33,14 @@ static void orient(struct intrinsic *in, const struct tri_edges *edges, signed c
     }
 }
 
-/* Returns the number of a side after its triangle was reoriented. */
+/* Returns the index of a side after its triangle was reoriented (facing < 0), which exchanges sides 0 and 2. */
 static uint32_t turned_side(uint32_t side, const signed char *facing)
 {
     return facing[side / 3] < 0 ? side - side % 3 + 2 - side % 3 : side;
 }
 
-/* Glues pairs of sides that run in opposite directions. Where they do not (a Moebius strip) the edge is never flipped. */
+/* Glues pairs of sides that run in opposite directions. Sides in the same direction (a Moebius strip) stay unglued, so that their edge is
+ * never flipped. */
 static void glue_sides(struct intrinsic *in, const struct tri_edges *edges, const signed char *facing)
 {
     for (uint32_t side = 0; side < 3 * in->tri_count; side++) {
@@ -88,7 +89,8 @@ static bool flip(struct intrinsic *in, uint32_t t, int i)
     memcpy(in->points[u], (const uint32_t[3]){ r, s, q }, sizeof(in->points[u]));
     memcpy(in->lengths[t], (const double[3]){ rs, rp, ps }, sizeof(in->lengths[t]));
     memcpy(in->lengths[u], (const double[3]){ rs, sq, qr }, sizeof(in->lengths[u]));
-    /* A side may be glued to a side of the same pair of triangles: such sides are renumbered before being written back. */
+    /* An outer side may be glued to another outer side of the same two triangles. Such references are renumbered before they are written
+     * back. */
     uint32_t outer[4] = { g_rp, g_ps, g_sq, g_qr };
     const uint32_t was[4] = { 3 * t + (uint32_t)((i + 2) % 3), 3 * u + (uint32_t)((j + 1) % 3), 3 * u + (uint32_t)((j + 2) % 3),
                               3 * t + (uint32_t)((i + 1) % 3) };

@@ -9,7 +9,8 @@ struct intrinsic {
     size_t tri_count, point_count;
     uint32_t (*points)[3]; /* points of each triangle; all triangles of a patch have the same orientation */
     double (*lengths)[3];  /* length of side i, from corner i to corner i + 1 */
-    uint32_t (*glue)[3];   /* adjacent side of each triangle's side, as 3 * triangle + side; TRIMESH_NONE: the edge cannot be flipped */
+    /* adjacent side of each triangle's side, as 3 * triangle + side; TRIMESH_NONE: not glued, so the edge cannot be flipped */
+    uint32_t (*glue)[3];
     size_t flips;
 };
 

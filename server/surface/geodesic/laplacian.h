@@ -7,8 +7,9 @@
 
 #include "surface/geodesic/intrinsic.h"
 
-struct laplacian_slope {     /* gradients of the three hat functions in the triangle's plane, and its area */
-    double x1, y1, y2, area; /* gradients: corner 1 (x1, y1), corner 2 (0, y2), corner 0 minus both; area of the triangle */
+struct laplacian_slope { /* gradients of the three hat functions in the triangle's plane, and its area */
+    /* gradient of the hat function of corner 1: (x1, y1); of corner 2: (0, y2); of corner 0: minus the sum of both; area: triangle */
+    double x1, y1, y2, area;
 };
 
 struct laplacian {

@@ -7,10 +7,11 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-#define STEPS_PER_EDGE 32.0 /* buckets per mean edge length: points in one bucket are processed in any order */
+#define STEPS_PER_EDGE 32.0 /* count of buckets per mean edge length; points in one bucket are processed in any order */
 #define NEAR_EDGES 5.0
 #define MAX_BUCKETS (1u << 16)
-#define MAX_TRIED 64 /* triangles tested for being the next around a point; beyond, the row ends */
+/* maximum number of triangles tested for being the next around a point; if none fits, the row of triangles ends there */
+#define MAX_TRIED 64
 
 /* Returns the corners of the t-th triangle in order of propagation; tri_sides() writes its sides from corner i to corner i + 1. */
 static const uint32_t *tri_points(const struct propagation *propagation, const struct intrinsic *in, size_t t)
@@ -28,7 +29,7 @@ static void tri_sides(const struct propagation *propagation, const struct intrin
 
 /* --- fans ---------------------------------------------------------------------------------------------------------------------- */
 
-struct end { /* a side that leaves the current point */
+struct end { /* the other end of a side that begins at the current point */
     uint32_t to;
     float length_m; /* as in struct propagation_fan */
 };
@@ -60,8 +61,8 @@ static void turn_round(struct vertex_wedge *wedge)
     wedge->ends[1] = swap;
 }
 
-/* Moves wedges that continue the row to positions after the first `count` wedges, as long as there are any. Returns the new length of the
-   row. */
+/* Extends the row of adjacent wedges (triangles at a point) that the first `count` wedges form: moves the next fitting wedge behind the
+ * row, until none fits. Returns the new length of the row. */
 static size_t extend(struct vertex_wedge *wedges, size_t count, size_t all)
 {
     for (size_t i = count; i < all && i < count + MAX_TRIED; i++)
@@ -103,8 +104,8 @@ static struct propagation_fan *add_fan(struct propagation *propagation, uint32_t
     return fan;
 }
 
-/* Appends a row of adjacent wedges to the fans. A wedge that a fan's end cuts is repeated in the next fan. Returns the number of lanes used
-   in the last fan. */
+/* Appends a row of adjacent wedges to the fans. A fan has PROPAGATION_FAN lanes; a wedge at the end of a full fan is stored again in the
+ * next fan. lane: count of lanes used in the last fan. Returns the new count. */
 static int add_row(struct propagation *propagation, uint32_t point, const struct vertex_wedge *row, size_t count, int lane)
 {
     for (size_t i = 0; i <= count; i++) {
@@ -134,7 +135,7 @@ static void add_fans(struct propagation *propagation, uint32_t point, struct ver
     }
 }
 
-/* Returns per point the index of its first corner; one more at the end. */
+/* Returns by point the index of its first corner, with one additional element at the end. The caller frees the array. */
 static uint32_t *count_corners(const struct propagation *propagation, const struct intrinsic *in)
 {
     size_t points = propagation->mesh->point_count;
@@ -170,7 +171,8 @@ static void make_fans(struct propagation *propagation, const struct intrinsic *i
     mem_free(first);
 }
 
-/* Chooses the ring of buckets: it must span the longest edge and near_m, since offers are at most that far ahead. */
+/* Chooses the number of buckets, which are used as a ring buffer: it must span the longest edge and near_m, because new distances exceed
+ * the current one by at most that. */
 static void choose_buckets(struct propagation *propagation, const struct intrinsic *in)
 {
     double sum = 0, longest = 0, sides[3];

@@ -7,14 +7,16 @@
 
 #define PROPAGATION_FAN 8 /* neighbours of a point that are processed at once, one per lane of a vector register */
 
-/* Data about a mesh that all propagations share: the fans of triangles around each point. */
+/* Data about a mesh that all propagations share: the fan of neighbours and triangles around each point. */
 struct propagation {
     const struct trimesh *mesh;
     const struct intrinsic *in;
-    uint32_t *first;                     /* index of each point's first fan; one more at the end */
-    struct propagation_fan {             /* neighbours of a point in angular order, and the triangle between each and the next */
-        uint32_t to[PROPAGATION_FAN];    /* neighbour; the point itself in unused lanes */
-        float length_m[PROPAGATION_FAN]; /* < 0: the neighbour cannot be reached through these triangles; INFINITY: unused lane */
+    uint32_t *first; /* by point: index of its first fan; one additional element at the end */
+    /* up to PROPAGATION_FAN neighbours of a point in angular order, and the triangle between each and the next */
+    struct propagation_fan {
+        uint32_t to[PROPAGATION_FAN]; /* by lane: index of the neighbour; the point itself in unused lanes */
+        /* length of the edge to the neighbour; negated: distances must not be offered to this neighbour; INFINITY: unused lane */
+        float length_m[PROPAGATION_FAN];
         /* cosine and sine of the angle to the next neighbour; sine 0: no triangle in between */
         float cosine[PROPAGATION_FAN], sine[PROPAGATION_FAN];
     } * fans;
@@ -25,8 +27,8 @@ struct propagation {
     uint32_t bucket_count;
 };
 /* Builds the fans. Visible triangles (the first visible_count) are used in their intrinsic Delaunay form, which has few obtuse ones.
-   Propagation continues from them into interior triangles, so that a triangle that passes through a surface also has distances at its
-   interior end, but never returns from there. mesh and in must outlive the propagation. Free with propagation_finish(). */
+ * Propagation continues from visible into interior triangles, so that a triangle that passes through a surface also has distances at its
+ * interior end, but never returns from interior triangles. mesh and in must outlive the propagation. Free with propagation_finish(). */
 void propagation_init(struct propagation *propagation, const struct trimesh *mesh, size_t visible_count, const struct intrinsic *in);
 /* Frees the fans. */
 void propagation_finish(struct propagation *propagation);
@@ -47,7 +49,7 @@ struct propagation_front {
 /* Frees the state. */
 void propagation_front_finish(struct propagation_front *front);
 
-#define PROPAGATION_ABREAST 2 /* sources that one thread propagates at once, at most, to hide memory latency */
+#define PROPAGATION_ABREAST 2 /* maximum number of sources that one thread propagates alternately, to hide memory latency */
 struct propagation_source {
     uint32_t tri;
     const double *weights; /* of the triangle's corners */

@@ -8,9 +8,9 @@
 #include "base/mem.h"
 #include "surface/geodesic/propagation.h"
 
-#define MIN_WEIGHT 1e-6    /* smallest weight of a corner: the source is kept slightly inside its triangle */
-#define CORNER_OFFSET 1e-3 /* offset from a corner, relative to the way to the middle of the opposite side */
-#define ANY_ORDER 2        /* number of buckets within which points may be processed out of order */
+#define MIN_WEIGHT 1e-6    /* smallest barycentric weight of a source, which is kept slightly inside its triangle */
+#define CORNER_OFFSET 1e-3 /* offset from a corner, relative to the distance to the middle of the opposite side */
+#define ANY_ORDER 2        /* number of buckets by which the processing order may deviate from the order of distances */
 #define MAX_DEPTH 32       /* largest number of triangles that a straight line near the source is followed through */
 #define NO_LENGTH 1e-300   /* avoids division by 0 */
 
@@ -55,8 +55,8 @@ static inline void fetch_fans(const struct propagation *propagation, uint32_t po
         __builtin_prefetch(from);
 }
 
-/* Offers a point a distance, but at least the straight-line distance. An offer may be shorter: the two ends of an edge may have got their
-   distances by paths around a fold or a rod, and a source laid out to fit both is too near. */
+/* Lowers a point's distance to an offered one, or to the straight-line distance if the offer is shorter than that. Such an offer occurs if
+ * the distances of an edge's two ends came by different paths around a fold or a rod: the source laid out to fit both is then too near. */
 static inline void offer(const struct propagation *propagation, struct propagation_front *front, uint32_t point, float offered_m)
 {
     float distance_m = offered_m < front->straight_m[point] ? front->straight_m[point] : offered_m;
@@ -66,7 +66,7 @@ static inline void offer(const struct propagation *propagation, struct propagati
         fetch_fans(propagation, point);
     front->distance_m[point] = distance_m;
     if (front->settled[point])
-        return; /* a settled point is not propagated again, since small corrections would run over the whole surface again and again */
+        return; /* a settled point is not propagated again, because each small correction would run over the whole surface */
     if (front->item_count == front->item_capacity)
         mem_grow(&front->items, &front->item_capacity, front->item_count + 1, sizeof(*front->items));
     /* the value is not negative; the conversion via int64_t is a single instruction */
@@ -97,9 +97,9 @@ SIMD_BODY void choose(const mask *which, const lanes *x, const lanes *otherwise,
     *out = (lanes)((*which & (mask)*x) | (~*which & (mask)*otherwise));
 }
 
-/* Computes what the edge from p (distance d) to b (distance db, pb away) offers to c, pc away from p: the source is laid out in the
-   triangle's plane on the other side of the edge. INFINITY where the ray to c does not pass between p and b, or b is farther than
-   `reached`. */
+/* Computes the distance that the edge from p (distance d) to b (distance db, pb away) offers to point c, pc away from p. The source is laid
+ * out in the triangle's plane on the other side of the edge. The result is INFINITY where the ray from the source to c does not pass
+ * between p and b, or b is farther than `reached`. */
 SIMD_BODY void through_edge(const lanes *d_of_p, const lanes *reached, const lanes *d_of_b, const lanes *p_to_b, const lanes *p_to_c,
                             const lanes *cosine, const lanes *sine, lanes *out)
 {
@@ -115,8 +115,8 @@ SIMD_BODY void through_edge(const lanes *d_of_p, const lanes *reached, const lan
     choose(&seen, &straight, &infinite, out);
 }
 
-/* Computes the offers to each neighbour in a fan: along the edge from p (distance d), or through the triangle shared with the previous or
-   next neighbour, if that neighbour is nearer. */
+/* Computes the distance offered to each neighbour in a fan: along the edge from p (distance d), or through the triangle shared with the
+ * previous or next neighbour, if that neighbour is nearer. */
 SIMD_BODY void offers_of(const lanes *d_of_p, const lanes *reached, const lanes *d_of_each, const lanes *length_m, const lanes *cosine,
                          const lanes *sine, lanes *out)
 {
@@ -143,13 +143,13 @@ SIMD_BODY void offers_of(const lanes *d_of_p, const lanes *reached, const lanes 
 struct front_turn {
     struct propagation_front *front;
     const struct propagation_fan *fan, *end; /* current fan, and end of the current point's fans */
-    lanes d, reached;                        /* distance of the current point; `reached`: distance up to which points are final */
+    lanes d, reached;                        /* d: distance of the current point; reached: distance up to which distances are final */
     uint32_t empty;                          /* number of consecutive empty buckets */
     float offered_m[PROPAGATION_FAN];        /* offers to the fan's points */
-    uint32_t takes;                          /* bits of the neighbours that may take their offers */
+    uint32_t takes;                          /* bit mask of the neighbours whose distance the offer lowers */
 };
 
-/* Takes the next point to process. Returns false if there is none. */
+/* Takes the next point to process. Returns false if all buckets are empty. */
 SIMD_BODY bool next_point(const struct propagation *propagation, struct front_turn *turn)
 {
     struct propagation_front *front = turn->front;
@@ -173,8 +173,8 @@ SIMD_BODY bool next_point(const struct propagation *propagation, struct front_tu
     return false;
 }
 
-/* Computes the offers of the current point to the neighbours of the fan. Free of branches, so that the computations of several fronts
-   overlap. */
+/* Computes the offers of the current point to the neighbours of the fan. Contains no branches, so that the processor overlaps the
+ * computations of several fronts. */
 SIMD_BODY void look_round(struct front_turn *turn)
 {
     const lanes zero = { 0 };
@@ -203,11 +203,11 @@ SIMD_BODY void hand_out(const struct propagation *propagation, struct front_turn
 
 /* --- near the source ------------------------------------------------------------------------------------------------------------ */
 
-/* View of the source, at (0, 0), through an edge in the plane: the edge runs from l to r, turning left; visible directions are from low to
-   high. */
+/* View of the source, at (0, 0), through an edge in the plane: seen from the source, the edge runs from l to r counter-clockwise; the
+ * source sees it in directions between low and high. */
 struct window {
     double l[2], r[2], low[2], high[2];
-    uint32_t entered; /* 3 * triangle + side of the triangle beyond the edge, in which that side runs from r to l */
+    uint32_t entered; /* 3 * triangle + side: the edge as a side of the triangle beyond, where it runs from r to l */
 };
 
 static double cross(const double a[2], const double b[2])
@@ -215,8 +215,8 @@ static double cross(const double a[2], const double b[2])
     return a[0] * b[1] - a[1] * b[0];
 }
 
-/* Lays out the third corner of the triangle beyond the edge. The edge keeps its true length, however short: with another length the corner
-   would lie on the edge, inside every window, and 2^MAX_DEPTH windows would be followed. */
+/* Lays out the third corner of the triangle beyond the edge. The edge keeps its true length, however short: rounded to 0 length, the corner
+ * would lie inside every window, so that 2^MAX_DEPTH windows would be followed. */
 static void lay_out_apex(const struct window *window, double to_l_m, double to_r_m, double apex[2])
 {
     double e[2] = { window->r[0] - window->l[0], window->r[1] - window->l[1] }, length = max_of(hypot(e[0], e[1]), NO_LENGTH);
@@ -236,7 +236,7 @@ static void look_through(const struct propagation *propagation, struct propagati
     lay_out_apex(window, in->lengths[t][(side + 1) % 3], in->lengths[t][(side + 2) % 3], apex);
     double distance_m = hypot(apex[0], apex[1]);
     bool after_low = cross(window->low, apex) >= 0, before_high = cross(apex, window->high) >= 0;
-    /* a corner beyond an edge cannot be behind the source: its position is NAN, and windows would not narrow */
+    /* a corner beyond an edge cannot be behind the source: such a position comes from NAN, and windows would not become narrower */
     if (!after_low && !before_high)
         return;
     if (after_low && before_high && distance_m < propagation->near_m)
@@ -258,7 +258,7 @@ struct laid {
     double corners[3][2];
 };
 
-/* Lays out a triangle whose edges were not flipped. Returns false if one was. */
+/* Lays out a triangle whose edges were not flipped. Returns false if an edge was flipped. */
 static bool lay_out_kept(const struct intrinsic *in, const uint32_t given[3], uint32_t tri, const double weights[3], struct laid *laid)
 {
     const uint32_t *v = in->points[tri];
@@ -278,8 +278,8 @@ static bool lay_out_kept(const struct intrinsic *in, const uint32_t given[3], ui
     return true;
 }
 
-/* Follows a straight line from the middle of the window's edge to the point `to` beyond, triangle by triangle. The window becomes the edge
-   through which the last triangle was entered. Returns false if the surface ends before. */
+/* Follows a straight line from the middle of the window's edge to the point `to` behind the edge, triangle by triangle. The window becomes
+ * the edge through which the last triangle was entered. Returns false if the surface ends before. */
 static bool walk_to(const struct intrinsic *in, const double to[2], struct window *window, double apex[2])
 {
     const double from[2] = { (window->l[0] + window->r[0]) / 2, (window->l[1] + window->r[1]) / 2 };
@@ -288,7 +288,7 @@ static bool walk_to(const struct intrinsic *in, const double to[2], struct windo
         uint32_t t = window->entered / 3, side = window->entered % 3;
         lay_out_apex(window, in->lengths[t][(side + 1) % 3], in->lengths[t][(side + 2) % 3], apex);
         bool passes_l = cross(way, (const double[2]){ apex[0] - from[0], apex[1] - from[1] }) > 0;
-        const double *end = passes_l ? window->l : window->r; /* end of the side through which the line leaves */
+        const double *end = passes_l ? window->l : window->r; /* index of the end of the side through which the line leaves the triangle */
         double along[2] = { apex[0] - end[0], apex[1] - end[1] }, beyond[2] = { to[0] - end[0], to[1] - end[1] };
         if (passes_l ? cross(along, beyond) >= 0 : cross(beyond, along) >= 0)
             return true;
@@ -300,14 +300,14 @@ static bool walk_to(const struct intrinsic *in, const double to[2], struct windo
     return false;
 }
 
-/* Lays out a point with r at (0, 0), l at (side, 0), and the point above. */
+/* Computes a point's position in the plane from its distances to r at (0, 0) and l at (side, 0), on the positive side. */
 static void place_above(double side, double to_r_m, double to_l_m, double out[2])
 {
     intrinsic_layout((const double[3]){ side, to_l_m, to_r_m }, &out[0], &out[1]);
 }
 
-/* Lays out the source in the intrinsic triangles beyond an unflipped side of the flipped triangle. They are the right ones if the
-   triangle's third corner is among them at its expected position; another side's triangles may contain that corner as well. */
+/* Lays out the source in the intrinsic triangles beyond an unflipped side of the flipped triangle. These triangles cover the flipped
+ * triangle if they contain its third corner at the expected position; otherwise another side must be tried. */
 static bool lay_out_beyond(const struct propagation *propagation, uint32_t entered, uint32_t third, const double source[3],
                            struct laid *laid)
 {
@@ -356,8 +356,8 @@ static bool lay_out_flipped(const struct propagation *propagation, const uint32_
     return false;
 }
 
-/* Sets the distances of points that the source sees in a straight line. Propagation alone would be wrong near the source: the ray may pass
-   between points that are farther away than its end, so processing from near to far is the wrong order there. */
+/* Sets the distances of points that the source sees in a straight line. Propagation alone would be wrong near the source: there a ray may
+ * pass between two points that are farther from the source than the ray's end, so that processing from near to far comes too late. */
 static void look_around(const struct propagation *propagation, struct propagation_front *front, uint32_t tri, const double weights[3])
 {
     const struct intrinsic *in = propagation->in;
@@ -382,7 +382,8 @@ static void look_around(const struct propagation *propagation, struct propagatio
     }
 }
 
-/* Computes the straight-line distances from the source to all points in one pass, because offers access points in random order. */
+/* Computes the straight-line distances from the source to all points in advance, because offers access points in random order, where
+ * computing them would wait for memory. */
 SIMD_BODY void measure_straight(const struct trimesh *mesh, struct propagation_front *front)
 {
     const double q[3] = { front->source_m[0], front->source_m[1], front->source_m[2] }, (*points)[3] = (const double(*)[3])mesh->points;

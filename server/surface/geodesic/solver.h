@@ -12,7 +12,8 @@ struct solver {
 };
 
 void solver_init(struct solver *solver);
-/* Returns zeroed memory for `count` right-hand sides, [side][row], to be filled in; valid until the next call. NULL: out of memory. */
+/* Returns zeroed memory for `count` right-hand sides, [side][row], which the caller fills in before solver_solve(). Valid until the next
+ * call. NULL: out of memory. */
 double *solver_begin(struct solver *solver, size_t rows, size_t count);
 /* Solves for these right-hand sides. Returns the solutions, [side][row], valid until the next call; the caller may modify them. NULL: out
    of memory. */

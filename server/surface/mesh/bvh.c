@@ -9,7 +9,8 @@
 #include "surface/mesh/bvh_impl.h"
 
 #define LEAF_TRIS 4u
-/* tolerance relative to the longest side: for a segment parallel to a triangle, rounding decides where their planes meet */
+/* largest distance between the hit on the segment and the hit in the triangle, relative to the longest of their sides. A larger one means
+   that both are nearly parallel, so that rounding decides where they meet. */
 #define SAME_PLACE 1e-6
 
 static void box_of(const struct bvh *bvh, uint32_t first, uint32_t count, double low[3], double high[3])

@@ -23,8 +23,8 @@ struct bvh_place {
 void bvh_nearest(const struct bvh *bvh, const double point[3], double limit_m, bool (*allowed)(const void *arg, uint32_t tri),
                  const void *arg, struct bvh_place *place);
 
-/* Returns whether the mesh has such a point; faster than finding the nearest. *tri: a triangle to try first, or TRIMESH_NONE (neighbouring
-   points often have the same one); receives the triangle found. */
+/* Returns whether the mesh has a point within limit_m on an allowed triangle; faster than finding the nearest point. *tri: a triangle to
+ * try first, or TRIMESH_NONE (neighbouring points often have the same one); receives the triangle found. */
 bool bvh_any_within(const struct bvh *bvh, const double point[3], double limit_m, bool (*allowed)(const void *arg, uint32_t tri),
                     const void *arg, uint32_t *tri);
 
@@ -43,7 +43,8 @@ bool triangle_crossed(const double p[3], const double q[3], const double a[3], c
 
 /* Computes the point of a triangle nearest to p, as barycentric weights. */
 void triangle_nearest(const double p[3], const double a[3], const double b[3], const double c[3], double weights[3]);
-/* Returns true only if the triangle is farther from p than distance_m, by its bounding box or plane alone: a quick rejection test. */
+/* Returns true only if the triangle is farther from p than distance_m, judged by its bounding box or plane alone. A quick rejection test:
+ * false does not mean that the triangle is near.. */
 bool triangle_is_farther(const double p[3], const double a[3], const double b[3], const double c[3], double distance_m);
 
 #endif

@@ -5,12 +5,13 @@
 #include "surface/mesh/bvh.h"
 
 #define BVH_WIDE 8
-#define BVH_IS_TRIANGLE 0x80000000u /* flag in a child's number: the child is a triangle */
+#define BVH_IS_TRIANGLE 0x80000000u /* flag in bvh_wide.child: the rest of the number is a triangle's index, not a node's */
 #define BVH_STACK 256               /* entries of the traversal stack: each level leaves at most seven, and there are at most 10 levels */
 
 struct bvh_node {
     double low[3], high[3];
-    uint32_t first, count; /* leaf: triangles; else count = 0 and first = right child, the left one follows this node */
+    /* leaf: range of its triangles in `order`; else count is 0, first is the right child, and the left child is the next node */
+    uint32_t first, count;
 };
 
 struct bvh {
@@ -21,7 +22,7 @@ struct bvh {
     size_t node_count, node_capacity;
     struct bvh_wide { /* node with eight children, down to single triangles, with the same boxes as the binary tree; used by queries */
         float low[3][BVH_WIDE], high[3][BVH_WIDE];
-        uint32_t child[BVH_WIDE]; /* index of a node, or a triangle; unused children have an inverted box */
+        uint32_t child[BVH_WIDE]; /* index of a node, or of a triangle with the flag set; unused children have an inverted box */
     } * wide;                     /* children precede parents, so the root is last */
     size_t wide_count, wide_capacity;
 };

@@ -11,10 +11,11 @@
 #include "base/mem.h"
 #include "surface/mesh/bvh_impl.h"
 
-/* margin of float boxes, relative to the largest coordinate: four roundings, so that a point in a box is in its float version */
+/* margin of float boxes, relative to the largest coordinate: four rounding errors, so that each point in a box is also in the float version
+ * of the box */
 #define BOX_MARGIN 2.4e-7
-#define MARGIN 1e-5 /* margin of squared distances in floats, relative: much more than the rounding error */
-/* smallest squared area of a triangle, relative to its sides' squares, at which weights are exact to eight digits */
+#define MARGIN 1e-5 /* relative margin of squared distances in floats, much larger than the rounding error */
+/* smallest squared area of a triangle, relative to its sides' squares, at which barycentric weights are exact to eight digits */
 #define EXACT_AREA 1e-8
 #define SURELY_POSITIVE 1e-6 /* weights above this are positive despite rounding, if the triangle's area exceeds EXACT_AREA */
 
@@ -28,9 +29,9 @@ static void weights_on_edge(const double p[3], const double a[3], const double b
     *wa = 1 - *wb;
 }
 
-/* Inside the prism over the triangle the projection is the nearest point; else the best point of its edges. The nearest point is on an edge
-   with p on its outer side, where the opposite corner's weight is negative; weights of slivers are too inexact for that test, so all edges
-   are tried. */
+/* Writes the nearest point's weights. If p projects into the triangle, the projection is the nearest point; otherwise it is the best point
+ * of the edges. The nearest point is on an edge with p on its outer side, where the opposite corner's weight is negative; weights of
+ * slivers are too inexact for that test, so all edges are tried. */
 void triangle_nearest(const double p[3], const double a[3], const double b[3], const double c[3], double weights[3])
 {
     double ab[3], ac[3], ap[3];
@@ -65,7 +66,8 @@ void triangle_nearest(const double p[3], const double a[3], const double b[3], c
     }
 }
 
-/* A quick test by the triangle's plane: most triangles in a box that contains p are farther. */
+/* Quick test: returns true only if the triangle's plane is farther than the distance. It rejects most triangles in a box that contains
+ * p. */
 static bool plane_is_farther(const double p[3], const double a[3], const double b[3], const double c[3], double distance2)
 {
     double ab[3], ac[3], ap[3], n[3];
@@ -175,12 +177,12 @@ struct nearest_search {
     const double *point;
     bool (*allowed)(const void *arg, uint32_t tri);
     const void *arg;
-    bool any; /* the search ends at the first point within the limit */
+    bool any; /* true: the search ends at the first point within the limit, not at the nearest */
     double best2;
     struct bvh_place *place;
 };
 
-/* Returns an upper bound in floats: no squared distance computed in floats exceeds it if its point is as near. */
+/* Returns the squared limit as a float, rounded up so that float arithmetic never excludes a point within the limit. */
 static inline float in_floats(double best2)
 {
     double most = best2 * (1 + MARGIN) + (double)FLT_MIN;
@@ -224,7 +226,7 @@ SIMD_AVX2 static unsigned look_wide(const struct bvh_wide *node, const float p[3
 #endif
 
 /* Pushes the children within the limit, the nearest on top. Entries have the squared distance in the upper half (non-negative floats sort
-   like their bits) and the child's number in the lower. Returns the number pushed. */
+ * like their bits) and the child's number in the lower. Returns the number of entries pushed. */
 SIMD_BODY size_t push_near(look *look_at, const struct bvh_wide *node, const float p[3], float limit2, uint64_t *stack)
 {
     float distance2[BVH_WIDE];

@@ -88,7 +88,7 @@ SIMD_AVX2 static unsigned meet_ray_wide(const struct bvh_wide *node, const struc
 #define meet_ray_wide meet_ray_plain
 #endif
 
-/* Pushes the met children of a node, the first on top. Returns their number. */
+/* Pushes those children of a node that the query meets, the first child on top. Returns the number of entries pushed. */
 static size_t push_met(meet *meets, const struct bvh_wide *node, const struct query *query, uint32_t *stack)
 {
     size_t count = 0;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Collapses edges onto one end where this changes only the number of triangles. */
+/* Collapses edges onto one of their ends where the surface keeps its shape and only the number of triangles changes. */
 #include "surface/mesh/decimate.h"
 
 #include <string.h>
@@ -7,8 +7,9 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-#define MAX_STAR 48     /* largest number of triangles at a point that may be removed */
-#define MIN_HEIGHT 0.02 /* smallest height of a new triangle, relative to its longest side, unless the old one was as thin */
+#define MAX_STAR 48 /* maximum number of triangles around a point; points with more are not removed */
+/* smallest height of a new triangle, relative to its longest side, unless the triangle that it replaces was as thin */
+#define MIN_HEIGHT 0.02
 #define ROUNDING_OF_AREA 1e-9
 
 struct thin {
@@ -16,7 +17,8 @@ struct thin {
     const struct decimate_params *params;
     char *hidden, *gone; /* per triangle */
     uint32_t *plane;
-    uint32_t *heads, *tails, *next; /* heads, tails: first and last corner (3 * triangle + corner) per point; next: per corner */
+    /* lists of the corners (3 * triangle + corner) at each point: heads, tails: by point, first and last corner; next: by corner */
+    uint32_t *heads, *tails, *next;
 };
 
 struct star_face { /* a triangle of a star */
@@ -62,8 +64,8 @@ static bool collect_star(const struct thin *thin, uint32_t point, struct star *s
     return star->count > 0;
 }
 
-/* Checks a face with a neighbour in the point's place. Returns false if the face would leave its plane, turn over, or become too thin.
-   *length: twice its new area. */
+/* Checks a face of the star after the point has moved to a neighbour. Returns false if the face would leave its plane, turn over, or become
+ * too thin. *length receives twice the new area. */
 static bool can_take(const struct thin *thin, const struct star *star, const struct star_face *face, const double to[3], double *length)
 {
     const double *a = point_of(thin, star->point), *b = point_of(thin, corner_of(thin, face, 1));
@@ -84,7 +86,7 @@ static bool same_part(const struct thin *thin, uint32_t s, uint32_t t)
     return thin->params->part[s] == thin->params->part[t];
 }
 
-/* Returns whether each part keeps its visible and hidden area. grown: change of each face's doubled area. */
+/* Returns whether the collapse changes neither the visible nor the hidden area of any part. grown: change of each face's doubled area. */
 static bool keeps_areas(const struct thin *thin, const struct star *star, const double grown[MAX_STAR], double enough)
 {
     for (size_t i = 0; i < star->count; i++) {
@@ -105,8 +107,8 @@ static bool has(const struct thin *thin, uint32_t tri, uint32_t point)
     return v[0] == point || v[1] == point || v[2] == point;
 }
 
-/* Returns whether a corner that loses the triangle between `from` and `to` is still connected to `to` by another visible triangle. The lost
-   triangle may be no more than a line, and yet all that connects parts there. */
+/* Returns whether a corner that loses the triangle between `from` and `to` is still connected to `to` by another visible triangle. Checked
+ * because a lost triangle without area may be the only connection of two parts. */
 static bool stays_joined(const struct thin *thin, uint32_t point, uint32_t from, uint32_t to)
 {
     for (uint32_t corner = thin->heads[point]; corner != TRIMESH_NONE; corner = thin->next[corner]) {
@@ -156,7 +158,7 @@ static uint32_t find_collapse_target(const struct thin *thin, const struct star 
     return best;
 }
 
-/* Merges planes of the star's model triangles: their pieces may have moved from one to the other. */
+/* Merges planes of the star's model triangles: the collapse may have moved pieces of one onto the plane of another. */
 static void join_planes(struct thin *thin, const struct star *star)
 {
     for (size_t i = 0; i < star->count; i++)

@@ -12,9 +12,9 @@ struct decimate_params {
     double longest_m;     /* longest edge that may be created */
 };
 /* Removes points by collapsing each into a neighbour, where all triangles at the point stay in their planes (within params->within_m) and
-   each part keeps its visible and hidden area, so that borders and lines between parts stay in place. hidden[tri]: moves with the
-   triangles. Pieces of coplanar model triangles may be merged: plane[source] receives the lowest such triangle. target[point]: receives the
-   new number, or TRIMESH_NONE if the point is removed. */
+ * each part keeps its visible and hidden area, so that borders and lines between parts stay in place. hidden[tri]: moves with the
+ * triangles. Pieces of coplanar model triangles may be merged: plane[source] receives the lowest such triangle. target[point]: receives the
+ * point's new index, or TRIMESH_NONE if the point is removed. */
 void decimate_mesh(struct trimesh *mesh, char *hidden, const struct decimate_params *params, uint32_t *plane, size_t source_count,
                    uint32_t *target);
 

@@ -20,7 +20,8 @@ static float *floats_of(const double (*points)[3], size_t count)
     return floats;
 }
 
-/* One round of queries. Points whose k neighbours are all within the radius are queued for the next round. */
+/* Runs one round of queries. Points whose k neighbours all lie within the radius may have more; they are queued for the next round with a
+ * larger k. */
 struct round {
     const double (*points)[3];
     float *floats;

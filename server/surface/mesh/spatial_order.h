@@ -5,7 +5,7 @@
 #include "surface/mesh/trimesh.h"
 
 /* Sorts the mesh's points along a Morton curve and its triangles by their first point; triangles from visible_count on stay behind the
-   others. target[point]: receives the new number. */
+ * others. target[point]: receives the point's new index. */
 void spatial_order_mesh(struct trimesh *mesh, size_t visible_count, uint32_t *target);
 
 #endif

@@ -19,8 +19,8 @@ struct tri_edges {
     uint32_t *of_side;
 };
 
-/* Builds the edges. `tris` must outlive them. Free with tri_edges_finish(). tri_edges_try_init() returns false when out of memory; nothing
-   needs freeing then. */
+/* Builds the edges. `tris` must outlive the result. Free with tri_edges_finish(). tri_edges_try_init() returns false when out of memory;
+ * nothing needs freeing then. */
 void tri_edges_init(struct tri_edges *e, const uint32_t (*tris)[3], size_t tri_count);
 bool tri_edges_try_init(struct tri_edges *e, const uint32_t (*tris)[3], size_t tri_count);
 /* Frees the lists. */
@@ -36,9 +36,9 @@ uint32_t tri_edges_across(const struct tri_edges *e, uint32_t side);
 /* Returns whether two sides of one edge run in the same direction along it, that is their triangles have opposite orientations. */
 bool tri_edges_run_alike(const struct tri_edges *e, uint32_t side, uint32_t other);
 
-/* Finds the orientation of all triangles connected with `first` by edges of two triangles: facing[triangle] receives 1: as `first`, or -1:
-   opposite; it must be 0 before. Writes these triangles to `joined`, which has room for all. Sets *two_sided to false where no consistent
-   orientation exists, as on a Moebius strip. Returns the number of these triangles. */
+/* Finds the orientation of all triangles connected with `first` by edges of two triangles: facing[triangle] receives 1: oriented as
+ * `first`, or -1: opposite; all elements must be 0 before. Writes these triangles to `joined`, which has room for all. Sets *two_sided to
+ * false where no consistent orientation exists, as on a Moebius strip. Returns the number of these triangles. */
 size_t tri_edges_orient(const struct tri_edges *e, uint32_t first, signed char *facing, uint32_t *joined, bool *two_sided);
 /* Orients all triangles; in each connected set the lowest triangle has 1. facing: zeroed by the caller. */
 void tri_edges_orient_all(const struct tri_edges *e, signed char *facing);

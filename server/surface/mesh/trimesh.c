@@ -249,13 +249,13 @@ static void sort3(uint32_t v[3])
             }
 }
 
-/* Returns the number of a triangle in a set of triangles, keyed by its three points regardless of order. */
+/* Returns the index of a triangle in a set of triangles; the key is its three points regardless of order. */
 static uint32_t tri_number(struct edge_table *pairs, struct edge_table *seen, const uint32_t tri[3])
 {
     uint32_t v[3] = { tri[0], tri[1], tri[2] };
     sort3(v);
     uint32_t pair = edge_table_add(pairs, v[0], v[1]);
-    /* Pair numbers and points share one table that ignores order: even and odd keys keep them apart. */
+    /* The table for pairs ignores the order of the two keys. Even keys for pairs and odd keys for points keep them apart. */
     return edge_table_add(seen, pair * 2u, v[2] * 2u + 1u);
 }
 
@@ -269,7 +269,8 @@ static bool tri_has_area(const struct trimesh *mesh, uint32_t a, uint32_t b, uin
     vec_sub(mesh->points[c], mesh->points[b], bc);
     vec_cross(ab, ac, n);
     double longest2 = max_of(vec_dot(ab, ab), max_of(vec_dot(ac, ac), vec_dot(bc, bc)));
-    /* height over a millionth of the longest edge; flatter triangles leave their corner hanging on that edge (repair.h) */
+    /* height over a millionth of the longest edge; flatter triangles are removed; their corner then is a hanging vertex on that edge, which
+     * repair.h inserts */
     return vec_length(n) > 1e-6 * longest2;
 }
 
@@ -361,8 +362,8 @@ double trimesh_tri_area(const struct trimesh *mesh, size_t tri)
     return vec_length(n) / 2;
 }
 
-/* Points inserted on edges: by edge number, the first point and the number of equal parts; points are numbered from the edge's lower to its
-   higher end. */
+/* Points inserted on edges: by index of the edge, the first inserted point and the number of equal parts; points are numbered from the
+ * edge's lower to its higher end. */
 struct cuts {
     struct edge_table edges;
     uint32_t *first, *parts;
@@ -393,7 +394,7 @@ static void cut_edge(struct trimesh *mesh, struct cuts *cuts, uint32_t a, uint32
     }
 }
 
-/* Lists the points from a to b along their edge, without b. */
+/* Lists the points from a to b along their edge, including a, excluding b. */
 static size_t side_points(const struct cuts *cuts, uint32_t a, uint32_t b, uint32_t *out)
 {
     uint32_t e = edge_table_find(&cuts->edges, a, b);
@@ -411,8 +412,8 @@ static size_t side_count(const struct cuts *cuts, uint32_t a, uint32_t b)
 }
 
 /* Triangulates a triangle whose edges were cut, like a zip: one chain is the side a-b with most points, the other goes a-c-b; at each step
-   the shorter cross edge is taken. The chain a-b waits before b for the other one, so that no piece is flat. Thin triangles get no points
-   inside, however long they are. */
+ * the shorter cross edge is taken. The chain a-b stops before b until the other chain is finished, so that no piece is flat. Thin triangles
+ * get no points inside, however long they are. */
 static void zip_tri(struct trimesh *mesh, const struct cuts *cuts, size_t t)
 {
     int side = longest_side(mesh, t);
@@ -451,7 +452,8 @@ static void zip_all(struct trimesh *mesh, struct cuts *cuts)
         zip_tri(mesh, cuts, t);
 }
 
-/* One round: triangles higher than height_m above their longest edge get a point in its middle. Returns false if there was none. */
+/* One round: a triangle higher than height_m above its longest edge gets a point in the middle of that edge. Returns false if there was no
+ * such triangle. */
 static bool halve_round(struct trimesh *mesh, double height_m, size_t point_limit)
 {
     struct cuts cuts = { 0 };

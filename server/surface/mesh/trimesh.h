@@ -12,8 +12,8 @@
 struct trimesh {
     double (*points)[3];
     uint32_t (*tris)[3];
-    uint32_t *tri_source; /* number of the model triangle that this triangle is a piece of */
-    uint32_t *tri_times;  /* number of model triangles with these three points; NULL: not counted */
+    uint32_t *tri_source; /* index of the model triangle that this triangle is a piece of */
+    uint32_t *tri_times;  /* by triangle: count of model triangles with these three points; NULL: not counted */
     size_t point_count, point_capacity, tri_count, tri_capacity, source_capacity, times_capacity;
 };
 
@@ -29,12 +29,12 @@ void trimesh_stop_counting(struct trimesh *mesh);
 /* Makes `copy` (zero-initialised, or a mesh whose content may be overwritten) a deep copy of the mesh, without multiplicities. */
 void trimesh_copy(struct trimesh *copy, const struct trimesh *mesh);
 
-/* Appends a point. Returns its number. */
+/* Appends a point. Returns the index of the point. */
 uint32_t trimesh_add_point(struct trimesh *mesh, const double point[3]);
 /* Appends a triangle of three points that is a piece of the model's triangle `source`. */
 void trimesh_add_tri(struct trimesh *mesh, uint32_t a, uint32_t b, uint32_t c, uint32_t source);
 
-/* Writes to target[point] the first point within within_m of it, or itself. Returns false if out of memory. */
+/* Writes to target[point] the first point that is within within_m of the point, or the point itself. Returns false if out of memory. */
 bool trimesh_find_twins(const struct trimesh *mesh, double within_m, uint32_t *target);
 /* Replaces each point i by target[i], and drops triangles that lost their area (adding to *degenerate) or became duplicates (adding to
    *repeated). */
@@ -59,7 +59,7 @@ double trimesh_tri_area(const struct trimesh *mesh, size_t tri);
 /* Returns the total area, square metres. */
 double trimesh_area(const struct trimesh *mesh);
 
-/* A hash table of undirected edges: (a, b) in any order maps to a number counted from 0. */
+/* A hash table of undirected edges: (a, b) in any order maps to an index counted from 0. */
 struct edge_table {
     uint64_t *keys;
     uint32_t *numbers;
@@ -69,9 +69,9 @@ struct edge_table {
 void edge_table_init(struct edge_table *table, size_t expected);
 /* Frees the table. */
 void edge_table_finish(struct edge_table *table);
-/* Returns the edge's number, adding it with number table->count if it is new. */
+/* Returns the edge's index. Adds the edge with index table->count if it is new. */
 uint32_t edge_table_add(struct edge_table *table, uint32_t a, uint32_t b);
-/* Returns the edge's number, or TRIMESH_NONE if the table does not contain it. */
+/* Returns the edge's index, or TRIMESH_NONE if the table does not contain it. */
 uint32_t edge_table_find(const struct edge_table *table, uint32_t a, uint32_t b);
 /* Prefetches the memory that a lookup of the edge will read. */
 void edge_table_prefetch(const struct edge_table *table, uint32_t a, uint32_t b);

@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tests pairs of faces: separated by the plane of one of them or, within that plane, by its sides. */
+/* Tests pairs of faces: two faces do not cross if the plane of one separates them, or within that plane one of its sides. */
 #include "surface/repair/crossing_faces.h"
 
 #include "base/math/vec.h"
 #include "base/mem.h"
 #include "surface/mesh/bvh.h"
 
-#define ROUNDING 1e-10 /* rounding allowance relative to the largest coordinate: much more than sampling moves a point */
-#define SLIVER 1e-5    /* height relative to the model's size: the plane of a flatter face is not reliable */
-#define BESIDE 1e-4    /* accuracy of a face's intersection with a plane, relative to the face's longest side */
+/* rounding allowance relative to the largest coordinate: much larger than the distance by which sampling moves a point */
+#define ROUNDING 1e-10
+#define SLIVER 1e-5 /* minimum height of a face relative to the model's size; the plane of a flatter face is not reliable */
+#define BESIDE 1e-4 /* accuracy of a face's intersection with a plane, relative to the face's longest side */
 
 struct crossing_face {
     const double *at[3];
@@ -35,8 +36,8 @@ static void face_init(struct crossing_face *face, const struct trimesh *mesh, ui
     face->height_m = face->longest_m > 0 ? doubled_m2 / face->longest_m : 0;
 }
 
-/* Computes the heights of a face's corners over another face's plane. Returns true if they are all on one side of the plane, or at most
-   clear_m beyond it. */
+/* Computes the heights of a face's corners over another face's plane. Returns true if they are all on one side of the plane, within a
+ * tolerance of clear_m. */
 static bool lies_to_one_side(const struct crossing_face *plane, const struct crossing_face *face, double clear_m, double heights_m[3])
 {
     double low_m = INFINITY, high_m = -INFINITY;
@@ -87,7 +88,8 @@ static int shared_corner(const struct crossing_face *face, const struct crossing
     return -1;
 }
 
-/* The face crosses the plane of `other` along a line. Returns whether that line stays clear of `other`, except for a shared corner. */
+/* The face intersects the plane of `other` in a line segment. Returns whether that segment stays clear of `other`, except for a shared
+ * corner. */
 static bool cuts_beside(const struct crossing_face *face, const double heights_m[3], const struct crossing_face *other, double margin_m)
 {
     const int shared = shared_corner(face, other), from = shared_corner(other, face);
@@ -100,7 +102,7 @@ static bool cuts_beside(const struct crossing_face *face, const double heights_m
         vec_mix(face->at[i], face->at[j], heights_m[i] / (heights_m[i] - heights_m[j]), ends[count++]);
     }
     for (int i = 0; i < 3; i++) {
-        /* if the faces share a corner, only the sides at that corner decide */
+        /* if the faces share a corner, test only the sides at that corner */
         bool beyond = count > 0 && (from < 0 || i == from || (i + 1) % 3 == from);
         for (int end = 0; end < count; end++)
             beyond = beyond && beyond_side(other, i, ends[end]) > margin_m;

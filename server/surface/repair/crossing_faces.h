@@ -5,8 +5,8 @@
 #define SURFACE_REPAIR_CROSSING_FACES_H
 #include "surface/repair/parts.h"
 
-/* fraction of a part's reach: within one part, an edge crosses a face only if both of its ends are farther than this from the face's
-   plane */
+/* as a fraction of a part's reach (parts.h): within one part, an edge crosses a face only if both of its ends are farther than this from
+ * the face's plane */
 #define CROSSING_CLEAR 0.05
 
 /* Returns an array by model triangle: 1 if an edge within its pieces in parts->solid may pass through another face, else 0. Errors are on

@@ -9,8 +9,8 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-#define ON_EDGE 1e-9 /* largest weight of a corner at which a point counts as on the opposite edge */
-#define ON_WAY 1e-6  /* largest distance at which a straight line passes over a point, relative to the line's length */
+#define ON_EDGE 1e-9 /* largest barycentric weight of a corner with which a point counts as on the opposite edge */
+#define ON_WAY 1e-6  /* largest distance from a straight line at which a point counts as on the line, relative to the line's length */
 
 void face_triangulation_finish(struct face_triangulation *face)
 {
@@ -128,8 +128,8 @@ static bool is_passed(const struct face_triangulation *face, uint32_t u, uint32_
     return point == v || (along > ON_WAY * length2 && along < length2 && fabs(twice_area(face, u, v, point)) < ON_WAY * length2);
 }
 
-/* Follows the line from u to v until it ends or passes over a point, and collects the crossed sides. Returns that point; u: the line leads
-   nowhere. */
+/* Follows the line from u to v until it ends or passes over a point, and collects the crossed sides. Returns that point, or u if the line
+ * cannot be followed. */
 static uint32_t follow_line(const struct face_triangulation *face, uint32_t u, uint32_t v, struct crossed *crossed)
 {
     uint32_t right = u, left = u, apex;
@@ -145,7 +145,7 @@ static uint32_t follow_line(const struct face_triangulation *face, uint32_t u, u
                 left = b;
             }
         }
-    while (right != left && crossed->count < face->tri_count) { /* flat triangles might lead around in circles */
+    while (right != left && crossed->count < face->tri_count) { /* limit of steps, because flat triangles might lead around in circles */
         add_crossed(crossed, right, left);
         if (find_side(face, left, right, &apex) == face->tri_count)
             return u;
@@ -159,7 +159,7 @@ static uint32_t follow_line(const struct face_triangulation *face, uint32_t u, u
     return u;
 }
 
-/* Flips the side from a to b. Returns false if its two triangles are no convex quadrilateral. */
+/* Flips the side from a to b. Returns false if the side's two triangles do not form a convex quadrilateral. */
 static bool flip_side(struct face_triangulation *face, const uint32_t side[2], uint32_t turned[2])
 {
     uint32_t a = side[0], b = side[1], c = a, d = a;
@@ -180,7 +180,7 @@ static bool is_crossed(const struct face_triangulation *face, uint32_t u, uint32
     return (twice_area(face, u, v, side[0]) > 0) != (twice_area(face, u, v, side[1]) > 0);
 }
 
-/* Sloan 1993: flips each crossing side until none is left. */
+/* Makes u-v an edge by flipping each side that crosses it, until none is left (Sloan 1993). */
 void face_triangulation_connect(struct face_triangulation *face, uint32_t u, uint32_t v)
 {
     struct crossed crossed = { 0 };

@@ -7,7 +7,7 @@
 #include <stdint.h>
 
 struct face_triangulation {
-    uint32_t *ids; /* number of each point in the mesh */
+    uint32_t *ids; /* index of each point in the mesh */
     double (*at)[2];
     uint32_t (*tris)[3]; /* indices of points of this triangulation */
     size_t count, capacity, at_capacity, tri_count, tri_capacity;
@@ -15,7 +15,7 @@ struct face_triangulation {
 
 /* Frees the triangulation. */
 void face_triangulation_finish(struct face_triangulation *face);
-/* Appends the mesh's point `id` at (x, y) in the face's plane. Returns its number in the triangulation; no triangle uses the point yet. */
+/* Appends the mesh's point `id` at (x, y) in the face's plane. Returns its index in the triangulation; no triangle uses the point yet. */
 uint32_t face_triangulation_add_point(struct face_triangulation *face, uint32_t id, double x, double y);
 /* Appends a triangle of three points. */
 void face_triangulation_add_tri(struct face_triangulation *face, uint32_t a, uint32_t b, uint32_t c);

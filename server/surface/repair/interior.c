@@ -10,20 +10,21 @@
 #include "surface/mesh/bvh.h"
 
 #define RAYS 5
-#define RAYS_INSIDE 4 /* number of rays that must agree */
-#define VOTE_EVERY 16 /* sampling rate: one of this many triangles of a region is tested */
-#define BESIDE 1.5    /* distance, in reaches, of test points on either side of a triangle that lies on another part's surface */
-#define BARELY 0.05   /* distance, in reaches, of test points from a triangle that may be inside its own part */
-#define FLUSH 0.9     /* smallest cosine between faces that lie on each other */
-#define SLIVER 2.0    /* height, in reaches, of a triangle whose normal is not reliable */
+#define RAYS_INSIDE 4 /* number of rays, of RAYS, that must agree */
+#define VOTE_EVERY 16 /* one in this many triangles of a region is tested; the tested ones decide for the region */
+/* in reaches (parts.h): distance of the test points on either side of a triangle that lies on another part's surface */
+#define BESIDE 1.5
+#define BARELY 0.05 /* in reaches: distance of the test points from a triangle that may be inside its own part */
+#define FLUSH 0.9   /* smallest cosine between faces that lie on each other */
+#define SLIVER 2.0  /* in reaches: minimum height of a triangle whose normal is reliable */
 
-struct solid { /* a closed part, as it was before it was cut up */
+struct solid { /* a closed part, in its state before sampling */
     uint32_t part;
-    bool is_thin; /* the part is a plate: a triangle that ends inside is near both of its sides */
+    bool is_thin; /* the part is a thin plate, so that a triangle that ends inside it is near both sides of the plate */
     bool winds;   /* self-intersecting body: the winding number decides what is inside */
     double low[3], high[3];
     struct trimesh mesh;     /* triangles of the part; the arrays are not owned */
-    const signed char *side; /* side of each triangle, as in struct body_parts */
+    const signed char *side; /* orientation of each triangle, as in struct body_parts */
     struct bvh *bvh;
 };
 
@@ -105,7 +106,7 @@ struct interior_search {
     char *hidden;
 };
 
-/* Directions that no model is aligned with. */
+/* Directions of the rays; odd, so that hardly any model has faces along them. */
 static const double directions[RAYS][3] = {
     { 0.3572, 0.6129, 0.7048 },    { -0.7741, 0.2417, 0.5851 }, { 0.1693, -0.8846, 0.4345 },
     { -0.4419, -0.3251, -0.8361 }, { 0.8523, 0.2951, -0.4318 },
@@ -116,7 +117,7 @@ struct hits { /* intersections of one ray */
     const struct solid *solid;
     const double *direction;
     double same_m;
-    int count, turns; /* count: of points hit; turns: exits minus entries */
+    int count, turns; /* count: number of points hit; turns: number of exits minus number of entries */
     struct ray_hits { /* the first points hit */
         double t;
         int faces;
@@ -143,7 +144,7 @@ static void count_hit(void *arg, uint32_t tri, double t)
     hits->count++;
 }
 
-/* Returns whether the ray started inside. Two faces at one point are a wall between two bodies and count twice. */
+/* Returns whether the ray's origin is inside the solid. Two faces at one point are a wall between two bodies and count twice. */
 static bool says_inside(const struct hits *hits)
 {
     int bounds = hits->count > HITS ? hits->count - HITS : 0;
@@ -216,7 +217,7 @@ static char is_hidden_by(const struct interior_face *face, const struct solid *s
     double length = vec_length(n);
     for (int axis = 0; axis < 3; axis++)
         n[axis] /= length;
-    /* A sliver between points of both parts has an arbitrary normal. */
+    /* lies: the faces lie on each other; flush: they may, because the normal of a sliver between points of both parts is arbitrary */
     bool lies = fabs(vec_dot(n, face->normal)) > FLUSH, flush = lies || face->height_m < SLIVER * reach_m;
     if (face->own && flush && is_between(face, n, solid, face->own, BESIDE * reach_m, BARELY * reach_m))
         return INTERIOR_INSIDE;
@@ -297,7 +298,7 @@ static void mix_branches(const struct trimesh *mesh, const uint32_t *part, const
     mem_free(faces);
 }
 
-/* Returns per point its region: points connected without passing a marked point. */
+/* Returns by point its region, named by the lowest point: a set of points connected without passing a marked point. */
 static uint32_t *find_regions(const struct trimesh *mesh, const char *mixed)
 {
     uint32_t *region = mem_array(mesh->point_count, sizeof(*region));
@@ -314,7 +315,7 @@ static uint32_t *find_regions(const struct trimesh *mesh, const char *mixed)
     return region;
 }
 
-/* Returns the region of a triangle. TRIMESH_NONE: all its corners are marked. */
+/* Returns the region of a triangle. Returns TRIMESH_NONE if all corners are marked. */
 static uint32_t region_of(const struct trimesh *mesh, size_t t, const char *mixed, const uint32_t *region)
 {
     for (int i = 0; i < 3; i++)
@@ -337,12 +338,12 @@ static void ask(struct interior_search *search, struct workers *workers, const s
         search_some(search, 0, count);
 }
 
-/* Testing a part of a region's triangles may miss a few. They show at points of the region where hidden and visible triangles meet: all
-   triangles at such points are tested, until there are no more such points. */
+/* The sample of a region's triangles may miss a few of the other kind. A point of the region where hidden and visible triangles meet shows
+ * such a miss: tests all triangles at these points, until there are no new ones. */
 static void ask_beside(struct interior_search *search, struct workers *workers, const char *mixed, size_t *asked, char *was_asked)
 {
     const struct trimesh *mesh = search->mesh;
-    char *kinds = mem_array(mesh->point_count, 1); /* triangles at each point: bit 1 visible, bit 2 hidden */
+    char *kinds = mem_array(mesh->point_count, 1); /* by point: bit 1: a visible triangle is there; bit 2: a hidden one */
     size_t count;
     do {
         memset(kinds, 0, mesh->point_count);
@@ -395,7 +396,7 @@ bool interior_find(const struct trimesh *mesh, const uint32_t *part, const struc
     size_t *asked = mem_array(mesh->tri_count, sizeof(*asked)), asked_count = 0;
     struct region_vote *votes = mem_array(mesh->point_count, sizeof(*votes));
     struct interior_search search = { .mesh = mesh, .part = part, .parts = parts, .solids = &solids, .hidden = hidden };
-    for (size_t t = 0; t < mesh->tri_count; t++) { /* tests all triangles where parts meet, and a sample of each region */
+    for (size_t t = 0; t < mesh->tri_count; t++) { /* test all triangles where parts meet, and a sample of each region */
         uint32_t r = region_of(mesh, t, mixed, region);
         if (!untouched(mesh, t, mixed) || votes[r].seen++ % VOTE_EVERY == 0)
             asked[asked_count++] = t;
@@ -412,7 +413,7 @@ bool interior_find(const struct trimesh *mesh, const uint32_t *part, const struc
             vote->most = hidden[asked[i]] > vote->most ? hidden[asked[i]] : vote->most;
         }
     asked_count = 0;
-    for (size_t t = 0; t < mesh->tri_count; t++) { /* regions whose votes differ are tested in full */
+    for (size_t t = 0; t < mesh->tri_count; t++) { /* test all triangles of regions whose samples disagree */
         const struct region_vote *vote = untouched(mesh, t, mixed) ? &votes[region_of(mesh, t, mixed, region)] : NULL;
         if (vote && vote->hidden > 0 && vote->hidden < vote->asked)
             asked[asked_count++] = t;

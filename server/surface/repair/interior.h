@@ -8,11 +8,11 @@
 enum interior_kind { INTERIOR_NOT, INTERIOR_INSIDE, INTERIOR_ACROSS };
 
 /* Sets hidden[tri] to a value of enum interior_kind. A triangle is interior if its centre is inside a closed part other than its own,
-   decided by rays in five directions of which four must agree. On the other part's surface (within both parts' reach) it is interior if
-   covered: the other part on one side, its own on the other. Within a thin part, where everything is within reach, a triangle that stands
-   across the part is interior, too, unless it alone connects visible triangles. In a part that intersects itself or has internal walls, a
-   triangle with the part's inside on both sides is interior. part: per triangle. crossings: points where a part intersects itself. workers
-   may be NULL. Returns whether any triangle is hidden. */
+ * decided by rays in five directions of which four must agree. On the other part's surface (within both parts' reach, parts.h) the triangle
+ * is interior if covered: the other part on one side, its own on the other. Within a thin part, where everything is within reach, a
+ * triangle that stands across the part is interior, too, unless it alone connects visible triangles. In a part that intersects itself or
+ * has internal walls, a triangle with the part's inside on both sides is interior. part: per triangle. crossings: points where a part
+ * intersects itself. workers may be NULL. Returns whether any triangle is hidden. */
 bool interior_find(const struct trimesh *mesh, const uint32_t *part, const struct body_parts *parts, const uint32_t *crossings,
                    size_t crossing_count, struct workers *workers, char *hidden);
 /* Decides the triangles marked INTERIOR_ACROSS: those that alone connect visible pieces become visible, all others interior. */

@@ -7,7 +7,7 @@
 #include "surface/repair/interior.h"
 
 struct island {                /* group of visible triangles, indexed by its lowest point */
-    double seen_m2, hidden_m2; /* seen_m2: its area; hidden_m2: of hidden triangles that touch it */
+    double seen_m2, hidden_m2; /* seen_m2: area of the group; hidden_m2: area of the hidden triangles that touch it */
     bool free;                 /* true if a point of the group touches no hidden triangle */
 };
 
@@ -44,7 +44,7 @@ void interior_islands(const struct trimesh *mesh, char *hidden)
 void interior_resolve_across(const struct trimesh *mesh, char *hidden)
 {
     uint32_t *seen = mem_array(mesh->point_count, sizeof(*seen)), *group = mem_array(mesh->point_count, sizeof(*group));
-    /* first visible piece that each group touches, indexed by the group's lowest point */
+    /* by lowest point of a group of INTERIOR_ACROSS triangles: a visible piece that the group touches; TRIMESH_NONE: none */
     uint32_t *first = mem_array(mesh->point_count, sizeof(*first));
     char *is_seen = mem_array(mesh->point_count, 1), *joins = mem_array(mesh->point_count, 1);
     for (uint32_t i = 0; i < mesh->point_count; i++) {

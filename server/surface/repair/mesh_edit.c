@@ -73,12 +73,13 @@ static void find_targets(const struct mesh_edit *edit, size_t point_count, uint3
 
 struct crossing_lists { /* insertions by edge (from the lower point, by t) and by triangle */
     struct edge_table edges;
-    uint32_t *edge_first, *tri_first; /* first item of each edge number, and of each triangle; one more at the end */
+    uint32_t *edge_first, *tri_first; /* by edge index, and by triangle: index of the first insertion; one additional element at the end */
     struct mesh_edit_insertion *by_edge;
     uint32_t *by_tri;
     uint32_t *target;                   /* point that replaces each point */
-    uint32_t *partner_first, *partners; /* points to connect with each replaced point; NULL: there are none */
-    uint32_t *slot;                     /* for each replaced point: one more than its index in the current face; 0: not in the face */
+    uint32_t *partner_first, *partners; /* by point after replacement: the points to connect it with; NULL: no connections */
+    /* by point after replacement: its index in the current face's triangulation + 1; 0: the point is not in the face */
+    uint32_t *slot;
 };
 
 static int by_t(const void *a, const void *b)
@@ -87,7 +88,7 @@ static int by_t(const void *a, const void *b)
     return p->t < q->t ? -1 : p->t > q->t;
 }
 
-/* Lists connections in both directions, between replaced points. */
+/* Lists the connections in both directions, with merged points replaced. */
 static void lists_partners(struct crossing_lists *lists, const struct mesh_edit_pair *joins, size_t count, size_t point_count)
 {
     if (!count)
@@ -161,7 +162,7 @@ static bool is_corner(const uint32_t corners[3], uint32_t point)
     return point == corners[0] || point == corners[1] || point == corners[2];
 }
 
-/* Lists the local points on the side from a to b, in order, without the ends. */
+/* Lists the inserted points on the side from a to b, in order, without the ends, as indices in the triangulation. */
 static size_t side(struct face_triangulation *face, const struct crossing_lists *lists, const uint32_t corners[3], uint32_t a, uint32_t b,
                    uint32_t *out)
 {
@@ -295,7 +296,7 @@ static void cut(struct cutter *cutter, const struct crossing_lists *lists, struc
     uint32_t corners[3], source = mesh->tri_source[t];
     memcpy(corners, mesh->tris[t], sizeof(corners));
     lay_out(face, mesh, corners);
-    uint32_t a = 0; /* start of the side with most points */
+    uint32_t a = 0; /* corner at which the side with most inserted points begins */
     for (uint32_t i = 1; i < 3; i++)
         if (side_count(lists, corners, i) > side_count(lists, corners, a))
             a = i;

@@ -21,17 +21,17 @@ struct mesh_edit {
 void mesh_edit_init(struct mesh_edit *edit);
 /* Frees the batch without applying it, and leaves it empty. */
 void mesh_edit_finish(struct mesh_edit *edit);
-/* Adds: points a and b, distance_m apart, become one. */
+/* Adds the edit: merge points a and b, which are distance_m apart. */
 void mesh_edit_merge_points(struct mesh_edit *edit, uint32_t a, uint32_t b, double distance_m);
-/* Adds: a point is inserted into the edge a-b at fraction t from a, distance_m away from it. */
+/* Adds the edit: insert a point, distance_m away from the edge a-b, into that edge at fraction t from a. */
 void mesh_edit_insert_in_edge(struct mesh_edit *edit, uint32_t point, uint32_t a, uint32_t b, double t, double distance_m);
-/* Adds: a point is inserted into a triangle, distance_m away from it. */
+/* Adds the edit: insert a point, distance_m away from the triangle, into that triangle. */
 void mesh_edit_insert_in_tri(struct mesh_edit *edit, uint32_t point, uint32_t tri, double distance_m);
-/* Adds: each triangulated triangle that contains both points gets an edge between them. */
+/* Adds the edit: connect both points by an edge in each edited triangle that contains both. */
 void mesh_edit_connect(struct mesh_edit *edit, uint32_t a, uint32_t b);
 
 /* Applies the batch to the mesh: triangles with an inserted or merged point are triangulated again. target[point]: receives the point's new
-   number. */
+ * index. */
 void mesh_edit_apply(const struct mesh_edit *edit, struct trimesh *mesh, uint32_t *target);
 
 #endif

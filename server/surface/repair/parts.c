@@ -9,12 +9,12 @@
 #include "base/mem.h"
 #include "surface/repair/parts_impl.h"
 
-/* smallest share of a wall's area with doubled triangles: slits that stay in one layer leave single pieces at a wall */
+/* smallest share of doubled triangles in a wall's area; below 1, because a slit in one layer leaves single triangles */
 #define MIN_DOUBLED_SHARE 0.75
 #define OF_THICKNESS 0.5
 #define MIN_REACH 0.05 /* smallest reach, in tolerances */
 
-/* --- which way patches face ----------------------------------------------------------------------------------------------- */
+/* --- orientation of patches ----------------------------------------------------------------------------------------------- */
 
 /* Flips patches whose volume, relative to their centre, is negative, so that all face outwards. */
 static void face_outwards(struct parts_finding *f)
@@ -72,7 +72,8 @@ static void drop_walls(struct parts_finding *f, const uint32_t *times)
     mem_free(least);
 }
 
-/* --- how near is touching --------------------------------------------------------------------------------------------------- */
+/* --- reach: the distance up to which parts count as touching
+ * --------------------------------------------------------------------------------------------------- */
 
 /* Limits the reach to half of the thickness, estimated as twice the volume over the area. That is exact for plates; other bodies are
    thicker. */

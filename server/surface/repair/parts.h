@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The parts (bodies) of a surface, as they were before anything was cut or joined. */
+/* The parts (bodies) of a surface, in their state before sampling and repair. */
 #ifndef SURFACE_REPAIR_PARTS_H
 #define SURFACE_REPAIR_PARTS_H
 #include "surface/mesh/trimesh.h"
 
 /* A part is a set of triangles connected by edges (sharing a point is not enough), a patch a set connected by edges with two faces. Where
-   an edge has more faces and one patch has two of them, the other faces only stand on that patch, like a fin: this does not make two closed
-   bodies one part. */
+   an edge has more faces and one patch has two of these faces, the other faces only stand on that patch, like a fin. This does not make two
+   closed bodies one part. */
 struct body_parts {
     struct trimesh solid;
     uint32_t *of_tri; /* part of each triangle of `solid` */
@@ -15,10 +15,10 @@ struct body_parts {
     uint32_t *of_source, *body_of_source; /* part and body of each model triangle; usually equal */
     signed char *side_of_source;          /* per model triangle: side */
     char *closed;                         /* 1 for parts that are closed: their open edges are short compared with their size */
-    char *tangled;                        /* 1 for parts that have edges with three faces or more, or intersect themselves */
+    char *tangled;                        /* by part: 1 if it has edges with three faces or more, or intersects itself */
     char *crossed;                        /* 1 for parts that intersect themselves; set by repair_contacts() */
     char *thin;                           /* 1 for parts that are closed and have a reach below the tolerance */
-    double *reach_m;                      /* reach of each part: surfaces nearer than this touch it */
+    double *reach_m;                      /* reach of each part: other surfaces nearer than this count as touching it */
     double tolerance_m;                   /* largest reach of a part */
     double size_m;                        /* diagonal of the main part; 0: of `solid`. May be set after parts_init() */
     size_t count, source_count;           /* count: parts; source_count: model triangles */

@@ -10,10 +10,11 @@ struct parts_finding {
     struct tri_edges edges;
     uint32_t *patch;       /* patch of each triangle, named by its lowest triangle */
     struct surface_patch { /* measures of a patch, indexed by the patch's lowest triangle */
-        /* open_m: length of edges with one face; branching_m: of edges with three or more faces, one of them the patch's */
+        /* open_m: total length of edges with one face; branching_m: total length of edges with three or more faces, of which exactly one is
+         * the patch's */
         double open_m, branching_m, area_m2;
-        double doubles_m2; /* area of triangles with at least twice the multiplicity of the part's others */
-        bool loose;        /* true if the patch stands on others, and is open */
+        double doubles_m2; /* area of triangles with at least twice the multiplicity of the other triangles of the part */
+        bool loose;        /* true: the patch is open and only stands on other patches, like a fin */
     } * patches;
 };
 

@@ -8,7 +8,8 @@
 #include "base/mem.h"
 #include "surface/repair/parts_impl.h"
 
-/* total length of open edges, relative to the root of the area: leftovers of a hair gap rather than the end of a pipe */
+/* maximum total length of open edges of a closed part, relative to the root of its area: more than remnants of a hair gap, less than the
+ * end of a pipe */
 #define MAX_OPEN_OF_SIZE 0.05
 #define MAX_BODY_OPEN_OF_SIZE 0.5 /* the same limit for a patch to be a body of its own, counting all edges at which the patch ends */
 
@@ -32,12 +33,12 @@ static void find_patches(struct parts_finding *f)
 
 /* --- what hangs together ------------------------------------------------------------------------------------------------------ */
 
-/* Faces at edges with three or more faces, sorted by edge and patch; one entry per patch. A patch with two of them continues through the
+/* Faces at edges with three or more faces, sorted by edge and patch; one entry per patch. A patch with two faces continues through the
    edge, and the others only stand on it, like a fin. */
 struct branches {
     struct open_branch {
         uint32_t edge, patch, faces;
-        bool runs_through; /* true if a patch continues through this edge */
+        bool runs_through; /* true: some patch has two faces at this edge and so continues through it */
         double length_m;
     } * at;
     size_t count;
@@ -102,7 +103,7 @@ static bool stands(const struct open_branch *branch)
     return branch->runs_through && branch->faces == 1;
 }
 
-struct core { /* patches connected in other ways than by standing on each other; indexed by the lowest triangle */
+struct core { /* set of patches connected at edges through which no patch continues; indexed by the lowest triangle */
     double open_m, area_m2;
     bool stands;
 };
@@ -113,12 +114,12 @@ static bool is_closed(double open_m, double area_m2)
 }
 
 /* Joins patches that meet at edges into parts, but not two closed ones where one only stands on the other, or on a fin: fins of two bodies,
-   joined by a seam, do not make the bodies one. of: per triangle, its patch; becomes its part, named by the lowest triangle. */
+ * joined by a seam, do not make the bodies one. of[triangle]: in: its patch; out: its part; both are named by their lowest triangle. */
 static void join_patches(struct parts_finding *f, const struct branches *b, uint32_t *of)
 {
     size_t tri_count = f->parts->solid.tri_count;
     struct core *cores = mem_array(tri_count, sizeof(*cores));
-    char *holds = mem_array(tri_count, 1); /* 1 for parts that contain a closed core, by the part's root */
+    char *holds = mem_array(tri_count, 1); /* by root of a part: 1 if the part contains a closed core */
     for (size_t i = 1; i < b->count; i++)
         if (b->at[i].edge == b->at[i - 1].edge && !b->at[i].runs_through)
             trimesh_join(of, b->at[i - 1].patch, b->at[i].patch);
@@ -184,7 +185,7 @@ static void find_closed(struct parts_finding *f)
     mem_free(open_m);
 }
 
-/* Separates bodies that are joined to others by a few edges by mistake: such a patch is nearly closed by itself. */
+/* Separates bodies that are joined to others by a few edges by mistake: such a body is a patch that is nearly closed by itself. */
 static void find_bodies(struct parts_finding *f, const struct trimesh *mesh)
 {
     struct body_parts *parts = f->parts;

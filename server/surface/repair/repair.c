@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Closes seams along border edges, and along edges that hiding triangles opened. */
+/* Closes seams along border edges, and along edges that became borders because triangles at them were hidden. */
 #include "surface/repair/repair.h"
 
 #include <math.h>
@@ -15,18 +15,21 @@
 
 #define GAP_OF_EDGE 0.45 /* two points are merged only if they are nearer than this fraction of the shortest edge at either */
 #define EXACT_OF_TOLERANCE 0.01
-#define STRAIGHT 0.1 /* tolerances; straight borders deviate up to this after welding, and points are no nearer to each other */
-#define FLUSH 0.99   /* smallest cosine between faces that lie on each other, and between edges that run along each other */
+/* in tolerances: deviation from a straight line that welding may cause; distinct points of a border are farther apart */
+#define STRAIGHT 0.1
+#define FLUSH 0.99 /* smallest cosine between faces that lie on each other, and between edges that run along each other */
 
-/* --- seams: one round joins points, the next sets points into edges ---------------------------------------------------------- */
+/* --- seams: rounds that merge points alternate with rounds that insert points into edges
+ * ---------------------------------------------------------- */
 
 struct seams {
     const struct trimesh *mesh;
     const struct borders *borders;
     struct mesh_edit *edit;
-    double tolerance_m, end_m; /* end_m: insertions nearer than this to an edge's end are left to the merging of points */
-    bool fits;                 /* only exact fits */
-    struct nearest_edge {      /* best position of each border point on a border edge that is not its own */
+    /* end_m: a point nearer than this to an edge's end is not inserted, but merged with the end in another round */
+    double tolerance_m, end_m;
+    bool fits;            /* only exact fits */
+    struct nearest_edge { /* best position of each border point on a border edge that is not its own */
         double distance_m, t;
         uint32_t edge;
     } * nearest;
@@ -57,7 +60,8 @@ static bool lie_on_each_other(const struct seams *s, uint32_t e, uint32_t f)
 }
 
 /* Returns whether merging two points would close an edge of one with an edge of the other although their faces lie on each other. Such
-   faces belong to bodies that touch, and the surfaces across the gap would have nothing left to close with. */
+ * faces belong to two bodies that touch. If they were joined, the surfaces on the other side of the gap could no longer be joined to
+ * them. */
 static bool would_fold(const struct seams *s, size_t i, size_t j)
 {
     const struct borders *b = s->borders;
@@ -94,8 +98,8 @@ static uint32_t beyond(const struct seams *s, uint32_t n, uint32_t p)
     return edge[edge[0] == p];
 }
 
-/* Returns whether the border at a point runs along the edge, that is its next point is on the edge's line as well: with cracks everywhere,
-   points are near edges by chance. towards: required direction along the edge; NULL: either. */
+/* Returns whether the border at a point runs along the edge, that is, its next point lies on the edge's line too. A point alone may be near
+ * an edge by chance, where cracks are many. towards: required direction along the edge; NULL: either. */
 static bool runs_along(const struct seams *s, uint32_t p, uint32_t e, const double towards[3], double within_m)
 {
     const struct borders *b = s->borders;
@@ -113,7 +117,8 @@ static bool runs_along(const struct seams *s, uint32_t p, uint32_t e, const doub
     return false;
 }
 
-/* Returns whether the border runs straight through a point, along the edge: it is a hanging vertex, since gaps are seldom as straight. */
+/* Returns whether the border runs straight through a point, along the edge: such a point is a hanging vertex, because gaps are rarely as
+ * straight. */
 static bool hangs(const struct seams *s, uint32_t p, uint32_t e)
 {
     double forth[3], back[3], within_m = STRAIGHT * s->tolerance_m;
@@ -141,8 +146,8 @@ static bool is_at_end(const struct seams *s, uint32_t p, uint32_t e, uint32_t en
     return !(apart && (have_an_edge(s, p, end) || (hangs(s, p, e) && hangs(s, end, e))));
 }
 
-/* Tries to insert a border point into an edge. A hanging vertex is inserted into all edges that run there: inserted into the nearest only,
-   points of several edges would close some of them with each other and leave the rest open. */
+/* Tries to insert a border point into an edge. A hanging vertex is inserted into all edges that run there. If it were inserted into the
+ * nearest edge only, some of these edges would be joined to each other and the others would stay open. */
 static void try_edge(struct seams *s, size_t i, uint32_t e)
 {
     const struct borders *b = s->borders;
@@ -202,7 +207,7 @@ static void set_into_edges(struct seams *s)
     mem_free(s->nearest);
 }
 
-/* One round: merges border points (within tolerance_m), or inserts them into border edges. */
+/* One round: merges border points (within tolerance_m), or inserts border points into border edges. */
 static void seam_round(struct trimesh *mesh, const struct borders *borders, double tolerance_m, double end_m, bool fits, bool into_edges,
                        uint32_t *target, size_t target_count, struct repair_report *report)
 {
@@ -228,8 +233,8 @@ void repair_seams(struct trimesh *mesh, double tolerance_m, uint32_t *target, st
     size_t target_count = mesh->point_count;
     for (uint32_t i = 0; i < target_count; i++)
         target[i] = i;
-    /* Exact fits come first: their edges are then no borders when gaps are closed, and are not pulled to a neighbour. A point that is on an
-       edge by chance is no fit: it would cut the edge into pieces too short to be closed. */
+    /* Closes exact fits first: their edges are then no borders any more when gaps are closed, and are not pulled to a neighbour. A point
+     * that is on an edge by chance is not inserted, because it would split the edge into pieces too short to be closed. */
     for (int round = 0; round < 4; round++) {
         struct borders borders;
         borders_init(&borders, mesh);
@@ -254,7 +259,7 @@ void repair_join_points(struct trimesh *mesh, double tolerance_m, uint32_t *targ
 
 /* --- rims ------------------------------------------------------------------------------------------------------------------- */
 
-/* Copies the triangles with hidden[tri] == which. */
+/* Writes to `out` the triangles with hidden[tri] == which. */
 static void copy_triangles(struct trimesh *to, const struct trimesh *from, const char *hidden, char which)
 {
     *to = (struct trimesh){ .points = from->points, .point_count = from->point_count };

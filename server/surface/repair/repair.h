@@ -15,14 +15,14 @@ struct repair_report {
     struct crack_bridge *made; /* all bridges; free with mem_free */
     size_t made_count, made_capacity;
     double longest_m;
-    int k;               /* neighbours requested per point; -1: out of memory */
+    int k;               /* count of neighbours requested per point (point_cloud.h); -1: out of memory */
     uint32_t *crossings; /* points where a part intersects itself; free with mem_free */
     size_t crossing_count, crossing_capacity;
 };
 
 /* Closes seams: merges points on border edges with other border points (unwelded vertices), or inserts them into border edges (hanging
-   vertices, hair gaps). Candidates come from the point cloud of border points. Points with an edge shorter than 2.2 times the gap are left
-   alone, so that no small feature collapses. target[point]: receives the new number of each previous point. */
+ * vertices, hair gaps). Candidates come from the point cloud of border points. Points with an edge shorter than 2.2 times the gap are left
+ * alone, so that no small feature collapses. target[point]: receives the new index of each previous point. */
 void repair_seams(struct trimesh *mesh, double tolerance_m, uint32_t *target, struct repair_report *report);
 
 /* Only merges border points with border points, as one round of repair_seams() does, but not where this would join faces that lie on each
@@ -35,9 +35,9 @@ void repair_join_points(struct trimesh *mesh, double tolerance_m, uint32_t *targ
    point is inserted into both. target: as in repair_seams(). */
 void repair_contacts(struct trimesh *mesh, struct body_parts *parts, uint32_t *target, struct repair_report *report);
 
-/* Closes rims that are open because their neighbours are hidden: where two bodies share vertices along a part of a rim and have a gap along
-   the rest, hidden faces had closed the gap. Closes them as seams, within both parts' reach. hidden[tri]: 0 or 1. Puts visible triangles
-   first. Returns their number. target: as in repair_seams(). */
+/* Closes rims: edges that are open only because the triangles beyond them are hidden. Where two bodies share vertices along a part of a rim
+ * and have a gap along the rest, hidden faces had closed the gap. Closes rims like seams, within both parts' reach. hidden[tri]: 0 or 1.
+ * Moves visible triangles to the front of the mesh. Returns the number of visible triangles. target: as in repair_seams(). */
 size_t repair_rims(struct trimesh *mesh, const char *hidden, const struct body_parts *parts, uint32_t *target,
                    struct repair_report *report);
 

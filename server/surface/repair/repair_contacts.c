@@ -18,7 +18,7 @@
 struct contacts {
     struct trimesh *mesh;
     struct body_parts *parts;
-    const uint32_t *part, *body; /* part and body of each triangle of the present mesh */
+    const uint32_t *part, *body; /* part and body of each triangle of `mesh` */
     const struct bvh *bvh;
     struct mesh_edit *edit;
     uint32_t own;   /* own part of the current edge's triangle, or own body of the current point */
@@ -45,7 +45,8 @@ static double reach_of(const struct contacts *c, uint32_t tri)
     return c->parts->reach_m[c->part[tri]];
 }
 
-/* Returns whether both ends are clear of the triangle's plane: faces of one part that lie on each other do not count as crossing. */
+/* Returns whether both ends of the current edge are far enough from the triangle's plane: faces of one part that lie on each other do not
+ * count as crossing. */
 static bool stands_clear(const struct contacts *c, const uint32_t *v)
 {
     double n[3], up[3];
@@ -97,7 +98,7 @@ static void set_into_face(const struct contacts *c, uint32_t point, uint32_t tri
     mesh_edit_insert_in_tri(c->edit, point, tri, distance_m);
 }
 
-/* Visits the triangles near the current edge. */
+/* Calls `visit` for the triangles near the current edge. */
 static void look_around(struct contacts *c, void (*visit)(void *arg, uint32_t tri), double margin_m)
 {
     const double *p = c->mesh->points[c->edge[0]], *q = c->mesh->points[c->edge[1]];
@@ -156,8 +157,9 @@ static void find_touch(const struct contacts *c, const double point_m[3], struct
         bvh_nearest(c->bvh, point_m, c->reach_m, other_body_as_far, c, place);
 }
 
-/* Anything nearer to a thin part than half its thickness touches it, from either side; farther surfaces must face it. Such a distance is a
-   gap to bridge, in which nothing can be hidden: rims and intersections therefore use the reach alone. */
+/* Finds points that touch another body. A surface nearer to a thin part than half of its thickness touches it, from either side. A farther
+ * surface must face the part: then the distance is a gap to bridge, but the part covers nothing there. Rims and intersections therefore use
+ * the reach alone. */
 static void find_touches(struct contacts *c)
 {
     struct line_of_sight sight;
@@ -184,7 +186,8 @@ static void find_touches(struct contacts *c)
     mem_free(seen);
 }
 
-/* --- the rim of a contact ----------------------------------------------------------------------------------------------------- */
+/* --- rims: edges where a face leaves the body that it lies on
+ * ----------------------------------------------------------------------------------------------------- */
 
 /* Computes where two edges that are not parallel are nearest, as fractions of both. */
 static bool edges_meet(const double a[3], const double b[3], const double c[3], const double d[3], double *t, double *s)
@@ -233,7 +236,8 @@ static void visit_rim(void *arg, uint32_t tri)
     }
 }
 
-/* Finds edges with both ends on another body while a face at them leaves it: that body is cut along such edges. */
+/* Finds edges with both ends on another body while the third corner of a face is not on that body. Records where these edges cross edges of
+ * that body, which is cut there.. */
 static void find_rims(struct contacts *c)
 {
     for (uint32_t t = 0; t < c->mesh->tri_count; t++)
@@ -249,7 +253,7 @@ static void find_rims(struct contacts *c)
         }
 }
 
-/* Points are added after all searches, because the searches read the array of points. */
+/* Inserts the points of all crossings. Points are added only after all searches, because the searches read the array of points. */
 static void set_crossings(struct contacts *c, struct repair_report *report)
 {
     for (size_t i = 0; i < c->crossing_count; i++) {
@@ -271,7 +275,7 @@ static void set_crossings(struct contacts *c, struct repair_report *report)
 
 /* --- the lines along which faces cross ---------------------------------------------------------------------------------------- */
 
-struct meeting {             /* two triangles meet at a point of their intersection */
+struct meeting {             /* a point at which two triangles intersect */
     uint32_t tris[2], point; /* tris: the lower one first */
 };
 
@@ -289,7 +293,7 @@ static int compare_meetings(const void *a, const void *b)
     return (x->point > y->point) - (x->point < y->point);
 }
 
-/* Lists meetings: where an edge passes through a triangle, each triangle at the edge meets it. */
+/* Lists meetings: where an edge passes through a triangle, each triangle at the edge meets the triangle. */
 static void find_meetings(const struct contacts *c, struct meetings *meetings)
 {
     struct edge_table edges;
@@ -378,7 +382,7 @@ static bool is_one_body(const struct contacts *c)
     return t == c->mesh->tri_count;
 }
 
-/* Finds all contacts. A mesh of a single body can only cross itself. */
+/* Finds all contacts. In a mesh of a single body, searches only for places where the body crosses itself. */
 static void find_contacts(struct contacts *c)
 {
     char *may_cross = crossing_faces_find(c->parts);

@@ -11,14 +11,14 @@
 #include "surface/repair/borders.h"
 #include "surface/repair/repair_impl.h"
 
-#define MAX_ROUNDS 4 /* limit of rounds: an edge whose faces are all cut at different points takes one round fewer than it has faces */
+#define MAX_ROUNDS 4 /* limit of rounds: an edge whose faces are all split at different points needs one round fewer than it has faces */
 
 struct hanging {
     const struct trimesh *mesh;
     const struct borders *borders;
     struct mesh_edit *edit;
     double within_m;
-    uint32_t *last; /* last edge that each border point was inserted into */
+    uint32_t *last; /* by border point: index of the last edge that the point was inserted into */
 };
 
 /* Returns the position of p along a-b as a fraction; negative: p is not on the edge, or at an end. */
@@ -49,7 +49,7 @@ static bool runs_straight(const struct hanging *h, uint32_t p, uint32_t a)
     return false;
 }
 
-/* Inserts into the edge a-b the points on it that border edges connect with a. */
+/* Inserts into the edge a-b those border points that lie on it and are connected with a by a border edge. */
 static void look_from(struct hanging *h, uint32_t a, uint32_t b, uint32_t number)
 {
     const struct borders *borders = h->borders;
@@ -70,8 +70,8 @@ static bool is_at_border(const struct hanging *h, uint32_t a, uint32_t b)
     return h->borders->slot[a] != TRIMESH_NONE || h->borders->slot[b] != TRIMESH_NONE;
 }
 
-/* Finds edges with an end on a border, several faces, and an odd number of them: a body has a slit there. Returns a flag per edge number.
-   Closed edges are not cut by borders that end at them; edges with one face are left to the closing of seams. */
+/* Finds edges with an end on a border, and an odd number of faces above one: a body has a slit there. Returns a flag by edge index. Other
+ * edges are left out: edges with an even number of faces are closed, and edges with one face are closed as seams. */
 static char *find_odd(const struct hanging *h, struct edge_table *edges)
 {
     const struct trimesh *mesh = h->mesh;

@@ -14,9 +14,9 @@ bool repair_tri_has(const struct trimesh *mesh, uint32_t tri, uint32_t point);
    are each inserted in two places and count once. */
 void repair_apply(struct mesh_edit *edit, struct trimesh *mesh, uint32_t *target, size_t target_count, size_t crossings,
                   struct repair_report *report);
-/* Inserts points of straight borders into edges that run along the border and share one end with it: edges of several bodies one of which
-   has a slit there. Used for exact fits. A point is inserted into all such edges: with the nearest only, two points in one edge would close
-   with each other and the edge stay open. borders: of the mesh; updated. */
+/* Inserts points of straight borders into edges that run along the border and share one end with it. At such an edge several bodies meet,
+ * of which one has a slit. Used for exact fits. A point is inserted into all such edges: if it were inserted into the nearest only, others
+ * would stay open. borders: of the mesh; updated. */
 void repair_hanging(struct trimesh *mesh, struct borders *borders, double within_m, uint32_t *target, size_t target_count,
                     struct repair_report *report);
 
