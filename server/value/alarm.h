@@ -7,24 +7,27 @@
 
 enum alarm_kind {
     ALARM_NONE,
-    ALARM_LL, ALARM_L, ALARM_H, ALARM_HH, /* alarm at a limit of the tag: 1 + enum limit */
+    ALARM_LL,
+    ALARM_L,
+    ALARM_H,
+    ALARM_HH,   /* alarm at a limit of the tag; the values from here on are 1 + enum limit */
     ALARM_ON,   /* another alarm system has set the tag's alarm bit */
-    ALARM_BAD,  /* the quality of the tag's reading is Bad */
+    ALARM_BAD,  /* the quality of the tag's reading is Bad (OPC UA severity) */
     ALARM_LINK, /* a device has failed: none of its measurements can be used */
     ALARM_KINDS
 };
 
-enum alarm_status { /* alarm states of ISA-18.2 and IEC 62682; ALARM_ACTIVE is for alarms that another system manages */
-    ALARM_NORMAL,
-    ALARM_ACTIVE, /* active; only the other alarm system knows whether the alarm was acknowledged */
-    ALARM_UNACKNOWLEDGED,
-    ALARM_ACKNOWLEDGED,
-    ALARM_RETURNED, /* returned to normal, not acknowledged */
-    ALARM_LATCHED,  /* the cause is gone; the alarm stays until an operator resets it */
-    ALARM_SHELVED,
-    ALARM_SUPPRESSED, /* by design */
-    ALARM_OUT_OF_SERVICE,
-    ALARM_STATUSES
+enum alarm_status { /* alarm states of ISA-18.2 and IEC 62682; ALARM_ACTIVE: an active alarm that another system manages */
+                    ALARM_NORMAL,
+                    ALARM_ACTIVE, /* active; acknowledgement is unknown, because the other alarm system manages the alarm */
+                    ALARM_UNACKNOWLEDGED,
+                    ALARM_ACKNOWLEDGED,
+                    ALARM_RETURNED, /* returned to normal, not acknowledged */
+                    ALARM_LATCHED,  /* latched: the cause is gone, but the alarm stands until an operator resets it */
+                    ALARM_SHELVED,
+                    ALARM_SUPPRESSED, /* by design */
+                    ALARM_OUT_OF_SERVICE,
+                    ALARM_STATUSES
 };
 
 /* Returns the name of an alarm kind, such as "HH" (static); NULL for ALARM_NONE. */
@@ -35,7 +38,7 @@ enum alarm_kind alarm_kind_find(const char *name);
 const char *alarm_status_name(enum alarm_status status);
 /* Returns the alarm state of that name; ALARM_STATUSES if no state has it. */
 enum alarm_status alarm_status_find(const char *name);
-/* Returns whether operators see an alarm in this state: not if it is normal, shelved, suppressed or out of service. */
+/* Returns true if operators see an alarm in this state; false if the state is normal, shelved, suppressed or out of service. */
 bool alarm_status_is_annunciated(enum alarm_status status);
 /* Returns whether the cause of an alarm in this state is gone although the alarm still stands: returned or latched. */
 bool alarm_status_is_cleared(enum alarm_status status);
@@ -43,8 +46,8 @@ bool alarm_status_is_cleared(enum alarm_status status);
 /* Returns the priority of one of a tag's alarms, from 1 (most urgent) to ALARM_PRIORITIES. */
 int alarm_priority(const struct plant_tag *tag, enum alarm_kind kind);
 
-/* Sort key of a tag's alarms; the gravest one is shown for the tag. Active comes before cleared, then the higher priority, then the
-   outer limit (which implies the inner one), then the unacknowledged alarm. */
+/* Sort key that orders the alarms of one tag; the first one is shown for the tag. Active comes before cleared, then the higher priority,
+   then the outer limit (which implies the inner one), then the unacknowledged alarm. */
 struct alarm_grade {
     int priority;
     enum alarm_kind kind;
@@ -53,10 +56,11 @@ struct alarm_grade {
 /* Returns whether alarm `a` is shown rather than alarm `b`. */
 bool alarm_graver(const struct alarm_grade *a, const struct alarm_grade *b);
 
-/* Returns the limit that a usable reading has reached or passed, the outer one if it passed two; ALARM_NONE if the reading is within
-   limits. */
+/* Returns the limit that a usable reading has reached or passed, the outer limit if the reading passed two; ALARM_NONE if the reading is
+   within limits. */
 enum alarm_kind alarm_beyond(const struct plant_tag *tag, const struct reading *reading);
-/* Sets the alarms of a snapshot from the limits alone, for use without an alarm service: a reading beyond a limit has an active alarm. */
+/* Sets the alarms of a snapshot from the limits alone, for daemons without an alarm service: each reading beyond a limit has an active
+   alarm. */
 void alarm_by_limits(const struct plant *plant, struct snapshot *snapshot);
 
 #endif

@@ -13,8 +13,8 @@ int64_t backoff_next_ns(struct backoff *backoff, uint64_t random);
 
 /* Chooses the next of several hosts: tries each host once without a delay, then waits with backoff before the next round. */
 struct host_turn { /* zero-initialise */
-    int index;     /* index of the host in use */
-    int tried;     /* hosts tried one after the other since the last session */
+    int index;     /* index of the host that is tried or connected */
+    int tried;     /* number of hosts tried one after the other since the last session */
     struct backoff backoff;
 };
 

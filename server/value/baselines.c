@@ -98,7 +98,7 @@ static void slot_remove(struct baselines *baselines, struct baseline_slot *slot)
     baselines->count--;
 }
 
-/* Adds a baseline and returns its id. Call with the lock held and a free slot. */
+/* Adds a baseline and returns its id. Call with the lock held; a slot must be free. */
 static uint32_t slot_add(struct baselines *baselines, const char *name, const struct snapshot *snapshot)
 {
     struct baseline_slot *slot = &baselines->slots[baselines->count++];

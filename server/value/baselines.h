@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Baselines: stored snapshots from which a view can show the difference. Named baselines are set by sessions; unnamed ones are
-   identified by their time alone. Ids increase and are never reused, so a dropped baseline is not mistaken for a newer one. Thread: any. */
+/* Baselines: stored snapshots from which a view can show the difference. Named baselines are set by sessions; unnamed ones are identified
+   by their time alone. Ids increase and are never reused, so the id of a dropped baseline never names a newer one. Thread: any. */
 #ifndef VALUE_BASELINES_H
 #define VALUE_BASELINES_H
 #include <stdbool.h>
@@ -19,8 +19,8 @@ struct baselines;
 struct baselines *baselines_create(void);
 void baselines_destroy(struct baselines **baselines); /* Frees the baselines. &NULL is fine; leaves NULL. */
 
-/* Stores a copy of the snapshot under a name and returns its id. An existing baseline of that name is replaced and keeps its id, so
-   views that show it follow. Returns 0 if BASELINES_NAMED other names are in use. */
+/* Stores a copy of the snapshot under a name and returns its id. An existing baseline of that name is replaced and keeps its id, so views
+   that show that baseline show the new snapshot. Returns 0 if BASELINES_NAMED other names are in use. */
 uint32_t baselines_set(struct baselines *baselines, const char *name, const struct snapshot *snapshot);
 /* Stores an unnamed copy of the snapshot and returns its id; the oldest unnamed baseline is dropped if there are too many. A snapshot of
    the same instant is stored only once. */

@@ -18,8 +18,8 @@ int decode_width(const struct plant_tag *tag)
     return is_bit(tag) ? 1 : data_type_registers(tag->type);
 }
 
-/* Byte order names list the bytes on the wire, A the most significant. B first: bytes swapped within each word. C or D first: the least
-   significant word comes first. */
+/* Byte orders such as ABCD name the bytes in the order on the wire; A is the most significant byte. B first: bytes swapped within each
+   word. C or D first: the least significant word comes first. */
 static uint64_t join_words(enum byte_order order, const uint16_t *words, int count)
 {
     bool swap_bytes = order == BYTE_ORDER_BADC || order == BYTE_ORDER_DCBA;
@@ -64,21 +64,14 @@ static double raw_of(const struct plant_tag *tag, const uint16_t *words)
 {
     uint64_t joined = join_words(tag->byte_order, words, decode_width(tag));
     switch (tag->type) {
-    case DATA_INT16:
-        return (int16_t)joined;
-    case DATA_INT32:
-        return (int32_t)joined;
-    case DATA_INT64:
-        return (double)(int64_t)joined;
-    case DATA_FLOAT32:
-        return float_of((uint32_t)joined);
-    case DATA_FLOAT64:
-        return double_of(joined);
+    case DATA_INT16: return (int16_t)joined;
+    case DATA_INT32: return (int32_t)joined;
+    case DATA_INT64: return (double)(int64_t)joined;
+    case DATA_FLOAT32: return float_of((uint32_t)joined);
+    case DATA_FLOAT64: return double_of(joined);
     case DATA_BCD:
-    case DATA_LBCD:
-        return bcd_of((uint32_t)joined);
-    default:
-        return (double)joined;
+    case DATA_LBCD: return bcd_of((uint32_t)joined);
+    default: return (double)joined;
     }
 }
 
@@ -110,7 +103,7 @@ static uint32_t judge_current(const struct plant_tag *tag, double raw)
 {
     static const double MEASURED_LOW_MA = 3.8, MEASURED_HIGH_MA = 20.5, FAILED_LOW_MA = 3.6, FAILED_HIGH_MA = 21;
     double ma = 4 + 16 * (raw - tag->raw_low) / (tag->raw_high - tag->raw_low);
-    double half_step_ma = 8 / (tag->raw_high - tag->raw_low); /* half of one raw count in mA: tolerance for rounded raw values */
+    double half_step_ma = 8 / (tag->raw_high - tag->raw_low); /* half of one raw count, in mA: tolerance for the transmitter's rounding */
     double rounding_ma = half_step_ma < 0.05 ? half_step_ma : 0;
     if (ma <= FAILED_LOW_MA + rounding_ma || ma >= FAILED_HIGH_MA - rounding_ma)
         return QUALITY_BAD_SENSOR_FAILURE;
@@ -141,10 +134,11 @@ static void fail(struct sample *out)
     out->quality = QUALITY_BAD_SENSOR_FAILURE;
 }
 
-/* `bits`: the bits of `raw` on the wire. */
+/* `bits`: width of `raw` on the wire, in bits. */
 static void decode_analog(const struct plant_tag *tag, uint64_t bits, double raw, struct sample *out)
 {
-    if (!isfinite(raw) || is_sentinel(tag, bits, raw)) { /* checked before scaling, which would hide a special value */
+    /* must be checked before scaling, after which the special value would look like a measurement */
+    if (!isfinite(raw) || is_sentinel(tag, bits, raw)) {
         fail(out);
         return;
     }

@@ -12,7 +12,7 @@ int decode_width(const struct plant_tag *tag);
 /* Decodes a tag's raw registers into out->value and out->quality. `words`: decode_width() registers, each in the host's byte order; for
    coils and discrete inputs 0 or 1. Quality is Good; Uncertain_EngineeringUnitsExceeded beyond the instrument's range (the value is
    extrapolated); or Bad_SensorFailure for NaN, infinity, invalid BCD, the open-circuit value, and a current that NE 43 defines as a
-   failure. If the tag has `negate`, a bit is inverted and a number changes its sign. */
+   failure. The tag's option `negate` inverts a bit and changes the sign of a number. */
 void decode_sample(const struct plant_tag *tag, const uint16_t *words, struct sample *out);
 
 /* Decodes a number that a source received as a number rather than as registers, by the same rules. A tag of type bool gets a bit. */

@@ -16,9 +16,9 @@
 
 struct lookup {
     char *host, port[12];
-    int done_fd; /* readable once the lookup has finished */
+    int done_fd; /* descriptor that becomes readable once the lookup has finished */
     struct addrinfo *found;
-    _Atomic int failed; /* result code; written after `found`, read before it */
+    _Atomic int failed; /* result code of getaddrinfo; written before `found` becomes readable */
     _Atomic int users;
 };
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A Modbus source: reads each block of its plan when it is due, and keeps retrying units that do not answer. */
+/* A Modbus source: reads each block of its plan when it is due, and retries units that do not answer. */
 #include "value/modbus_impl.h"
 
 #include <errno.h>
@@ -33,7 +33,7 @@ static void read_block(struct modbus_source *modbus, size_t index)
     int64_t now_ns = clock_mono_ns(), next_ns = block->due_ns + block->scan_ms * NS_PER_MS;
     modbus->asked_ns = now_ns;
     if (status < 0 && modbus_manners_excuse_read(modbus, status, unit->state == UNIT_UP))
-        return; /* the block stays due, so that the next connection begins with it */
+        return; /* the block stays due, so that the next connection reads it first */
     /* if the reader is late, missed reads are skipped, not made up in a burst */
     block->due_ns = next_ns > now_ns ? next_ns : now_ns + block->scan_ms * NS_PER_MS;
     counter_inc(status == 0 ? modbus->reads_ok : modbus->reads_failed, 1);

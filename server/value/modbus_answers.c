@@ -41,7 +41,7 @@ void modbus_take_values(struct modbus_source *modbus, struct read_plan_block *bl
     block->answered = true;
     store_write(modbus->base.store, modbus->samples, block->tag_count, clock_mono_ns(), clock_utc_ns());
     bool repaired = modbus_note_refused(modbus, block, false, "read again");
-    modbus_unit_is_up(modbus, modbus_unit_of(modbus, block)); /* may rebuild the plan; `block` is invalid afterwards */
+    modbus_unit_is_up(modbus, modbus_unit_of(modbus, block)); /* may rebuild the plan; the pointer `block` is invalid afterwards */
     if (repaired)
         modbus_replan(modbus);
 }
@@ -62,11 +62,12 @@ static uint32_t quality_of_exception(int code)
     case MODBUS_EXCEPTION_ILLEGAL_DATA_VALUE: return QUALITY_BAD_CONFIGURATION;
     case MODBUS_EXCEPTION_SLAVE_OR_SERVER_FAILURE:
     case MODBUS_EXCEPTION_MEMORY_PARITY: return QUALITY_BAD_DEVICE_FAILURE;
-    default: /* busy and the like: retried soon; the reading goes stale if the device stays busy */ return QUALITY_GOOD;
+    default: /* the device answered busy, or a similar exception: the block is retried soon; readings go stale if the device stays busy */
+        return QUALITY_GOOD;
     }
 }
 
-/* Logs that a device answers each try with acknowledge (5) or busy (6). Its tags go stale. */
+/* Logs that a device answers each request with acknowledge (5) or busy (6). Its tags go stale. */
 static void note_busy(struct modbus_source *modbus, const struct read_plan_block *block, int code, int64_t now_ns)
 {
     char more[LOG_PACE_BYTES];
@@ -101,14 +102,15 @@ void modbus_take_exception(struct modbus_source *modbus, size_t index, int code,
         note_busy(modbus, block, code, now_ns);
         return;
     }
-    if (block->answered) { /* the block was readable before: read it once more before splitting it */
+    if (block->answered) { /* the block was readable before: it is read once more before it is split */
         block->answered = false;
         block->due_ns = now_ns;
         return;
     }
     modbus->plan_cut = true;
     if (code != MODBUS_EXCEPTION_ILLEGAL_FUNCTION && block->tag_count > 1) {
-        block->due_ns = now_ns; /* both halves are read at once; splitting repeats until the refused register is found */
+        /* both parts of the split block are read in the same poll; splitting repeats until the refused register is found */
+        block->due_ns = now_ns;
         read_plan_split(&modbus->plan, modbus->base.plant, index);
         return;
     }

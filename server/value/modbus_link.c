@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A TCP socket or serial line of our own: opened with a deadline, closed after any error. libmodbus handles RTU frames only. */
+/* Opens a TCP socket or serial line within a deadline, and closes it after any error. libmodbus handles RTU frames only. */
 #include "value/modbus_link.h"
 
 #include <errno.h>
@@ -33,18 +33,18 @@ struct modbus_link {
        FD_SETSIZE, while the daemon may have more files open than that by the time of a reconnect. */
     int slot_fd;
     bool open;
-    bool suspect; /* serial line on which the late answer of an abandoned request may still arrive */
+    bool suspect; /* serial line: the late answer to an abandoned request may still arrive */
     int host;     /* index in source->hosts of the host in use */
     int answers;  /* of this connection */
     bool any_unit;
     struct modbus_answered answered; /* identifier and unit of the last response in TCP frames */
     int64_t patience_ns;
-    int64_t opened_ns, sent_ns, first_answered_ns; /* monotonic times; sent_ns: when the request was sent that was answered first */
+    int64_t opened_ns, sent_ns, first_answered_ns; /* monotonic times; sent_ns: when the first request that was answered was sent */
     struct lookup *lookup;
     char name[300];
 };
 
-/* Makes an RTU context with 8 data bits, as RTU demands. It does not connect by itself where it is given a socket. */
+/* Makes an RTU context with 8 data bits, as RTU demands. libmodbus does not connect when it is given a socket. */
 static modbus_t *new_modbus(const struct plant_source *source)
 {
     bool line = source->transport == TRANSPORT_RTU;
@@ -209,7 +209,7 @@ static int connect_any(struct modbus_link *link, int64_t deadline_ns, int *out_f
     if (!link->lookup)
         link->lookup = lookup_start(link->source->hosts[link->host], link->source->port);
     int status = lookup_wait(link->lookup, link->stop_fd, deadline_ns, &to);
-    if (status == -ETIMEDOUT) /* the resolver hangs: the next attempt waits for the same lookup */
+    if (status == -ETIMEDOUT) /* the system resolver does not return: the next attempt waits for the same lookup */
         return status;
     for (; to; to = to->ai_next) {
         status = connect_one(to, link->stop_fd, deadline_ns, out_fd);
@@ -248,7 +248,7 @@ int modbus_link_open(struct modbus_link *link)
     link->open = status == 0;
     link->answers = 0;
     link->opened_ns = clock_mono_ns();
-    /* modbus_link_interrupt() was called before the connection was in its slot */
+    /* modbus_link_interrupt() was called before the socket was in its reserved descriptor, so it could not close it */
     if (link->open && wait_for(-1, 0, link->stop_fd, 0) == -ECANCELED) {
         close_link(link);
         status = -ECANCELED;
@@ -258,8 +258,8 @@ int modbus_link_open(struct modbus_link *link)
 
 /* --- reading ---------------------------------------------------------------------------------------------------------------- */
 
-/* Discards bytes that have arrived unasked, such as a duplicate reply or noise. modbus_flush() handles a TCP context's socket and a
-   serial line, but not RTU frames in a socket. Returns false if the device has closed the connection meanwhile. */
+/* Discards bytes that have arrived unasked, such as a duplicate reply or noise. modbus_flush() cannot do this for RTU frames over a socket.
+   Returns false if the device has closed the connection meanwhile. */
 static bool flush(struct modbus_link *link)
 {
     uint8_t bytes[512];
@@ -297,8 +297,9 @@ static int status_of(int got, int count)
     return got < 0 && cause > 0 && cause < MODBUS_ENOBASE ? -cause : -EPROTO;
 }
 
-/* Sends a request in TCP frames. The first request of a connection is repeated until patience_ns have passed: some devices drop requests
-   that come soon after connecting, others take long for their first answer. The answer to any of the repeated requests is accepted. */
+/* Sends a request in TCP frames. The first request of a connection is repeated until it is answered or patience_ns have passed: some
+   devices drop requests that come soon after connecting, others take long for their first answer. The answer to any of the repeated
+   requests is accepted. */
 static int ask_framed(struct modbus_link *link, const struct modbus_question *question, uint16_t *words)
 {
     struct modbus_question numbered = *question;
@@ -310,7 +311,7 @@ static int ask_framed(struct modbus_link *link, const struct modbus_question *qu
         numbered.number = ++link->number;
         status = modbus_tcp_ask(link->slot_fd, link->stop_fd, clock_mono_ns() + timeout_ns, &numbered, words, &link->answered);
     } while (status == -ETIMEDOUT && link->answers == 0 && !link->answered.began && clock_mono_ns() < begin_ns + link->patience_ns);
-    if (link->answers == 0) /* send time of the answered request: repeated requests are one timeout apart */
+    if (link->answers == 0) /* time at which the answered copy of the request was sent: copies are one timeout apart */
         link->sent_ns = begin_ns + (uint16_t)(link->answered.number - numbered.oldest) * timeout_ns;
     return status;
 }
@@ -340,15 +341,16 @@ static bool clear_line(struct modbus_link *link, const struct modbus_question *q
     return true;
 }
 
-/* Called after an answer with the transaction number of another request, which came twice or late. Waits SETTLE_NS for more stray
-   answers, then repeats the request. A second wrong answer makes the caller disconnect. */
+/* Call it after an answer with another request's transaction number (a late or duplicate answer). Waits SETTLE_NS for more stray answers,
+   then repeats the request. A second wrong answer makes the caller disconnect. */
 static int ask_again(struct modbus_link *link, const struct modbus_question *question, uint16_t *words)
 {
     wait_for(-1, 0, link->stop_fd, clock_mono_ns() + SETTLE_NS);
     return ask(link, question, words);
 }
 
-/* Selects a unit; returns false if its number is invalid. Valid: 0 to 247, and over TCP 255, the device at the address itself. */
+/* Selects a unit; returns false if its number is invalid. Valid numbers are 0 to 247; over TCP also 255, which means the device at the IP
+   address itself. */
 static bool can_ask_unit(struct modbus_link *link, int unit)
 {
     return link->modbus ? modbus_set_slave(link->modbus, unit) == 0 : (unit >= 0 && unit <= 247) || unit == 255;

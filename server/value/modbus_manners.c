@@ -8,12 +8,14 @@
 #include "value/modbus_impl.h"
 
 enum { SHORT_CONNECTIONS = 3, REFUSED_CONNECTIONS = 6, CLOSED_CONNECTIONS = 2 };
-static const int64_t RECONNECT_DELAY_NS = 50 * NS_PER_MS; /* first delay, doubled each time: some devices free a connection late */
-static const int64_t TOLERANCE_NS = 2 * NS_PER_S;         /* time since the last answer after which the device counts as lost */
-/* wait for the first answer on the second silent connection; twice as long on later ones */
+/* first delay before reconnecting, doubled each time: some devices free a closed connection late */
+static const int64_t RECONNECT_DELAY_NS = 50 * NS_PER_MS;
+static const int64_t TOLERANCE_NS = 2 * NS_PER_S; /* time since the last answer after which the device counts as lost */
+/* time limit for the first answer on the second connection without any answer; doubled on each later one */
 static const int64_t FIRST_ANSWER_TIMEOUT_NS = 3 * NS_PER_S;
-static const int64_t RTU_DELAY_NS = 500 * NS_PER_MS; /* first delay to try for RTU over TCP, whose requests have no numbers */
-/* wait for a unit that is up, after another unit behind the same gateway timed out */
+/* first connect delay to try for RTU over TCP, whose requests have no transaction numbers */
+static const int64_t RTU_DELAY_NS = 500 * NS_PER_MS;
+/* time limit for the answer of a unit that is up, after another unit behind the same gateway timed out */
 static const int64_t GATEWAY_TIMEOUT_NS = 5 * NS_PER_S;
 static const int64_t MAX_CONNECT_DELAY_NS = 8 * NS_PER_S;
 
@@ -105,7 +107,8 @@ static void note_unit(struct modbus_source *modbus, int asked)
     int answered = modbus_link_answered_unit(modbus->link);
     char more[LOG_PACE_BYTES];
     if (modbus->base.config->transport == TRANSPORT_TCP && answered != asked && log_pace_take(&modbus->unit_pace, clock_mono_ns(), more))
-        log_info(modbus->base.log, "source %s: device %s answers as unit %d to requests for unit %d: accepted, because only one unit is "
+        log_info(modbus->base.log,
+                 "source %s: device %s answers as unit %d to requests for unit %d: accepted, because only one unit is "
                  "read%s",
                  modbus->base.config->id, modbus_link_name(modbus->link), answered, asked, more);
 }
@@ -146,7 +149,8 @@ static void learn_end(struct modbus_source *modbus, int answers)
     }
 }
 
-/* Returns whether a refused or closed connection is excused, because it closely follows a connection that answered; sets the retry time. */
+/* Returns true, and sets the retry time, if a connection was refused or closed soon after one on which the device answered: the device may
+   free connections late. */
 static bool may_be_early(struct modbus_source *modbus, int status, int most)
 {
     struct modbus_manners *manners = &modbus->manners;

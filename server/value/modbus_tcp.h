@@ -11,8 +11,8 @@
 struct modbus_question {
     uint16_t number; /* transaction identifier */
     uint8_t unit;
-    bool any_unit; /* a response may name unit 0 or 255 instead of the unit asked, or any unit if 0 or 255 was asked */
-    /* transaction identifier of the first copy of a repeated request on this connection; equals `number` if not repeated */
+    bool any_unit; /* a response may name unit 0 or 255 instead of the unit requested; or any unit if 0 or 255 was requested */
+    /* transaction identifier of the first copy of a repeated request on this connection; equals `number` if the request was sent once */
     uint16_t oldest;
     enum register_table table;
     int first, count;

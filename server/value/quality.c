@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The names of the quality codes. */
+/* Table of the names of the quality codes. */
 #include "value/quality.h"
 
 #include <stddef.h>

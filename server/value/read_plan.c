@@ -10,7 +10,7 @@
 #include "base/mem.h"
 #include "value/decode.h"
 
-struct register_place { /* address of a tag; the order of the members is the sort order */
+struct register_place { /* register address of a tag; the members are compared in this order when tags are sorted */
     int unit, table, scan_ms, first, end, tag;
 };
 

@@ -7,10 +7,12 @@
 
 #include "plant/plant.h"
 
-enum { READ_PLAN_MAX_REGISTERS = 125, READ_PLAN_MAX_BITS = 2000 }; /* maximum of one request, Modbus Application Protocol 6.1-6.4 */
+/* maximum number of registers, or of bits, in one request (Modbus Application Protocol 6.1-6.4) */
+enum { READ_PLAN_MAX_REGISTERS = 125, READ_PLAN_MAX_BITS = 2000 };
 
-struct read_plan_block { /* one request; each tag is in one block, gaps between its tags are at most the source's max_gap registers */
-    int unit;            /* Modbus unit identifier */
+/* one request to the device; each tag is in one block; gaps between its tags are at most the source's max_gap registers */
+struct read_plan_block {
+    int unit; /* Modbus unit identifier */
     enum register_table table;
     int scan_ms;
     int first, count;            /* registers or bits */
@@ -18,7 +20,7 @@ struct read_plan_block { /* one request; each tag is in one block, gaps between 
     int64_t due_ns;              /* monotonic time of the next read, set by the reader; 0 in a new plan, copied by read_plan_split() */
     /* The following members are set by the reader too: 0 in a new plan, copied by read_plan_split(). */
     int busy_count;    /* number of successive "busy" responses */
-    int refused_count; /* number of successive refusals of a block that has one tag */
+    int refused_count; /* number of successive refusals; counted for blocks that have only one tag */
     int silent_count;  /* number of successive requests without an answer, while other blocks of the unit were answered */
     bool answered;     /* the last request was answered */
 };
@@ -28,7 +30,7 @@ struct read_plan { /* zero-initialise */
     size_t tag_count;
     struct read_plan_block *blocks;
     size_t block_count, block_capacity;
-    int *units; /* every Modbus unit in the plan, once */
+    int *units; /* numbers of all Modbus units in the plan, each once */
     size_t unit_count;
 };
 

@@ -14,7 +14,8 @@
 #include "value/series.h"
 
 static const int64_t ROUND_NS = 50 * NS_PER_MS;
-static const int64_t LATEST_NS = 10 * NS_PER_S; /* samples older than this are skipped, for example after the machine slept */
+/* samples that are overdue by more than this are skipped, for example after the machine slept */
+static const int64_t LATEST_NS = 10 * NS_PER_S;
 
 struct replay_lane { /* a tag and its series */
     int tag;
@@ -82,7 +83,8 @@ static void play_lane(struct replay *replay, struct replay_lane *lane, int64_t n
         if (now_mono_ns - due > LATEST_NS)
             continue;
         double value = lane->series.value[lane->next];
-        const struct sample sample = { .tag = lane->tag, .value = unit_change_value(&lane->change, value),
+        const struct sample sample = { .tag = lane->tag,
+                                       .value = unit_change_value(&lane->change, value),
                                        .quality = isnan(value) ? QUALITY_BAD : QUALITY_GOOD };
         store_write(replay->base.store, &sample, 1, due, now_utc_ns - (now_mono_ns - due));
         counter_inc(replay->samples, 1);

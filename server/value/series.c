@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Extracts one series from a CSV file of numbers. */
+/* Reads one series from a CSV file of numbers. */
 #include "value/series.h"
 
 #include <errno.h>
@@ -76,7 +76,7 @@ static bool number_of(const struct series_cell *cell, double *out)
     return cell->length && end == cell->at + cell->length && isfinite(*out);
 }
 
-/* Reads a value; NaN where a state word says that there is none. Returns false if the cell is neither. */
+/* Reads a value; NaN if the cell has a state word for "no value". Returns false if the cell is neither a number nor a state word. */
 static bool value_of(const struct series_cell *cell, double *out)
 {
     char text[64];
@@ -110,8 +110,8 @@ static void add(struct series *series, double time_s, double value)
     series->value[series->count++] = value;
 }
 
-struct clock {     /* state for converting the time column of one file to seconds */
-    bool instants; /* the column has dates and times; otherwise numbers */
+struct clock {     /* state needed to convert the time column of one file to seconds */
+    bool instants; /* true: the column has dates and times; false: it has numbers */
     bool begun;    /* first or first_us is set */
     double unit_s, first, last_s;
     int64_t first_us, last_us;
@@ -153,7 +153,8 @@ static bool read_number(struct clock *clock, const struct series_cell *cell, dou
     return true;
 }
 
-/* Reads a line's time in seconds since the first line. Returns false if it is no time or lies before that of the previous line. */
+/* Reads a line's time in seconds since the first line. Returns false if the cell is no time, or its time lies before that of the previous
+   line. */
 static bool tick(struct clock *clock, const struct series_cell *cell, double *time_s)
 {
     if (!(clock->instants ? read_instant : read_number)(clock, cell, time_s) || *time_s < clock->last_s)
@@ -207,13 +208,14 @@ static bool read_long(struct series *series, struct series_lines *lines, struct 
     return true;
 }
 
-struct header {              /* column indices; the number of columns means absent */
+struct header {              /* indices of columns; a column that is absent has the number of columns as its index */
     size_t time, column;     /* wide form: the time column and the series' column */
     size_t tag, value, unit; /* columns of the values form (one value a line) */
     bool of_values;
 };
 
-/* Finds the file's first and last time and its number of distinct times: each tag's lines may follow those of another tag. */
+/* Finds the file's first and last time and its number of distinct times. Times may go back within the file, because each tag's lines may
+   follow those of another tag. */
 static void scan_values(struct series_lines lines, const struct header *header, struct clock *clock)
 {
     int64_t t_us;
@@ -403,7 +405,7 @@ static void add_name(struct series_names *names, char *name)
     names->at[names->count++] = name;
 }
 
-/* Lists the names of a file with one value a line: entity/property, or the tag. */
+/* Lists the series of a file with one value a line: entity/property, or the tag's name. */
 static void list_lines(struct series_names *names, struct series_lines *lines, size_t tag)
 {
     int first = lines->number;

@@ -17,7 +17,7 @@ struct series {
     /* times in seconds, rising, 0 at the first line of the file; a value is NaN where the file marks it as missing */
     double *time_s, *value;
     size_t count, capacity, value_capacity;
-    double length_s; /* length of the whole file: one step after its last line, where a loop starts again */
+    double length_s; /* length of the whole file: its last time plus one interval; a looping series starts again then */
 };
 
 /* Reads the series of that name. Returns false with file and line in `why` if it cannot; *found tells whether the file has the series at

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Compares the tags' addresses with the names of the series. */
+/* Checks that the series named by the tags' addresses are in the files. */
 #include "value/series_check.h"
 
 #include <string.h>

@@ -8,10 +8,10 @@
 struct reading {
     double value;                /* engineering units; never NaN while quality is not Bad */
     uint32_t quality;            /* OPC UA status code, staleness already applied */
-    uint32_t changes;            /* change counter: increases with every change of value, quality or alarm */
+    uint32_t changes;            /* change counter: increases with each change of value, quality or alarm */
     uint8_t alarm, alarm_status; /* alarm shown for the tag (enum alarm_kind), and its state (enum alarm_status) */
     int64_t received_utc_ns;     /* time when the value arrived; 0: never */
-    int64_t age_ns;              /* age at the snapshot by the monotonic clock; INT64_MAX: never received */
+    int64_t age_ns;              /* age at the time of the snapshot, by the monotonic clock; INT64_MAX: no value was ever received */
 };
 
 struct snapshot {

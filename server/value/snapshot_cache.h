@@ -4,12 +4,13 @@
 #define VALUE_SNAPSHOT_CACHE_H
 #include "value/snapshot.h"
 
-enum { SNAPSHOT_CACHE_SPARE = 16 }; /* number of unused snapshots that stay in the cache, the newest ones */
+enum { SNAPSHOT_CACHE_SPARE = 16 }; /* number of snapshots without a user that stay in the cache, the newest ones */
 
 struct historical_snapshot { /* immutable while a user holds it */
     struct snapshot snapshot;
     int64_t at_us; /* UTC, since 1970; above 0 */
-    int slot;      /* number above 0, unique among snapshots in use, so that each has fields and buffers of its own */
+    /* slot number, from 1, unique among snapshots in use: it tells the renderer which fields and buffers belong to this snapshot */
+    int slot;
 };
 
 struct snapshot_cache;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The table of source kinds, and the thread handling that all kinds share. */
+/* The table of source kinds, and the start and end of their threads. */
 #include "value/source.h"
 
 #include <errno.h>
@@ -11,7 +11,9 @@
 #include "value/source_impl.h"
 
 static const struct source_impl *const table[] = {
-    &modbus_impl, &mqtt_impl, &replay_impl,
+    &modbus_impl,
+    &mqtt_impl,
+    &replay_impl,
 #ifdef PLANTCAST_OPCUA
     &opcua_impl,
 #endif

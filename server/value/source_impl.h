@@ -6,7 +6,7 @@
 
 #include "value/source.h"
 
-struct source { /* base struct; the first member of the struct of each kind */
+struct source { /* part that all kinds of source share; the first member of the struct of each kind */
     const struct source_impl *impl;
     struct log *log;
     const struct plant *plant;
@@ -22,16 +22,16 @@ struct source_impl {
     const char *kind;
     /* Creates a source that begins with a copy of *base; its thread is not running yet. Returns NULL on failure (logged). */
     struct source *(*create)(const struct source *base, struct counters *counters);
-    /* Runs the thread until stop_fd becomes readable or no more data can arrive. */
+    /* The thread's main function: runs until stop_fd becomes readable or no more data can arrive. */
     void (*run)(struct source *source);
-    /* Ends a wait of the thread that does not watch stop_fd. Thread: any. NULL: the kind has no such wait. */
+    /* Interrupts a wait in which the thread does not watch stop_fd. Thread: any. NULL: the kind has no such wait. */
     void (*interrupt)(struct source *source);
     /* Frees the source; its thread has ended or never ran. */
     void (*destroy)(struct source *source);
 };
 
-/* Creates a source of the kind params->impl and starts its thread. Set all of `params` except stop_fd and thread; config may be NULL for
-   a kind that is not in the table. `what`: its name in the log. Returns NULL on failure (logged). The caller ends the source with
+/* Creates a source of the kind params->impl and starts its thread. Set all of `params` except stop_fd and thread; config may be NULL for a
+   kind that is not in the table. `what`: the source's name in the log. Returns NULL on failure (logged). The caller ends the source with
    source_stop(). */
 struct source *source_begin(const struct source *params, const char *what, struct counters *counters);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes readings that have the same time together. */
+/* Collects readings that have the same time and writes them to the store together. */
 #include "value/stamped_writer.h"
 
 #include <stdlib.h>
@@ -13,7 +13,7 @@ void stamped_writer_init(struct stamped_writer *writer, const struct plant *plan
     *writer = (struct stamped_writer){ .store = store, .plant = plant };
     writer->samples = mem_array(plant->tag_count, sizeof(*writer->samples));
     writer->last = mem_array(plant->tag_count, sizeof(*writer->last));
-    for (size_t i = 0; i < plant->tag_count; i++) /* 0 would not be early enough: a time before the machine's start is negative */
+    for (size_t i = 0; i < plant->tag_count; i++) /* INT64_MIN and not 0, because a time before the machine's start is negative */
         writer->last[i].mono_ns = INT64_MIN;
 }
 
@@ -48,7 +48,7 @@ static int64_t mono_of(const struct stamped_writer *writer, int tag, int64_t utc
     return utc_ns >= writer->last[tag].utc_ns && mono_ns < writer->last[tag].mono_ns ? writer->last[tag].mono_ns : mono_ns;
 }
 
-/* Adds a sample to the batch, which has one time and at most as many samples as there are tags. */
+/* Adds a sample to the batch, in which all samples have the same time; the batch has room for one sample of each tag. */
 static void add(struct stamped_writer *writer, const struct sample *sample, int64_t utc_ns)
 {
     int64_t mono_ns = mono_of(writer, sample->tag, utc_ns);
@@ -76,7 +76,8 @@ void stamped_writer_add(struct stamped_writer *writer, int tag, const struct sta
         writer->worst_skew_ns = utc_ns - writer->utc_ns;
     if (!quality_is_bad(value->quality)) {
         decode_number(&writer->plant->tags[tag], value->value, &sample);
-        if (value->quality >> 30 >= sample.quality >> 30) /* at equal or worse severity the sender's code is used, which is more specific */
+        /* at equal or worse severity, the sender's quality code is used, because it is more specific */
+        if (value->quality >> 30 >= sample.quality >> 30)
             sample.quality = value->quality;
         if (was_kept && quality_is_good(sample.quality))
             sample.quality = QUALITY_UNCERTAIN_LAST_USABLE;

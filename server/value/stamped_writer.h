@@ -15,15 +15,15 @@ struct stamped_writer {
     struct store *store;
     const struct plant *plant;
     int64_t mono_ns, utc_ns; /* arrival time of the message being read */
-    int64_t worst_skew_ns;   /* largest difference of a stated time in the message from our clock; > 0: the sender is ahead. 0: none */
+    int64_t worst_skew_ns;   /* largest difference between a time stated in the message and our clock; > 0: the sender is ahead. 0: none */
     size_t written;          /* readings of this message written so far */
-    struct sample *samples;  /* pending samples, all of the same time; room for one of each tag */
+    struct sample *samples;  /* samples not written yet, all of the same time; room for one of each tag */
     size_t count;
     int64_t at_utc_ns, at_mono_ns; /* time of the pending samples */
     struct {
         int64_t utc_ns, mono_ns; /* time of the tag's last sample; array by tag */
         bool is_stated;          /* the sender stated that time */
-    } *last;
+    } * last;
 };
 
 void stamped_writer_init(struct stamped_writer *writer, const struct plant *plant, struct store *store);
@@ -34,8 +34,8 @@ void stamped_writer_begin(struct stamped_writer *writer, int64_t now_mono_ns, in
    since, so its quality is Uncertain_LastUsableValue at best. A time ahead of our clock is replaced by now. in_order: a time before that
    of the tag's last sample is replaced by the latter; without in_order the store ignores such a sample. */
 void stamped_writer_add(struct stamped_writer *writer, int tag, const struct stamped_value *value, bool was_kept, bool in_order);
-/* Sets a Bad quality for a tag from now on. If the sender states times, the quality counts from the tag's last time instead: a later
-   value of a sender whose clock is behind would otherwise be older than this entry. */
+/* Sets a Bad quality for a tag from now on. If the sender states times, the quality counts from the tag's last time instead: otherwise a
+   later value from a sender whose clock is behind would count as older, and be ignored. */
 void stamped_writer_add_bad(struct stamped_writer *writer, int tag, uint32_t quality);
 void stamped_writer_end(struct stamped_writer *writer); /* Writes the pending samples. */
 

@@ -13,14 +13,15 @@
 struct held {
     double value;                              /* last usable value */
     uint32_t quality;                          /* of the last sample */
-    bool has_value, lost;                      /* lost: the tag could not be read since its last sample */
-    bool dead;                                 /* lost, and its last value may not be used any more */
-    int64_t sampled_mono_ns;                   /* time of the last sample, including Bad ones */
+    bool has_value, lost;                      /* true: the tag could not be read since its last sample */
+    bool dead;                                 /* true: lost is true too, and the last value may not be used any more */
+    int64_t sampled_mono_ns;                   /* time of the last sample, also if that was Bad */
     int64_t received_mono_ns, received_utc_ns; /* time of the last usable value */
-    int64_t changed_mono_ns;                   /* time of the last change of that value */
+    int64_t changed_mono_ns;                   /* time of the last change of the usable value */
     int64_t stale_ns, flatline_ns;
-    int first_vouched, next_vouched; /* linked list of the tags whose quality this tag gives, and the next tag in such a list; -1: none */
-    uint32_t shown_quality;          /* quality at the last increase of `changes` */
+    /* index of the first tag whose quality this tag gives, and of the next tag in the same list; -1: none */
+    int first_vouched, next_vouched;
+    uint32_t shown_quality; /* quality at the last increase of `changes` */
     uint32_t changes;
     uint8_t alarm, alarm_status;
 };
@@ -43,7 +44,7 @@ struct store {
     struct {
         void (*changed)(void *arg); /* NULL: no callback */
         void *arg;
-        bool told; /* the callback was called since the last store_take() */
+        bool told; /* the watch callback was called since the last store_take() */
     } watch;
     int64_t utc_ahead_ns; /* UTC minus monotonic time at the last sample */
     bool has_utc;         /* a sample has arrived */
@@ -106,7 +107,7 @@ static int find_source(const struct plant *plant, const char *id)
     return i;
 }
 
-/* Returns whether a tag keeps its unit in the new plant: otherwise its old reading is not copied, since the next one comes soon. */
+/* Returns whether a tag has the same unit in the new plant. If not, its old reading is not copied; the next one comes soon. */
 static bool same_unit(const struct plant_tag *a, const struct plant_tag *b)
 {
     struct unit_change change;
@@ -125,7 +126,7 @@ void store_adopt(struct store *store, struct store *before)
             continue;
         const struct held own = *to;
         *to = before->tags[i];
-        to->alarm = own.alarm; /* not copied, since limits may have changed: the alarm service sets the alarm again */
+        to->alarm = own.alarm; /* the alarm is not copied, because limits may have changed: the alarm service sets it again */
         to->alarm_status = own.alarm_status;
         to->stale_ns = own.stale_ns;
         to->flatline_ns = own.flatline_ns;
@@ -189,7 +190,7 @@ static void tell(struct store *store, size_t tag, uint32_t quality, int64_t mono
             store->listeners[i].hear(store->listeners[i].arg, &event);
 }
 
-/* Returns the quality that follows from the tag's own samples. */
+/* Returns the quality that follows from the tag's own samples and their age. */
 static uint32_t own_quality(const struct held *held, int64_t now_mono_ns)
 {
     bool stale = held->has_value && now_mono_ns - held->received_mono_ns >= held->stale_ns;
@@ -233,7 +234,7 @@ static uint32_t vouched_quality(const struct store *store, size_t tag, int64_t n
     return good ? QUALITY_GOOD : QUALITY_BAD_SENSOR_FAILURE;
 }
 
-/* Returns the worst of the three qualities. */
+/* Returns the worst of three qualities: from the tag's samples, its source's heartbeat and its quality tag. */
 static uint32_t quality_now(const struct store *store, size_t tag, int64_t now_mono_ns)
 {
     uint32_t quality = own_quality(&store->tags[tag], now_mono_ns);
@@ -260,7 +261,7 @@ static bool hold(struct store *store, const struct sample *sample, int64_t now_m
     struct held *held = &store->tags[sample->tag];
     bool bad = quality_is_bad(sample->quality), finite = isfinite(sample->value), value_changed = false;
     if (now_mono_ns < held->sampled_mono_ns) {
-        /* An equal sample with the same sender's time shows that a lost source is back. */
+        /* A sample with the same value and sender's time as the last one shows that a lost source is back. */
         if (!held->dead || !held->has_value || now_utc_ns < held->received_utc_ns)
             return false;
         now_mono_ns = held->sampled_mono_ns;
@@ -282,7 +283,7 @@ static bool hold(struct store *store, const struct sample *sample, int64_t now_m
     return true;
 }
 
-/* Reports changes of the tags whose quality this tag gives. */
+/* Reports changes for all tags whose quality is given by this tag. */
 static void tell_vouched(struct store *store, int tag, int64_t now_mono_ns, int64_t now_utc_ns)
 {
     for (int i = store->tags[tag].first_vouched; i >= 0; i = store->tags[i].next_vouched) {
@@ -335,7 +336,8 @@ static void lose(struct store *store, size_t tag, bool dead, int64_t now_mono_ns
     struct held *held = &store->tags[tag];
     if (now_mono_ns < held->sampled_mono_ns)
         return;
-    if (!held->lost || (dead && !held->dead)) /* even if this tag's quality stays, the quality of tags that depend on it may change */
+    /* reports even if this tag's own quality stays, because the quality of tags that depend on it may change */
+    if (!held->lost || (dead && !held->dead))
         tell_watch(store);
     held->lost = true;
     held->dead |= dead;
@@ -447,7 +449,7 @@ void store_snapshot(struct store *store, int64_t now_mono_ns, int64_t now_utc_ns
     pthread_mutex_unlock(&store->lock);
 }
 
-/* Returns the earlier of two times: next_ns, and since_ns + after_ns if that is in the future. */
+/* Returns next_ns, or since_ns + after_ns if that is earlier and in the future. */
 static int64_t sooner(int64_t next_ns, int64_t since_ns, int64_t after_ns, int64_t now_mono_ns)
 {
     bool comes = after_ns < INT64_MAX && since_ns + after_ns > now_mono_ns;

@@ -16,7 +16,7 @@ struct store;
 /* One value of one tag, as a source writes it. */
 struct sample {
     int tag;      /* index in plant->tags */
-    double value; /* engineering units; ignored while quality is Bad. NaN or infinity becomes Bad_SensorFailure */
+    double value; /* value in engineering units; ignored while quality is Bad. NaN or infinity becomes Bad_SensorFailure */
     uint32_t quality;
 };
 
@@ -61,11 +61,11 @@ void store_mirror(struct store *store, const struct mirrored *readings, size_t c
 void store_link_lost(struct store *store, int source, int64_t now_mono_ns);
 /* Does the same as store_link_lost() for some tags only: one unit behind a gateway fails while others still answer. */
 void store_tags_lost(struct store *store, const int *tags, size_t count, int64_t now_mono_ns);
-/* Makes some tags Bad_CommunicationError at once, whatever the age of their last values: those may not be used any more. */
+/* Makes some tags Bad_CommunicationError at once, whatever the age of their last values: the last values may not be used any more. */
 void store_tags_dead(struct store *store, const int *tags, size_t count, int64_t now_mono_ns);
 /* Records that a source can be read again. Each of its tags becomes usable with its next sample. */
 void store_link_up(struct store *store, int source, int64_t now_mono_ns);
-/* Records that a source is not connected, without changing its tags: a mirroring renderer receives the state of each tag separately. */
+/* Records that a source is not connected, without changing its tags. For renderers, which receive each tag's state from the core. */
 void store_link_down(struct store *store, int source, int64_t now_mono_ns);
 /* Sets the alarm of a tag's readings from now on (enum alarm_kind) and its state (enum alarm_status). */
 void store_set_alarm(struct store *store, int tag, int alarm, int status);
@@ -73,7 +73,7 @@ bool store_link_is_up(const struct store *store, int source);
 /* Copies all readings, with their qualities as of now, into a snapshot that was made for the same plant. */
 void store_snapshot(struct store *store, int64_t now_mono_ns, int64_t now_utc_ns, struct snapshot *into);
 /* Does the same as store_snapshot() for the user of store_watch(), whose callback then reports changes after this call. Returns the
-   monotonic time at which the next quality changes by time alone; INT64_MAX: never. */
+   monotonic time at which the next quality changes only because time passes; INT64_MAX: never. */
 int64_t store_take(struct store *store, int64_t now_mono_ns, int64_t now_utc_ns, struct snapshot *into);
 
 #endif

@@ -16,7 +16,7 @@ static const json_t *item_at(const json_t *array, long index)
     return (size_t)-index <= count ? json_array_get(array, count - (size_t)-index) : NULL;
 }
 
-/* --- items with a name ------------------------------------------------------------------------------------------------------ */
+/* --- array items that name themselves --------------------------------------------------------------------------------------- */
 
 static bool names_its_object(const char *key)
 {
@@ -29,7 +29,7 @@ static bool names_its_object(const char *key)
     return false;
 }
 
-/* Returns whether a name is the tag's, or ends in the tag's name after a separator: `A.T1` matches T1. */
+/* Returns true if an item's name equals the tag's, or ends in the tag's name after a separator: `A.T1` matches T1. */
 static bool is_name_of(const json_t *name, const char *tag)
 {
     const char *text = json_string_value(name);
@@ -39,7 +39,7 @@ static bool is_name_of(const json_t *name, const char *tag)
     return length == tag_length || strchr("./:\\!|", text[length - tag_length - 1]);
 }
 
-/* Returns whether the rest of a path selects this member: the member is then the value, not a name. */
+/* Returns true if the rest of a path selects this member: the member then holds the tag's value and is not the item's name. */
 static bool is_selected(const char *key, const char *rest)
 {
     struct json_path_step step;
@@ -122,7 +122,7 @@ static void walk_matches(const json_t *holder, const struct json_path_step *step
     }
 }
 
-/* Recursion depth is the number of path steps, which the length of a tag's address bounds. */
+/* The recursion is as deep as the path has steps, which the length limit of a tag's address bounds. */
 static void walk(const json_t *value, const json_t *holder, const char *at, const char *tag, struct json_selected *out)
 {
     struct json_path_step step;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* An MQTT source: connects, subscribes, and reports the loss of the broker at once. It can publish nothing but the request for a
+/* An MQTT source: connects, subscribes, and marks all readings as lost when the broker is. It can publish nothing but the request for a
    Sparkplug birth certificate, and that only where the plant file allows it. */
 #include <errno.h>
 #include <string.h>
@@ -10,8 +10,9 @@
 #include "value/lookup.h"
 #include "value/mqtt/mqtt_impl.h"
 
-static const int64_t CONNECT_NS = 10 * NS_PER_S; /* time limit for a session with the broker, and for its answers to subscriptions */
-static const int64_t LINE_NS = 60 * NS_PER_S;    /* minimum time between two log lines about refused messages */
+/* time limits for opening a session with the broker, and for the broker's answers to subscriptions */
+static const int64_t CONNECT_NS = 10 * NS_PER_S;
+static const int64_t LINE_NS = 60 * NS_PER_S; /* minimum time between two log lines about refused messages */
 
 static bool stopping(const struct mqtt_source *mqtt, int64_t until_ns)
 {
@@ -20,7 +21,7 @@ static bool stopping(const struct mqtt_source *mqtt, int64_t until_ns)
 
 /* --- the link --------------------------------------------------------------------------------------------------------------- */
 
-/* Marks all readings of the source as lost: without the broker, values may have changed unnoticed. */
+/* Marks all readings of the source as lost: while the broker was gone, values may have changed unnoticed. */
 static void link_lost(struct mqtt_source *mqtt, const char *why)
 {
     int64_t now_ns = clock_mono_ns();
@@ -82,11 +83,9 @@ static void on_message(void *arg, const struct mqtt_message *message)
 /* Runs one connection until it ends. Returns -ECANCELED when the source must stop, else another code with the reason in `why`. */
 static int run_session(struct mqtt_source *mqtt, char why[200])
 {
-    const struct mqtt_client_events events = { .arg = mqtt,
-                                               .connected = on_connected,
-                                               .subscribed = on_subscribed,
-                                               .topic_refused = on_topic_refused,
-                                               .message = on_message };
+    const struct mqtt_client_events events = {
+        .arg = mqtt, .connected = on_connected, .subscribed = on_subscribed, .topic_refused = on_topic_refused, .message = on_message
+    };
     int64_t deadline_ns = clock_mono_ns() + CONNECT_NS, tick_ns = 0;
     mqtt->client = mqtt_client_start(mqtt->base.config, mqtt->turn.index, mqtt->client_id, &events, why);
     int status = mqtt->client ? mqtt_client_wait(mqtt->client, mqtt->base.stop_fd, deadline_ns, why) : -EINVAL;
@@ -151,7 +150,7 @@ static void add_counters(struct mqtt_source *mqtt, struct counters *counters)
     mqtt->host = source_counter(base, counters, "host", "", "gauge", "number of the host that delivers readings: 1 is the first, 0 none");
 }
 
-/* Returns the configured client id or makes a random one: a broker ends the connection of another client with the same id. */
+/* Returns the configured client id or makes a random one: a broker disconnects one of two clients with the same id. */
 static char *make_client_id(const struct plant_source *config)
 {
     unsigned random = 0;

@@ -21,7 +21,7 @@
 #include "value/mqtt/sparkplug_payload.h"
 
 enum { TOPICS_AT_ONCE = 8 };         /* topics in one subscribe request; some brokers refuse more */
-enum { SESSION_KEPT_S = 7 * 86400 }; /* seconds for which the broker keeps a persistent session */
+enum { SESSION_KEPT_S = 7 * 86400 }; /* seconds for which the broker keeps a persistent session after a disconnection */
 static const char SYSTEM_CERTIFICATES[] = "/etc/ssl/certs";
 static const int64_t CHORES_NS = 500 * NS_PER_MS; /* interval at which the library checks its keep-alive timer */
 
@@ -29,19 +29,19 @@ struct mqtt_client {
     struct mosquitto *library;
     const struct plant_source *source;
     const struct mqtt_client_events *events;
-    char *host; /* a copy, because the connecting thread may outlive the source */
+    char *host; /* the thread's own copy, because the connecting thread may outlive the source */
     int port, keepalive_s;
     mosquitto_property *properties;
-    int done_fd; /* readable once the connection attempt has ended */
+    int done_fd; /* descriptor that becomes readable once the connection attempt has ended */
     _Atomic int users;
-    _Atomic int status; /* library's status of the connection attempt; errno_then belongs to it */
+    _Atomic int status; /* the library's status of the connection attempt; errno_then: errno that belongs to the status */
     int errno_then;
     char said[160]; /* last error that the library logged */
     /* --- below: used by the serving thread only */
     int refusal; /* reason code with which the broker refused us; 0: none */
     char *const *topics;
     size_t topic_count, acknowledged;
-    int *requests; /* message ids of subscribe requests, each for TOPICS_AT_ONCE topics */
+    int *requests; /* message ids of subscribe requests without an acknowledgement; each request has up to TOPICS_AT_ONCE topics */
 };
 
 static void client_unref(struct mqtt_client *client)
@@ -100,7 +100,7 @@ static void on_subscribe(struct mosquitto *library, void *arg, int id, int count
         request++;
     if (request == requests)
         return;
-    client->requests[request] = 0; /* 0 marks the request as acknowledged; the library never uses this id */
+    client->requests[request] = 0; /* marks the request as acknowledged: the library never uses the id 0 */
     for (size_t i = 0, topic = request * TOPICS_AT_ONCE; i < TOPICS_AT_ONCE && topic < client->topic_count; i++, topic++) {
         client->acknowledged++;
         if ((int)i >= count || granted[i] >= 128)
@@ -154,8 +154,8 @@ static bool use_tls(struct mqtt_client *client, char why[200])
     const struct plant_mqtt *mqtt = &client->source->mqtt;
     if (!mqtt->has_tls)
         return true;
-    int status = mosquitto_tls_set(client->library, mqtt->ca, mqtt->ca ? NULL : SYSTEM_CERTIFICATES, mqtt->certificate, mqtt->key,
-                                   no_passphrase);
+    int status =
+        mosquitto_tls_set(client->library, mqtt->ca, mqtt->ca ? NULL : SYSTEM_CERTIFICATES, mqtt->certificate, mqtt->key, no_passphrase);
     if (status != MOSQ_ERR_SUCCESS)
         snprintf(why, 200, "the files of tls cannot be used: %s", mosquitto_strerror(status));
     return status == MOSQ_ERR_SUCCESS;
@@ -211,8 +211,13 @@ struct mqtt_client *mqtt_client_start(const struct plant_source *source, int hos
 {
     pthread_t thread;
     struct mqtt_client *client = mem_new(sizeof(*client));
-    *client = (struct mqtt_client){ .source = source, .events = events, .host = mem_strdup(source->hosts[host]), .port = source->port,
-                                    .keepalive_s = source->mqtt.keepalive_s, .properties = connect_properties(&source->mqtt), .users = 1 };
+    *client = (struct mqtt_client){ .source = source,
+                                    .events = events,
+                                    .host = mem_strdup(source->hosts[host]),
+                                    .port = source->port,
+                                    .keepalive_s = source->mqtt.keepalive_s,
+                                    .properties = connect_properties(&source->mqtt),
+                                    .users = 1 };
     client->done_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
     bool good = client->done_fd >= 0;
     if (!good)
@@ -240,7 +245,7 @@ void mqtt_client_destroy(struct mqtt_client **client)
     if (!gone)
         return;
     if (gone->done_fd >= 0 && wait_for(gone->done_fd, POLLIN, -1, 0) == 0)
-        mosquitto_disconnect(gone->library); /* the connecting thread no longer uses the library object */
+        mosquitto_disconnect(gone->library); /* from here on the connecting thread does not use the library object */
     client_unref(gone);
 }
 
@@ -253,8 +258,7 @@ static int explain(const struct mqtt_client *client, int status, int errno_then,
     if (client->refusal)
         snprintf(why, 200, "the broker refuses: %s%s",
                  is_5 ? mosquitto_reason_string(client->refusal) : mosquitto_connack_string(client->refusal),
-                 is_5 && (client->refusal == MQTT_RC_UNSUPPORTED_PROTOCOL_VERSION || client->refusal == 1) ? "; try protocol: 3.1.1"
-                                                                                                            : "");
+                 is_5 && (client->refusal == MQTT_RC_UNSUPPORTED_PROTOCOL_VERSION || client->refusal == 1) ? "; try protocol: 3.1.1" : "");
     else if (*client->said)
         snprintf(why, 200, "%s", client->said);
     else
@@ -272,7 +276,7 @@ int mqtt_client_wait(struct mqtt_client *client, int stop_fd, int64_t deadline_m
     return client->status == MOSQ_ERR_SUCCESS ? 0 : explain(client, client->status, client->errno_then, why);
 }
 
-/* Returns whether TLS holds decrypted bytes that poll() on the socket does not show. */
+/* Returns whether TLS holds decrypted bytes, for which poll() on the socket does not report input. */
 static bool holds_more(struct mqtt_client *client)
 {
     SSL *tls = mosquitto_ssl_get(client->library);

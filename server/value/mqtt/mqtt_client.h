@@ -9,7 +9,7 @@
 
 #include "plant/plant.h"
 
-enum { MQTT_MAX_PAYLOAD = 4 << 20 }; /* bytes; announced to MQTT 5 brokers as Maximum Packet Size */
+enum { MQTT_MAX_PAYLOAD = 4 << 20 }; /* limit in bytes of a received message; announced to MQTT 5 brokers as Maximum Packet Size */
 
 struct mqtt_client;
 
@@ -17,14 +17,14 @@ struct mqtt_message {
     const char *topic;
     const void *payload;
     size_t count;
-    bool is_retained; /* the broker retained the message from before the subscription */
+    bool is_retained; /* the message is a retained one, which the broker had stored before the subscription */
 };
 
 /* Callbacks made from mqtt_client_serve(). */
 struct mqtt_client_events {
     void *arg;
     void (*connected)(void *arg, bool session_present);
-    void (*subscribed)(void *arg); /* all topics are acknowledged, including refused ones */
+    void (*subscribed)(void *arg); /* callback: the broker has acknowledged all topics, including those that it refused */
     void (*topic_refused)(void *arg, const char *topic);
     void (*message)(void *arg, const struct mqtt_message *message);
 };
@@ -49,7 +49,7 @@ bool mqtt_client_subscribe(struct mqtt_client *client, char *const *topics, size
    connection has ended (mqtt_client_serve() reports the reason); other < 0: refused, for example because the text is too long for the
    broker. */
 int mqtt_client_publish(struct mqtt_client *client, const char *topic, const char *text);
-/* Returns whether all published messages have been handed to the operating system. */
+/* Returns whether the operating system has taken all published messages. */
 bool mqtt_client_has_sent(const struct mqtt_client *client);
 /* Asks a Sparkplug node for its birth certificate. This is the only message that can be published outside plantcast/. */
 void mqtt_client_ask_rebirth(struct mqtt_client *client, const char *group, const char *node);

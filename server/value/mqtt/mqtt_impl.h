@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* An MQTT source as its files share it: one thread with one connection. Private to value/mqtt/. Thread: the source's own. */
+/* State of an MQTT source, shared by its files: one thread with one connection. Private to value/mqtt/. Thread: the source's own. */
 #ifndef VALUE_MQTT_IMPL_H
 #define VALUE_MQTT_IMPL_H
 #include "base/log/log_pace.h"
@@ -24,19 +24,20 @@ struct mqtt_source {
     struct mqtt_client *client;
     struct host_turn turn;
     bool link_up, link_known;
-    bool subscribed;          /* subscribed: messages received now were published now, unless flagged as retained */
+    bool subscribed;          /* the subscription is complete: messages without the retained flag are new */
     struct log_pace refusals; /* rate limit of the log line about refused messages */
     char last_refused[300];   /* topic and reason of the last refused message, for the log */
-    struct log_pace absences; /* rate limit of the log line about messages without the value of a tag that no message has held yet */
-    bool *matched;            /* flag by index in plant->tags: a JSON message has held this tag's value */
-    int64_t skew_said_ns[2];  /* monotonic time of the last log line about sender clocks that are [0] behind, [1] ahead */
+    /* rate limit of the log line "value missing": messages lack the value of a tag that no message has contained yet */
+    struct log_pace absences;
+    bool *matched;           /* flag by index in plant->tags: some JSON message has contained this tag's value */
+    int64_t skew_said_ns[2]; /* monotonic times of the last log lines about senders' clocks: [0] behind ours, [1] ahead of ours */
 };
 
 /* Processes a message for the source's tags: writes its values, or refuses the message and logs why. */
 void mqtt_take_message(struct mqtt_source *mqtt, const struct mqtt_message *message);
 /* Counts a refused message, and logs at most one line a minute. */
 void mqtt_refuse(struct mqtt_source *mqtt, const struct mqtt_message *message, const char *why);
-/* Logs how many messages were left out of the log, at most once a minute. */
+/* Logs, at most once a minute, how many refused messages got no log line of their own. */
 void mqtt_log_left_out(struct mqtt_source *mqtt, int64_t now_ns);
 
 #endif

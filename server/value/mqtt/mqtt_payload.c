@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads numbers from text, and values, times and qualities from JSON. */
+/* Parses numbers from text, and values, times and qualities from JSON. */
 #include "value/mqtt/mqtt_payload.h"
 
 #include <math.h>
@@ -63,7 +63,7 @@ static bool read_number(const json_t *json, double *out)
     return isfinite(*out);
 }
 
-/* Converts an epoch time. Its magnitude tells the unit, seconds, milliseconds, microseconds or nanoseconds, for the years 1973 to 5138. */
+/* Converts an epoch time. Chooses the unit (s, ms, us or ns) by the number's magnitude, which is unambiguous for the years 1973 to 5138. */
 static bool read_epoch(double number, int64_t *utc_ns)
 {
     static const double SECONDS_LOW = 1e8, SECONDS_HIGH = 1e11;
@@ -106,7 +106,7 @@ static uint32_t read_quality(const json_t *json)
 
 /* --- a tag's value ---------------------------------------------------------------------------------------------------------- */
 
-/* Returns the value selected by the path; without a path the payload itself or its member `value`. */
+/* Returns the value selected by the path; without a path, returns the payload itself or its member `value`. */
 static struct json_selected value_of(const json_t *root, const struct mqtt_reader *reader)
 {
     if (*reader->path)

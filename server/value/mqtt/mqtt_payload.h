@@ -13,7 +13,7 @@
 enum mqtt_found {
     MQTT_FOUND,
     MQTT_ABSENT, /* the payload does not contain the tag's value */
-    MQTT_WRONG,  /* the payload contains something that is no number where the value should be: the tag is Bad */
+    MQTT_WRONG,  /* the payload has something other than a number in the value's place: the tag becomes Bad */
 };
 
 struct mqtt_reader { /* selects the value of one tag in a JSON payload */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sorts tags by topic, then by path, so that those of one topic are adjacent. */
+/* Sorts tags by topic, then by path, so that the tags of one topic are adjacent. */
 #include "value/mqtt/mqtt_topics.h"
 
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tracks births and deaths: a node's readings are valid between its birth and death certificates, and a device's only while its node is
+/* Tracks birth and death certificates: a node's readings are valid between its birth and its death, and a device's only while its node is
    alive. */
 #include "value/mqtt/sparkplug.h"
 
@@ -18,18 +18,18 @@ static const char PREFIX[] = "spBv1.0/";
 
 struct alias {
     uint64_t number;
-    size_t topic;           /* index of the node's or device's topic whose birth defined the alias */
-    size_t first_tag, tags; /* tags of that topic that show the metric: first and number */
+    size_t topic;           /* index of the topic (of the node or device) whose birth certificate defined the alias */
+    size_t first_tag, tags; /* the tags of that topic that show the metric: index of the first, and count */
 };
 
 struct sparkplug_node {
     char *group, *name;
     bool is_born;
-    bool told;      /* the log says that this node sends values before its birth */
-    int64_t bd_seq; /* session number of its birth; -1: none */
+    bool told;      /* the log says already that this node sends values before its birth certificate */
+    int64_t bd_seq; /* session number (bdSeq) of the node's birth certificate; -1: none */
     int next_seq;
     int64_t asked_ns;      /* monotonic time of the last birth request; 0: never */
-    bool is_wanted;        /* a birth request is pending until ASK_NS have passed */
+    bool is_wanted;        /* a birth request is to be sent once ASK_NS have passed since the last one */
     struct alias *aliases; /* by number */
     size_t alias_count, alias_capacity;
 };
@@ -39,8 +39,8 @@ struct sparkplug {
     struct sparkplug_node *nodes;
     size_t node_count;
     size_t *node_of;             /* index of the node, by topic */
-    bool *is_born;               /* flag by topic: the node or device is alive */
-    uint32_t *types;             /* metric type from the birth, by tag; 0: not in a birth */
+    bool *is_born;               /* flag by topic: the node or device is alive (born and not dead) */
+    uint32_t *types;             /* metric type by tag, as in the birth certificate; 0: no birth certificate has the metric */
     struct stamped_value *last;  /* last value, by tag */
     bool *has_last, *in_message; /* by tag */
 };
@@ -50,7 +50,7 @@ static const char *const verbs[] = { "NBIRTH", "NDEATH", "NDATA", "DBIRTH", "DDE
 
 /* --- nodes and topics ------------------------------------------------------------------------------------------------------- */
 
-/* Finds a node by linear search: there are few nodes, and each message searches once. */
+/* Finds a node by linear search: there are few nodes, and one search per message suffices. */
 static struct sparkplug_node *find_node(const struct sparkplug *sparkplug, const char *group, size_t group_length, const char *name,
                                         size_t length)
 {
@@ -167,7 +167,8 @@ static void topic_dies(struct sparkplug *sparkplug, size_t topic)
     store_tags_dead(sparkplug->params.store, dead->tags, dead->tag_count, sparkplug->params.writer->mono_ns);
 }
 
-/* Marks a node and all its devices as dead. `spared`: topic that is not marked because it is being born; SIZE_MAX: none. */
+/* Marks a node and all its devices as dead. `spared`: index of a topic that stays unmarked because its birth is being processed; SIZE_MAX:
+   none. */
 static void node_dies(struct sparkplug *sparkplug, struct sparkplug_node *node, size_t spared)
 {
     for (size_t i = 0; i < sparkplug->params.topics->count; i++)
@@ -178,7 +179,7 @@ static void node_dies(struct sparkplug *sparkplug, struct sparkplug_node *node, 
 
 /* --- metrics ---------------------------------------------------------------------------------------------------------------- */
 
-/* Finds the tags of a topic that show a metric; they are adjacent. Returns their number; *first is the first one. */
+/* Finds the adjacent tags of a topic that show a metric. Returns their count; *first receives the index of the first. */
 static size_t tags_named(const struct sparkplug *sparkplug, size_t topic, const char *name, size_t *first)
 {
     const struct mqtt_topic *of = &sparkplug->params.topics->at[topic];
@@ -212,7 +213,7 @@ static void drop_aliases(struct sparkplug_node *node, size_t topic)
     node->alias_count = kept;
 }
 
-/* Finds the tags that show a metric, by its name or else its alias. Returns their number, mostly 0. */
+/* Finds the tags that show a metric, by its name or else its alias. Returns their count, which is 0 for most metrics. */
 static size_t tags_of(const struct sparkplug *sparkplug, const struct sparkplug_node *node, size_t topic,
                       const struct sparkplug_metric *metric, size_t *first)
 {
@@ -254,7 +255,7 @@ static bool take_metric(struct sparkplug *sparkplug, const struct sparkplug_metr
     return good;
 }
 
-/* Writes the metrics of a payload. Returns false if some metric is wrong; its tags are Bad. */
+/* Writes the metrics of a payload. Returns false if some metric is wrong; the tags of that metric become Bad. */
 static bool take_metrics(struct sparkplug *sparkplug, const struct sparkplug_node *node, size_t topic,
                          const struct sparkplug_payload *payload, char why[200])
 {
@@ -320,7 +321,7 @@ static bool take_birth(struct sparkplug *sparkplug, struct sparkplug_node *node,
 
 /* --- sequence numbers ------------------------------------------------------------------------------------------------------- */
 
-/* Makes all readings of a node uncertain after lost messages: its values may have changed unnoticed. */
+/* Makes all readings of a node uncertain after lost messages: values in the lost messages are unknown. */
 static void doubt_all(struct sparkplug *sparkplug, const struct sparkplug_node *node)
 {
     for (size_t i = 0; i < sparkplug->params.topics->count; i++) {
@@ -361,7 +362,7 @@ struct said {
     size_t topic; /* index of the topic; SIZE_MAX: the node or device has no tags */
 };
 
-/* Parses a topic spBv1.0/GROUP/VERB/NODE[/DEVICE]. Returns false if it is none. */
+/* Parses a topic spBv1.0/GROUP/VERB/NODE[/DEVICE]. Returns false if the topic has another form. */
 static bool read_topic(const struct sparkplug *sparkplug, const char *topic, struct said *out)
 {
     const char *at[4]; /* group, verb, node, device */
@@ -395,8 +396,8 @@ static bool refuse_unborn(struct sparkplug *sparkplug, struct sparkplug_node *no
 {
     ask(sparkplug, node, sparkplug->params.writer->mono_ns);
     if (!node->told)
-        log_warn(sparkplug->params.log, "source %s: %s/%s: values ignored: no birth certificate yet%s",
-                 sparkplug->params.source, node->group, node->name, sparkplug->params.rebirth ? "" : "; rebirth: yes would ask for it");
+        log_warn(sparkplug->params.log, "source %s: %s/%s: values ignored: no birth certificate yet%s", sparkplug->params.source,
+                 node->group, node->name, sparkplug->params.rebirth ? "" : "; rebirth: yes would ask for it");
     node->told = true;
     snprintf(why, 200, "before its birth certificate");
     return false;
@@ -405,13 +406,13 @@ static bool refuse_unborn(struct sparkplug *sparkplug, struct sparkplug_node *no
 static bool take_node_birth(struct sparkplug *sparkplug, const struct said *said, const struct sparkplug_payload *payload, char why[200])
 {
     struct sparkplug_node *node = said->node;
-    node_dies(sparkplug, node, said->topic); /* invalidates earlier births of this node and its devices */
+    node_dies(sparkplug, node, said->topic); /* makes earlier births of this node and its devices invalid */
     node->is_born = true;
     node->told = node->is_wanted = false;
     node->bd_seq = sparkplug_bd_seq(payload);
     node->next_seq = (payload->seq + 1) % 256;
-    log_info(sparkplug->params.log, "source %s: %s/%s: online (birth certificate received)", sparkplug->params.source,
-             node->group, node->name);
+    log_info(sparkplug->params.log, "source %s: %s/%s: online (birth certificate received)", sparkplug->params.source, node->group,
+             node->name);
     return said->topic == SIZE_MAX || take_birth(sparkplug, node, said->topic, payload, why);
 }
 
@@ -425,13 +426,13 @@ static bool take_node_death(struct sparkplug *sparkplug, struct sparkplug_node *
                  sparkplug->params.source, node->group, node->name, (long long)bd_seq, (long long)node->bd_seq);
         return true;
     }
-    log_warn(sparkplug->params.log, "source %s: %s/%s: offline (death certificate received)", sparkplug->params.source,
-             node->group, node->name);
+    log_warn(sparkplug->params.log, "source %s: %s/%s: offline (death certificate received)", sparkplug->params.source, node->group,
+             node->name);
     node_dies(sparkplug, node, SIZE_MAX);
     return true;
 }
 
-/* Processes a message of a living node other than its own birth or death, after checking the sequence number. */
+/* Processes a message of a node that is alive, except the node's own birth and death certificates, after checking the sequence number. */
 static bool take_in_order(struct sparkplug *sparkplug, const struct said *said, const struct sparkplug_payload *payload, char why[200])
 {
     follow(sparkplug, said->node, payload);

@@ -20,7 +20,7 @@ struct sparkplug_metric {
     const char *name; /* metric name; NULL: identified by its alias */
     bool has_alias, is_historical, is_null;
     uint64_t alias;
-    int64_t utc_ns;   /* time of the metric, else of its payload; 0: neither is stated */
+    int64_t utc_ns;   /* time stated for the metric, otherwise for its payload; 0: neither is stated */
     uint32_t type;    /* 0: not stated */
     uint32_t quality; /* quality from the metric's property Quality; Good if it has none */
     enum sparkplug_form form;
@@ -40,8 +40,8 @@ struct sparkplug_payload {
 /* Decodes a payload. Returns false with the reason in `why`, and nothing to free, if the bytes are no payload. */
 bool sparkplug_payload_read(const void *bytes, size_t count, struct sparkplug_payload *out, char why[200]);
 void sparkplug_payload_finish(struct sparkplug_payload *payload);
-/* Reads a metric's value as `type`: the metric's own type or, if it states none, that of its birth. Returns whether the value is a
-   number. */
+/* Reads a metric's value as `type`: the metric's own type or, if it states none, the type in its birth certificate. Returns whether the
+   value is a number. */
 bool sparkplug_number(const struct sparkplug_metric *metric, uint32_t type, double *out);
 const char *sparkplug_type_name(uint32_t type); /* Returns the type's name, such as "Int32"; "a type that is unknown" for other numbers. */
 /* Returns the session number (bdSeq) of a birth or death certificate; -1 if it has none. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* An OPC UA source: connects, subscribes, and reports the loss of the server at once. */
+/* An OPC UA source: connects, subscribes, and marks all readings as lost when the server is. */
 #include <errno.h>
 #include <stdio.h>
 
@@ -32,7 +32,8 @@ struct opcua_source {
 
 /* --- values ----------------------------------------------------------------------------------------------------------------- */
 
-/* Logs a clock difference. Uses the server's timestamp, since the source timestamp may be an old sensor time. */
+/* Logs the difference between the server's clock and ours, taken from the server timestamp; the source timestamp may be an old sensor
+   time. */
 static void report_skew(struct opcua_source *opcua, const UA_DataValue *value)
 {
     int64_t now_ns = opcua->writer.mono_ns;
@@ -82,7 +83,7 @@ static void on_refused(void *arg, size_t index, uint32_t status, const char *why
 
 /* --- the link --------------------------------------------------------------------------------------------------------------- */
 
-/* Marks all readings of the source as lost: without the server, values may have changed unnoticed. */
+/* Marks all readings of the source as lost: while the server was gone, values may have changed unnoticed. */
 static void link_lost(struct opcua_source *opcua, const char *why)
 {
     int64_t now_ns = clock_mono_ns();

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Follows all hierarchical references and visits each node once: servers have cycles. */
+/* Follows all hierarchical references and visits each node once, because the references of servers have cycles. */
 #include "value/opcua/opcua_browse.h"
 
 #include <errno.h>
@@ -27,7 +27,7 @@ struct browse {
     int64_t deadline_mono_ns;
     struct browse_step *steps; /* all nodes found so far, in the order of visiting */
     size_t count, capacity;
-    size_t *table; /* hash table with open addressing: index in steps + 1; 0: free */
+    size_t *table; /* hash table with open addressing: index in `steps` plus 1; 0: the slot is free */
 };
 
 static size_t slot_of(const struct browse *browse, const UA_NodeId *id)
@@ -66,7 +66,7 @@ static void see_all(struct browse *browse, size_t parent, const UA_BrowseResult 
     }
 }
 
-/* Reads the remaining results of a continuation point. Takes ownership of the point. */
+/* Reads the remaining results of a continuation point. Takes ownership of the continuation point. */
 static int browse_rest(struct browse *browse, size_t parent, UA_ByteString point, char why[200])
 {
     int status = 0;
@@ -89,11 +89,14 @@ static int browse_rest(struct browse *browse, size_t parent, UA_ByteString point
 
 static int browse_node(struct browse *browse, size_t at, char why[200])
 {
-    UA_BrowseDescription description = { .nodeId = browse->steps[at].id, .browseDirection = UA_BROWSEDIRECTION_FORWARD,
-                                         .referenceTypeId = UA_NODEID_NUMERIC(0, HIERARCHICAL), .includeSubtypes = true,
+    UA_BrowseDescription description = { .nodeId = browse->steps[at].id,
+                                         .browseDirection = UA_BROWSEDIRECTION_FORWARD,
+                                         .referenceTypeId = UA_NODEID_NUMERIC(0, HIERARCHICAL),
+                                         .includeSubtypes = true,
                                          .nodeClassMask = UA_NODECLASS_OBJECT | UA_NODECLASS_VARIABLE,
                                          .resultMask = UA_BROWSERESULTMASK_ALL };
-    UA_BrowseRequest request = { .nodesToBrowse = &description, .nodesToBrowseSize = 1,
+    UA_BrowseRequest request = { .nodesToBrowse = &description,
+                                 .nodesToBrowseSize = 1,
                                  .requestedMaxReferencesPerNode = REFERENCES_AT_ONCE };
     UA_BrowseResponse response;
     UA_ByteString point = UA_BYTESTRING_NULL;
@@ -115,7 +118,7 @@ static char *address_of(const struct browse *browse, const UA_NodeId *id)
     UA_String printed = UA_STRING_NULL;
     if (id->namespaceIndex >= browse->client->namespace_count)
         return NULL;
-    local.namespaceIndex = 0; /* makes UA_NodeId_print() print the identifier without a namespace */
+    local.namespaceIndex = 0; /* with namespace 0, UA_NodeId_print() prints the identifier without a namespace */
     UA_NodeId_print(&local, &printed);
     struct text text = { 0 };
     text_add(&text, "nsu=");
@@ -149,7 +152,9 @@ static int read_variable(struct browse *browse, size_t at, char why[200])
         const UA_Variant *value = &response.results[0].value, *text = &response.results[1].value;
         const UA_LocalizedText *said = UA_Variant_hasScalarType(text, &UA_TYPES[UA_TYPES_LOCALIZEDTEXT]) ? text->data : NULL;
         char *description = said ? mem_printf("%.*s", (int)said->text.length, (const char *)said->text.data) : mem_strdup("");
-        const struct opcua_variable variable = { .path = step->path, .address = address, .description = description,
+        const struct opcua_variable variable = { .path = step->path,
+                                                 .address = address,
+                                                 .description = description,
                                                  .is_bit = value->type->typeKind == UA_DATATYPEKIND_BOOLEAN,
                                                  .elements = UA_Variant_isScalar(value) ? 0 : value->arrayLength };
         if (UA_Variant_isScalar(value) || value->arrayLength > 0)

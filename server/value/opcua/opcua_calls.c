@@ -43,7 +43,7 @@ void opcua_on_answer(UA_Client *library, void *arg, UA_UInt32 id, void *response
     if (!client->call.response)
         return;
     memcpy(client->call.response, response, client->call.type->memSize);
-    memset(response, 0, client->call.type->memSize); /* the response's memory now belongs to us; clear the library's copy */
+    memset(response, 0, client->call.type->memSize); /* the response's memory is now owned here, so the library's copy is cleared */
     client->call.response = NULL;
 }
 
@@ -57,7 +57,7 @@ void opcua_call_begin(struct opcua_client *client, void *response, const UA_Data
 
 int opcua_call_end(struct opcua_client *client, UA_StatusCode sent, int stop_fd, int64_t deadline_mono_ns, char why[200])
 {
-    const UA_ResponseHeader *header = client->call.response; /* all responses begin with this header */
+    const UA_ResponseHeader *header = client->call.response; /* valid for all responses, because each begins with this header */
     if (sent != UA_STATUSCODE_GOOD) {
         client->call.response = NULL;
         opcua_explain(client, sent, why);
@@ -76,7 +76,6 @@ int opcua_call(struct opcua_client *client, const void *request, const UA_DataTy
                const UA_DataType *response_type, int stop_fd, int64_t deadline_mono_ns, char why[200])
 {
     opcua_call_begin(client, response, response_type);
-    UA_StatusCode sent =
-        __UA_Client_AsyncService(client->library, request, request_type, opcua_on_answer, response_type, client, NULL);
+    UA_StatusCode sent = __UA_Client_AsyncService(client->library, request, request_type, opcua_on_answer, response_type, client, NULL);
     return opcua_call_end(client, sent, stop_fd, deadline_mono_ns, why);
 }

@@ -9,15 +9,15 @@
 
 struct opcua_client;
 
-/* Callbacks made from any function that takes a deadline. */
+/* Callbacks; any function that takes a deadline may call them. */
 struct opcua_events {
     void *arg;
     void (*value)(void *arg, size_t node, const UA_DataValue *value); /* `node`: index in opcua_nodes */
     void (*refused)(void *arg, size_t node, uint32_t status, const char *why);
 };
 
-/* Reads the files that the source names; sends nothing yet. Returns NULL with the reason in `why` if a file cannot be used. All
-   arguments must outlive the client. */
+/* Creates a client and reads the certificate and login files that the source names; sends nothing yet. Returns NULL with the reason in
+   `why` if a file cannot be used. All arguments must outlive the client. */
 struct opcua_client *opcua_client_create(const struct plant_source *source, int host, const struct opcua_nodes *nodes,
                                          const struct opcua_events *events, char why[200]);
 /* Ends the session, waiting at most 0.3 s for the server. &NULL is fine; leaves NULL. */
@@ -30,7 +30,7 @@ int opcua_client_subscribe(struct opcua_client *client, int stop_fd, int64_t dea
 /* Receives until the deadline. Returns 0; -ECANCELED if stop_fd became readable; other < 0 with the reason in `why` when the session or
    the subscription has ended. */
 int opcua_client_serve(struct opcua_client *client, int stop_fd, int64_t deadline_mono_ns, char why[200]);
-/* Returns the publishing interval of the server in milliseconds if it is longer than requested; else 0. */
+/* Returns the publishing interval of the server in milliseconds if that is longer than requested; 0: as requested. */
 double opcua_client_publishing_ms(const struct opcua_client *client);
 /* Returns the number of nodes that the server has refused. */
 size_t opcua_client_refused(const struct opcua_client *client);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The OPC UA client as the files that send requests share it. Private to value/opcua/. Thread: one. */
+/* State of the OPC UA client, shared by the files that send requests. Private to value/opcua/. Thread: one. */
 #ifndef VALUE_OPCUA_IMPL_H
 #define VALUE_OPCUA_IMPL_H
 #include <open62541/client_subscriptions.h>
@@ -28,11 +28,11 @@ struct opcua_client {
     char **namespaces;    /* namespace URIs of the server, by namespace index */
     size_t namespace_count;
     UA_UInt16 *numbers;        /* namespace index of each node; NO_NAMESPACE: the server has no such URI */
-    bool *refused, *no_filter; /* flags by node: the server refused it; to be subscribed without a deadband */
+    bool *refused, *no_filter; /* flags by node: the server refused the node; the node is to be subscribed without a deadband */
     size_t refused_count;
     struct { /* the request in progress */
         bool done;
-        void *response; /* receives the response; NULL: nothing waits for it any more */
+        void *response; /* receives the response; NULL: the caller waits no longer, so the response is dropped */
         const UA_DataType *type;
     } call;
 };
@@ -45,7 +45,7 @@ int opcua_wait(struct opcua_client *client, const bool *done, int stop_fd, int64
 int opcua_call(struct opcua_client *client, const void *request, const UA_DataType *request_type, void *response,
                const UA_DataType *response_type, int stop_fd, int64_t deadline_mono_ns, char why[200]);
 /* The two halves of opcua_call(), for requests that the library sends through functions of its own: call opcua_call_begin() before, and
-   opcua_call_end() with what the library function returned. Its callback is opcua_on_answer, with the client as userdata. */
+   opcua_call_end() with the library function's result. Pass opcua_on_answer as the callback, with the client as userdata. */
 void opcua_call_begin(struct opcua_client *client, void *response, const UA_DataType *type);
 int opcua_call_end(struct opcua_client *client, UA_StatusCode sent, int stop_fd, int64_t deadline_mono_ns, char why[200]);
 void opcua_on_answer(UA_Client *library, void *client, UA_UInt32 id, void *response);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Checks certificates with OpenSSL: the library's own check ignores the host name, and accepts a server that sends no certificate with
-   its first response. */
+/* Checks certificates with OpenSSL: the library's own check ignores the host name, and accepts a server whose first response contains no
+   certificate. */
 #include "value/opcua/opcua_security.h"
 
 #include <arpa/inet.h>
@@ -27,7 +27,7 @@ static BIO *open_file(const char *path, char why[200])
     return file;
 }
 
-/* Reads a certificate in PEM or DER. NULL: neither. */
+/* Reads a certificate in PEM or DER. Returns NULL if the file is neither. */
 static X509 *read_certificate(BIO *file)
 {
     X509 *found = PEM_read_bio_X509(file, NULL, NULL, NULL);
@@ -224,7 +224,7 @@ static UA_StatusCode status_of(int error)
     }
 }
 
-static UA_StatusCode check_chain(const struct opcua_security *security, X509 *leaf, STACK_OF(X509) *others, char why[200])
+static UA_StatusCode check_chain(const struct opcua_security *security, X509 *leaf, STACK_OF(X509) * others, char why[200])
 {
     X509_STORE_CTX *context = X509_STORE_CTX_new();
     bool good = context && X509_STORE_CTX_init(context, security->trusted, leaf, others) == 1 && X509_verify_cert(context) == 1;
@@ -309,9 +309,9 @@ static UA_StatusCode verify_uri(const UA_CertificateVerification *verification, 
 static bool add_policies(UA_SecurityPolicy **out, size_t *count, UA_ByteString certificate, UA_ByteString key, bool with_none,
                          const UA_Logger *logger)
 {
-    static UA_StatusCode (*const makers[])(UA_SecurityPolicy *, const UA_ByteString, const UA_ByteString, const UA_Logger *) = {
-        UA_SecurityPolicy_Aes256Sha256RsaPss, UA_SecurityPolicy_Basic256Sha256, UA_SecurityPolicy_Aes128Sha256RsaOaep
-    };
+    static UA_StatusCode (*const makers[])(UA_SecurityPolicy *, const UA_ByteString, const UA_ByteString,
+                                           const UA_Logger *) = { UA_SecurityPolicy_Aes256Sha256RsaPss, UA_SecurityPolicy_Basic256Sha256,
+                                                                  UA_SecurityPolicy_Aes128Sha256RsaOaep };
     bool good = true;
     *out = UA_calloc(4, sizeof(**out));
     if (*out && with_none) {

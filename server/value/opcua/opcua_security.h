@@ -19,7 +19,7 @@ struct opcua_security {
    if one cannot be used; opcua_security_finish() is needed all the same. `config` and `host` must outlive the struct. */
 bool opcua_security_init(struct opcua_security *security, const struct plant_opcua *config, const char *host, char why[200]);
 void opcua_security_finish(struct opcua_security *security);
-/* Checks a server's certificate: valid now, issued for the right host, key long enough, trusted itself or through its issuers. Cuts the
+/* Checks a server's certificate: valid now, issued for the right host, key long enough, trusted by itself or through its issuers. Cuts the
    issuers' certificates off *chain. Returns a status code; if it is Bad, `why` has the reason. */
 UA_StatusCode opcua_security_check(const struct opcua_security *security, UA_ByteString *chain, char why[200]);
 /* Configures a client: our certificate in all policies, and the user from the file `login` (NULL: anonymous). Returns false with the

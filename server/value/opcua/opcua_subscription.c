@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The subscription of a session: resolves each namespace URI to its current index, and creates one monitored item per node. */
+/* Implements the subscription of a session: resolves each namespace URI to its current index, and creates one monitored item per node. */
 #include <errno.h>
 #include <string.h>
 
@@ -87,16 +87,16 @@ static void on_deleted(UA_Client *library, UA_UInt32 subscription, void *arg)
 
 static int begin_subscription(struct opcua_client *client, int stop_fd, int64_t deadline_mono_ns, char why[200])
 {
-    /* Samples at the source's interval; the keep-alive interval is short enough to notice a silent server. */
+    /* Creates the subscription with the source's interval, and a keep-alive interval short enough to notice a silent server. */
     int poll_ms = client->source->poll_ms < KEPT_ALIVE_MS ? client->source->poll_ms : KEPT_ALIVE_MS;
     UA_CreateSubscriptionRequest request = { .requestedPublishingInterval = poll_ms, .publishingEnabled = true };
     UA_CreateSubscriptionResponse response;
     request.requestedMaxKeepAliveCount = (UA_UInt32)(KEPT_ALIVE_MS / poll_ms) + 1;
     request.requestedLifetimeCount = LIFETIMES * request.requestedMaxKeepAliveCount;
-    request.maxNotificationsPerPublish = 2000; /* a larger number would exceed the maximum message size */
+    request.maxNotificationsPerPublish = 2000; /* number of items per request: more would exceed the maximum message size */
     opcua_call_begin(client, &response, &UA_TYPES[UA_TYPES_CREATESUBSCRIPTIONRESPONSE]);
-    UA_StatusCode sent = UA_Client_Subscriptions_create_async(client->library, request, client, on_status, on_deleted, opcua_on_answer,
-                                                              client, NULL);
+    UA_StatusCode sent =
+        UA_Client_Subscriptions_create_async(client->library, request, client, on_status, on_deleted, opcua_on_answer, client, NULL);
     int status = opcua_call_end(client, sent, stop_fd, deadline_mono_ns, why);
     client->subscription = response.subscriptionId;
     client->publishing_ms = response.revisedPublishingInterval > client->source->poll_ms ? response.revisedPublishingInterval : 0;
@@ -138,7 +138,8 @@ static void refuse(struct opcua_client *client, size_t node, UA_StatusCode statu
     client->events->refused(client->events->arg, node, status, UA_StatusCode_name(status));
 }
 
-/* Handles the result for one node. A node that cannot have a deadband is requested again without one: extra notifications do no harm. */
+/* Handles the result for one node. A node that cannot have a deadband is requested again without one, which only causes more
+   notifications. */
 static void take_result(struct opcua_client *client, size_t node, UA_StatusCode status)
 {
     bool of_filter = status == UA_STATUSCODE_BADFILTERNOTALLOWED || status == UA_STATUSCODE_BADMONITOREDITEMFILTERUNSUPPORTED ||
@@ -157,8 +158,10 @@ static void take_result(struct opcua_client *client, size_t node, UA_StatusCode 
 static int create_items(struct opcua_client *client, const size_t *batch, UA_MonitoredItemCreateRequest *items, size_t count, int stop_fd,
                         int64_t deadline_mono_ns, char why[200])
 {
-    UA_CreateMonitoredItemsRequest request = { .subscriptionId = client->subscription, .timestampsToReturn = UA_TIMESTAMPSTORETURN_BOTH,
-                                               .itemsToCreate = items, .itemsToCreateSize = count };
+    UA_CreateMonitoredItemsRequest request = { .subscriptionId = client->subscription,
+                                               .timestampsToReturn = UA_TIMESTAMPSTORETURN_BOTH,
+                                               .itemsToCreate = items,
+                                               .itemsToCreateSize = count };
     UA_CreateMonitoredItemsResponse response;
     void **contexts = mem_array(count, sizeof(*contexts));
     UA_Client_DataChangeNotificationCallback *on_values = mem_array(count, sizeof(*on_values));
@@ -184,8 +187,8 @@ static int create_items(struct opcua_client *client, const size_t *batch, UA_Mon
     return status;
 }
 
-/* Collects the next nodes that are not subscribed, from *at on; nodes that cannot even be requested are marked as refused. Returns the
-   batch size. */
+/* Collects, from index *at on, the next nodes that are not subscribed; nodes that cannot even be requested are marked as refused. Returns
+   the batch size. */
 static size_t gather(struct opcua_client *client, size_t *at, UA_DataChangeFilter *filter, size_t *batch,
                      UA_MonitoredItemCreateRequest *items)
 {
