@@ -14,11 +14,12 @@ struct colormap {
     /* name of the map: "relief" (the default) and "calm": low contrast, for shaded 3D; "viridis", "cividis", "diverging", "turbo" */
     const char *name;
     uint8_t rgb[256][3];
-    /* largest change of L* that light may cause in either direction: at most COLORMAP_SHADING, less where lightness carries much of the
-       value */
+    /* largest change of lightness L* that shading may cause, up or down: at most COLORMAP_SHADING, less for maps in which lightness shows
+       much of the value */
     double shading;
-    bool safe; /* whether 95 of 100 shaded pixels are read correctly within 3 % of the range, also after JPEG and by deuteranopes */
-    uint8_t below[3], above[3]; /* colours for < MIN and > MAX; not on the map */
+    /* true if 95 of 100 shaded pixels are read correctly to within 3 % of the range, also after JPEG compression and by deuteranopes */
+    bool safe;
+    uint8_t below[3], above[3]; /* colours for values below MIN and above MAX; none of the map's colours is like them */
 };
 
 /* Adds a map, or replaces one added before: rates its shading and chooses its out-of-range colours. Returns its index; -1 if the name

@@ -7,10 +7,11 @@
 #include "field/lab.h"
 
 static const double MAX_MISREAD = 0.03 * 256; /* tolerance in colours */
-/* required fraction of correctly read samples; corresponds to 0.95 in frames, where extreme light is more frequent */
+/* required fraction of correctly read samples; 0.95 in frames, which have extreme light more often than these samples */
 static const double MIN_RIGHT_PART = 0.974;
 static const double MIN_SHADING = 2, UNSAFE_SHADING = 4, STEP = 0.5;
-static const double NOISE_AMPLITUDE = 2.0; /* amplitude of 255, along each of luma and chroma in turn: about that of JPEG at quality 80 */
+/* amplitude of the noise added to each of luma and chroma in turn, of 255: about that of JPEG at quality 80 */
+static const double NOISE_AMPLITUDE = 2.0;
 enum { SAMPLED = 5, STEPS = 4, NOISES = 6 };
 
 static int nearest(const double labs[256][3], const double lab[3])
@@ -36,7 +37,7 @@ static void add_noise(const uint8_t rgb[3], int noise, double out[3])
         out[c] = fmin(fmax(rgb[c] + (noise % 2 ? -NOISE_AMPLITUDE : NOISE_AMPLITUDE) * axes[noise / 2][c], 0), 255);
 }
 
-/* Returns whether for nearly all shaded colours the nearest colour of the legend is within MISREAD. */
+/* Returns true if nearly all shaded colours are read correctly: the value of the nearest legend colour differs by at most MISREAD. */
 static bool is_read_right(const struct colormap *map, enum color_vision vision, double shading)
 {
     double labs[256][3];

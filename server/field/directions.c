@@ -9,8 +9,9 @@
 #include "field/layout.h"
 #include "value/quality.h"
 
-#define AT_ONE_PLACE 1e-6    /* metres; a point nearer than this to a sensor is at the sensor */
-#define MIN_TANGENT_PART 0.1 /* smallest part of a vector's length along the surface at which it has a direction there */
+#define AT_ONE_PLACE 1e-6 /* metres; a point nearer than this to a sensor is at the sensor */
+/* smallest part of a vector's length that must lie along the surface; with less, its direction there is unknown */
+#define MIN_TANGENT_PART 0.1
 
 static const float *angles_of(const struct field_layout *layout)
 {
@@ -75,7 +76,7 @@ size_t directions_read(const struct scene *scene, int asset, int group, const st
 
 /* --- places ----------------------------------------------------------------------------------------------------------------- */
 
-/* A sensor's vector relative to a transported reference vector: angle, and length along the surface. */
+/* A sensor's vector as an angle to the reference vector that is transported along the surface, and as a length along the surface. */
 struct spread {
     double turn, length;
     bool configured, known, uncertain;
@@ -111,7 +112,7 @@ static double mean_m(const struct field_layout *layout, enum distance_mode mode,
     return max_of(sum_m, AT_ONE_PLACE);
 }
 
-/* Computes the unit vector that is transported to the point. Returns false if no path leads there. */
+/* Computes the sensor's reference unit vector as transported to the point. Returns false if no path leads there. */
 static bool carry(const struct field_layout *layout, const float *angles, double turn, const struct direction_place *place, double out[3])
 {
     double normal[3];

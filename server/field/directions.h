@@ -20,14 +20,14 @@ struct sensor_direction {
     bool known;      /* reading and direction are usable: Good or Uncertain */
     bool uncertain;
 };
-/* Reads the vectors of the group's sensors on the asset, in the order of the prepared sensors. Returns their number; 0: nothing is shown.
-   The caller frees *out (mem_free). */
+/* Reads the vectors of the group's sensors on the asset, in the order of the prepared sensors. Returns the number of vectors; 0: the asset
+   shows no directions. The caller frees *out (mem_free). */
 size_t directions_read(const struct scene *scene, int asset, int group, const struct snapshot *snapshot, struct sensor_direction **out);
 
 struct direction_place { /* a point of a triangle of the asset file */
     uint32_t corners[3];
     float weights[3], normal[3];
-    uint32_t triangle; /* number of the triangle, defined by the caller; directions_find() ignores it */
+    uint32_t triangle; /* index of the triangle, in the caller's own counting; directions_find() ignores it */
 };
 struct direction {
     float along[3]; /* unit tangent vector, in the axes of the asset file */

@@ -11,15 +11,17 @@
 
 /* GROUP: triangles processed together; GRAIN: triangles per job; PIECES_MOST: pieces per triangle. */
 enum { GROUP = 64, GRAIN = 1024, MAX_PIECES = 96 };
-#define STEP 0.3f             /* longest piece relative to the distance to the nearest sensor; longer pieces are halved */
-#define MAX_POWER 2.0f        /* largest power of shepard for which STEP is fine enough */
-#define SHEPARD_ACCEPTED 6.0f /* L^2 K / (6 d^2) bounds the error of a triangle of side L where the weights bend by K / d^2 */
-#define PAPER_ACCEPTED 0.015f /* accepted size relative to the nearest distance, and to R */
+/* largest length of a piece (part of a triangle), relative to its distance to the nearest sensor; longer pieces are halved */
+#define STEP 0.3f
+#define MAX_POWER 2.0f /* largest power of shepard for which STEP is fine enough */
+/* L^2 K / (6 d^2) bounds the error of a triangle of side L if the second derivative of the weights is at most K / d^2 */
+#define SHEPARD_ACCEPTED 6.0f
+#define PAPER_ACCEPTED 0.015f /* triangles up to this size need no samples: relative to the distance d of the nearest sensor, and to R */
 #define STEP_OF_COLOR (1 / 255.0f)
-#define BORDER_SLACK 4  /* tolerated displacement of the border of the data, in units of `lacking` */
+#define BORDER_SLACK 4  /* tolerated displacement of the border beyond which there is no data, in units of `lacking` */
 #define MIN_ERROR 1e-4f /* smaller errors are stored as 0 */
 
-struct triangle_piece {  /* part of a triangle; its sample point is the middle of its longest side */
+struct triangle_piece {  /* part of a triangle; the error is sampled at the middle of the piece's longest side */
     uint32_t tri;        /* index of the triangle in the group */
     float corners[3][3]; /* barycentric coordinates of its corners */
 };
@@ -32,7 +34,7 @@ struct sampler { /* state of the sampling in one thread */
     struct weights *weights; /* weights at the sample points */
     struct weights_terms terms;
     double values[KERNEL_BLOCK], total[KERNEL_BLOCK];
-    float *corners;        /* [member][3 GROUP]: weights at the corners of the group's triangles */
+    float *corners;        /* [member][3 GROUP]: by sensor (member of the sum): weights at the corners of the group's triangles */
     uint32_t *tris[GROUP]; /* vertex numbers of each triangle */
     float *errors[GROUP];  /* where to store each triangle's error */
     int pieces[GROUP];
@@ -81,7 +83,7 @@ static void sampler_finish(struct sampler *sampler)
     mem_free(sampler->queue);
 }
 
-/* Evaluates the weights at points: afterwards each member's column divided by the total is its weight. */
+/* Evaluates the weights at points: afterwards, a sensor's column divided by the total is the sensor's weight. */
 static void evaluate(struct sampler *sampler, size_t count)
 {
     struct weights *weights = sampler->weights;
@@ -150,7 +152,7 @@ static void split(struct sampler *sampler, const struct triangle_piece *piece, i
     enqueue(sampler, &half);
 }
 
-/* Returns whether there is no data at this point although interpolation from the corners draws data there. */
+/* Returns true if frames are wrong here: there is no data at this point, but interpolation from the corners draws data. */
 static bool hides_rim(const struct sampler *sampler, size_t point, const struct triangle_piece *piece, const float parts[3], bool *shown)
 {
     const uint32_t *corners = sampler->tris[piece->tri];
@@ -213,7 +215,7 @@ static void sample_group(struct sampler *sampler, float step)
     sampler->queued = sampler->tri_count = 0;
 }
 
-/* --- all of them ------------------------------------------------------------------------------------------------------------ */
+/* --- triangles of an asset -------------------------------------------------------------------------------------------------- */
 
 /* Returns whether a triangle needs no samples: it is small compared with the distance to the nearest sensor, or, in a coarse level, smaller
    than the pixels that the level is drawn with. */
@@ -332,9 +334,8 @@ static void measure_level(struct drawn_error_job *job, struct weights *weights, 
     mem_free(ones);
 }
 
-/* Returns whether the weights are no more curved than those for which preparation subdivided the triangles
-   (preprocess/subdivision/linear_error.h). With fewer sensors they may be: the field then bends at other places, perhaps in larger
-   triangles. */
+/* Returns true if the subdivision that preparation chose suffices (preprocess/subdivision/linear_error.h): the weights are not more curved
+   than those it assumed. With fewer sensors they may be, because the field then bends at other places, perhaps in larger triangles. */
 static bool is_as_prepared(const struct weights *weights, const struct field_params *params)
 {
     const struct field_layout *layout = weights->layout;

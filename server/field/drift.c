@@ -10,18 +10,20 @@
 #include "base/mem.h"
 
 enum { JUMPS = 2, COLUMNS = 3 + DRIFT_NEAREST + JUMPS, MIN_SENSORS = 3, ROUNDS = 20 };
-enum { CHANGE_BEFORE = 3, CHANGE_AFTER = 1 }; /* hours before and after an hour that determine how fast the plant changes then */
-static const double FAST_FACTOR = 2;          /* times the usual change: such an hour has half the weight */
-static const double STILL_PART = 0.1;         /* a change per hour below this part of the noise counts as none */
-static const double MEAN_PART = 0.25;         /* part of the noise left in an hourly mean of at least 16 independent readings */
-enum { BESIDE = 3, WITHIN = 2 };              /* BESIDE: hours averaged before and after a jump; WITHIN: hours between the two means */
-static const double MIN_JUMP_FACTOR = 6;      /* smallest jump, relative to the usual change of residuals over the same number of hours */
-static const double LAG_HOURS = 12;           /* time that heat takes from the other sensors to this one */
-static const double DEPENDENT_PART = 1. / 6;  /* fraction of the recorded time beyond which residuals count as independent */
-static const double MIN_NEW_PART = 1e-3;      /* smallest part of a column's length that must be independent of the other columns */
+/* number of hours before and after an hour from which the plant's speed of change at that hour is computed */
+enum { CHANGE_BEFORE = 3, CHANGE_AFTER = 1 };
+static const double FAST_FACTOR = 2;  /* an hour in which the plant changes by this multiple of the usual change has half the weight */
+static const double STILL_PART = 0.1; /* a change per hour below this multiple of the noise counts as no change */
+static const double MEAN_PART = 0.25; /* noise of an hourly mean relative to a reading's noise, for at least 16 independent readings */
+/* BESIDE: number of hours averaged before a jump, and after it; WITHIN: number of hours between the two means */
+enum { BESIDE = 3, WITHIN = 2 };
+static const double MIN_JUMP_FACTOR = 6;     /* smallest jump, relative to the usual change of residuals over the same number of hours */
+static const double LAG_HOURS = 12;          /* time that heat takes from the other sensors to this one */
+static const double DEPENDENT_PART = 1. / 6; /* residuals further apart than this fraction of the recorded time count as independent */
+static const double MIN_NEW_PART = 1e-3;     /* smallest part of a column's length that must be independent of the other columns */
 
 struct week {                                   /* hourly data of one sensor */
-    const double *values, *predicted, *nearest; /* nearest: [nearest_count][hours], readings of the nearest sensors */
+    const double *values, *predicted, *nearest; /* nearest: [nearest_count][hours]: hourly means of the nearest sensors */
     int nearest_count, hours;
     double noise, root[DRIFT_HOURS]; /* root: square root of each hour's weight */
 };
@@ -96,7 +98,7 @@ static int reduce(struct drift_rows *rows, double largest)
             continue;
         for (int i = 0; i < n; i++)
             rows->at[kept][i] = column[i] / length;
-        for (int k = 0; k < kept; k++) /* twice, so that orthogonality is exact to rounding */
+        for (int k = 0; k < kept; k++) /* done twice, so that the columns are orthogonal to within rounding */
             take_out(rows->at[kept], rows->at[k], n);
         kept++;
     }
@@ -136,7 +138,7 @@ static int find_jump(const struct drift_rows *rows, double noise)
         change[k] = fabs(sum) / BESIDE;
         largest = change[k] > change[largest] ? k : largest;
     }
-    /* 0.6745: the median deviation of a normal distribution */
+    /* 0.6745: median absolute deviation of a normal distribution with standard deviation 1 */
     if (change[largest] < MIN_JUMP_FACTOR * fmax(median(change, count) / 0.6745, noise * sqrt(2. / BESIDE)))
         return 0;
     int at = largest + BESIDE;
@@ -168,7 +170,8 @@ static void weigh(struct week *week)
         week->root[h] = 1 / hypot(1, change[h] / (FAST_FACTOR * usual));
 }
 
-/* Collects and reduces the rows, adding a column for each jump: the level differs from there on. Returns the number of columns kept. */
+/* Collects and reduces the rows, and adds a column for each jump, which is 0 before the jump and 1 after it. Returns the number of columns
+   kept. */
 static int reduce_with_jumps(const struct week *week, struct drift_rows *rows)
 {
     double largest = 0;
@@ -312,7 +315,7 @@ static bool is_of_use(const struct drift_search *search, size_t sensor, const st
     return drift->verdict != DRIFT_FOUND && 2 * known >= search->hours;
 }
 
-/* Judges all sensors not found yet. Returns the one that drifts most clearly; count: none does. */
+/* Judges all sensors not found yet. Returns the index of the sensor that drifts most clearly; `count`: none drifts. */
 static size_t judge(const struct drift_search *search, const double *noise, struct drift *out)
 {
     double own[DRIFT_HOURS], nearest[DRIFT_NEAREST * DRIFT_HOURS];
@@ -332,7 +335,7 @@ static size_t judge(const struct drift_search *search, const double *noise, stru
         drift_fit(own, search->said + i * (size_t)search->hours, nearest, (int)count, search->hours, noise[i], &out[i]);
         if (out[i].verdict != DRIFT_FOUND)
             continue;
-        out[i].verdict = DRIFT_NONE; /* changed to DRIFT_FOUND later for the clearest one only */
+        out[i].verdict = DRIFT_NONE; /* only the sensor that drifts most clearly is set to DRIFT_FOUND later */
         if (clearest == search->count || fabs(out[i].change) / out[i].error > fabs(out[clearest].change) / out[clearest].error)
             clearest = i;
     }

@@ -14,13 +14,14 @@
 
 enum { DRIFT_HOURS = 168, DRIFT_HOURS_LEAST = 84 }; /* hours of a week; with fewer hours than the minimum nothing is decided */
 enum { DRIFT_NEAREST = 2 };                         /* nearest sensors that get a term of their own, at most */
-#define DRIFT_SIGMAS 3.0                            /* a drift of this many scatters should be found */
-#define DRIFT_SIGMAS_LEAST 2.5                      /* an estimated drift of this many scatters counts as one, since estimates err */
-#define DRIFT_ERRORS 5.0                            /* an estimated drift must also be this many times its own standard error */
+#define DRIFT_SIGMAS 3.0 /* a drift over the week of at least this many standard deviations (struct drift: scatter) should be found */
+/* an estimated drift counts from this many standard deviations on, fewer than DRIFT_SIGMAS because estimates err */
+#define DRIFT_SIGMAS_LEAST 2.5
+#define DRIFT_ERRORS 5.0 /* an estimated drift must also be this many times its own standard error */
 
 enum drift_verdict {
-    DRIFT_UNKNOWN, /* too little data, fewer than three sensors, or plant changes hide any drift */
-    DRIFT_NONE,    /* no drift was found; one of DRIFT_SIGMAS scatters would have been */
+    DRIFT_UNKNOWN, /* unknown: there are too few data or fewer than three sensors, or changes of the plant hide any drift */
+    DRIFT_NONE,    /* no drift: one of DRIFT_SIGMAS standard deviations would have been found */
     DRIFT_FOUND,
 };
 

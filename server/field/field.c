@@ -66,13 +66,13 @@ size_t field_bytes(const struct field *field)
     return field->bytes;
 }
 
-/* --- finding what is there, making what is not -------------------------------------------------------------------------- */
+/* --- finding or creating states and weights ----------------------------------------------------------------------------- */
 
 struct field_layout *field_layout(struct field *field, int asset, const struct field_params *params)
 {
     struct field_layout **at = &field->layouts[(size_t)asset * field->scene->plant->group_count + (size_t)params->group];
     if (params->trial && interpolation_is_prepared(params->interpolation) && params->show != SHOW_DISTANCE)
-        return NULL; /* nothing is prepared for trial positions: better to show nothing than the previous field */
+        return NULL; /* a prepared interpolation does not exist for trial positions: shows no data, not the previous field */
     if (params->trial)
         return field_trial_layout(field, asset, params);
     if (!*at)
@@ -228,8 +228,8 @@ bool field_begin_update(struct field *field, struct field_state *state, const st
     return true;
 }
 
-/* Updates the field of one asset. NULL: nothing to show, or out of memory. *done: true if up to date, false if only a part of the work was
-   done. */
+/* Updates the field of one asset. Returns NULL if there is nothing to show, or out of memory. *done: receives true if the field is up to
+   date, false if more calls are needed. */
 static const struct scalars *advance(struct field *field, int asset, const struct field_params *params, const struct snapshot *snapshot,
                                      size_t count, double work, bool *done)
 {

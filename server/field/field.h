@@ -1,33 +1,29 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* From readings to a scalar at every vertex. Algorithm 1 of Kim & Suh, Electronics 2025, 14(15), 2938 (`paper`) and inverse distance
-   weighting (Shepard, 1968; `shepard`), with Euclidean or geodesic distance D.
-   paper: w_i = exp(d_i s_i) / sum_k exp(d_k s_k), value = sum_i v~_i w_i d_i^o_i, d = max(0, 1 - D/R), v~ = clamp((v - MIN)/(MAX - MIN));
-   the scalar is MIN + value (MAX - MIN).
-   shepard: value = sum_i s_i v_i / D_i^p / sum_i s_i / D_i^p; exactly v_i where D_i = 0.
-   A sensor contributes at a point if it belongs to the group and the asset, its quality is not Bad, D is finite and D <= reach_m. If
-   reach_m is set, weights are multiplied by (1 - D/reach_m)^2 (for shepard's p = 2 these are the weights of Franke and Nielson, 1980), so
-   that the field has no edge where a sensor's contribution ends. Since weights are divided by their sum, the nearest sensor alone never
-   seems to fade. In shepard a sensor of strength 0 never contributes, a common factor on all strengths cancels, and decay has no effect.
-   Sensors with an assumed position (`Place: equipment`) never produce a gradient. If the group has a sensor with a known position on the
-   asset, they do not contribute. If it has none, one of them gives the value of the whole asset: the one whose reading is nearest to
-   trouble (by its own limits, else the farthest from the middle of the group's range), never a mean. While all are Bad there is no data.
-   There is no data where no sensor contributes, and where a configured sensor that does not contribute is nearer than all that do (`fill`
-   can have such places filled; they are flagged uncertain). The value stored there continues that of the nearest contributing sensor; else
-   it is MIN.
-   harmonic, fin: sum_i H_i v_i with H from the asset's influence file (protocol/ASSET.md); fin relative to ambient. Lost sensors get the
-   values that follow from the others (field/influence_fill.h), so that H is that of all sensors, whichever are lost. Not available in
-   trials. Where fin's H add up to less than a tenth there is no data.
-   gp: the same with weights that add up to 1 on each body and may be negative (preprocess/influence/gaussian.h). There is no data where
-   sensors remove less than a tenth of the prior's variance. Its standard deviation (uncertainty), and the smallest hot spot that the
-   nearest good sensor would show (blind), depend only on which sensors are good.
-   The scalar may also be the distance from one sensor in metres, or the difference from a baseline: the present field minus the earlier
-   one, both over the sensors usable in both (paper clamps readings, so clamped ones are subtracted there). For operators it is the position
-   of readings between their own tags' limits (field/limits.h), interpolated with the same weights; with paper the scalar falls to 0, which
-   is the middle. A sensor whose tag has no limits has no position and does not contribute; where it is the nearest, the scalar is flagged
-   so.
-   The field is linear in the readings: value = G v / G 1. G is kept in a bounded cache or recomputed for each sum, with identical bits; a
-   changed reading adds one column times its change, a changed quality recomputes the sum. Thread: one at a time per field (work is spread
-   over `workers`). */
+   weighting (Shepard, 1968; `shepard`), with Euclidean or geodesic distance D. paper: w_i = exp(d_i s_i) / sum_k exp(d_k s_k), value =
+   sum_i v~_i w_i d_i^o_i, d = max(0, 1 - D/R), v~ = clamp((v - MIN)/(MAX - MIN)); the scalar is MIN + value (MAX - MIN). shepard: value =
+   sum_i s_i v_i / D_i^p / sum_i s_i / D_i^p; exactly v_i where D_i = 0. A sensor contributes at a point if it belongs to the group and the
+   asset, its quality is not Bad, D is finite and D <= reach_m. If reach_m is set, weights are multiplied by (1 - D/reach_m)^2 (for
+   shepard's p = 2 these are the weights of Franke and Nielson, 1980), so that the field has no edge where a sensor's contribution ends.
+   Since weights are divided by their sum, the nearest sensor alone never seems to fade. In shepard a sensor of strength 0 never
+   contributes, a common factor on all strengths cancels, and decay has no effect. Sensors with an assumed position (`Place: equipment`)
+   never produce a gradient. If the group has a sensor with a known position on the asset, they do not contribute. If it has none, one
+   sensor with an assumed position gives the value of the whole asset: the one whose reading is nearest to trouble (by its own limits, else
+   the farthest from the middle of the group's range), never a mean. While all are Bad there is no data. There is no data where no sensor
+   contributes, and where a configured sensor that does not contribute is nearer than all that do (`fill` can have such places filled; they
+   are flagged uncertain). The value stored there continues that of the nearest contributing sensor; else it is MIN. harmonic, fin: sum_i
+   H_i v_i with H from the asset's influence file (protocol/ASSET.md); fin relative to ambient. Lost sensors get the values that follow from
+   the others (field/influence_fill.h), so that H, prepared for all sensors, can be used even if some are lost. Not available in trials.
+   Where fin's H add up to less than a tenth there is no data. gp: the same with weights that add up to 1 on each body and may be negative
+   (preprocess/influence/gaussian.h). There is no data where sensors remove less than a tenth of the prior's variance. Its standard
+   deviation (uncertainty), and the smallest hot spot that the nearest good sensor would show (blind), depend only on which sensors are
+   good. The scalar may also be the distance from one sensor in metres, or the difference from a baseline: the present field minus the
+   earlier one, both over the sensors usable in both (paper clamps readings, so clamped ones are subtracted there). For operators it is the
+   position of readings between their own tags' limits (field/limits.h), interpolated with the same weights; with paper the scalar falls to
+   0, which is the middle. A sensor whose tag has no limits has no position and does not contribute; where it is the nearest, the scalar is
+   flagged so. The field is linear in the readings: value = G v / G 1. G is kept in a bounded cache or recomputed for each sum, with
+   identical bits; a changed reading adds one column times its change, a changed quality recomputes the sum. Thread: one at a time per field
+   (work is spread over `workers`). */
 #ifndef FIELD_FIELD_H
 #define FIELD_FIELD_H
 #include "base/workers.h"
@@ -78,11 +74,11 @@ void field_clear_cache(struct field *field);
    a distance: not that sensor), or when out of memory. */
 const struct scalars *field_scalars(struct field *field, int asset, const struct field_params *params, const struct snapshot *snapshot);
 
-/* Does the same for the first `count` vertices only, those of a level of detail: scalars->ready of them are valid. */
+/* Does the same for the first `count` vertices only, those of a level of detail: the first scalars->ready vertices are valid. */
 const struct scalars *field_scalars_of(struct field *field, int asset, const struct field_params *params, const struct snapshot *snapshot,
                                        size_t count);
 /* Brings the fields of several small assets up to date in parallel, one core each. Large fields, trials and fields short of memory are left
-   to field_scalars_of(), which must be called next for all of them. counts: vertices wanted, by index in `assets`. */
+   to field_scalars_of(), which must be called next for every one of these assets. counts: vertices wanted, by index in `assets`. */
 void field_update_all(struct field *field, const int *assets, const size_t *counts, size_t asset_count, const struct field_params *params,
                       const struct snapshot *snapshot);
 /* Works towards field_scalars_of() for about `work` nanoseconds of one core, so that a large update blocks nobody. Returns true when that
@@ -90,7 +86,7 @@ void field_update_all(struct field *field, const int *assets, const size_t *coun
 bool field_advance(struct field *field, int asset, const struct field_params *params, const struct snapshot *snapshot, size_t count,
                    double work);
 
-/* Returns whether one sensor gives the value of the whole asset, because the positions of all are assumed. */
+/* Returns whether one sensor gives the value of the whole asset, because all its sensors have assumed positions. */
 bool field_is_assumed(struct field *field, int asset, const struct field_params *params);
 /* Returns whether the asset has a field to show with these parameters, given enough memory. */
 bool field_covers(struct field *field, int asset, const struct field_params *params);
@@ -103,7 +99,7 @@ struct field_place {
 struct field_point {
     double value; /* value in the unit of the shown quantity */
     bool no_data, uncertain;
-    double drawn_error; /* error bound of frames around this point; 0: less than 1/255 of the range */
+    double drawn_error; /* error bound of the values that frames show around this point; 0: less than 1/255 of the range */
 };
 /* Computes the field at a point from the readings: exactly for straight-line distances; geodesic ones follow from the distances at the
    triangle's corners. harmonic, fin and gp exist only as solutions on a mesh: they are interpolated between the vertices of the finest
@@ -115,16 +111,16 @@ bool field_at(struct field *field, int asset, const struct field_params *params,
 struct field_sensor {
     int tag;
     float surface_m[3]; /* position in the coordinates of the asset file */
-    uint32_t column;    /* number among the asset file's sensors; beyond them: a trial sensor */
-    bool in_file;       /* whether the sensor's geodesic distances are in its column of the file; if not, see along_m */
+    uint32_t column;    /* index among the asset file's sensors; at least their count: a trial sensor */
+    bool in_file;       /* true: the file has a column with the sensor's geodesic distances; false: they are in along_m */
     /* geodesic distance of each vertex, if not in the file; NULL: not known yet, or straight-line distances are used */
     const float *along_m;
     float strength, decay;
-    float value;                        /* value as summed: for `paper` 0..1, for a difference the difference */
+    float value;                        /* value that enters the sum: for `paper` 0..1; for a difference the reading minus the baseline's */
     bool configured, usable, uncertain; /* configured: the sensor would contribute if its quality were good */
 };
 /* Lists the inputs of the field on an asset, as the last field_scalars() with these parameters used them. *radius_m receives R of Algorithm
-   1. Returns their number; the caller frees *out (mem_free). 0: there are none. */
+   1. Returns their number; the caller frees *out (mem_free). 0: no sensor contributes. */
 size_t field_sensors(struct field *field, int asset, const struct field_params *params, struct field_sensor **out, float *radius_m);
 
 #endif

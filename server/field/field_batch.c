@@ -34,7 +34,8 @@ void field_update_all(struct field *field, const int *assets, const size_t *coun
         if (field_begin_update(field, state, snapshot, counts[i]) && state->update)
             together.states[begun++] = state;
     }
-    for (size_t i = 0; i < begun; i++) /* checked after all updates have begun, because beginning one may evict the columns of others */
+    /* checked only after all updates have begun, because beginning an update may evict cached columns that another one needs */
+    for (size_t i = 0; i < begun; i++)
         if (update_is_light(together.states[i]))
             together.states[together.count++] = together.states[i];
     workers_for(field->workers, together.count, 1, update_some, &together);

@@ -58,7 +58,7 @@ static bool weights_may_go(const struct weights *weights)
     return weights->users == 0 || weights->columns;
 }
 
-/* Returns the smallest tick of last use among everything evictable; UINT64_MAX: nothing is. */
+/* Returns the earliest last use (in ticks) of all entries that may be evicted; UINT64_MAX: no entry may be. */
 static uint64_t oldest_use(const struct field *field, const struct field_params *keep)
 {
     uint64_t oldest = UINT64_MAX;
@@ -109,9 +109,9 @@ bool field_cache_make_room(struct field *field, size_t need, const struct field_
     return true;
 }
 
-/* Columns are cached from the second sum on; while a user drags a parameter there is no second one. They evict only entries last used
-   before the previous use of these weights, or two busy fields would evict each other forever. If not all fit, as many as possible are
-   cached, from the first vertices on, which all levels of detail use. */
+/* Caches columns when they are summed for the second time, because weights are summed only once while a user drags a parameter. Columns
+   evict only entries last used before the previous use of these weights, or two busy fields would evict each other forever. If not all fit,
+   as many as possible are cached, from the first vertices on, which all levels of detail use. */
 void field_cache_keep_columns(struct field *field, struct weights *weights, const struct field_params *params, uint64_t previous)
 {
     size_t bytes = weights_column_bytes(weights), had = weights_kept_bytes(weights);
@@ -119,7 +119,7 @@ void field_cache_keep_columns(struct field *field, struct weights *weights, cons
         return;
     if (had == 0)
         field_cache_make_room(field, bytes < field->bound ? bytes : field->bound, params, previous);
-    else if (field->bytes - had + bytes > field->bound) /* there is still no room for all columns */
+    else if (field->bytes - had + bytes > field->bound) /* does not try again while there is no room for all columns */
         return;
     else
         columns_drop(field, weights);

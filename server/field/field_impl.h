@@ -18,11 +18,11 @@ struct field {
     struct trial_layout {                   /* layouts with trial positions */
         const struct trial *trial;          /* reference to the trial */
         int asset, group;
-        struct field_layout *layout; /* layout of the trial; NULL: the trial leaves no sensor there */
+        struct field_layout *layout; /* layout with the trial's positions; NULL: with them, the asset has no sensor of the group */
         struct trial_layout *next;
     } * tried;
     size_t bytes, bound;
-    uint64_t tick; /* counts calls, as a clock for least recent use */
+    uint64_t tick; /* counts calls; serves as the clock ("ticks") for evicting the least recently used entries */
     uint64_t versions;
 };
 
@@ -51,7 +51,7 @@ void field_cache_remove_state(struct field *field, struct field_state **link);
 /* Evicts entries last used before tick `before`, except states of the parameters `keep`, until `need` more bytes fit the limit: the oldest
    first, an eighth of the time span at once, so that searches are rare. Returns false if the bytes do not fit. */
 bool field_cache_make_room(struct field *field, size_t need, const struct field_params *keep, uint64_t before);
-/* Starts caching the columns of weights that are summed for the second time or later. previous: the tick of their last use. */
+/* Starts caching the columns of weights if they are summed for at least the second time. previous: tick of their previous use. */
 void field_cache_keep_columns(struct field *field, struct weights *weights, const struct field_params *params, uint64_t previous);
 /* Drops every state and weights object made from this trial's layout. */
 void field_forget_trial_layout(struct field *field, const struct trial_layout *tried);

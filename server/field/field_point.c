@@ -32,7 +32,7 @@ static double error_near(const struct field_state *state, const struct field_pla
     return most > state->error_limit ? most * state->error_scale : 0;
 }
 
-struct single_point { /* a layout with a single point */
+struct single_point { /* layout (sensors and distances) for a single point in place of the vertices */
     float position_m[1][3], parts[1][3], away_m[1][3];
     uint32_t corners[1][3];
     struct layout_points points;
@@ -61,7 +61,7 @@ static void point_distance(const struct field_state *state, const struct single_
     out->value = out->no_data ? out->value : far_m;
 }
 
-/* Sums the sensors' weights at the point, with the same arithmetic as at vertices, and the readings that the scalars show. */
+/* Sums the sensors' weights at the point, with the same arithmetic as at vertices, multiplied by the readings that the scalars show. */
 static void point_sum(const struct field_state *state, const struct single_point *point, struct field_point *out)
 {
     const size_t sensors = point->layout.sensor_count;

@@ -39,7 +39,7 @@ void field_trials_finish(struct field *field)
         tried_remove(field, &field->tried);
 }
 
-/* Frees layouts of dropped trials: dragging a sensor leaves one behind at every step. */
+/* Frees layouts of dropped trials: dragging a sensor leaves an old layout behind at every step. */
 static void forget_dropped(struct field *field, uint32_t keep)
 {
     for (struct trial_layout **link = &field->tried; *link;)
@@ -57,7 +57,7 @@ static struct trial_layout *find(const struct field *field, int asset, const str
     return tried;
 }
 
-/* Returns parameters for one value on the whole asset, if no sensor position is known on which the group's parameters could depend. */
+/* Returns parameters for a constant field on the asset: all sensor positions are assumed, so the group's own parameters have no effect. */
 static const struct field_params *even_params(struct field *field, int asset, const struct field_params *params, struct field_params *room)
 {
     const struct field_layout *layout = field_layout(field, asset, params);
@@ -95,7 +95,7 @@ static const struct field_params *trial_params(struct field *field, int asset, c
     return room;
 }
 
-/* Returns parameters for SHOW_BLIND: it depends on distances alone, also where the group's interpolation is a prepared one. */
+/* Returns parameters for SHOW_BLIND: it depends on distances alone, even if the group uses a prepared interpolation. */
 static const struct field_params *blind_params(const struct field_params *params, struct field_params *room)
 {
     if (params->show != SHOW_BLIND)

@@ -7,7 +7,8 @@
 
 #include "base/mem.h"
 
-#define MIN_PIVOT_PART 1e-9 /* smallest pivot relative to a sensor's precision; below it nothing determines a lost sensor, and 0 is used */
+/* smallest valid pivot, relative to the sensor's precision; below it, no used sensor determines the lost one, whose value is set to 0 */
+#define MIN_PIVOT_PART 1e-9
 
 struct influence_fill {
     const double *precision;
@@ -101,7 +102,7 @@ static double own_of_used(const struct influence_fill *fill, size_t sensor, doub
     return own;
 }
 
-/* Returns 1 / ((P_LL)^-1)_ll, from a column of the factor's inverse. */
+/* Returns 1 / ((P_LL)^-1)_ll, the variance of lost sensor l, from a column of the factor's inverse. */
 static double own_of_lost(const struct influence_fill *fill, size_t lost, double *x)
 {
     const size_t n = fill->lost_count;

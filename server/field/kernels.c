@@ -15,7 +15,8 @@
 #define KERNEL SIMD_CLONES("avx512f", "avx2")
 
 #if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC optimize("no-trapping-math") /* the compiler may evaluate both sides of a choice, which SIMD needs */
+/* floating-point exceptions do not matter, so the compiler may evaluate both sides of a choice, as SIMD code must */
+#pragma GCC optimize("no-trapping-math")
 #endif
 
 #define TINY 1e-37f
@@ -125,7 +126,8 @@ KERNEL void kernel_top_shepard(const float *restrict distance_m, const float *re
     }
 }
 
-/* Returns log2(e) d strength, with d = max(0, (R - D)/R), exactly 0 at R: a small decay amplifies small values. */
+/* Returns log2(e) d strength, with d = max(0, (R - D)/R), exactly 0 at R: exactness matters because a small decay exponent amplifies small
+   values. */
 static inline float exponent_of(float distance_m, float radius_m, float per_radius, float strength, float *d)
 {
     float near_one = (radius_m - distance_m) * per_radius;

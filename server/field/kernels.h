@@ -7,7 +7,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define KERNEL_BLOCK 256         /* vertices processed at a time, so that their data stays in the L1 cache */
+#define KERNEL_BLOCK 256         /* number of vertices processed at a time, so that their data stays in the L1 cache */
 #define KERNEL_COLUMNS 8         /* columns added at a time */
 #define KERNEL_LINE 16           /* floats per cache line */
 #define KERNEL_FACTOR_LIMIT 1e4f /* largest strength and decay: exponents stay within the range of the loops' integer conversions */
@@ -62,11 +62,11 @@ void kernel_add(double *restrict sum, const float *const *columns, const double 
 void kernel_add_both(double *restrict sum, double *restrict total, const float *const columns[KERNEL_COLUMNS],
                      const double factors[KERNEL_COLUMNS], size_t count);
 
-/* The rule value = clamp(sum / weight * scale + offset, low, high); `empty` where weight is 0. */
+/* The rule that turns sums into values: value = clamp(sum / weight * scale + offset, low, high); `empty` where weight is 0. */
 struct kernel_value {
     float scale, offset, low, high, empty;
 };
-/* Applies the rule to each vertex's sum and weight. */
+/* Applies struct kernel_value's rule to each vertex's sum and weight. */
 void kernel_value(const struct kernel_value *rule, const double *restrict sum, const float *restrict weight, size_t count,
                   float *restrict value);
 /* Stores values into scalars. Returns the largest change, and sets *changed if any differs. */

@@ -19,8 +19,8 @@ static bool of_group(const struct scene *scene, const struct scene_sensor *senso
     return scene->plant->tags[sensor->tag].group == group;
 }
 
-/* Returns whether the group has a sensor with a known position, in which case those with an assumed one are ignored. Trial positions are
-   known. */
+/* Returns whether the group has a sensor with a known position, in which case sensors with an assumed position are ignored. Trial positions
+   count as known. */
 static bool has_known(const struct scene *scene, int asset, int group, const struct trial *trial)
 {
     const struct scene_asset *from = &scene->assets[asset];
@@ -57,7 +57,7 @@ static void add_sensor(struct field_layout *layout, struct layout_sensor sensor)
     layout->sensors[layout->sensor_count++] = sensor;
 }
 
-/* number: index among the group's sensors with a known position. */
+/* `number`: index among the group's sensors with a known position. */
 static void add_prepared(struct field_layout *layout, const struct scene_sensor *sensor, size_t number)
 {
     const struct asset_view *view = &layout->file->view;
@@ -149,8 +149,9 @@ void layout_set_point(const struct asset_view *file, const struct layout_points 
         points->away_m[point][k] = parts[k] == 1 ? 0 : vecf_distance(points->positions_m[point], file->positions_m[corners[k]]);
 }
 
-/* Returns the distance of a point from a source laid out in the triangle's plane: |p - s|^2 = sum_k part_k (|corner_k - s|^2 - |corner_k -
-   p|^2). Where paths from two sides meet within the triangle, no such source exists; the triangle inequality then bounds the distance. */
+/* Returns the distance of a point from a virtual source in the triangle's plane that has the given distances from the corners: |p - s|^2 =
+   sum_k part_k (|corner_k - s|^2 - |corner_k - p|^2). Where paths from two sides meet within the triangle, no such source exists; the
+   triangle inequality then bounds the distance. */
 static float along_at(const struct field_layout *layout, const struct layout_sensor *sensor, const float *along_m, size_t point)
 {
     const float *part = layout->points->parts[point], *away_m = layout->points->away_m[point];

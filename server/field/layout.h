@@ -9,10 +9,10 @@
 
 struct layout_sensor {
     int tag;               /* index in plant->tags */
-    uint32_t column;       /* number among the asset file's sensors; a trial sensor has a number of its own beyond them */
+    uint32_t column;       /* index among the asset file's sensors; trial sensors have indices beyond the last of these */
     float surface_m[3];    /* position in the coordinates of the asset file */
     uint32_t vertex;       /* vertex nearest to the sensor */
-    bool tried;            /* whether this is a trial sensor: its geodesic distances are not in the file, see tried_m */
+    bool tried;            /* true: a trial sensor, whose geodesic distances are in tried_m and not in the file */
     const float *tried_m;  /* geodesic distance of each vertex; NULL: not known yet */
     const float *heat_m;   /* distance of each vertex by the heat method; NULL: not prepared */
     float strength, decay; /* as configured, >= 0 */
@@ -38,7 +38,7 @@ struct field_layout {
     struct layout_sensor *sensors;
     size_t sensor_count, vertex_count;
     const struct layout_points *points; /* points at which distances are requested; NULL: at the file's vertices */
-    bool assumed; /* whether the positions of all sensors are assumed: then one sensor gives the value of the whole asset (field.h) */
+    bool assumed; /* true: the positions of all sensors are assumed, so one sensor gives the value of the whole asset (field.h) */
     float largest_m[DISTANCES]; /* largest distance for each distance_mode; 0: not computed yet */
     uint32_t trial;             /* trial that some of the positions belong to; 0: none */
 };
@@ -50,8 +50,8 @@ struct field_layout *layout_create(const struct scene *scene, int asset, int gro
 bool layout_is_touched(const struct scene *scene, int asset, int group, const struct trial *trial);
 /* Frees the layout. &NULL is fine; sets it to NULL. */
 void layout_destroy(struct field_layout **layout);
-/* Returns a sensor's geodesic distances of each vertex by this mode; if they were not prepared (trial sensors), those of the other mode.
-   NULL: the mode is straight-line, or they are in the asset file, or not known yet. */
+/* Returns a sensor's geodesic distances of each vertex by this mode; if that mode's were not prepared (trial sensors), returns those of the
+   other geodesic mode. NULL: the mode is straight-line, or they are in the asset file, or not known yet. */
 const float *layout_along(const struct layout_sensor *sensor, enum distance_mode mode);
 /* Returns whether the sensor's distances by this mode are in its column of the asset file. */
 bool layout_is_in_file(const struct layout_sensor *sensor, enum distance_mode mode);

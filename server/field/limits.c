@@ -4,9 +4,9 @@
 
 #include <math.h>
 
-#define MAX_ALONE 1.999 /* H without HH: beyond H, but below the position of HH */
+#define MAX_ALONE 1.999 /* largest position beyond H for a tag without HH: below +2, the position of HH */
 
-/* One side's limits, mirrored so that values rise towards trouble. */
+/* The limits of one side (high or low), with the low side mirrored, so that larger values are always closer to an alarm. */
 struct limit_side {
     double inner, outer; /* NaN: none */
 };

@@ -16,7 +16,7 @@
 struct neighbours {
     struct field_layout *layout;
     const struct influence_entry *entry; /* NULL: predictions come from distances */
-    float *along_m;                      /* [to][from]; INFINITY: no path, or unknown. NULL: too many sensors */
+    float *along_m; /* distance by [to][from]; INFINITY: no path, or unknown. NULL: not computed, because there are too many sensors */
 };
 
 static const struct influence_entry *entry_of(const struct field_layout *layout)

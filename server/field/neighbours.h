@@ -26,14 +26,14 @@ void neighbours_destroy(struct neighbours **neighbours); /* &NULL is fine; sets 
 size_t neighbours_count(const struct neighbours *neighbours);
 /* Returns the tag of a sensor. */
 int neighbours_tag(const struct neighbours *neighbours, size_t sensor);
-/* Returns the reading for which, if all sensors have it, the prediction is the same: `ambient` for fin; 0 for the others, where any value
-   is. */
+/* Returns the reading for which, if all sensors have it, the prediction is the same: `ambient` for fin; 0 for the others, for which any
+   reading has this property. */
 double neighbours_level(const struct neighbours *neighbours);
 /* Predicts each sensor from the others. values: by sensor; NaN: not usable. out: by sensor. */
 void neighbours_predict(const struct neighbours *neighbours, const double *values, struct neighbour *out);
 
-/* Lists the sensors nearest to one along the surface, nearest first, without those marked in apart[sensor] and those that no path leads to.
-   out: room for `most`. Returns their number. */
+/* Lists the sensors nearest to one along the surface, nearest first, leaving out sensors with apart[sensor] set, and those to which no path
+   leads. out: room for `most`. Returns their number. */
 size_t neighbours_nearest(const struct neighbours *neighbours, size_t sensor, const bool *apart, size_t most, size_t *out);
 
 /* A cache of the latest predictions for each asset and group; zero-initialise. The scene must outlive the cache. Thread: one. */

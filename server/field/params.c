@@ -12,7 +12,7 @@
 #include "field/limits.h"
 #include "plant/influence.h"
 
-static const double DIFFERENCE_PART = 0.25; /* part of the group's range that is shown on either side of 0 */
+static const double DIFFERENCE_PART = 0.25; /* for differences: part of the group's range that is shown on either side of 0 */
 
 void field_params_default(const struct plant *plant, int group, struct field_params *params)
 {
@@ -125,7 +125,7 @@ static double distance_range(const struct scene *scene, const struct field_param
     return 1;
 }
 
-/* Returns the largest deviation of all assets: if it was fitted, each asset has its own. */
+/* Returns the largest standard deviation of the prior among all assets: if preparation fitted it, each asset has its own. */
 static double deviation_range(const struct scene *scene, int group)
 {
     const double stated = scene->plant->groups[group].gp.deviation;

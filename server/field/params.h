@@ -26,11 +26,13 @@ struct field_params {
     int sensor;        /* tag whose distance is shown; -1: none */
     uint32_t baseline; /* id of the baseline that a difference is taken from; 0: none */
     uint32_t trial;    /* trial sensor positions (field/trials.h); 0: none */
-    int slot; /* slot of the instant whose readings are shown (value/snapshot_cache.h), so that its fields are cached separately; 0: now */
+    /* slot of the instant whose readings are shown (value/snapshot_cache.h), so that fields of different instants are cached separately; 0:
+       now */
+    int slot;
     enum interpolation interpolation;
     enum distance_mode distance;
     enum fill_mode fill;
-    double strength, decay; /* factors on each sensor's own values; 1: as configured */
+    double strength, decay; /* factors on each sensor's strength and decay as configured; 1: unchanged */
     double power;           /* exponent p of shepard */
     double radius_m;        /* R of paper; 0: the largest distance on the asset from any of its configured sensors */
     double reach_m;         /* INFINITY: no limit */
@@ -57,7 +59,7 @@ const struct field_override *field_params_override_of(const struct field_params 
 bool field_params_cover(const struct field_params *params);
 /* Writes the default range of the colour map: the group's MIN and MAX; for distances 0 to the largest, rounded up; for differences a
    quarter of the range below and above 0; for the operator's view all positions between limits; for uncertainty 0 to the deviation of the
-   prior; for hot spots a twentieth of the group's range to all of it. */
+   prior; for hot spots a twentieth of the group's range to the whole range. */
 void field_default_range(const struct scene *scene, const struct field_params *params, double *min, double *max);
 
 #endif

@@ -7,29 +7,31 @@
 
 struct scalar {
     float value; /* engineering units; may exceed MIN and MAX. Finite even where there is no data, so that it can be interpolated */
-    /* distance beyond the border of the data, encoded by weights_lacking(): above 127 there is none; as a number, so that the border is
-       exact between vertices */
+    /* distance beyond the border of the area with data, encoded by weights_lacking(). Above 127: no data. A distance and not a flag, so
+       that the border is exact when interpolated between vertices */
     uint8_t lacking;
     /* A value above 127 means that at least half of the weight is on Uncertain sensors, or that the value is filled. The byte is
-       proportional to that part, so this border is exact after interpolation, too. It is also 255 where triangles deviate from the field
-       (struct scalars: drawn_error). */
+       proportional to that part of the weight, so that the border at 127 is exact after interpolation, too. It is also 255 where triangles
+       deviate from the field (struct scalars: drawn_error). */
     uint8_t uncertain;
     /* 255: in the operator's view, the nearest sensor is good but its tag has no limits, so there is data without a value */
     uint8_t no_limits;
-    uint8_t no_data; /* 255: no good sensor reaches, or the nearest configured one is Bad; else 0. Follows from `lacking` */
+    uint8_t no_data; /* 255: no good sensor reaches, or the nearest configured one is Bad; else 0. Derived from `lacking` */
 };
 
 struct scalars {
     int asset;
-    uint64_t version;       /* grows with every real change; one counter for the whole field, so that equal versions mean equal contents */
+    /* grows with every real change; from one counter for all assets of the field, so equal versions mean equal contents */
+    uint64_t version;
     uint64_t flags_version; /* version of the last change of a flag */
-    double travel;          /* sum of the largest changes of each version: scalars uploaded at travel t err by at most travel - t */
-    size_t count;           /* = vertex_count of the asset file */
-    size_t ready;           /* number of vertices, from the first, that are up to date: as many as the requested levels need */
-    uint64_t grown;         /* counts how often `ready` grew */
+    /* sum, over all versions so far, of the largest change of a value: scalars uploaded at travel t err by at most travel - t */
+    double travel;
+    size_t count;   /* = vertex_count of the asset file */
+    size_t ready;   /* the first `ready` vertices are up to date: as many as the requested levels of detail need */
+    uint64_t grown; /* counts how often `ready` grew */
     const struct scalar *at;
-    /* error bound of triangles, in the unit of values, if a large part of the surface errs by more than 1/255 of the range; else 0. Such
-       vertices are marked uncertain in either case */
+    /* error bound of interpolation within triangles, in the unit of values, if it exceeds 1/255 of the range on a large part of the
+       surface; else 0. Vertices with such errors are marked uncertain in either case */
     double drawn_error;
     int64_t oldest_age_ns; /* age of the oldest contributing reading; INT64_MAX: none contributes */
 };

@@ -19,7 +19,7 @@ struct scale {
     double min, max; /* min < max; both above 0 if log */
     bool log;
     double interval;             /* width of bands; 0: none */
-    double breaks[SCALE_BREAKS]; /* ascending; separate bands instead of the interval */
+    double breaks[SCALE_BREAKS]; /* ascending values that separate bands of colour; they replace `interval` */
     int break_count;
 };
 enum { SCALE_BELOW = -1, SCALE_ABOVE = 256 };
@@ -28,11 +28,11 @@ enum { SCALE_BELOW = -1, SCALE_ABOVE = 256 };
 double scale_place(const struct scale *scale, double value);
 /* Returns the value at a position; the inverse of scale_place(). */
 double scale_value(const struct scale *scale, double place);
-/* Returns the colour number of a finite value: 0..255, SCALE_BELOW or SCALE_ABOVE. */
+/* Returns the index in the colour map for a finite value: 0..255, SCALE_BELOW or SCALE_ABOVE. */
 int scale_index(const struct scale *scale, double value);
 /* Writes the colour of a value. */
 void scale_look_up(const struct scale *scale, double value, uint8_t rgb[3]);
-/* Writes the values where bands meet, ascending. Returns their number; 0 if there are none or more than SCALE_EDGES. */
+/* Writes the values where bands meet, ascending. Returns the number of values; 0 if there are no bands, or more than SCALE_EDGES values. */
 int scale_edges(const struct scale *scale, double edges[SCALE_EDGES]);
 /* Returns the smallest change of a value that can change its colour. */
 double scale_step(const struct scale *scale);

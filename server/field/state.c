@@ -11,8 +11,8 @@
 #include "value/quality.h"
 
 #define FLAG 255
-#define FILLED_DOUBT 0.1   /* largest share of a lost sensor's value that may rest on uncertain sensors without being flagged */
-#define READING_LIMIT 1e30 /* larger values would overflow sums of floats */
+#define FILLED_DOUBT 0.1   /* if more than this share of a lost sensor's filled-in value rests on Uncertain sensors, the value is flagged */
+#define READING_LIMIT 1e30 /* values are limited to this, since larger ones would overflow sums of floats */
 
 struct field_state *state_create(int asset, struct field_layout *layout, const struct field_params *params)
 {
@@ -125,7 +125,7 @@ static double value_of(const struct field_state *state, const struct plant_tag *
 static struct state_input input_of(const struct field_state *state, const struct plant_tag *tag, const struct reading *reading)
 {
     bool good = !quality_is_bad(reading->quality) && isfinite(reading->value);
-    if (field_params_cover(&state->params)) /* covers do not depend on readings */
+    if (field_params_cover(&state->params)) /* coverage quantities (SHOW_UNCERTAINTY, SHOW_BLIND) do not depend on readings */
         return (struct state_input){ .usable = good ? SENSOR_USED : SENSOR_LOST };
     double value = good ? value_of(state, tag, reading->value) : 0;
     return (struct state_input){
@@ -149,15 +149,15 @@ static struct state_input less(struct state_input now, struct state_input then)
     };
 }
 
-/* Returns how near a reading is to trouble: by its tag's limits if it has any, else by its distance from the middle of the group's
-   range. */
+/* Returns how near a reading is to trouble; larger is nearer. With limits: the absolute position between its tag's limits (0: middle, 1: at
+   a limit); else the distance from the middle of the group's range, relative to half the range, below 1. */
 static double severity_of(const struct plant_group *group, const struct plant_tag *tag, double reading)
 {
     double place = limit_place(group, tag, reading), middle = (group->min + group->max) / 2;
     return isfinite(place) ? fabs(place) : fmin(fabs(reading - middle) / (group->max - middle), 0.999);
 }
 
-/* Among sensors with an assumed position, selects the one nearest to trouble to give the asset's value; the first of equal ones. */
+/* Among sensors with an assumed position, selects the one nearest to trouble to give the asset's value; of equally near ones the first. */
 static void choose_one(struct field_state *state, const struct snapshot *snapshot)
 {
     const struct field_layout *layout = state->layout;

@@ -20,13 +20,13 @@ struct field_state {
     struct weights *weights; /* counted in weights->users */
     struct scalars scalars;  /* scalars.version 0: nothing computed yet */
     struct scalar *at;
-    double *sums;                    /* numerator of each vertex; NULL: few sensors, always summed again */
-    size_t room;                     /* number of vertices, from the first, for which `at` and `sums` have room */
-    double error_limit;              /* vertices with a larger weights->errors are marked uncertain; initially 0 */
-    unsigned errors_version;         /* version of weights->errors that the flags show */
-    double error_scale;              /* factor from weights->errors to the largest error drawn */
-    unsigned added;                  /* updates since the sums were last recomputed */
-    struct state_input *now, *shown; /* inputs by sensor of the layout: requested, and contained in the scalars */
+    double *sums;            /* by vertex: numerator of the value; NULL: not stored, because few sensors are summed again as quickly */
+    size_t room;             /* `at` and `sums` have room for the first so many vertices */
+    double error_limit;      /* vertices with a larger weights->errors are marked uncertain; initially 0 */
+    unsigned errors_version; /* version of weights->errors that the flags are based on */
+    double error_scale;      /* factor from weights->errors to the largest error drawn */
+    unsigned added;          /* updates since the sums were last recomputed */
+    struct state_input *now, *shown; /* by sensor of the layout: inputs that are requested now, and inputs that the scalars contain */
     uint8_t *usable;                 /* enum sensor_use of `now`, by sensor of the layout */
     struct state_list {              /* storage for weights_terms: of all members, and of the changed ones */
         uint32_t *members;
@@ -34,7 +34,7 @@ struct field_state {
         uint8_t *marked;
     } lists[2];
     struct update *update; /* update in progress; NULL: none */
-    size_t wanted;         /* largest number of vertices requested since the last update */
+    size_t wanted;         /* the first so many vertices were requested since the last update */
     uint64_t used;
     struct field_state *next;
 };
@@ -56,7 +56,7 @@ void state_read(struct field_state *state, const struct snapshot *snapshot, cons
 /* For prepared interpolations: gives lost sensors in state->now the values that follow from the others. The weights must be those of
    state->now. */
 void state_fill(struct field_state *state);
-/* Returns whether the state's weights are for other usable sensors than those of state->now. */
+/* Returns whether the state's weights are for a set of usable sensors that differs from that of state->now. */
 bool state_needs_weights(const struct field_state *state);
 /* Returns whether the scalars show something else than state->now. */
 bool state_is_behind(const struct field_state *state);

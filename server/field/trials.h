@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Trials: sets of sensor positions that a user tries out, each under a number that views refer to. A set is immutable; each step of
-   dragging a sensor makes a new one. Numbers are never reused. Thread: any. */
+/* Trials: sets of sensor positions that a user tries out, each with an id that views refer to. A set is immutable; each step of dragging a
+   sensor makes a new one. Ids are never reused. Thread: any. */
 #ifndef FIELD_TRIALS_H
 #define FIELD_TRIALS_H
 #include <stdbool.h>
@@ -40,10 +40,10 @@ struct trials;
 struct trials *trials_create(void);
 /* Frees the registry. &NULL is fine; sets it to NULL. */
 void trials_destroy(struct trials **trials);
-/* Adds a trial of 1..TRIAL_SENSORS sensors; copies them and takes references of its own. Returns the trial's number, never 0. */
+/* Adds a trial of 1..TRIAL_SENSORS sensors; copies them and takes references of its own. Returns the trial's id, never 0. */
 uint32_t trials_put(struct trials *trials, const struct trial_sensor *sensors, size_t count);
 enum { TRIALS_KEPT = 16 };
-/* Marks a trial as no longer wanted; the newest TRIALS_KEPT of these stay for frames under way. 0 is fine. */
+/* Marks a trial as no longer wanted; the newest TRIALS_KEPT such trials are kept for frames under way. 0 is fine. */
 void trials_drop(struct trials *trials, uint32_t id);
 /* Returns whether the trial exists and was not dropped. */
 bool trials_live(struct trials *trials, uint32_t id);

@@ -14,24 +14,28 @@
 
 #define FLAG 255
 #define DRAWN_ERROR (1 / 255.0) /* fraction of the range: vertices that may be drawn with a larger error are marked uncertain */
-#define ERROR_MARGIN 1.1        /* factor by which a newly chosen limit is too strict */
-#define ERROR_SLACK 1.5         /* a limit that is too strict by more than this factor is chosen again */
-#define MAX_BLIND 1000.0        /* largest undetectable hot spot shown, in multiples of the group's range */
-#define STEP_LIMIT 1e6          /* largest step in multiples of the range: a larger one would leave its rounding in the sums permanently */
-#define MAX_ADDED 4096          /* updates before all is summed again: the accumulated rounding stays below 1e-9 of the range */
-#define JOB_WORK 30000.0        /* nanoseconds of work that justify waking another thread */
-#define SMALL_WORK 1e6          /* updates with less work are not split if there are many */
-#define MAKE_WORK 1.0           /* nanoseconds to compute and add one column at one vertex */
-#define ADD_WORK 0.15           /* nanoseconds to add it only */
+#define ERROR_MARGIN 1.1        /* a newly chosen limit of the error is stricter than necessary by this factor */
+#define ERROR_SLACK 1.5         /* a limit is replaced once it is stricter than necessary by more than this factor */
+#define MAX_BLIND 1000.0        /* largest undetectable hot spot shown, in multiples of the group's range; larger ones are shown as this */
+/* largest change of a reading, in multiples of the range, that is added to the sums; after a larger one, all is summed again, since its
+   rounding errors would stay in the sums */
+#define STEP_LIMIT 1e6
+/* number of updates after which all is summed again, so that the accumulated rounding stays below 1e-9 of the range */
+#define MAX_ADDED 4096
+#define JOB_WORK 30000.0 /* a thread is woken only for at least so many nanoseconds of work */
+#define SMALL_WORK 1e6   /* nanoseconds; if many assets are updated, an update with less work than this runs on one thread */
+#define MAKE_WORK 1.0    /* nanoseconds to compute and add one column at one vertex */
+#define ADD_WORK 0.15    /* nanoseconds to add it only */
 
 struct update {
     struct field_state *state;
     struct weights_terms all, changed;
     struct kernel_value rule;
-    size_t next, old, end; /* block numbers: next to do, end of those shown before, end of those to be shown */
-    bool anew;             /* sums all columns; else, below `old`, only changed ones */
-    bool flags;            /* qualities changed, and so may flags; otherwise flags below `old` stay */
-    bool marks;            /* whether at least one sensor is Uncertain */
+    /* indices of blocks: next: to update next; old: end of the blocks shown before; end: end of the blocks to be shown */
+    size_t next, old, end;
+    bool anew;  /* true: sums all columns; false: in blocks below `old`, adds only changed columns */
+    bool flags; /* true: qualities changed, so flags may change; false: flags in blocks below `old` stay */
+    bool marks; /* whether at least one sensor is Uncertain */
     pthread_mutex_t lock;
     /* --- below: under lock */
     bool value_changed, flag_changed;
@@ -43,7 +47,7 @@ static size_t blocks_of(size_t vertex_count)
     return (vertex_count + KERNEL_BLOCK - 1) / KERNEL_BLOCK;
 }
 
-/* --- what there is to do ---------------------------------------------------------------------------------------------------- */
+/* --- choosing the work ------------------------------------------------------------------------------------------------------ */
 
 /* Lists the members to add: all, or those that changed. */
 static struct weights_terms choose_terms(struct field_state *state, bool all)
@@ -88,7 +92,8 @@ void update_rule(const struct field_state *state, const struct state_input *inpu
             .scale = scale, .offset = offset, .low = difference ? -scale : offset, .high = difference ? scale : (float)group->max
         };
     } else {
-        bool around = state->params.interpolation == INTERPOLATION_FIN; /* values are relative to ambient, so 0 is one of them */
+        /* values are relative to ambient, so the offset is ambient and 0 a valid value */
+        bool around = state->params.interpolation == INTERPOLATION_FIN;
         float offset = around && !difference && !places ? (float)group->ambient : 0;
         *rule = (struct kernel_value){ .scale = 1, .offset = offset, .low = around ? offset : FLT_MAX, .high = around ? offset : -FLT_MAX };
         if (state->params.interpolation == INTERPOLATION_GP) /* values may exceed the readings */
@@ -102,8 +107,8 @@ void update_rule(const struct field_state *state, const struct state_input *inpu
     rule->empty = difference || places ? 0 : (float)group->min;
 }
 
-/* Returns the largest value that a sum of error weights may be multiplied by. For most interpolations they add up to 0, so only the spread
-   of the readings matters; for fin, ambient counts as a reading. */
+/* Returns the factor from error weights to the largest error of a value. For most interpolations they add up to 0, so only the spread of
+   the readings matters; for fin, ambient counts as a reading. */
 static double error_scale(const struct field_state *state)
 {
     double low = INFINITY, high = -INFINITY;
@@ -137,8 +142,8 @@ bool update_is_in_range(const struct field_state *state)
     return error_scale(state) <= error_range(state);
 }
 
-/* Chooses the error of weights above which vertices are marked. The limit stays while it is safe and not much too strict, so that slightly
-   changed readings do not rebuild all flags. Returns whether it changed visibly. */
+/* Chooses the limit of the error of weights above which vertices are marked uncertain. The limit stays while it is safe and not much too
+   strict, so that slightly changed readings do not rebuild all flags. Returns whether flags must be set again. */
 static bool choose_error_limit(struct field_state *state)
 {
     const struct weights *weights = state->weights;
@@ -187,10 +192,11 @@ void update_begin(struct field_state *state, size_t count)
 
 /* --- block by block --------------------------------------------------------------------------------------------------------- */
 
-/* Returns the flag for the part of the weight on Uncertain sensors. filled: flag for how far a lost sensor is the nearest. */
+/* Returns the flag for the part of the weight on Uncertain sensors. filled: the flag for how far a lost sensor is the nearest one; the
+   larger flag counts. */
 static uint8_t uncertain_of(double marked, double total, uint8_t filled)
 {
-    double part = total > 0 && marked > 0 ? 2 * marked / total : 0; /* some of gp's weights are negative */
+    double part = total > 0 && marked > 0 ? 2 * marked / total : 0; /* weights of gp may be negative, so the part is clamped */
     uint8_t leans = (uint8_t)(part >= 1 ? 128 + (int)(127 * (fmin(part, 2) - 1)) : (int)(127 * part));
     return leans > filled ? leans : filled;
 }
@@ -198,7 +204,7 @@ static uint8_t uncertain_of(double marked, double total, uint8_t filled)
 void update_flags(const struct field_state *state, const struct weights *weights, size_t vertex, double total, double marked,
                   struct scalar *at)
 {
-    bool blind = state->params.show == SHOW_BLIND; /* areas around lost sensors are covered, too */
+    bool blind = state->params.show == SHOW_BLIND; /* SHOW_BLIND has data around lost sensors, too */
     bool fill = blind || state->params.fill == FILL_NEIGHBOURS, filled = fill && weights->place[vertex] == PLACE_LOST;
     at->no_limits = weights->place[vertex] == PLACE_NO_LIMITS ? FLAG : 0;
     at->no_data = weights->place[vertex] == PLACE_GOOD || filled || at->no_limits ? 0 : FLAG;
@@ -243,7 +249,7 @@ static bool sum_block(const struct update *update, size_t block, size_t begin, s
     weights_add(weights, begin, count, &update->all, &sums);
     for (size_t j = 0; total_wanted && j < count; j++)
         weights->total[begin + j] = (float)total[j];
-    if (total_wanted) /* complete arrays are not written again, since other threads may read them */
+    if (total_wanted) /* arrays that are complete are not written, because other threads may be reading them */
         weights->known[block] |= KNOWN_TOTAL;
     return flags && set_flags(update, begin, count, total, marked);
 }
@@ -346,9 +352,9 @@ void update_run(struct field_state *state)
     update->next = update->end;
 }
 
-/* Part of an asset's surface that must err before legends give a number. Preparation does not subdivide triangles that nobody sees: inside
-   bodies, and at jumps of distance; on the demo's machines up to a quarter of the surface. They are marked and picks report them, but a
-   number in the legend would warn of errors that no frame shows. */
+/* Legends state an error bound only if more than this part of an asset's surface errs by more than 1/255 of the range. Preparation does not
+   subdivide triangles that nobody sees: inside bodies, and at jumps of distance; on the demo's machines up to a quarter of the surface.
+   They are marked and picks report them, but a number in the legend would warn of errors that no frame shows. */
 static const float MIN_LEGEND_SHARE = 0.3f;
 
 static double drawn_error(const struct field_state *state)
