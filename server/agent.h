@@ -10,7 +10,7 @@
 struct agent_state {
     int busy_percent; /* percentage of the render thread's time that is used */
     bool has_core;    /* readings arrive */
-    bool drains;      /* sessions are being sent to other daemons */
+    bool drains;      /* the daemon is being drained: it sends its sessions to other daemons */
 };
 
 struct agent;

@@ -29,7 +29,7 @@ struct import_job {
     struct texts first, read, last; /* the files' contents at the beginning, after the models were read, and after the tags were matched */
     ino_t revision;                 /* inode of the newest revision before the import; 0: there was none */
     bool prepares;                  /* preparing the models was begun */
-    bool undoes;                    /* an undo is running, which nothing may stop */
+    bool undoes;                    /* an undo is running; params.stop is ignored meanwhile */
 };
 
 struct arguments {
@@ -130,9 +130,8 @@ static void say_nothing(void *arg, const char *text)
 static struct sibling_params params_of(struct import_job *job, enum import_phase phase)
 {
     plant_import_set_phase(job->params.import, phase);
-    return (struct sibling_params){
-        .stop = stop, .say = phase == IMPORT_PREPARING ? say_nothing : say, .arg = job, .lent = job->params.lock
-    };
+    return (
+        struct sibling_params){ .stop = stop, .say = phase == IMPORT_PREPARING ? say_nothing : say, .arg = job, .lent = job->params.lock };
 }
 
 static char *run(struct import_job *job, struct arguments *list, enum import_phase phase, char **remark)
@@ -156,7 +155,7 @@ static void add_limit(struct arguments *list, const char *option, int64_t limit)
     add(list, list->own[list->owned++]);
 }
 
-/* Adds the limits of each process that reads a file; run() limits all of them together. */
+/* Adds the limits of each process that reads a file; run() limits these processes together. */
 static void add_limits(struct arguments *list, const struct import_job *job)
 {
     add_limit(list, "--timeout", job->params.quotas->at[QUOTA_IMPORT_S]);
@@ -179,8 +178,8 @@ static void add_option(struct arguments *list, const char *option, const char *v
     }
 }
 
-/* Reads the models. Returns NULL, or what went wrong (mem_free). *remark: the models that could not be read, if only some could
-   (mem_free). */
+/* Reads the models. Returns NULL on success, else an error message (free with mem_free()). *remark: the models that could not be read, if
+   only some could (mem_free). */
 static char *read_models(struct import_job *job, const struct import_order *order, const struct export_list *exports, char **remark)
 {
     struct arguments list = { 0 };
@@ -263,7 +262,8 @@ char *import_job_run(struct import_job *job, const struct import_order *order, c
     struct export_list exports = { 0 };
     export_folder_list(plant_import_exports(job->params.import), &exports);
     char *why = NULL, *unread = NULL;
-    if (order->anew && *order->source.host && !find_tags(&exports)) /* only matching tags writes the source into a new plant file */
+    /* only plantcast match, which needs a tag list, writes the data source into a new plant file */
+    if (order->anew && *order->source.host && !find_tags(&exports))
         why = mem_printf("the plant's source %s would be lost: there is no tag list among the exports; add it first", order->source.host);
     else if (order->models)
         why = read_models(job, order, &exports, &unread);
@@ -292,7 +292,7 @@ static bool same(const char *a, const char *b)
     return a && b ? !strcmp(a, b) : a == b;
 }
 
-/* Puts earlier contents back into files that are as the programs left them. */
+/* Restores the earlier contents of those files that nobody changed after the programs of this import. */
 static void put_texts(const struct import_job *job, const struct texts *texts)
 {
     struct texts now = { 0 };
@@ -307,8 +307,8 @@ static void put_texts(const struct import_job *job, const struct texts *texts)
     forget(&now);
 }
 
-/* Returns whether there is a newer revision than at the beginning. This includes one that was begun by a program killed while it
-   replaced files; the next program completes it. */
+/* Returns whether there is a newer revision than at the beginning. A revision counts even if the program that wrote it was killed while
+   replacing files: the next program completes it. */
 static bool has_revised(const struct import_job *job)
 {
     ino_t now = find_revision(job, ".revision");

@@ -278,7 +278,7 @@ static bool add_origin(struct access_params *access, const char *url)
     return true;
 }
 
-/* Handles an option on access. Returns -1 to go on, otherwise the exit code. */
+/* Handles an option on access. Returns -1 if the program continues, otherwise the exit code. */
 static int take_access_option(int option, struct access_params *access)
 {
     switch (option) {
@@ -299,7 +299,7 @@ static int take_access_option(int option, struct access_params *access)
     }
 }
 
-/* Handles an option on the audit trail. Returns -1 to go on, otherwise the exit code. */
+/* Handles an option on the audit trail. Returns -1 if the program continues, otherwise the exit code. */
 static int take_audit_option(int option, struct server_params *params)
 {
     struct audit_params *audit = &params->audit;
@@ -338,14 +338,13 @@ static bool add_core(struct server_params *params, const char *url)
     return true;
 }
 
-/* Handles an option on the daemon's role. Returns -1 to go on, otherwise the exit code. */
+/* Handles an option on the daemon's role. Returns -1 if the program continues, otherwise the exit code. */
 static int take_role_option(int option, struct server_params *params)
 {
     switch (option) {
     case OPTION_ROLE: return parse_role(optarg, &params->role) ? -1 : usage_error("--role: all, core or render, not", optarg);
     case OPTION_CORE: return add_core(params, optarg) ? -1 : usage_error("--core: not wss://HOST:PORT, or the fifth:", optarg);
-    case OPTION_AGENT:
-        return parse_int(optarg, 1, 65535, &params->agent_port) ? -1 : usage_error("--agent-port: not a port", optarg);
+    case OPTION_AGENT: return parse_int(optarg, 1, 65535, &params->agent_port) ? -1 : usage_error("--agent-port: not a port", optarg);
     case OPTION_CORE_TOKEN: params->core_token = optarg; return -1;
     case OPTION_CORE_CA: params->core_ca = optarg; return -1;
     case OPTION_NODE: params->node = optarg; return tokens_name_valid(optarg) ? -1 : usage_error("--node: no such name:", optarg);
@@ -353,7 +352,7 @@ static int take_role_option(int option, struct server_params *params)
     }
 }
 
-/* Checks that the options on the role fit together. Returns NULL, or what is wrong. */
+/* Checks that the options on the role fit together. Returns NULL if they do, else what is wrong. */
 static const char *role_wrong(const struct server_params *params)
 {
     bool render = params->role == SERVER_RENDER;
@@ -368,7 +367,7 @@ static const char *role_wrong(const struct server_params *params)
     return NULL;
 }
 
-/* Handles any option. Returns -1 to go on, otherwise the exit code. */
+/* Handles any option. Returns -1 if the program continues, otherwise the exit code. */
 static int take_option(int option, struct server_params *params, int (**task)(const struct server_params *params))
 {
     int megabytes;

@@ -22,7 +22,7 @@ struct plant_runtime_context { /* parts that a reload keeps */
     struct workers *workers;
     struct lease_keeper *keeper; /* leadership lease of a core that has a standby, or is one; NULL: none */
     bool *follows;               /* true: another core polls devices and owns the alarms; plant_runtime_lead() sets it to false */
-    void (*notify)(void *arg); /* called when frames, or changes of alarms, can be collected; by any thread */
+    void (*notify)(void *arg);   /* called when frames, or changes of alarms, can be collected; by any thread */
     void *notify_arg;
 };
 
@@ -34,13 +34,14 @@ struct plant_runtime {
     struct baselines *baselines;
     struct snapshot_cache *snapshot_cache;
     struct historian *historian; /* NULL: nothing is recorded */
-    struct postgres_owed owed;   /* samples that the historian still owes PostgreSQL when another plant is put in force */
+    /* samples not yet written to PostgreSQL when a reload replaces the plant; the next runtime's historian writes them */
+    struct postgres_owed owed;
     struct alarm_service *alarm_service;
     struct notifier *notifier;   /* sends alarm notifications; NULL: none are sent */
     struct publisher *publisher; /* NULL: nothing is published */
-    struct source **sources; /* sources by index in plant->sources */
+    struct source **sources;     /* sources by index in plant->sources */
     struct core_link *core_link; /* on a renderer or a standby core: link to the core, in place of sources; otherwise NULL */
-    struct source *derived;  /* computes derived tags; NULL: there are none */
+    struct source *derived;      /* computes derived tags; NULL: there are none */
     struct render_service *render_service;
     char *history; /* folder of the history; NULL: nothing is recorded */
     struct placing *placing;
@@ -56,7 +57,7 @@ struct plant_runtime {
 /* Reads plant and scene from disk and creates the store; starts nothing. Findings are added to diag. Returns NULL on failure; the error
    is in diag or in the log. */
 struct plant_runtime *plant_runtime_read(const struct plant_runtime_context *context, struct diag *diag);
-/* Ends the running parts against the flow of data (consumers first), and frees everything. &NULL is allowed; sets *runtime to NULL. */
+/* Ends the running parts in the order consumers before producers, and frees everything. &NULL is allowed; sets *runtime to NULL. */
 void plant_runtime_destroy(struct plant_runtime **runtime);
 
 /* Opens the files that users change: named views, notes, desks' messages to walls. After a reload, call it in the event loop when the
@@ -72,9 +73,10 @@ bool plant_runtime_start_sources(struct plant_runtime *runtime);
 void plant_runtime_stop_following(struct plant_runtime *runtime);
 /* Polls devices and owns the alarms from now on, in place of the core that was followed. Returns false on failure, already logged. */
 bool plant_runtime_lead(struct plant_runtime *runtime);
-/* Starts the render service. first: views to draw in advance, so that they are quick. Returns false on failure, already logged. */
+/* Starts the render service. first: views to draw in advance, so that later frames of these views are quick. Returns false on failure,
+   already logged. */
 bool plant_runtime_start_render_service(struct plant_runtime *runtime, const struct view *first, size_t first_count);
-/* Stops reading, recording and evaluating, so that the runtime of `next` can continue. Frames are still drawn, with the last readings. */
+/* Stops reading, recording and evaluating, so that `next` can take over. Frames are still drawn, with the last readings. */
 void plant_runtime_hand_over(struct plant_runtime *runtime, const struct plant *next);
 /* Returns the parts of the runtime that the event loop needs. */
 struct net_plant plant_runtime_net_plant(const struct plant_runtime *runtime);

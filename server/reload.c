@@ -20,27 +20,28 @@
 #include "sibling.h"
 
 enum { MAX_FIRST_VIEWS = 16 }; /* maximum number of views that are drawn with the new plant before the switch */
-enum { WAIT_MS = 3000 }; /* maximum wait in milliseconds for another program that changes the plant's folder */
+enum { WAIT_MS = 3000 };       /* maximum wait in milliseconds for another program that changes the plant's folder */
 
 struct reload {
     const struct plant_runtime_context *context;
     struct plant_runtime **runtime;
     struct net *net;
     struct supervision *supervision;
-    struct plant_import *import; /* NULL: import is off */
-    int64_t begun_ns;            /* monotonic start of the running reload */
+    struct plant_import *import;   /* NULL: import is off */
+    int64_t begun_ns;              /* monotonic start of the running reload */
     char by[TOKEN_NAME_BYTES];     /* user who asked for the running reload */
-    const struct tag_save *saving; /* tag list that the running reload puts in force; NULL: none */
+    const struct tag_save *saving; /* tag list that the running reload installs; NULL: none */
     const char *kept;              /* content of the tag list before it was replaced */
     struct refusal refusal;        /* why the tag list was not written; REFUSAL_NONE: it was */
-    pthread_mutex_t put_lock; /* held while the runtime is replaced or takes the lead, so that these do not overlap */
-    struct thread leader;     /* thread that takes the lead without waiting for a running reload. Protected by its lock: */
+    /* held while the runtime is replaced or takes the lead (becomes the core that polls devices), so that the two do not overlap */
+    pthread_mutex_t put_lock;
+    struct thread leader; /* thread that takes the lead without waiting for a running reload. Protected by its lock: */
     bool leads;
     struct thread thread;
     /* --- below: protected by thread.lock */
     bool asked, imports;
     char who[TOKEN_NAME_BYTES]; /* user who asked last */
-    struct tag_save *save; /* tag list to be saved; NULL: none */
+    struct tag_save *save;      /* tag list to be saved; NULL: none */
 };
 
 void reload_count(struct counters *counters, const char *hash, bool in_force)
@@ -88,15 +89,13 @@ static void record(const struct reload *reload, bool good, const json_t *object)
     const char *configuration = json_string_value(json_object_get(object, "configuration"));
     const char *error = json_string_value(json_array_get(json_object_get(object, "errors"), 0));
     char *what = mem_printf("%sconfiguration %s is in force", reload->saving ? "tag list saved: " : "", configuration);
-    audit_say(reload->context->audit, &(struct audit_entry){ .event = "reload",
-                                                             .result = good ? "done" : "failed",
-                                                             .who = reload->by,
-                                                             .what = what,
-                                                             .why = error });
+    audit_say(reload->context->audit,
+              &(struct audit_entry){
+                  .event = "reload", .result = good ? "done" : "failed", .who = reload->by, .what = what, .why = error });
     mem_free(what);
 }
 
-/* Reports the result to all who asked; takes ownership of the object. */
+/* Reports the reload's result to all clients that asked for a reload; takes ownership of the object. */
 static void answer(struct reload *reload, bool good, json_t *object)
 {
     struct verdict verdict = { reload->net, good, NULL, 0, NULL };
@@ -197,8 +196,8 @@ static void say_difference(struct reload *reload, const struct plant_diff *diff,
                      changes));
 }
 
-/* Switches to the new plant. The old sources end here, so from here on there is the new plant or, if a thread cannot be created, no
-   daemon. begun_ns: when the reload was asked for. */
+/* Switches to the new plant. The old sources end here, so there is no way back: if a thread of the new plant cannot be created, the daemon
+   ends. begun_ns: when the reload was asked for. */
 static void put_in_force(struct reload *reload, struct plant_runtime *after, const struct plant_diff *diff, int64_t begun_ns)
 {
     struct plant_runtime *before = *reload->runtime;
@@ -308,7 +307,7 @@ static void put_back(struct reload *reload, const struct tag_save *save, const c
     if (!tag_file_put_back(save, kept, &why))
         log_err(reload->context->log, "tag list: %s", why);
     else
-        prepare(reload); /* the earlier prepared files still exist, so this is quick */
+        prepare(reload); /* preparing is quick, because the earlier prepared files still exist */
     mem_free(why);
 }
 
@@ -357,7 +356,7 @@ static char *undo_import(struct reload *reload, struct import_job *job, char *wh
 {
     char *worse = import_job_undo(job), *both = worse ? mem_printf("%s; and it cannot be undone: %s", why, worse) : NULL;
     if (!worse && import_job_prepares(job))
-        prepare(reload); /* the earlier prepared files still exist, so this is quick */
+        prepare(reload); /* preparing is quick, because the earlier prepared files still exist */
     if (both)
         mem_free(why);
     mem_free(worse);
@@ -370,11 +369,11 @@ static void record_import(const struct reload *reload, const struct import_order
     audit_say(reload->context->audit, &(struct audit_entry){ .event = "import",
                                                              .result = why ? "failed" : "done",
                                                              .who = reload->by,
-                                                             .what = order->anew ? "the plant was made anew from its exports"
-                                                                     : order->models ? "models were read, tags matched"
-                                                                     : order->decides ? "decisions about tags were taken"
+                                                             .what = order->anew           ? "the plant was made anew from its exports"
+                                                                     : order->models       ? "models were read, tags matched"
+                                                                     : order->decides      ? "decisions about tags were taken"
                                                                      : *order->source.host ? "a source was stated"
-                                                                                      : "tags were matched",
+                                                                                           : "tags were matched",
                                                              .why = why });
 }
 
@@ -392,7 +391,7 @@ static void import_locked(struct reload *reload, struct import_order *order, int
                                               .stop = is_cancelled,
                                               .arg = reload };
     struct import_job *job = import_job_begin(&params);
-    if (order->anew) /* the new plant file keeps the old one's source */
+    if (order->anew) /* the new plant file keeps the data source of the old one */
         order->source = import_source_of_plant((*reload->runtime)->plant);
     char *remark, *why = import_job_run(job, order, &remark);
     if (!why) {
@@ -549,7 +548,7 @@ void reload_lead(struct reload *reload)
 void reload_save(struct reload *reload, struct tag_save *save)
 {
     pthread_mutex_lock(&reload->thread.lock);
-    tag_save_free(reload->save); /* always NULL here: the event loop admits one save at a time */
+    tag_save_free(reload->save); /* no earlier save can be pending here, because the event loop accepts only one at a time */
     reload->save = save;
     pthread_cond_signal(&reload->thread.wake);
     pthread_mutex_unlock(&reload->thread.lock);

@@ -17,12 +17,12 @@ void reload_destroy(struct reload **reload);
 void reload_ask(struct reload *reload, const char *who);
 /* Makes this core take the lead from the core that it followed, even while a reload is reading or preparing; does not wait. Any thread. */
 void reload_lead(struct reload *reload);
-/* Puts another tag list in force: the file replaces the tag list, plantcast-prep runs, and the plant is reloaded; if any of that fails,
-   the old list is restored. Takes ownership of save; one at a time. Any thread. */
+/* Installs another tag list: the file replaces the tag list, plantcast-prep runs, and the plant is reloaded; if any of that fails, the old
+   list is restored. Takes ownership of save; one at a time. Any thread. */
 void reload_save(struct reload *reload, struct tag_save *save);
 /* Carries out the accepted import order (plant_import_order) on behalf of user `who`, and does not wait. Any thread. */
 void reload_import(struct reload *reload, const char *who);
-/* Sets the metric that says which configuration is in force. */
+/* Sets the metric that says which configuration the daemon uses. */
 void reload_count(struct counters *counters, const char *hash, bool in_force);
 
 #endif

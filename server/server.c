@@ -45,16 +45,16 @@ struct server {
     struct plant_runtime_context context;
     struct plant_runtime *runtime;
     struct reload *reload;
-    struct seat seat;            /* place of this core in a pair of cores */
-    struct lease_keeper *keeper; /* leadership lease; NULL: no other core may lead */
-    bool follows, lost;          /* follows: another core polls; lost: this core's lease was lost */
+    struct seat seat;            /* position of this core in a pair of cores */
+    struct lease_keeper *keeper; /* leadership lease of a core in a pair; NULL: this core is alone */
+    bool follows, lost;          /* follows: another core polls the devices; lost: this core had the lease and lost it */
     bool divided;                /* child processes that read files get cgroups of their own */
     struct supervision *supervision;
-    struct agent *agent;         /* answers load balancers; NULL: off */
+    struct agent *agent;             /* answers load balancers; NULL: off */
     struct signing_key *signing_key; /* NULL: pictures are not signed */
-    struct audit *audit;         /* NULL: nothing is recorded */
-    struct plant_import *import; /* NULL: import is off */
-    pthread_mutex_t wake_lock;   /* keeps `net` alive while the render thread wakes it */
+    struct audit *audit;             /* NULL: nothing is recorded */
+    struct plant_import *import;     /* NULL: import is off */
+    pthread_mutex_t wake_lock;       /* held while the render thread wakes `net`, so that `net` is not destroyed meanwhile */
     struct net *net;
     char *web;        /* folder of the web client's files; NULL: none */
     int64_t begun_ns; /* monotonic: when the daemon began to start */
@@ -273,7 +273,7 @@ static bool is_told_to_end(void *arg)
 }
 
 /* Prepares the plant if the prepared files belong to another plant file or other models: the plant was imported and not prepared since.
-   If nothing was ever prepared, does nothing, because the folder may be the wrong one. */
+   Does nothing if the folder has no prepared files at all: it may be the wrong folder. */
 static bool prepare(struct server *server)
 {
     struct diag diag = { 0 };
@@ -310,8 +310,7 @@ static bool settle_folder(struct server *server)
     if (finished)
         log_warn(server->log, "%s: completed %s that had been interrupted", server->params.plant_path, finished);
     if (!settled)
-        log_err(server->log, "%s: an import was interrupted and can neither be completed nor undone: %s",
-                server->params.plant_path, why);
+        log_err(server->log, "%s: an import was interrupted and can neither be completed nor undone: %s", server->params.plant_path, why);
     mem_free(why);
     mem_free(folder);
     return settled;
@@ -399,8 +398,7 @@ static bool take_seat(struct server *server, char name[LEASE_NODE_BYTES])
 {
     char *why = seat_take(&server->seat, server->runtime->history);
     if (!why && !lease_name(name, server->params.node, server->seat.id))
-        why = mem_printf("--node: %s is longer than %d bytes", server->params.node,
-                         LEASE_NODE_BYTES - 2 - (int)strlen(server->seat.id));
+        why = mem_printf("--node: %s is longer than %d bytes", server->params.node, LEASE_NODE_BYTES - 2 - (int)strlen(server->seat.id));
     if (why)
         log_err(server->log, "%s", why);
     bool good = !why;
@@ -447,10 +445,12 @@ static bool server_start(struct server *server)
     server->counters = counters_create();
     server->supervision = supervision_create(server->log, server->counters);
     supervision_starting(server->supervision, "reading the plant");
-    server->context = (struct plant_runtime_context){
-        .params = &server->params, .log = server->log, .counters = server->counters, .notify = on_pictures, .notify_arg = server,
-        .follows = &server->follows
-    };
+    server->context = (struct plant_runtime_context){ .params = &server->params,
+                                                      .log = server->log,
+                                                      .counters = server->counters,
+                                                      .notify = on_pictures,
+                                                      .notify_arg = server,
+                                                      .follows = &server->follows };
     if (!read_plant(server))
         return false;
     log_set_plant(server->log, server->runtime->plant->name);
@@ -471,7 +471,7 @@ static bool server_start(struct server *server)
            start_net(server) && (!server->keeper || lease_keeper_start(server->keeper));
 }
 
-/* Destroys the parts against the flow of data: consumers first, producers last. */
+/* Destroys the parts in the order consumers first, producers last. */
 static void server_finish(struct server *server)
 {
     pthread_mutex_lock(&server->wake_lock);

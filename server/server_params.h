@@ -12,7 +12,8 @@
 #include "gpu/gl.h"
 
 /* Whether the daemon reads field devices, draws for users, or both. */
-enum server_role { SERVER_ALL, SERVER_CORE /* like SERVER_ALL, and renderers may connect */, SERVER_RENDER };
+/* like SERVER_ALL, but renderers (daemons that draw for users) may connect, too */
+enum server_role { SERVER_ALL, SERVER_CORE, SERVER_RENDER };
 
 struct server_params {
     const char *plant_path;
@@ -35,12 +36,12 @@ struct server_params {
     struct audit_params audit; /* audit trail; path NULL: nothing is recorded */
     bool imports, imports_now; /* imports: engineers may import plants; imports_now: import the exported files at start */
     enum server_role role;
-    const char *cores[CORE_URLS]; /* for SERVER_RENDER: URLs at which the core may be, one of them at a time */
+    const char *cores[CORE_URLS]; /* for SERVER_RENDER: URLs of the cores of a pair; the renderer connects to one URL at a time */
     int core_count;
     /* core_token: file of the token for the core, NULL: none; core_ca: file of trusted certificates, NULL: the system's */
     const char *core_token, *core_ca;
-    int agent_port;                   /* port for load balancers' agent checks; 0: none */
-    const char *node;                 /* this daemon's name among others; without --node the host name */
+    int agent_port;    /* port for load balancers' agent checks; 0: none */
+    const char *node;  /* this daemon's name among others; without --node the host name */
     bool per_fragment; /* compute the field for each fragment; for comparison */
 };
 

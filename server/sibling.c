@@ -42,12 +42,12 @@ static void close_end(int *fd)
     *fd = -1;
 }
 
-/* Applies the limits, within a millisecond of the start: before the program has read anything. */
+/* Applies the limits. The caller does so within a millisecond of the start, before the program has read any input. */
 static void limit(struct sibling *sibling)
 {
     size_t bytes = sibling->params->memory_bytes;
     setpriority(PRIO_PROCESS, (id_t)sibling->child, 10);
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) /* their shadow memory counts as data */
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) /* the shadow memory of sanitizers counts as data, so no limit is set */
     if (bytes > 0)
         prlimit(sibling->child, RLIMIT_DATA, &(struct rlimit){ bytes, bytes }, NULL);
 #endif
@@ -129,7 +129,7 @@ static int attend(struct sibling *sibling)
     sibling->until_ns = clock_mono_ns() + sibling->params->timeout_s * NS_PER_S;
     for (bool ended = false; !ended;) {
         struct pollfd polled[PIPES] = { { sibling->ends[STDOUT][0], POLLIN, 0 }, { sibling->ends[STDERR][0], POLLIN, 0 } };
-        ended = waitpid(sibling->child, &status, WNOHANG) != 0; /* output written before the end is still read below */
+        ended = waitpid(sibling->child, &status, WNOHANG) != 0; /* the program has ended; its last output is still read below */
         int ready = poll(polled, PIPES, ended ? 0 : POLL_MS);
         for (int i = 0; i < PIPES && ready > 0; i++)
             if (polled[i].revents)

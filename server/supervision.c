@@ -27,7 +27,7 @@ struct supervision {
     struct service_patience *patience; /* keeps the service manager waiting until the daemon is ready */
     char *runtime;                     /* runtime folder of the service; NULL: there is none */
     int64_t watchdog_ns;               /* interval of the service manager's watchdog; 0: off */
-    _Atomic bool refused, reloaded; /* refused: the last reload failed; reloaded: a reload has ended and its result was not reported yet */
+    _Atomic bool refused, reloaded;    /* refused: the last reload failed; reloaded: a reload has ended whose result was not reported yet */
     /* --- below: used only by the event loop */
     int64_t looked_ns;
     bool ready, stuck, said_refused;

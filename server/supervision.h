@@ -10,7 +10,7 @@ struct supervision;
 /* Keeps the service manager waiting from now on, until the first tick with a render service that is ready. Main thread. */
 struct supervision *supervision_create(struct log *log, struct counters *counters);
 void supervision_destroy(struct supervision **supervision); /* &NULL is allowed; sets *supervision to NULL */
-/* Reports the step of the start that is running. Main thread. */
+/* Reports the step of the daemon's start that has begun. Main thread. */
 void supervision_starting(struct supervision *supervision, const char *what);
 /* Reports that the daemon is ready, feeds the watchdog while event loop and render thread are alive, and updates metrics. Called in the
    event loop (net_params.tick). */
