@@ -139,7 +139,7 @@ test('what the page says is clicked, and what it shows comes', { skip, timeout: 
         // 2. Its size.
         await said(read('12.5 × 6.45 × 8.00 m'));
         await panel.locator('summary', { hasText: named('Size') }).click();
-        assert.ok(await panel.getByLabel(named('Show a person of 1.8 m beside it')).isChecked());
+        assert.ok(await panel.getByLabel(named('Show a person of 1.8 m next to it')).isChecked());
         await arrive(room);
         await shoot(room, 'page-2-plant');
         await panel.locator('summary', { hasText: 'Size' }).click();

@@ -50,7 +50,7 @@ up.said: as in the file
 up.y: Y
 up.z: Z
 apply: Apply
-person: Show a person of 1.8 m beside it
+person: Show a person of 1.8 m next to it
 person.label: 1.8 m
 units.note: Applying reads the models again and rewrites plant.yaml and tags.csv; the previous files are kept as .1, .2, …, and so are
   decisions on tags.
