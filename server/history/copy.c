@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Copies of files, checked to be complete. */
+/* Copies files and checks that each copy is complete. */
 #include "history/copy.h"
 
 #include <errno.h>
@@ -51,7 +51,8 @@ static bool stat_folder(const char *path, struct stat *st)
     return good;
 }
 
-/* Returns why a file must not be copied, or NULL. The owner of a folder could place a link in it to a file that only we may read. */
+/* Returns the reason why a file must not be copied (static text), or NULL if it may be. The owner of a folder could place a link in it to a
+   file that only we may read. */
 static const char *fault_of(const char *path, const struct stat *st)
 {
     struct stat folder;
@@ -110,7 +111,7 @@ static bool is_whole(struct log *log, sqlite3 *db, const char *path)
     return good;
 }
 
-/* Copies all pages in one step: a writer meanwhile continues in the write-ahead log. */
+/* Copies all pages of the database in one call. A writer can continue meanwhile, in the write-ahead log. */
 static int copy_pages(sqlite3 *from, sqlite3 *to)
 {
     sqlite3_backup *backup = sqlite3_backup_init(to, "main", from, "main");

@@ -6,7 +6,7 @@
 
 #include "base/log/log.h"
 
-#define HISTORY_BACKUP_STAMP "last-backup" /* file in the history folder; its modification time is the time of the last backup */
+#define HISTORY_BACKUP_STAMP "last-backup" /* marker file in the history folder; its modification time is the time of the last backup */
 
 enum { COPY_HASH_BYTES = 33 }; /* length of a hash as text: 32 hexadecimal digits and a 0 */
 

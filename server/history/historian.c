@@ -25,14 +25,13 @@
 
 enum {
     QUEUE_MAX = 4000000,   /* maximum number of queued samples, which arrive within one second */
-    WAITING_MAX = 4000000, /* maximum number of rows waiting in memory while the disk cannot be written */
+    WAITING_MAX = 4000000, /* maximum number of rows that wait in memory while the disk cannot be written */
     TIDY_ROWS = 200000,
-    TAG_LEADS = -1,   /* used instead of a tag: the following samples are from the store */
-    TAG_FOLLOWS = -2, /* used instead of a tag: the following samples are from a new connection to the leading daemon */
+    TAG_LEADS = -1,   /* value in place of a tag's index: the samples after it come from this daemon's store */
+    TAG_FOLLOWS = -2, /* value in place of a tag's index: the samples after it come over a new connection to the leading daemon */
     RETRY_MAX_S = 30,
 };
-static const int64_t TICK_NS = NS_PER_S, TIDY_NS = 60 * NS_PER_S, KEEP_NS = 60 * NS_PER_S, STEP_NS = 2 * NS_PER_S,
-                     LOOK_NS = 20 * NS_PER_MS;
+static const int64_t TICK_NS = NS_PER_S, TIDY_NS = 60 * NS_PER_S, KEEP_NS = 60 * NS_PER_S, STEP_NS = 2 * NS_PER_S, LOOK_NS = 20 * NS_PER_MS;
 
 struct historian_queue {
     struct sample_event *at; /* samples in order of arrival */
@@ -50,26 +49,27 @@ struct historian {
     struct {
         counter *samples, *points, *lost, *waiting, *good, *bytes, *free, *backup;
     } counters;
-    struct postgres *postgres; /* NULL: history is not sent to a database */
-    atomic_bool restored;      /* flag: older points have been read from the database into the files */
+    struct postgres *postgres; /* sender of history to PostgreSQL; NULL: history is not sent to a database */
+    atomic_bool restored;      /* set once older points have been read from the database into the files */
     /* --- below: used by the historian's thread only */
     struct history_tag *tags;
     struct recorder *recorder;
     struct snapshot *snapshot;
     struct recorder_rows waiting, held;
-    struct spool_rows spooled; /* rows spooled by the last run; written before all others */
+    struct spool_rows spooled; /* rows that the last run spooled (saved when the disk was full); written before all others */
     char *spool_path;          /* path of the last run's spool; NULL: none */
     struct month_file *file;
     struct historian_queue taken;
     bool recovered, failing, stands_by, fills;
-    int64_t fill_us;     /* with `fills`: time from which points must be read from the database */
+    int64_t fill_us;     /* with `fills` (points are to be read from the database): time from which they must be read */
     int64_t mirrored_us; /* time of the newest mirrored sample; 0: none */
     int64_t retry_ns, retry_after_ns, tidied_ns, kept_ns, utc_ahead_ns;
     struct thread thread;
     /* --- below: under thread.lock */
     struct historian_queue queue;
-    const struct plant *next;   /* plant of the historian that continues; NULL: none */
-    struct postgres_owed *owed; /* receives the spans that the next historian must still read from the database; NULL: not wanted */
+    const struct plant *next; /* plant of the next historian, which continues this one's lines; NULL: none */
+    /* receives the time spans whose points the next historian must still read from the database; NULL: not wanted */
+    struct postgres_owed *owed;
 };
 
 /* --- samples from the store --------------------------------------------------------------------------------------------------- */
@@ -151,7 +151,7 @@ static void take_qualities(struct historian *historian, int64_t mono_ns, int64_t
     }
 }
 
-/* Ends all lines after last_us, because the values after that time are unknown. */
+/* Ends the recorded lines of all tags after last_us, because the values after that time are unknown. */
 static void leave_out(struct historian *historian, int64_t last_us)
 {
     for (size_t i = 0; i < historian->plant->tag_count; i++)
@@ -159,8 +159,8 @@ static void leave_out(struct historian *historian, int64_t last_us)
             put(historian, (int)i, &(struct history_point){ last_us + 1, NAN, QUALITY_BAD_NO_COMMUNICATION });
 }
 
-/* A new connection to the leading daemon begins: samples it recorded since the last one mirrored are missing here, and are read from the
-   database. */
+/* A new connection to the leading daemon begins: the samples that the leader recorded since the last mirrored one are missing here, and
+   must be read from the database. */
 static void begin_to_follow(struct historian *historian)
 {
     if (historian->mirrored_us)
@@ -188,14 +188,14 @@ static void begin_to_lead(struct historian *historian, int64_t t_us)
         postgres_lead(historian->postgres, historian->mirrored_us, t_us);
 }
 
-/* Returns whether a sample has the time of the clock after a step, rather than before it. */
+/* Returns true if a sample's UTC time was taken after the wall clock was set, false if before. */
 static bool is_after_step(const struct sample_event *event, int64_t ahead_ns, int64_t step_ns)
 {
     int64_t off_ns = event->utc_ns - event->mono_ns - ahead_ns;
     return llabs(off_ns) < llabs(off_ns + step_ns);
 }
 
-/* Records the queued samples. step_ns: how far the wall clock was set since the last call; 0: not at all. */
+/* Records the queued samples. step_ns: duration by which the wall clock was set since the last call; 0: not at all. */
 static void take_events(struct historian *historian, const struct now *now, int64_t step_ns)
 {
     pthread_mutex_lock(&historian->thread.lock);
@@ -257,7 +257,7 @@ static void say_gap(struct historian *historian, struct month_file *file, int64_
     mem_free(text);
 }
 
-/* Ends the lines of a daemon that was killed, at its newest samples, and notes the gap. */
+/* After a daemon was killed: ends its recorded lines at its newest samples, and records the gap. */
 static int recover(struct historian *historian)
 {
     size_t count;
@@ -306,7 +306,7 @@ static int enter_month(struct historian *historian, int month)
     return error;
 }
 
-/* Returns the end of the run of rows from `begin` on that are in the same month. */
+/* Returns the end of the run of rows, from index `begin` on, that belong to the same month. */
 static size_t same_month(const struct recorder_rows *rows, size_t begin)
 {
     int month = month_of(rows->at[begin].point.t_us);
@@ -407,7 +407,7 @@ static int leave_file(struct historian *historian)
     return error;
 }
 
-/* Writes the rows that the last run spooled to their month's file, before recover() looks for the end of that run. */
+/* Writes the rows that the last run spooled to their month's file, before recover() determines when that run ended. */
 static int write_spooled(struct historian *historian)
 {
     if (!historian->spool_path)
@@ -430,7 +430,7 @@ static int write_all(struct historian *historian, int64_t mono_ns, int64_t utc_n
     int error = write_spooled(historian);
     if (!error && !historian->file) {
         if (!historian->waiting.count)
-            return 0; /* do not create an empty history folder */
+            return 0; /* returns early, so that no empty history folder is created */
         make_folder(historian);
     }
     if (!error && !historian->recovered)
@@ -457,8 +457,7 @@ static void try_to_write(struct historian *historian, int64_t mono_ns, int64_t u
         historian->retry_ns = mono_ns + historian->retry_after_ns;
         if (!historian->failing)
             log_event(historian->log, LOG_ERROR, EVENT_HISTORY_UNWRITABLE,
-                      "history: cannot be written (%s); new samples are kept in memory",
-                      strerror(-error));
+                      "history: cannot be written (%s); new samples are kept in memory", strerror(-error));
     } else if (historian->failing) {
         log_event(historian->log, LOG_INFO, EVENT_HISTORY_WRITTEN, "history: can be written again");
         historian->retry_after_ns = 0;
@@ -483,7 +482,7 @@ static struct now look_at_clocks(void)
     return now;
 }
 
-/* Returns how far the wall clock was set since the last call; 0: not at all. */
+/* Returns the duration by which the wall clock was set since the last call; 0: not at all. */
 static int64_t watch_clock(struct historian *historian, const struct now *now)
 {
     int64_t ahead_ns = now->utc_ns - now->mono_ns, step_ns = historian->utc_ahead_ns ? ahead_ns - historian->utc_ahead_ns : 0;
@@ -491,7 +490,7 @@ static int64_t watch_clock(struct historian *historian, const struct now *now)
     return llabs(step_ns) > STEP_NS ? step_ns : 0;
 }
 
-/* Notes a step of the clock in the history, since the times of points alone do not show it. */
+/* Records in the history's events that the clock was set, since the times of points alone do not show it. */
 static void note_step(struct historian *historian, int64_t utc_ns, int64_t step_ns)
 {
     char *text = mem_printf(step_ns > 0 ? HISTORY_FORWARD_TEXT : HISTORY_BACK_TEXT, fabs((double)step_ns) / 1e9);
@@ -501,7 +500,7 @@ static void note_step(struct historian *historian, int64_t utc_ns, int64_t step_
     mem_free(text);
 }
 
-/* Ends every line at its newest sample, which is recorded. Tags that the next plant lacks get a point without a value. */
+/* Ends every tag's line at its newest sample, which is recorded. Tags that the next plant lacks get a point without a value after it. */
 static void end_lines(struct historian *historian, int64_t utc_ns)
 {
     if (!historian->next)
@@ -531,7 +530,7 @@ static void tick(struct historian *historian, bool last)
     measure_free(historian);
 }
 
-/* Ends the lines of an earlier run whose spooled rows could not be written. */
+/* Ends the recorded lines of an earlier run whose spooled rows could not be written to its month's file. */
 static void end_spooled_lines(struct spool_rows *rows)
 {
     struct recorder_rows *kept = &rows->kept;
@@ -544,7 +543,7 @@ static void end_spooled_lines(struct spool_rows *rows)
     rows->held.count = 0;
 }
 
-/* Spools the rows that cannot be written, in the first place that accepts them, for the next start. */
+/* Saves the rows that cannot be written in a spool file for the next start, in the first of the possible folders that accepts it. */
 static void spool(struct historian *historian)
 {
     char **places = spool_places(historian->folder);
@@ -569,7 +568,7 @@ static void spool(struct historian *historian)
                   "history: %zu points could not be written; they wait in %s for the next start", rows->kept.count + rows->held.count,
                   *place);
     if (!error && historian->spool_path && strcmp(historian->spool_path, *place) != 0)
-        unlink(historian->spool_path); /* the new spool file has the rows of the old one too */
+        unlink(historian->spool_path); /* deletes the old spool file, whose rows are in the new one too */
     spool_places_free(places);
 }
 
@@ -582,8 +581,7 @@ static void take_spool(struct historian *historian)
         if (error && error != -ENOENT && error != -ENOTDIR)
             log_err(historian->log, "history: the spool %s is kept: %s", *place, strerror(-error));
         if (foreign)
-            log_warn(historian->log, "history: %s: %zu points dropped: their tags are no longer in the tag list", *place,
-                     foreign);
+            log_warn(historian->log, "history: %s: %zu points dropped: their tags are no longer in the tag list", *place, foreign);
         if (!error)
             historian->spool_path = mem_strdup(*place);
     }
@@ -631,8 +629,14 @@ static void on_restored(void *arg)
 static bool start_postgres(struct historian *historian, struct counters *counters, const struct postgres_owed *owed)
 {
     const struct postgres_params params = {
-        .log = historian->log, .counters = counters, .plant = historian->plant, .folder = historian->folder,
-        .stands_by = historian->stands_by, .owed = owed, .restored = on_restored, .arg = historian,
+        .log = historian->log,
+        .counters = counters,
+        .plant = historian->plant,
+        .folder = historian->folder,
+        .stands_by = historian->stands_by,
+        .owed = owed,
+        .restored = on_restored,
+        .arg = historian,
     };
     return !historian->plant->history.postgres.url || (historian->postgres = postgres_start(&params));
 }

@@ -16,9 +16,10 @@ struct historian_params {
     const struct plant *plant;
     struct store *store; /* must outlive the historian */
     const char *folder;  /* created if it is missing */
-    bool stands_by;      /* samples come from another daemon (historian_mirror()) instead of the store, until historian_lead() */
-    bool follows;        /* continues after a historian that ended with historian_end(): lines continue, and no gap is recorded */
-    const struct postgres_owed *owed; /* from historian_end(), copied by the call; NULL: nothing */
+    bool stands_by; /* true: samples come from another daemon (historian_mirror()) instead of the store, until historian_lead() is called */
+    bool follows;   /* true: this historian continues after one that ended with historian_end(): lines continue, and no gap is recorded */
+    /* time spans still to be read from the database, from historian_end(); copied by the call; NULL: none */
+    const struct postgres_owed *owed;
 };
 
 struct historian;
@@ -27,22 +28,24 @@ struct historian *historian_start(const struct historian_params *params);
 /* Announces a new connection to the leading daemon. Points that it recorded before, and which are missing here, are read from the
    database. */
 void historian_follow(struct historian *historian);
-/* Records samples that another daemon recorded, in their order. Only while this daemon stands by. Thread: one. */
+/* Records samples that another daemon recorded, in the order in which it recorded them. Call it only while this daemon is a standby.
+   Thread: one. */
 void historian_mirror(struct historian *historian, const struct sample_event *samples, size_t count);
 /* Records the store's samples from now on. Values between the last mirrored sample and now are unknown. */
 void historian_lead(struct historian *historian);
 /* Call it when a standby connects: it may be the former leader, and may since have sent its remaining points to the database, which are
    then read from there. */
 void historian_on_standby(struct historian *historian);
-/* Tells that the leader has sent the database everything recorded until age_ns ago, which this daemon then need not send. */
+/* Tells the historian of a standby that the leader has sent the database everything recorded until age_ns ago, which this daemon then need
+   not send. */
 void historian_sent_elsewhere(struct historian *historian, int64_t age_ns);
-/* Returns the age in nanoseconds of the time until which all recorded points have been sent to the database; INT64_MAX: never, or no
+/* Returns the age in nanoseconds of the newest time before which all recorded points are in the database; INT64_MAX: unknown, or no
    database. */
 int64_t historian_sent_age_ns(struct historian *historian);
-/* Writes pending points and ends, so that the historian of the next plant can continue. Tags missing in that plant have no value from
-   now on. *owed receives the time spans that must still be read from the database. Leaves NULL. */
+/* Writes pending points and ends the historian, so that the historian of the next plant can continue. Tags missing in that plant have no
+   value from now on. *owed receives the time spans that must still be read from the database. Leaves NULL. */
 void historian_end(struct historian **historian, const struct plant *next, struct postgres_owed *owed);
-/* Writes pending points and ends. &NULL is fine; leaves NULL. */
+/* Writes pending points and ends the historian. &NULL is fine; leaves NULL. */
 void historian_stop(struct historian **historian);
 
 #endif

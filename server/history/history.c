@@ -14,9 +14,9 @@ enum { OPEN_MONTHS = 4 };
 struct history_reader {
     struct log *log;
     char *folder;
-    const struct plant *plant; /* converts values to its units; may be NULL */
+    const struct plant *plant; /* converts the values to the units in which this plant shows its tags; may be NULL */
     struct month_file *files[OPEN_MONTHS];
-    int next; /* index of the file to close next */
+    int next; /* index in the array of open files of the one to close next */
 };
 
 struct history_reader *history_reader_create(struct log *log, const char *folder)
@@ -68,7 +68,8 @@ static struct month_file *open_month(struct history_reader *reader, int month, i
 
 /* --- series ------------------------------------------------------------------------------------------------------------------- */
 
-/* Returns the longest rollup level that is at most twice the wanted bucket length. -1: use the points themselves. */
+/* Returns the longest rollup level that is at most twice the wanted bucket length. Returns -1 if all levels are longer: use the points
+   themselves. */
 static int level_for(int64_t stretch_us)
 {
     int level = -1;
@@ -85,7 +86,7 @@ static int64_t bucket_length(int64_t stretch_us, int level)
     return count > 1 ? count * unit_us : unit_us;
 }
 
-/* Merges buckets of one length into the longer buckets of `out`. */
+/* Merges buckets of one length into the longer buckets of the list `out`. */
 struct gather {
     struct history_series *out;
     int64_t length_us; /* length of the input buckets */
@@ -104,7 +105,7 @@ static struct history_bucket *bucket_of(struct history_series *out, int64_t t_us
     return bucket;
 }
 
-/* Adds a bucket. The line from the previous bucket also counts in the longer buckets that it crosses. */
+/* Adds a bucket. The line from the previous bucket to this one also counts in the longer buckets that it crosses. */
 static void put_bucket(struct gather *gather, const struct history_bucket *bucket)
 {
     struct history_series *out = gather->out;
@@ -122,7 +123,7 @@ static void put_bucket(struct gather *gather, const struct history_bucket *bucke
     gather->has_last = true;
 }
 
-/* Adds points that are not in a rollup yet. Points up to done_us only provide the start of the line. */
+/* Adds points that are not in a rollup yet. Points up to done_us are in a rollup already; they only give the start of the line. */
 static void put_points(struct gather *gather, const struct history_points *points, int64_t done_us)
 {
     struct rollup rollup = { .length_us = gather->length_us, .step = points->step };
@@ -152,7 +153,7 @@ static int add_month(struct month_file *file, const char *tag, int level, int64_
     return error;
 }
 
-/* Drops points outside the range except one before and one after: each month contributed its own. */
+/* Drops points outside the range except one before and one after: each month's file added such points of its own. */
 static void drop_edges(struct history_points *points, int64_t from_us, int64_t to_us)
 {
     size_t first = 0, last = points->count;
@@ -202,7 +203,7 @@ int history_series(struct history_reader *reader, const char *tag, int64_t from_
     *out = (struct history_series){ .bucket_us = level < 0 ? 0 : bucket_length(stretch_us, level) };
     struct gather gather = { .out = out, .length_us = level < 0 ? 0 : history_level_us[level] };
     for (size_t i = 0; i < count && !error; i++) {
-        /* the line that enters the range may begin in this month */
+        /* one month earlier, because the line that enters the range may begin there */
         bool leads = i + 1 < count && months[i] < first && months[i + 1] >= first;
         bool follows = i > 0 && months[i] > last && months[i - 1] <= last;
         if ((months[i] >= first && months[i] <= last) || (level < 0 && (leads || follows)))
@@ -269,7 +270,7 @@ int history_at(struct history_reader *reader, const struct history_tag *tags, in
     int month = month_of(t_us), error = 0;
     for (size_t i = 0; i < into->count; i++)
         pairs[i].before.t_us = pairs[i].after.t_us = INT64_MIN;
-    for (int i = 0; i < 3 && !error; i++) /* the month of t_us and its neighbours, since lines cross the ends of months */
+    for (int i = 0; i < 3 && !error; i++) /* the month of t_us and the months before and after, because lines cross the ends of months */
         error = at_month(reader, month + (int[]){ 0, -1, 1 }[i], tags, t_us, into->count, pairs);
     for (size_t i = 0; i < into->count; i++)
         read_pair(&pairs[i], t_us, tags[i].stale_us, &into->readings[i]);
@@ -326,7 +327,7 @@ static void tidy_gaps(struct history_gaps *gaps, int64_t from_us, int64_t to_us)
     gaps->count = kept;
 }
 
-/* Also reads the newest earlier file, for a gap that began before from_us. */
+/* Also reads the newest file before from_us, for a gap that began before from_us. */
 int history_gaps(struct history_reader *reader, int64_t from_us, int64_t to_us, struct history_gaps *out)
 {
     size_t count;

@@ -23,26 +23,30 @@
 #include "value/quality.h"
 #include "value/state_word.h"
 
-enum { FLUSH_ROWS = 500000, MAX_ERRORS = 50, MEDIANS = 10 /* a gap is longer than this many median spacings */ };
+enum {
+    FLUSH_ROWS = 500000,
+    MAX_ERRORS = 50,
+    MEDIANS = 10 /* a time between two samples is a gap if it is longer than this many median spacings of the series */
+};
 
 /* The samples of one tag. */
 struct import_series {
-    bool has_row;   /* a row of the current pass had this tag */
-    int64_t row_us; /* time of its newest row in this pass */
+    bool has_row;   /* the current pass over the file has read a row of this tag */
+    int64_t row_us; /* time of the tag's newest row in the current pass */
     bool seen;      /* the first pass found samples of this tag */
     int64_t first_us, last_us;
     struct spacing spacing;
-    int64_t longest_us; /* longest time between two samples that is not a gap */
-    bool has_pending;   /* second pass: newest sample, pending until the next one has a later time */
+    int64_t longest_us; /* longest time between two samples that does not count as a gap */
+    bool has_pending;   /* second pass: newest sample, recorded once the next one has a later time */
     struct history_point pending;
     struct history_points before; /* points that history had in the series' time span before the import */
-    size_t next;                  /* index of the next one in `before` */
+    size_t next;                  /* index in `before` of the next point */
 };
 
 struct history_import {
     const struct import_params *params;
     struct csv csv;
-    int time, tag, value, quality, unit; /* indices of columns; tag -1: wide form */
+    int time, tag, value, quality, unit; /* indices of columns; tag -1: the file has the wide form (one column per tag) */
     int *tags;                           /* wide form: tag of each column; -1: ignored */
     struct import_series *series;        /* array by tag */
     int64_t row_us;                      /* wide form: time of the last row; otherwise INT64_MIN */
@@ -168,7 +172,7 @@ static bool take_unit(struct history_import *import, int tag, double *value)
     return true;
 }
 
-/* Reads one cell: a number, or a state word that means no value. */
+/* Reads one cell: a number, or a state word that means that there is no value. */
 static bool take_cell(struct history_import *import, take_sample *take, void *arg, int tag, int column, int64_t t_us, uint32_t quality)
 {
     const char *text = csv_text(&import->csv, column);
@@ -270,7 +274,8 @@ static int by_time(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Returns the median spacing of a typical series: the (lower) median over series with a rhythm; 0 if none has one. */
+/* Returns the median spacing of a typical series: the (lower) median over series with a rhythm (a spacing and at least three samples); 0 if
+   none has one. */
 static int64_t typical_spacing(struct import_series *series, size_t count)
 {
     int64_t *medians = mem_array(count ? count : 1, sizeof(*medians)), typical_us = 0;
@@ -285,9 +290,9 @@ static int64_t typical_spacing(struct import_series *series, size_t count)
     return typical_us;
 }
 
-/* Returns the longest time between two samples that is not a gap. A stated Stale s is meant for live readings and does not fit a slower
-   series. A series of two samples has no rhythm, since the time between them may itself be the gap; it gets the value of a typical
-   series. If no series has a rhythm, the longest time between two points of our own history is used. */
+/* Returns the longest time between two samples that is not a gap. The tag's Stale s is used only if it fits the series: it is meant for
+   live readings, which may come faster. A series of two samples has no rhythm, since the time between them may itself be the gap; it gets
+   the value of a typical series. If no series has a rhythm, the longest time between two points of our own history is used. */
 static int64_t longest_gap(const struct import_params *params, const struct plant_tag *tag, struct spacing *spacing, int64_t typical_us,
                            bool exported)
 {
@@ -391,7 +396,7 @@ static void add_row(struct filling *filling, int tag, int64_t t_us, double value
     rows->at[rows->count++] = (struct history_row){ tag, { t_us, value, quality } };
 }
 
-/* Returns whether a point ends a line: values after the preceding sample are unknown. */
+/* Returns whether a point ends a line (it has no value): values after the preceding sample are unknown. */
 static bool is_end_of_line(const struct history_point *point)
 {
     return point->quality == QUALITY_BAD_NO_COMMUNICATION && isnan(point->value);
@@ -418,7 +423,7 @@ static void record_pending(struct filling *filling, int tag, int64_t next_us)
     if (ends) {
         const struct history_point end = { sample->t_us + 1, NAN, QUALITY_BAD_NO_COMMUNICATION };
         recorder_put(filling->recorder, tag, &end, &filling->rows);
-    /* the recorded line continues: the new value replaces the point that ended it */
+        /* the recorded line continues: the new value replaces the point that had ended the line */
     } else if (usable && was_end_of_line(series, sample->t_us + 1)) {
         recorder_end_tag(filling->recorder, tag, &filling->rows);
         add_row(filling, tag, sample->t_us + 1, sample->value, sample->quality);
@@ -460,7 +465,7 @@ static void join_before(struct filling *filling, struct history_reader *reader, 
     history_series_finish(&earlier);
 }
 
-/* Reads the existing history in the time span of each series. */
+/* Reads the existing points of history in the time span of each series. */
 static bool read_before(struct filling *filling)
 {
     const struct plant *plant = filling->params->plant;
@@ -509,8 +514,8 @@ static bool fill(const struct import_params *params, struct import_series *serie
         .series = series,
         .counts = counts,
     };
-    struct diag again = { 0 };   /* receives the findings of the second pass, which `diag` already has */
-    mkdir(params->folder, 0777); /* if the folder cannot be created, opening a month reports the error */
+    struct diag again = { 0 };   /* separate findings for the second pass, which repeats those that `diag` already has */
+    mkdir(params->folder, 0777); /* no check here: if the folder cannot be created, opening a month reports the error */
     bool good = read_before(&filling) && read_file(params, &again, counts, series, fill_sample, &filling);
     diag_finish(&again);
     if (good)

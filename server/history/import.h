@@ -11,20 +11,20 @@ struct import_params {
     struct log *log;
     const struct plant *plant;
     const char *folder, *path;
-    const char *encoding;   /* encoding of the file; NULL: detected from its bytes */
-    int64_t start_us;       /* times are numbers that count from here; INT64_MIN: times are timestamps */
-    int64_t unit_us;        /* microseconds per unit of such numbers */
+    const char *encoding; /* encoding of the file; NULL: detected from its bytes */
+    int64_t start_us; /* time in UTC microseconds from which the numbers in the time column count; INT64_MIN: the column has timestamps */
+    int64_t unit_us;  /* microseconds per unit of the numbers in the time column */
     int64_t longest_gap_us; /* longest time between two samples of a tag that is not a gap; 0: derived from each series */
 };
 
 struct import_counts {
     long long samples, points;       /* samples read; points recorded */
-    long long bad, duplicates, gaps; /* samples without a usable value; samples replaced by a later row of the same time; gaps */
+    long long bad, duplicates, gaps; /* counts: samples without a usable value; samples replaced by a later row of the same time; gaps */
     int tags;
     struct charset_choice encoding;
     bool exported; /* the file has the columns of `plantcast history export` */
     int64_t from_us, to_us;
-    int64_t longest_us[2]; /* smallest and largest, over all series, of the longest time that is not a gap */
+    int64_t longest_us[2]; /* smallest and largest value, over all series, of the longest time that is not a gap */
 };
 
 /* Imports a file in one of two forms. Long: columns Tag, Time, Value and perhaps Quality (0x80050000, Good, Uncertain, Bad) and Unit;

@@ -11,7 +11,7 @@ enum { APPLICATION_ID = 0x50434849 /* "PCHI" */ };
 
 const int64_t history_level_us[LEVEL_COUNT] = { 10 * US_PER_S, 60 * US_PER_S, 600 * US_PER_S, 3600 * US_PER_S };
 
-/* Each version adds one list of statements, which converts a file from the version before. */
+/* Migrations: each version adds a list of statements that convert a file of the version before. */
 static const char schema_1[] =
     "CREATE TABLE tag(id INTEGER PRIMARY KEY, name TEXT NOT NULL UNIQUE, unit TEXT NOT NULL, step INTEGER NOT NULL, within REAL NOT NULL);"
     "CREATE TABLE sample(tag INTEGER NOT NULL, t INTEGER NOT NULL, v REAL, q INTEGER NOT NULL, PRIMARY KEY(tag, t)) WITHOUT ROWID;"
@@ -24,7 +24,7 @@ static const char schema_1[] =
     "CREATE VIEW history AS SELECT name AS tag, strftime('%Y-%m-%dT%H:%M:%fZ', s.t / 1e6, 'unixepoch') AS utc, s.v AS value, unit,"
     " printf('0x%08X', s.q) AS quality FROM (SELECT * FROM sample UNION ALL SELECT * FROM recent UNION ALL SELECT * FROM held) s"
     " JOIN tag ON tag.id = s.tag;";
-/* Excludes held samples that are recorded already, so that the view shows each point once. */
+/* The view excludes held samples (newest, kept for a crash) that are also recorded, so that it shows each point once. */
 static const char schema_2[] =
     "DROP VIEW history;"
     "CREATE VIEW history AS SELECT name AS tag, strftime('%Y-%m-%dT%H:%M:%fZ', s.t / 1e6, 'unixepoch') AS utc, s.v AS value, unit,"
@@ -77,7 +77,7 @@ static const char *const sql[SQL_COUNT] = {
     [SQL_WAITING] = "SELECT count(*) FROM recent",
     [SQL_ADD_OUTBOX] = "INSERT INTO outbox(tag, t, v, q) VALUES(?, ?, ?, ?)",
     [SQL_HAS_OUTBOX] = "SELECT 1 FROM sqlite_master WHERE type = 'table' AND name = 'outbox'",
-    /* outbox rows are deleted in order of insertion up to the first newer one: their times have no index */
+    /* the deletion stops at the first row that is not too old, in order of insertion, because the outbox has no index on time */
     [SQL_CUT_OUTBOX] = "DELETE FROM outbox WHERE seq < coalesce((SELECT seq FROM outbox WHERE t >= ?1 ORDER BY seq LIMIT 1),"
                        " (SELECT max(seq) + 1 FROM outbox))",
     [SQL_SPAN] = "SELECT min(a), max(b) FROM (SELECT min(t) AS a, max(t) AS b FROM recent UNION ALL SELECT min(t), max(t) FROM held"

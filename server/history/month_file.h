@@ -16,13 +16,13 @@ extern const int64_t history_level_us[LEVEL_COUNT];
 
 struct history_tag {
     const char *name, *unit;
-    bool step;        /* a switch: values hold until the next point */
-    double within;    /* maximum distance of the recorded line from every reading */
+    bool step;        /* true: the tag is a switch, whose values hold until the next point */
+    double within;    /* maximum deviation of the recorded line from any reading */
     int64_t stale_us; /* how long a reading may be used after it arrived; INT64_MAX: always */
 };
 
 struct history_row {
-    int tag; /* index in the tags that were passed when opening the file */
+    int tag; /* index of the tag in the array that was passed when opening the file */
     struct history_point point;
 };
 
@@ -55,42 +55,42 @@ int month_file_month(const struct month_file *file);
 /* Returns whether the open file is still the one of its name: not deleted, renamed or replaced meanwhile. */
 bool month_file_is_there(const struct month_file *file);
 
-/* Writes rows in one transaction, which is on disk when this returns. held: newest samples that are not recorded yet; each replaces the
-   held sample of its tag, other tags keep theirs. Returns -ENOSPC if the disk is full, -EROFS, or -EBADMSG if the file is damaged (then
-   open it again). */
+/* Writes rows in one transaction, which is on disk when this returns. held: each tag's newest sample that is not recorded yet; each
+   replaces the held sample of its tag, other tags keep theirs. Returns -ENOSPC if the disk is full, -EROFS, or -EBADMSG if the file is
+   damaged (then open it again). */
 int month_file_write(struct month_file *file, const struct history_row *rows, size_t count, const struct history_row *held,
                      size_t held_count);
-/* From now on copies each recorded or imported point, in the same transaction, to the outbox: the table of points that must still be
-   sent to another database (history/month_outbox.h). */
+/* Makes the file copy each recorded or imported point from now on, in the same transaction, to the outbox: the table of points that must
+   still be sent to another database (history/month_outbox.h). */
 int month_file_use_outbox(struct month_file *file);
 /* Makes the next month_file_tidy() reload the rollups from the file, because another handle has imported points into it. */
 void month_file_forget_rollups(struct month_file *file);
-/* Sorts the rows written since the last call by tag and updates the rollups. month_file_waiting() returns the number of rows not sorted
-   yet. */
+/* Moves the rows written since the last call into the table sorted by tag, and updates the rollups. month_file_waiting() returns the number
+   of rows not sorted yet. */
 int month_file_tidy(struct month_file *file);
 size_t month_file_waiting(const struct month_file *file);
 /* Writes points of one tag, ascending, anywhere in the month, and updates the rollups. */
 int month_file_import(struct month_file *file, int tag, const struct history_point *points, size_t count);
 /* Deletes the points that mark a gap, by their quality, between two times. Used before importing points of that time. */
 int month_file_forget_gaps(struct month_file *file, int64_t from_us, int64_t to_us, uint32_t gap_quality);
-/* Recovers after a writer that was killed: records its newest samples, each followed by a point that marks a gap. sends_gaps: also puts
-   the gaps into the outbox, if there is one; otherwise only samples, because another daemon records now. *ended_us: when the writer
-   ended. */
+/* Recovers after a writer that was killed: records its newest samples, each followed by a point that marks a gap. sends_gaps: also puts the
+   gaps into the outbox, if there is one; otherwise only samples go there, because another daemon records now and continues the lines.
+   *ended_us: when the writer ended. */
 int month_file_recover(struct month_file *file, uint32_t gap_quality, bool sends_gaps, int64_t *ended_us);
-/* Deletes the newest samples (held rows): all of them are recorded, and the month is over. */
+/* Deletes the held rows (newest samples) of a month that is over: all of them are recorded. */
 int month_file_clear_held(struct month_file *file);
-/* Deletes points older than a time, as far as they have been tidied. The freed space stays in the file for new points; with `shrink` it
-   is returned to the disk, if the file was created with auto_vacuum (struct month_file_size, shrinks). Points of that age in the outbox
-   are deleted too; *unsent is increased by their number. */
+/* Deletes points older than a time, but only those that month_file_tidy() has sorted. The freed space stays in the file for new points;
+   with `shrink` it is returned to the disk, if the file was created with auto_vacuum (struct month_file_size, shrinks). Points of that age
+   in the outbox are deleted too; *unsent is increased by their number. */
 int month_file_cut(struct month_file *file, int64_t until_us, bool shrink, int64_t *unsent);
 struct month_file_size {
-    int64_t bytes, free_bytes; /* size on disk; part of it that is free for new points */
+    int64_t bytes, free_bytes; /* size on disk; size of the part of the file that is free for new points */
     bool shrinks;
 };
 int month_file_size(struct month_file *file, struct month_file_size *size);
 int month_file_note(struct month_file *file, int64_t t_us, const char *kind, const char *text); /* Writes a row to the table of events. */
 
-/* Begin and end a read transaction: all reads in between are consistent, whatever is written meanwhile. */
+/* Begin and end a read transaction: all reads in between are consistent, even if another handle writes meanwhile. */
 int month_file_begin_read(struct month_file *file);
 void month_file_end_read(struct month_file *file);
 /* Appends the points of a tag between two times, ascending, with the last point before and the first point after if the file has them. */
@@ -98,7 +98,7 @@ int month_file_points(struct month_file *file, const char *tag, int64_t from_us,
 /* Appends the rollup buckets of a tag that overlap from..to; *until_us: end of the existing rollups. */
 int month_file_buckets(struct month_file *file, const char *tag, enum history_level level, int64_t from_us, int64_t to_us,
                        struct history_buckets *out, int64_t *until_us);
-/* A time in which nothing was recorded: the daemon did not run, or the clock was set forward. */
+/* A time span in which nothing was recorded: the daemon did not run, or the clock was set forward. */
 struct history_gap {
     int64_t from_us, to_us;
 };
@@ -114,9 +114,10 @@ int month_file_span(struct month_file *file, int64_t *first_us, int64_t *last_us
 struct history_pair {
     struct history_point before, after;
     bool step;
-    struct unit_change change; /* conversion from the unit in the file read last */
+    struct unit_change change; /* conversion from the unit in the file that was read last */
 };
-/* Finds the points of all tags around t_us. Searches only for points not found yet, so read the month of t_us before its neighbours. */
+/* Finds the points of all tags around t_us. Searches only for points that are not found yet. So pass the file of t_us's month first, then
+   the months before and after. */
 int month_file_at(struct month_file *file, int64_t t_us, const struct history_tag *tags, size_t count, struct history_pair *pairs);
 
 #endif

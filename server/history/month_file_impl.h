@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shared by the files month_file*.c. Private to them. */
+/* State and functions that the files month_file*.c share. Private to them. */
 #ifndef HISTORY_MONTH_FILE_IMPL_H
 #define HISTORY_MONTH_FILE_IMPL_H
 #include <sys/types.h>
@@ -8,12 +8,46 @@
 #include "history/month_file.h"
 
 enum month_statement {
-    SQL_BEGIN, SQL_BEGIN_READ, SQL_COMMIT, SQL_ROLLBACK, SQL_FIND_TAG, SQL_ADD_TAG, SQL_ADD_RECENT, SQL_HOLD, SQL_ADD_SAMPLE,
+    SQL_BEGIN,
+    SQL_BEGIN_READ,
+    SQL_COMMIT,
+    SQL_ROLLBACK,
+    SQL_FIND_TAG,
+    SQL_ADD_TAG,
+    SQL_ADD_RECENT,
+    SQL_HOLD,
+    SQL_ADD_SAMPLE,
     SQL_ADD_ROLLUP,
-    SQL_RECENT, SQL_CLEAR_RECENT, SQL_LAST_SAMPLE, SQL_SAMPLES_FROM, SQL_ALL_HELD, SQL_CLEAR_HELD, SQL_CLEAR_ROLLUPS, SQL_NOTE,
-    SQL_BEFORE, SQL_AFTER, SQL_RANGE, SQL_RECENT_OF, SQL_HELD_OF, SQL_ROLLUPS, SQL_RECENT_ALL, SQL_WAITING, SQL_SPAN, SQL_EVENTS,
-    SQL_ALL_TAGS, SQL_CUT_SAMPLES, SQL_CUT_ROLLUPS, SQL_CUT_EVENTS, SQL_SIZE, SQL_SHRINK, SQL_ADD_OUTBOX, SQL_HAS_OUTBOX, SQL_CUT_OUTBOX,
-    SQL_FORGET_GAPS, SQL_FORGET_GAP_NOTES, SQL_FORGET_OUTBOX_GAPS,
+    SQL_RECENT,
+    SQL_CLEAR_RECENT,
+    SQL_LAST_SAMPLE,
+    SQL_SAMPLES_FROM,
+    SQL_ALL_HELD,
+    SQL_CLEAR_HELD,
+    SQL_CLEAR_ROLLUPS,
+    SQL_NOTE,
+    SQL_BEFORE,
+    SQL_AFTER,
+    SQL_RANGE,
+    SQL_RECENT_OF,
+    SQL_HELD_OF,
+    SQL_ROLLUPS,
+    SQL_RECENT_ALL,
+    SQL_WAITING,
+    SQL_SPAN,
+    SQL_EVENTS,
+    SQL_ALL_TAGS,
+    SQL_CUT_SAMPLES,
+    SQL_CUT_ROLLUPS,
+    SQL_CUT_EVENTS,
+    SQL_SIZE,
+    SQL_SHRINK,
+    SQL_ADD_OUTBOX,
+    SQL_HAS_OUTBOX,
+    SQL_CUT_OUTBOX,
+    SQL_FORGET_GAPS,
+    SQL_FORGET_GAP_NOTES,
+    SQL_FORGET_OUTBOX_GAPS,
     SQL_COUNT
 };
 
@@ -25,12 +59,12 @@ struct month_rollups {
 struct month_file {
     struct database db;
     int month;
-    bool has_outbox; /* recorded points are copied to the outbox */
+    bool has_outbox; /* true: recorded points are copied to the outbox */
     ino_t inode;
     const struct plant *shown_by; /* values are converted to this plant's units; NULL: not converted */
     const struct history_tag *tags;
     size_t tag_count, waiting;
-    int64_t *ids;                  /* id of each tag in the file; 0: not known yet */
+    int64_t *ids;                  /* id in the file of each tag, by index; 0: not known yet */
     struct month_rollups *rollups; /* rollups in progress, by tag */
 };
 
@@ -38,7 +72,7 @@ struct month_file {
 sqlite3_stmt *month_sql(struct month_file *file, enum month_statement which);
 /* Steps a statement to its end, and logs errors. Returns 0 or -errno. */
 int month_run(struct month_file *file, sqlite3_stmt *statement, const char *doing);
-/* Finds whether the file has an outbox, even if this handle does not use it. */
+/* Sets whether the file has an outbox, which another handle may have created. */
 int month_has_outbox(struct month_file *file, bool *has);
 struct history_point month_point(sqlite3_stmt *statement, int first_column); /* Reads a point from columns t, v, q. */
 /* Reads the row of SQL_BEFORE or SQL_AFTER; t_us INT64_MIN: no row. Returns 0 or -errno. */

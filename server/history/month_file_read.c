@@ -78,7 +78,7 @@ static int by_time(const void *a, const void *b)
     return (x->t_us > y->t_us) - (x->t_us < y->t_us);
 }
 
-/* Adds rows that are not sorted by tag yet: those within the range, the last before it and the first after it. */
+/* Adds points from the rows that are not sorted by tag yet: those within the range, the last before it and the first after it. */
 static int add_recent(struct month_file *file, int64_t id, int64_t from_us, int64_t to_us, struct history_points *out)
 {
     struct history_points recent = { 0 };
@@ -120,7 +120,7 @@ static int add_samples(struct month_file *file, int64_t id, int64_t from_us, int
     return error;
 }
 
-/* Keeps the last of several points before from_us, the first of several after to_us, and the newer row of equal times. */
+/* Keeps the last of several points before from_us; of several after to_us the first, and of two with equal times the newer row. */
 static void trim(struct history_points *points, size_t begin, int64_t from_us, int64_t to_us)
 {
     size_t kept = begin;

@@ -43,10 +43,10 @@ static int convert_unit(struct month_file *file, const struct history_tag *of)
     sqlite3_reset(find);
     if (!change.converts)
         return 0;
-    static const char *const columns[][2] = { { "sample", "v" },    { "recent", "v" },    { "held", "v" },       { "rollup", "low" },
-                                              { "rollup", "high" }, { "rollup", "mean" }, { "rollup", "first" }, { "rollup", "last" },
-                                              { "outbox", "v" } };
-    bool has_outbox; /* another run, with a database configured, may have created an outbox */
+    static const char *const columns[][2] = { { "sample", "v" },     { "recent", "v" },    { "held", "v" },
+                                              { "rollup", "low" },   { "rollup", "high" }, { "rollup", "mean" },
+                                              { "rollup", "first" }, { "rollup", "last" }, { "outbox", "v" } };
+    bool has_outbox; /* creates no outbox, but uses one that another run, with a database configured, may have created */
     int error = month_has_outbox(file, &has_outbox);
     size_t count = sizeof(columns) / sizeof(columns[0]) - !has_outbox;
     for (size_t i = 0; i < count && !error; i++) {
@@ -90,7 +90,7 @@ static int put(struct month_file *file, enum month_statement which, int64_t id, 
     return month_run(file, statement, "cannot write");
 }
 
-/* Writes a new point, also to the outbox; put() is for moving points that were recorded before. */
+/* Writes a new point to the table and to the outbox. put() writes to the table alone, for points that are only moved. */
 static int record(struct month_file *file, enum month_statement which, int64_t id, const struct history_point *point)
 {
     int error = put(file, which, id, point);
@@ -190,7 +190,7 @@ static int roll_from(struct month_file *file, int64_t id, int64_t from_us, struc
     return error ? error : database_fail(&file->db, code, "cannot read samples");
 }
 
-/* Restores the rollups in progress from the samples that the previous writer left. */
+/* Restores the incomplete rollup buckets from the samples that the previous writer left. */
 static int load_rollups(struct month_file *file, int tag, int64_t id)
 {
     struct month_rollups *rollups = &file->rollups[tag];
@@ -284,7 +284,7 @@ static int roll_again(struct month_file *file, int tag, int64_t id, int64_t from
     struct month_rollups rollups;
     struct history_point before;
     int error = month_one_point(file, SQL_BEFORE, id, from_us - 1, &before);
-    if (before.t_us != INT64_MIN) /* the line from that point ends at a new point now */
+    if (before.t_us != INT64_MIN) /* recomputes from that point on, because its line now ends at a new point */
         from_us = before.t_us;
     from_us -= from_us % history_level_us[LEVEL_1_H];
     for (int level = 0; level < LEVEL_COUNT && !error; level++) {
@@ -337,7 +337,7 @@ int month_file_forget_gaps(struct month_file *file, int64_t from_us, int64_t to_
     error = forget(file, SQL_FORGET_GAPS, from_us, to_us, gap_quality);
     if (!error)
         error = forget(file, SQL_FORGET_GAP_NOTES, from_us, to_us, gap_quality);
-    if (!error && has_outbox) /* the gap must not be sent to the other database either */
+    if (!error && has_outbox) /* deletes the gap's point from the outbox too, so that it is not sent to the other database */
         error = forget(file, SQL_FORGET_OUTBOX_GAPS, from_us, to_us, gap_quality);
     return end(file, error);
 }

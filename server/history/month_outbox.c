@@ -9,7 +9,7 @@
 #include "history/month.h"
 #include "history/month_file.h"
 
-enum { DELETE_ROWS = 20000 }; /* rows deleted per transaction: the historian has to wait meanwhile */
+enum { DELETE_ROWS = 20000 }; /* maximum number of rows deleted per transaction, during which the historian has to wait */
 enum statement { BEGIN, COMMIT, THERE, SPAN, ROWS, HELD, TAGS, EVENTS, DELETE, STATEMENT_COUNT };
 
 static const char *const sql[STATEMENT_COUNT] = {
@@ -98,8 +98,8 @@ typedef void take_row(struct month_outbox_batch *batch, sqlite3_stmt *row);
 static struct month_outbox_row point_of(sqlite3_stmt *row)
 {
     return (struct month_outbox_row){ sqlite3_column_int64(row, 0),
-                                sqlite3_column_int64(row, 1),
-                                { sqlite3_column_int64(row, 2), database_value(row, 3), (uint32_t)sqlite3_column_int64(row, 4) } };
+                                      sqlite3_column_int64(row, 1),
+                                      { sqlite3_column_int64(row, 2), database_value(row, 3), (uint32_t)sqlite3_column_int64(row, 4) } };
 }
 
 static void take_point(struct month_outbox_batch *batch, sqlite3_stmt *row)
@@ -118,14 +118,14 @@ static void take_tag(struct month_outbox_batch *batch, sqlite3_stmt *row)
 {
     mem_grow(&batch->tags, &batch->tag_capacity, batch->tag_count + 1, sizeof(*batch->tags));
     batch->tags[batch->tag_count++] = (struct month_outbox_tag){ sqlite3_column_int64(row, 0), mem_strdup(database_text(row, 1)),
-                                                           mem_strdup(database_text(row, 2)), sqlite3_column_int(row, 3) != 0 };
+                                                                 mem_strdup(database_text(row, 2)), sqlite3_column_int(row, 3) != 0 };
 }
 
 static void take_event(struct month_outbox_batch *batch, sqlite3_stmt *row)
 {
     mem_grow(&batch->events, &batch->event_capacity, batch->event_count + 1, sizeof(*batch->events));
-    batch->events[batch->event_count++] = (struct month_outbox_event){ sqlite3_column_int64(row, 0), mem_strdup(database_text(row, 1)),
-                                                                 mem_strdup(database_text(row, 2)) };
+    batch->events[batch->event_count++] =
+        (struct month_outbox_event){ sqlite3_column_int64(row, 0), mem_strdup(database_text(row, 1)), mem_strdup(database_text(row, 2)) };
 }
 
 static int take_all(struct month_outbox *outbox, enum statement which, size_t most, take_row *take, struct month_outbox_batch *batch)

@@ -9,12 +9,12 @@
 #include "base/log/log.h"
 #include "history/point.h"
 
-#define MONTH_OUTBOX_SCHEMA \
-    "CREATE TABLE IF NOT EXISTS outbox(seq INTEGER PRIMARY KEY AUTOINCREMENT, tag INTEGER NOT NULL, t INTEGER NOT NULL, v REAL," \
+#define MONTH_OUTBOX_SCHEMA                                                                                                                \
+    "CREATE TABLE IF NOT EXISTS outbox(seq INTEGER PRIMARY KEY AUTOINCREMENT, tag INTEGER NOT NULL, t INTEGER NOT NULL, v REAL,"           \
     " q INTEGER NOT NULL)"
 
 struct month_outbox_row {
-    int64_t seq, tag; /* seq: number in the outbox; tag: its id in this file */
+    int64_t seq, tag; /* seq: sequence number in the outbox; tag: the tag's id in this file */
     struct history_point point;
 };
 struct month_outbox_tag {
@@ -28,7 +28,7 @@ struct month_outbox_event {
 };
 /* One consistent read of the outbox; zero-initialise, free with month_outbox_batch_finish(). */
 struct month_outbox_batch {
-    struct month_outbox_row *rows, *held; /* rows in order of insertion; held: newest samples that are not recorded yet */
+    struct month_outbox_row *rows, *held; /* rows: recorded points in order of insertion; held: newest samples that are not recorded yet */
     struct month_outbox_tag *tags;        /* all tags of the file */
     struct month_outbox_event *events;    /* all events of the file */
     size_t row_count, row_capacity, held_count, held_capacity, tag_count, tag_capacity, event_count, event_capacity;
@@ -38,11 +38,11 @@ struct month_outbox;
 /* Opens the outbox of a month. Returns NULL on failure, with *error; -ENOENT, not logged: no such file, or it has no outbox. */
 struct month_outbox *month_outbox_open(struct log *log, const char *folder, int month, int *error);
 void month_outbox_close(struct month_outbox **outbox); /* Closes the outbox. &NULL is fine; leaves NULL. */
-/* Finds the number of points, as the difference of sequence numbers. */
+/* Estimates the number of points in the outbox as the difference of the last and the first sequence number. */
 int month_outbox_count(struct month_outbox *outbox, int64_t *count);
 /* Finds the sequence number of the newest point; 0: the outbox is empty. */
 int month_outbox_last(struct month_outbox *outbox, int64_t *seq);
-/* Reads the oldest points, at most `most`, and the other members of the batch; frees the batch's previous content. */
+/* Reads the oldest points, at most `most`, and fills the other members of the batch; frees its previous content. */
 int month_outbox_read(struct month_outbox *outbox, size_t most, struct month_outbox_batch *batch);
 void month_outbox_batch_finish(struct month_outbox_batch *batch);
 /* Deletes the points up to a sequence number. */

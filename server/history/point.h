@@ -9,7 +9,7 @@
 struct history_point {
     int64_t t_us;     /* UTC, since 1970 */
     double value;     /* engineering units; NaN: no value */
-    uint32_t quality; /* OPC UA quality from this point until the next */
+    uint32_t quality; /* OPC UA quality that holds from this point until the next */
 };
 
 /* Returns whether the point has a value that may be drawn. */
@@ -28,7 +28,7 @@ static inline bool history_point_joined(const struct history_point *a, const str
     return !step && history_point_usable(a) && history_point_usable(b) && a->quality == b->quality;
 }
 
-/* Texts of the events in a month's file; the number is in seconds. */
+/* Formats of the texts of events in a month's file; the number is in seconds. */
 #define HISTORY_GAP_TEXT "not recorded for %.0f s"
 #define HISTORY_FORWARD_TEXT "the clock was set forward by %.1f s"
 #define HISTORY_BACK_TEXT "the clock was set back by %.1f s"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One swinging-door filter for each tag. */
+/* Implements the recorder: one swinging-door filter for each tag selects the samples to record. */
 #include "history/recorder.h"
 
 #include "base/mem.h"
@@ -22,7 +22,7 @@ struct recorder {
     int *touched;
 };
 
-/* Returns the span of a tag's values: the instrument's range, else its group's range. */
+/* Returns the range of a tag's values (highest minus lowest): of the instrument, otherwise of its group. */
 static double span_of(const struct plant *plant, const struct plant_tag *tag)
 {
     if (tag->has_range)
@@ -57,7 +57,8 @@ struct recorder *recorder_create(const struct plant *plant)
         const struct history_tag *tag = &recorder->tags[i];
         recorder->lanes[i].quality = QUALITY_BAD_WAITING;
         recorder->lanes[i].params = (struct swinging_door_params){
-            .deadband = tag->step ? 0 : tag->within / 4, /* 2 * 1/4 + 1/2 = 1: bound of swinging_door.h */
+            /* with these fractions, 2 * 1/4 + 1/2 = 1: the bound in swinging_door.h equals the permitted deviation */
+            .deadband = tag->step ? 0 : tag->within / 4,
             .deviation = tag->step ? 0 : tag->within / 2,
             .override_us = (int64_t)(plant->history.override_s * US_PER_S),
             .step = tag->step,
@@ -116,7 +117,7 @@ void recorder_held(struct recorder *recorder, struct recorder_rows *held)
     for (size_t i = 0; i < recorder->touched_count; i++) {
         struct recorder_lane *lane = &recorder->lanes[recorder->touched[i]];
         lane->touched = false;
-        /* A point that was just recorded is held too, so that the end of a killed writer is known. */
+        /* A point that was just recorded becomes the held row too, so that the end of a killed writer's line is known. */
         if (!swinging_door_held(&lane->door, &point))
             point = lane->door.anchor;
         add(held, recorder->touched[i], &point, 1);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Deletes months by age and size, or only the oldest part of a month where that suffices. */
+/* Deletes months by age and size, or only the oldest part of a month if that suffices. */
 #include "history/retention.h"
 
 #include <errno.h>
@@ -14,10 +14,10 @@
 #include "history/month_outbox.h"
 
 static const char *const parts[] = { "", "-wal", "-shm" };
-/* CUT_BYTES: bytes cut from a month in one call, limited because the recording thread waits */
+/* CUT_BYTES: bytes cut from a month in one call, limited because the recording thread waits for it */
 enum { PARTS = sizeof(parts) / sizeof(parts[0]), CUT_BYTES = 16000000 };
-static const int64_t NEWEST_US = 600 * US_PER_S; /* the last ten minutes of history are never cut off */
-#define CUT_BELOW 0.01 /* fraction of the limit freed in addition, so that the limit is not reached again at once */
+static const int64_t NEWEST_US = 600 * US_PER_S; /* the last ten minutes of history are never deleted by the size limit */
+#define CUT_BELOW 0.01 /* fraction of the size limit that is freed in addition, so that the limit is not reached again soon */
 
 static char *path_of(const char *folder, int month, int part)
 {
@@ -63,18 +63,19 @@ static int64_t used_bytes(struct log *log, const char *folder, int month, bool n
     return size.bytes - size.free_bytes;
 }
 
-/* Deletes the oldest part of a month, at most CUT_BYTES. Returns false if the month cannot be cut. */
+/* Deletes the oldest part of a month, at most CUT_BYTES. Returns false if the month's file does not allow that. */
 static bool cut_month(struct log *log, const char *folder, int month, bool newest, int64_t too_many, int64_t *unsent)
 {
     struct month_file_size size;
     int64_t first_us = INT64_MAX, last_us = INT64_MIN;
     int error;
-    struct month_file *file = month_file_read(log, folder, month, &error); /* opening for reading does not set a damaged file aside */
+    /* opens the file for reading, because opening for writing would rename a damaged file */
+    struct month_file *file = month_file_read(log, folder, month, &error);
     bool can = file && !month_file_size(file, &size) && !month_file_span(file, &first_us, &last_us) && (size.shrinks || newest);
     month_file_close(&file);
     if (!can || first_us > last_us || !(file = month_file_open(log, folder, month, NULL, 0, &error)))
         return false;
-    if (!newest) /* cutting returns the file's free space to the disk in any case */
+    if (!newest) /* free space in the file counts as freed, because deleting a part returns it to the disk in any case */
         too_many = too_many > size.free_bytes ? too_many - size.free_bytes : 0;
     double share = (double)(too_many < CUT_BYTES ? too_many : CUT_BYTES) / (double)(size.bytes - size.free_bytes);
     int64_t until_us = first_us + (int64_t)((double)(last_us - first_us) * share), latest_us = last_us - NEWEST_US;
@@ -95,7 +96,7 @@ static int64_t waiting_in(struct log *log, const char *folder, int month)
     return count;
 }
 
-/* Returns the used size of all months, without SQLite's companion files, whose size is bounded. */
+/* Returns the used size of all months' files, without SQLite's companion files (WAL), whose size is bounded. */
 static int64_t all_used(struct log *log, const char *folder, const int *months, size_t count)
 {
     int64_t bytes = 0;
@@ -139,7 +140,7 @@ int64_t retention_apply(struct log *log, const char *folder, const struct retent
         mem_free(why);
     }
     if (!limits->sends)
-        *unsent = 0; /* points in an outbox left by another configuration are not wanted any more */
+        *unsent = 0; /* deletes the points that an earlier configuration left in an outbox: no database is configured to receive them now */
     if (*unsent)
         log_event(log, LOG_ERROR, EVENT_HISTORY_LOST,
                   "history: keep_gb: deleted %lld of the oldest points before PostgreSQL had received them", (long long)*unsent);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Retention of history: deletes whole months that are too old or exceed the size limit, or only the oldest part of a month. The last
+/* Retention of history: deletes whole months that are too old or exceed the size limit, or only the oldest part of a month. The last ten
    minutes are always kept. Thread: the recording thread. */
 #ifndef HISTORY_RETENTION_H
 #define HISTORY_RETENTION_H
@@ -10,7 +10,8 @@
 
 struct retention_limits {
     double days, bytes; /* limits of age and size; 0: no limit */
-    /* the files' outboxes are sent to another database (month_outbox.h): a month with waiting points is not deleted for its age */
+    /* true: the outboxes of the files are sent to another database (month_outbox.h), so a month with unsent points is not deleted for its
+       age */
     bool sends;
 };
 /* Deletes what exceeds the limits: whole months (logged), or up to 16 MB of a month per call. Call it every minute. Returns the

@@ -10,11 +10,13 @@ static int64_t floor_to(int64_t t_us, int64_t length_us)
 
 static void open_bucket(struct rollup *rollup, int64_t t_us)
 {
-    rollup->bucket = (struct history_bucket){
-        .t_us = floor_to(t_us, rollup->length_us),
-        .low = NAN, .high = NAN, .mean = NAN, .first = NAN, .last = NAN,
-        .quality = rollup->last.quality
-    };
+    rollup->bucket = (struct history_bucket){ .t_us = floor_to(t_us, rollup->length_us),
+                                              .low = NAN,
+                                              .high = NAN,
+                                              .mean = NAN,
+                                              .first = NAN,
+                                              .last = NAN,
+                                              .quality = rollup->last.quality };
     rollup->area = 0;
     rollup->open = true;
 }
@@ -25,7 +27,7 @@ static void take_value(struct history_bucket *bucket, double value)
     bucket->high = fmax(bucket->high, value);
 }
 
-/* Adds the part from t0 to t1, inside the bucket, of the line from `last` to `next`; next NULL: the last value holds. */
+/* Adds to the bucket the part from t0 to t1 of the line from `last` to `next`. next NULL: the last value holds. */
 static void take_part(struct rollup *rollup, const struct history_point *next, int64_t t0_us, int64_t t1_us)
 {
     struct history_bucket *bucket = &rollup->bucket;
@@ -98,7 +100,7 @@ bool rollup_rest(const struct rollup *rollup, struct history_bucket *out)
     return rollup->open;
 }
 
-/* Adds `good_us` of time with this mean value. */
+/* Adds a time of good_us microseconds with this mean value to the bucket. */
 static void add_time(struct history_bucket *bucket, double mean, int64_t good_us)
 {
     if (good_us <= 0)

@@ -8,13 +8,14 @@
 #include "history/point.h"
 
 struct history_bucket {
-    int64_t t_us;       /* start time; a multiple of the bucket's length */
-    double low, high;   /* extremes of the line within the bucket, including where it enters and leaves; NaN: no usable value */
-    double mean;        /* mean over the time that had a value */
-    double first, last; /* value at the start (without an incoming line, of the first point), and at the end; NaN: none */
-    int64_t good_us;    /* microseconds with a value */
-    int64_t bad_us;     /* microseconds without a value */
-    uint32_t quality;   /* quality at the end */
+    int64_t t_us;     /* start time; a multiple of the bucket's length */
+    double low, high; /* extremes of the line within the bucket, including where it enters and leaves; NaN: no usable value */
+    double mean;      /* mean over the time that had a value */
+    /* value at the bucket's start (if no line leads into the bucket, the first point's value), and at its end; NaN: none */
+    double first, last;
+    int64_t good_us;  /* microseconds with a value */
+    int64_t bad_us;   /* microseconds without a value */
+    uint32_t quality; /* quality at the end */
 };
 
 struct rollup { /* zero-initialise, then set length_us and step */
@@ -31,7 +32,7 @@ struct rollup { /* zero-initialise, then set length_us and step */
 bool rollup_put(struct rollup *rollup, const struct history_point *point, struct history_bucket *closed);
 /* Gets the incomplete bucket, up to the last point. Returns false if there is none. */
 bool rollup_rest(const struct rollup *rollup, struct history_bucket *out);
-/* Adds bucket `b` to bucket `a`; `b` follows `a` within the same longer bucket. */
+/* Adds bucket `b` to bucket `a`; `b` comes after `a` and within the same longer bucket. */
 void rollup_merge(struct history_bucket *a, const struct history_bucket *b);
 /* Adds to `into` the part between from_us and to_us of the line from the end of `a`, at end_us, to the start of `b`. */
 void rollup_bridge(struct history_bucket *into, const struct history_bucket *a, int64_t end_us, const struct history_bucket *b,

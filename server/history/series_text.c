@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes lines and buckets as text directly, without a JSON tree, because they are large. */
+/* Writes the points and buckets of series directly as text, without a JSON tree, because they are large. */
 #include "history/series_text.h"
 
 #include <stdio.h>
@@ -8,7 +8,7 @@
 #include "history/month.h"
 #include "base/text/timestamp.h"
 
-/* Appends a number with ten digits: more than any transmitter has. */
+/* Appends a number with ten significant digits, more than any transmitter has. */
 static void add_number(struct text *out, double value, const char *none)
 {
     if (isnan(value))

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Stores at most MAX_SPACINGS spacings: of a longer series every second one, then every fourth, and so on. */
+/* Stores at most MAX_SPACINGS times between samples: all of a short series, of a longer series every second one, then every fourth, and so
+   on. */
 #include "history/spacing.h"
 
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Spool file: one line for each row: kept or held, time, value, quality, name of the tag. */
+/* Format of a spool file: one line for each row: recorded or held, time, value, quality, name of the tag. */
 #include "history/spool.h"
 
 #include <errno.h>
@@ -18,7 +18,11 @@
 #include "base/text/text.h"
 
 static const char HEAD[] = "plantcast spool 1\n";
-enum { PLACES = 3, RESERVE_BYTES = 8 << 20, PLENTY = 10 /* free disk space required for making a reserve, in multiples of its size */ };
+enum {
+    PLACES = 3,
+    RESERVE_BYTES = 8 << 20,
+    PLENTY = 10 /* free disk space required before a reserve is made, as a multiple of the reserve's size */
+};
 
 char **spool_places(const char *folder)
 {
@@ -147,7 +151,7 @@ static void add_line(const char *line, const struct plant *plant, struct spool_r
     to->at[to->count++] = (struct history_row){ tag, point };
 }
 
-/* Returns NULL with errno on failure. */
+/* Opens the spool file. Returns NULL with errno on failure. */
 static char *read_own(const char *path)
 {
     struct stat st;

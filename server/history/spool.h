@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Spool: rows that could not be written to history when the daemon ended, stored in another file for the next start. Thread: one. */
+/* Spool: rows that could not be written to history when the daemon ended, stored in a separate file until the next start. Thread: one. */
 #ifndef HISTORY_SPOOL_H
 #define HISTORY_SPOOL_H
 #include "history/recorder.h"
@@ -18,8 +18,8 @@ int spool_reserve(const char *folder);
 /* Writes all rows to the file, readable by its owner only; if the disk is full, into the reserve in the same folder. Returns 0 or
    -errno. */
 int spool_write(const char *path, const struct plant *plant, const struct spool_rows *rows);
-/* Appends the rows of the file whose tags are still in the plant; *foreign receives the number of the others. A file of another user is
-   refused. Returns 0 or -errno; -ENOENT: no such file. */
+/* Appends the rows of the file whose tags are still in the plant; *foreign receives the number of rows whose tags are not. A file of
+   another user is refused. Returns 0 or -errno; -ENOENT: no such file. */
 int spool_read(const char *path, const struct plant *plant, struct spool_rows *rows, size_t *foreign);
 
 #endif

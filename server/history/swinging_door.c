@@ -75,7 +75,7 @@ int swinging_door_put(struct swinging_door *door, const struct swinging_door_par
     bool usable = history_point_usable(sample), due = sample->t_us - door->anchor.t_us >= params->override_us;
     const struct history_point *passed = door->has_held ? &door->held : &door->anchor;
     if (!usable || fabs(sample->value - passed->value) <= params->deadband) {
-        /* Record the held point first: otherwise a reader of the current state would see a ramp instead of a step. */
+        /* Records the held point first: otherwise a reader of the current state would see a ramp instead of a step. */
         if (usable && door->has_held && !passes(door, sample)) {
             struct history_point held = door->held;
             count = keep(door, &held, kept, count);
@@ -84,7 +84,7 @@ int swinging_door_put(struct swinging_door *door, const struct swinging_door_par
         door->has_skipped = true;
         return due ? keep_last(door, params, kept, count) : count;
     }
-    if (door->has_skipped) { /* process the skipped sample first: the recorded line must not rise before the values did */
+    if (door->has_skipped) { /* processes the skipped sample first, so that the recorded line does not rise before the values did */
         struct history_point skipped = door->skipped;
         count = params->step ? 0 : swing(door, params, &skipped, kept, count);
     }

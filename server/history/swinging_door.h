@@ -16,21 +16,23 @@ struct swinging_door_params {
 struct swinging_door { /* zero-initialise */
     bool open, has_skipped, has_held;
     struct history_point anchor;  /* point recorded last */
-    struct history_point held;    /* sample that passed the deadband; recorded when the door closes */
-    struct history_point skipped; /* newest sample, within the deadband of the sample that passed before it */
-    /* range of slopes, per microsecond, of lines from the anchor that pass all later samples within the deviation */
+    struct history_point held;    /* newest sample that passed the deadband; recorded when the swinging door closes */
+    struct history_point skipped; /* newest sample, which stayed within the deadband around the last sample that passed */
+    /* range of slopes, per microsecond, of those lines from the anchor (last recorded point) that pass all later samples within the
+       deviation */
     double slope_low, slope_high;
 };
 
 enum { SWINGING_DOOR_MAX_POINTS = 3 };
-/* Adds a sample. Puts the points that must be recorded because of it into `kept`, oldest first, and returns their number. A sample that
-   is not newer than the last one (the clock was set back) is recorded, and the filter restarts from it. */
+/* Adds a sample. Writes the points that must now be recorded into `kept`, oldest first, and returns their count. A sample that is not newer
+   than the last one (the clock was set back) is recorded, and the filter restarts from it. */
 int swinging_door_put(struct swinging_door *door, const struct swinging_door_params *params, const struct history_point *sample,
-             struct history_point kept[SWINGING_DOOR_MAX_POINTS]);
-/* Records the newest sample now, as if the override period were over. Returns the number of points in `kept`. */
+                      struct history_point kept[SWINGING_DOOR_MAX_POINTS]);
+/* Records the newest sample now, as if override_us had passed. Returns the number of points in `kept`. */
 int swinging_door_end(struct swinging_door *door, const struct swinging_door_params *params,
                       struct history_point kept[SWINGING_DOOR_MAX_POINTS]);
-/* Returns whether the newest sample is not recorded yet, and the sample: readers end the line there, and it must survive a crash. */
+/* Returns whether the newest sample is not recorded yet, and that sample in the out parameter. Readers end the line at that sample, and it
+   must survive a crash. */
 bool swinging_door_held(const struct swinging_door *door, struct history_point *out);
 
 #endif

@@ -20,9 +20,9 @@
 
 enum { BATCH_ROWS = 20000, ROUND_MS = 1000 };
 enum { NOTES = 128, SPANS = POSTGRES_SPANS };
-/* tolerated difference between the ends of the tags' lines and the end of the newest one */
+/* start of a read without a known last sample: this long before the newest line end, because the lines of tags end at different times */
 static const int64_t LINE_END_SPREAD_US = 60 * INT64_C(1000000);
-/* longer than a point takes from sample to file; leader and standby both keep points for this long */
+/* longer than a sample takes until its point is in the file; leader and standby both keep points for this long */
 static const int64_t OVERLAP_NS = 10 * NS_PER_S;
 static const int64_t LOOK_NS = 30 * NS_PER_S, NEWEST_NS = 5 * NS_PER_S, SAY_LOST_NS = 60 * NS_PER_S;
 
@@ -31,7 +31,7 @@ struct waiting_month {
     int64_t count;
 };
 
-/* For a standby: newest sequence number in a month's outbox at a time. */
+/* For a standby: newest sequence number that a month's outbox had at a certain time. */
 struct outbox_note {
     int64_t at_ns, seq;
     int month;
@@ -40,7 +40,7 @@ struct outbox_note {
 struct postgres {
     struct postgres_params params;
     char *folder;
-    int64_t ended_us; /* time of the last point in the files at the start */
+    int64_t ended_us; /* time of the last point in the files when this thread started */
     struct history_tag *tags;
     struct {
         counter *up, *points, *waiting, *lost, *restored;
@@ -51,7 +51,7 @@ struct postgres {
     pthread_mutex_t lock;
     /* --- below: under `lock` */
     bool leads, ends_lines;
-    int64_t sent_ns; /* monotonic; points recorded before this time are in the database, sent by the leader; INT64_MIN: unknown */
+    int64_t sent_ns; /* monotonic; the leader has sent the points recorded before this time to the database; INT64_MIN: unknown */
     struct postgres_owed owed;
     /* --- below: used by this thread only */
     struct postgres_link *link; /* connection; NULL: none */
@@ -62,8 +62,9 @@ struct postgres {
     size_t month_count;
     int64_t looked_ns, newest_ns, retry_ns, say_lost_ns;
     int64_t lost;                  /* lost points that are not logged yet */
-    char said[POSTGRES_WHY_BYTES]; /* last error that was logged; "": no error */
-    bool alone, flushed;           /* alone: only this daemon writes to the database; flushed: points left by an earlier run are sent */
+    char said[POSTGRES_WHY_BYTES]; /* text of the last error that was logged; "": no error */
+    /* alone: only this daemon writes to the database; flushed: all points that an earlier run had left in the outboxes are sent */
+    bool alone, flushed;
     struct outbox_note notes[NOTES];
     size_t note_count;
 };
@@ -115,7 +116,8 @@ static void connect_now(struct postgres *postgres)
     postgres->newest_ns = 0;
 }
 
-/* Called after a successful write: a mere connection proves nothing, since a server with a full disk accepts connections. */
+/* Resets the error state; call it only after a successful write. A mere connection proves nothing, since a server with a full disk accepts
+   connections. */
 static void is_well(struct postgres *postgres)
 {
     postgres->backoff = (struct backoff){ 0 };
@@ -140,7 +142,7 @@ static void restore(struct postgres *postgres)
         postgres->params.restored(postgres->params.arg);
 }
 
-/* Reconnects as the only writer after this daemon has become the leader, and ends lines that no daemon continues. */
+/* Reconnects as the only writer after this daemon has become the leader, and ends those lines in the database that no daemon continues. */
 static void take_lead(struct postgres *postgres)
 {
     pthread_mutex_lock(&postgres->lock);
@@ -170,8 +172,8 @@ static bool is_due(const struct postgres *postgres, const struct postgres_span *
     return clock_mono_ns() >= span->at_ns + OVERLAP_NS && postgres->sent_ns >= span->at_ns;
 }
 
-/* Reads a span that another daemon recorded. A former leader may have continued after the connection was lost and sent later points:
-   then its line in the database ends later than the mark written here. */
+/* Reads from the database the points of a time span in which another daemon recorded. A former leader may have continued after the
+   connection was lost and sent later points: then its line in the database ends later than the mark written here. */
 static bool fill_span(struct postgres *postgres, const struct postgres_span *span, bool leads, int64_t *points,
                       char why[POSTGRES_WHY_BYTES])
 {
@@ -179,7 +181,8 @@ static bool fill_span(struct postgres *postgres, const struct postgres_span *spa
            postgres_restore_span(&postgres->restore, &postgres->tables, span->from_us, span->to_us, points, why);
 }
 
-/* Reads the oldest owed span from the database, once its recorder has had time to send it and our own points are sent. */
+/* Reads from the database the points of the oldest owed time span, once the daemon that recorded it has had time to send them and our own
+   points are sent. */
 static void fill(struct postgres *postgres)
 {
     pthread_mutex_lock(&postgres->lock);
@@ -265,8 +268,7 @@ static void drop_oldest(struct postgres *postgres)
     postgres->lost += lost;
     if (postgres->lost && clock_mono_ns() >= postgres->say_lost_ns) {
         log_event(log_of(postgres), LOG_ERROR, EVENT_HISTORY_LOST,
-                  "history: the queue for PostgreSQL is full: %lld points are only in the local files",
-                  (long long)postgres->lost);
+                  "history: the queue for PostgreSQL is full: %lld points are only in the local files", (long long)postgres->lost);
         postgres->say_lost_ns = clock_mono_ns() + SAY_LOST_NS;
         postgres->lost = 0;
     }
@@ -274,7 +276,7 @@ static void drop_oldest(struct postgres *postgres)
 
 /* --- sending ------------------------------------------------------------------------------------------------------------------ */
 
-/* Sends one batch. *more: another one follows. Returns false if no more can be sent now. */
+/* Sends one batch. *more: true if another batch follows. Returns false if no more can be sent now. */
 static bool send_batch(struct postgres *postgres, struct month_outbox *outbox, struct waiting_month *month, bool newest, bool *more)
 {
     struct month_outbox_batch batch = { 0 };
@@ -331,7 +333,8 @@ static void forget_sent(struct postgres *postgres)
     }
 }
 
-/* Notes the newest sequence number of the newest month. Points of an older month may be sent twice at the turn of the month. */
+/* Notes the newest sequence number of the newest month. At the turn of the month, points of the older month may be sent twice, which does
+   no harm. */
 static void note_outbox(struct postgres *postgres)
 {
     int error, month = postgres->month_count ? postgres->months[postgres->month_count - 1].month : 0;
@@ -369,7 +372,7 @@ static void *run(void *arg)
     struct pollfd fd = { .fd = postgres->stop_fd, .events = POLLIN };
     bool last;
     do {
-        last = poll(&fd, 1, ROUND_MS) > 0; /* after the stop signal one more round sends the points written before it */
+        last = poll(&fd, 1, ROUND_MS) > 0; /* after the stop signal, one more round sends the points that were written before the signal */
         if (!last || !*postgres->said)
             connect_now(postgres);
         take_lead(postgres);
@@ -381,7 +384,7 @@ static void *run(void *arg)
         drop_oldest(postgres);
         counter_set(postgres->counters.waiting, waiting(postgres));
         if (postgres->alone || !postgres->flushed) {
-            /* do not send before the earlier lines in the database are ended */
+            /* sends nothing before the lines of earlier recordings in the database are ended */
             if (!postgres->restore.wanted || postgres->restore.next_month != INT_MAX)
                 send_all(postgres);
         } else {
@@ -447,7 +450,8 @@ static int64_t end_of_files_us(struct postgres *postgres)
 static void add_span(struct postgres *postgres, const struct postgres_span *span)
 {
     struct postgres_span *last = &postgres->owed.spans[SPANS - 1];
-    if (postgres->owed.span_count == SPANS) /* the list of spans is full, as with an unstable connection: extend the last span */
+    /* the list of owed time spans is full, as with an unstable connection: extends the last span instead */
+    if (postgres->owed.span_count == SPANS)
         *last = (struct postgres_span){ last->from_us, span->to_us, span->at_ns };
     else
         postgres->owed.spans[postgres->owed.span_count++] = *span;
@@ -477,8 +481,8 @@ void postgres_lead(struct postgres *postgres, int64_t from_us, int64_t to_us)
     pthread_mutex_unlock(&postgres->lock);
 }
 
-/* Queues the time before this daemon led once more, at most twice in total: the first entry keeps its turn however often a standby
-   reconnects; the second one is read after the newest connection's points have arrived. */
+/* Queues another read of the time before this daemon led; at most two such reads wait. The first keeps its place in the queue however often
+   a standby reconnects. The second is read after the points of the newest connection have arrived. */
 void postgres_fill_again(struct postgres *postgres)
 {
     struct postgres_span *newest = NULL;

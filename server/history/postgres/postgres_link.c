@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* libpq without its blocking calls: all waiting is on the socket, with a timeout. */
+/* Uses libpq without its blocking calls: all waiting is in poll() on the socket, with a timeout. */
 #include "history/postgres/postgres_link.h"
 
 #include <endian.h>
@@ -16,15 +16,15 @@
 
 static const int64_t CONNECT_NS = 10 * NS_PER_S, ANSWER_NS = 60 * NS_PER_S, STOP_NS = 2 * NS_PER_S;
 static const int64_t EPOCH_US = 946684800000000; /* PostgreSQL's time counts from 2000 */
-/* Keepalive settings: a server that no longer hears from us releases our lock within half a minute. */
+/* Keepalive settings: if this machine disappears, the server closes the connection and so releases our lock within half a minute. */
 static const char set_up[] = "SET client_min_messages = warning; SET synchronous_commit = on; SET tcp_keepalives_idle = 10;"
                              "SET tcp_keepalives_interval = 5; SET tcp_keepalives_count = 3";
 
 struct postgres_link {
     PGconn *library;
     int stop_fd;
-    int64_t stop_by_ns;            /* 0: the program is not ending */
-    int64_t connect_ns, answer_ns; /* nanoseconds; time limits for connecting and for an answer */
+    int64_t stop_by_ns;            /* monotonic deadline for all calls after the stop signal; 0: the program is not ending */
+    int64_t connect_ns, answer_ns; /* time limits in nanoseconds: for connecting, and for an answer */
     struct {
         char *at;
         size_t length, capacity;
@@ -73,7 +73,7 @@ static bool flush(struct postgres_link *link)
     return true;
 }
 
-/* Returns the next result. NULL with *good: there are no more. */
+/* Returns the next result of a query. NULL with *good true: there are no more results; NULL with *good false: failure. */
 static PGresult *next_result(struct postgres_link *link, bool *good)
 {
     const int64_t until_ns = clock_mono_ns() + link->answer_ns;
@@ -148,8 +148,11 @@ struct postgres_link *postgres_link_open_within(const struct plant_postgres *pos
     if (postgres->login && !login_file_read(postgres->login, &login, why))
         return NULL;
     struct postgres_link *link = mem_new(sizeof(*link));
-    const char *keys[] = { "dbname", "fallback_application_name", "keepalives_idle", "keepalives_interval", "keepalives_count",
-                           "tcp_user_timeout", "client_encoding", login.user ? "user" : NULL, "password", NULL };
+    const char *keys[] = { "dbname",           "fallback_application_name",
+                           "keepalives_idle",  "keepalives_interval",
+                           "keepalives_count", "tcp_user_timeout",
+                           "client_encoding",  login.user ? "user" : NULL,
+                           "password",         NULL };
     const char *values[] = { postgres->url, "plantcast", "10", "5", "3", "30000", "UTF8", login.user, login.password, NULL };
     link->stop_fd = stop_fd;
     link->connect_ns = patience_ns ? patience_ns : CONNECT_NS;

@@ -16,10 +16,10 @@ struct postgres_link;
 /* Connects. stop_fd becomes readable when the program ends: from then on no call waits longer than two seconds. Returns NULL with the
    reason in `why` on failure. */
 struct postgres_link *postgres_link_open(const struct plant_postgres *postgres, int stop_fd, char why[POSTGRES_WHY_BYTES]);
-/* Does the same with a time limit for connecting and for each answer. */
+/* Connects like postgres_link_open(), with an explicit time limit for connecting and for each answer. */
 struct postgres_link *postgres_link_open_within(const struct plant_postgres *postgres, int stop_fd, int64_t patience_ns,
                                                 char why[POSTGRES_WHY_BYTES]);
-void postgres_link_set_patience(struct postgres_link *link, int64_t patience_ns); /* Sets the time limit for the following answers. */
+void postgres_link_set_patience(struct postgres_link *link, int64_t patience_ns); /* Sets the time limit for each following answer. */
 void postgres_link_close(struct postgres_link **link);                            /* Closes the connection. &NULL is fine; leaves NULL. */
 const char *postgres_link_why(const struct postgres_link *link);                  /* Returns the reason of the last failure. */
 

@@ -89,26 +89,29 @@ bool postgres_restore_end_lines(struct postgres_tables *tables, int64_t now_us)
     return postgres_link_runf(tables->link, sql, tables->plant, QUALITY_BAD_NO_COMMUNICATION, (long long)(now_us / US_PER_S));
 }
 
-/* Corrects the ends of lines within a span. A gap mark that we wrote right after the last received point, or after the last point in the
-   database, is deleted if the former leader continued the line; the line then gets its mark after its true end. */
+/* Corrects the ends of lines within a span. This daemon wrote a gap mark after the last point that it knew of. If the former leader
+   continued the line, that mark is deleted, and a mark is written after the true end. */
 bool postgres_restore_end_span(struct postgres_tables *tables, int64_t from_us, int64_t to_us)
 {
 #define AT(US) "('epoch'::timestamptz + " US " * interval '1 microsecond')"
     static const char sql[] =
         "BEGIN;"
         "DELETE FROM sample s USING tag g WHERE g.id = s.tag AND g.plant = %1$d AND s.q = %2$u"
-        " AND s.t > " AT("%3$lld") " AND s.t < " AT("%4$lld")
-        " AND (s.t = " AT("(%3$lld + 1)") " OR EXISTS (SELECT FROM sample b WHERE b.tag = s.tag AND b.t = s.t - interval '1 microsecond'))"
-        " AND EXISTS (SELECT FROM sample n WHERE n.tag = s.tag AND n.t > s.t AND n.t < " AT("%4$lld") ");"
-        "INSERT INTO sample SELECT g.id, l.t + interval '1 microsecond', NULL, %2$u FROM tag g,"
-        " LATERAL (SELECT t, q FROM sample WHERE tag = g.id AND t < " AT("%4$lld") " ORDER BY t DESC LIMIT 1) l"
-        " WHERE g.plant = %1$d AND l.t > " AT("%3$lld") " AND l.q <> %2$u ON CONFLICT DO NOTHING;"
-        "COMMIT";
+        " AND s.t > " AT("%3$lld") " AND s.t < " AT("%4$lld") " AND (s.t = " AT(
+            "(%3$lld + 1)") " OR EXISTS (SELECT FROM sample b WHERE b.tag = s.tag AND b.t = s.t - interval '1 microsecond'))"
+                            " AND EXISTS (SELECT FROM sample n WHERE n.tag = s.tag AND n.t > s.t AND n.t < " AT(
+                                "%4$lld") ");"
+                                          "INSERT INTO sample SELECT g.id, l.t + interval '1 microsecond', NULL, %2$u FROM tag g,"
+                                          " LATERAL (SELECT t, q FROM sample WHERE tag = g.id AND t < " AT(
+                                              "%4$lld") " ORDER BY t DESC LIMIT 1) l"
+                                                        " WHERE g.plant = %1$d AND l.t > " AT(
+                                                            "%3$lld") " AND l.q <> %2$u ON CONFLICT DO NOTHING;"
+                                                                      "COMMIT";
 #undef AT
     return postgres_link_runf(tables->link, sql, tables->plant, QUALITY_BAD_NO_COMMUNICATION, (long long)from_us, (long long)to_us);
 }
 
-/* Finds the first and last month with points; *any is false if there are none. Returns false on failure. */
+/* Finds the first and last month with points; *any is set to false if the database has no points. Returns false on failure. */
 static bool find_months(struct postgres_tables *tables, int *first, int *last, bool *any)
 {
     char plant[NUMBER_BYTES];
@@ -144,7 +147,7 @@ static bool fail(char why[POSTGRES_WHY_BYTES], int error)
     return false;
 }
 
-/* Reads the points of one tag up to the end of a month, in portions of POINTS_AT_ONCE to bound the memory. */
+/* Reads the points of one tag up to the end of a month, at most POINTS_AT_ONCE per query, to bound the memory. */
 static bool restore_tag(struct postgres_tables *tables, const struct tag_there *there, struct month_file *file, int64_t after_us,
                         int64_t end_us, int64_t *points, char why[POSTGRES_WHY_BYTES])
 {
@@ -166,8 +169,7 @@ static bool restore_tag(struct postgres_tables *tables, const struct tag_there *
         count = PQntuples(rows);
         struct history_point *at = mem_array((size_t)count + 1, sizeof(*at));
         for (int i = 0; i < count; i++)
-            at[i] = (struct history_point){ postgres_time(rows, i, 0),
-                                            unit_change_value(&there->change, postgres_double(rows, i, 1)),
+            at[i] = (struct history_point){ postgres_time(rows, i, 0), unit_change_value(&there->change, postgres_double(rows, i, 1)),
                                             (uint32_t)postgres_int64(rows, i, 2) };
         if (count)
             after_us = at[count - 1].t_us;
@@ -201,8 +203,7 @@ static struct tag_there *find_tags(const struct postgres_restore *restore, struc
 {
     char plant[NUMBER_BYTES];
     snprintf(plant, sizeof(plant), "%d", tables->plant);
-    PGresult *rows =
-        postgres_link_ask(tables->link, "SELECT id, name, unit FROM tag WHERE plant = $1::int", 1, (const char *[]){ plant });
+    PGresult *rows = postgres_link_ask(tables->link, "SELECT id, name, unit FROM tag WHERE plant = $1::int", 1, (const char *[]){ plant });
     struct tag_there *found = rows ? mem_array((size_t)PQntuples(rows) + 1, sizeof(*found)) : NULL;
     *count = 0;
     for (int i = 0; rows && i < PQntuples(rows); i++) {
@@ -256,8 +257,8 @@ bool postgres_restore_span(struct postgres_restore *restore, struct postgres_tab
         int64_t begin_us = month_begin_us(month) - 1, end_us = month_begin_us(month + 1);
         int error;
         struct month_file *file = month_file_open(restore->log, restore->folder, month, restore->tags, restore->plant->tag_count, &error);
-        good = file ? restore_span_of_month(restore, tables, file, from_us > begin_us ? from_us : begin_us,
-                                            to_us < end_us ? to_us : end_us, points, why)
+        good = file ? restore_span_of_month(restore, tables, file, from_us > begin_us ? from_us : begin_us, to_us < end_us ? to_us : end_us,
+                                            points, why)
                     : fail(why, error);
         month_file_close(&file);
     }

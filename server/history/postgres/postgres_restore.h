@@ -12,12 +12,12 @@ struct postgres_restore {
     const struct history_tag *tags; /* tags of the plant */
     const char *folder;
     bool wanted;    /* a restore is in progress */
-    int next_month; /* month to restore next; INT_MAX: not begun */
+    int next_month; /* number of the month to restore next (months since January 1970); INT_MAX: the restore has not begun */
     int64_t points; /* points restored so far */
-    bool begins;    /* the lines of earlier recordings have been ended, or another daemon continues them */
+    bool begins;    /* true: the lines of earlier recordings in the database have been ended, or another daemon continues them */
 };
 
-/* Finds whether the folder needs a restore: it has no months, or an earlier restore is unfinished. Creates the folder. */
+/* Returns whether the folder needs a restore: it has no months' files, or an earlier restore is unfinished. Creates the folder. */
 void postgres_restore_init(struct postgres_restore *restore, struct log *log, const struct plant *plant, const struct history_tag *tags,
                            const char *folder);
 /* Ends the lines in the database at their last points. Returns false if the server fails. */
@@ -28,8 +28,8 @@ bool postgres_restore_end_span(struct postgres_tables *tables, int64_t from_us, 
 /* Reads the points of all tags between two times, replacing the gap in the files. Returns false on failure, as postgres_restore_step(). */
 bool postgres_restore_span(struct postgres_restore *restore, struct postgres_tables *tables, int64_t from_us, int64_t to_us,
                            int64_t *points, char why[POSTGRES_WHY_BYTES]);
-/* Restores one more month; *points: number of points. Returns false if the server fails, or the files cannot be written (logged, reason
-   in `why`). The first call ends the lines of earlier recordings; make it before anything is written to the database. */
+/* Restores one more month; *points receives the number of its points. Returns false if the server fails, or the files cannot be written
+   (logged, reason in `why`). The first call ends the lines of earlier recordings; make it before anything is written to the database. */
 bool postgres_restore_step(struct postgres_restore *restore, struct postgres_tables *tables, int64_t now_us, int64_t *points,
                            char why[POSTGRES_WHY_BYTES]);
 
