@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The subcommands of `plantcast`. argv[0] is the subcommand's own name. Each returns the exit code: 0 good, 2 wrong usage, 1 anything
-   else. */
+/* The subcommands of `plantcast`. argv[0] is the subcommand's own name. Each returns the exit code: 0 good, 2 wrong usage, 1 any other
+   failure. */
 #ifndef CLI_COMMANDS_H
 #define CLI_COMMANDS_H
 #include <stdbool.h>
@@ -41,8 +41,9 @@ int cmd_read(int argc, char **argv);
 /* Makes, lists and revokes access tokens of a daemon. */
 int cmd_token(int argc, char **argv);
 
-/* Replaces this process by the helper program beside it (its own name plus `ending`), which runs the command argv[0]. Helpers keep large
-   dependencies and parsers of untrusted input out of this program. Returns only if the helper cannot be run, with the reason printed. */
+/* Replaces this process by the helper program in the same folder (this program's name plus `ending`), which runs the command argv[0].
+   Helpers keep large dependencies and parsers of untrusted input out of this program. Returns only if the helper cannot be run, with the
+   reason printed. */
 void run_beside(const char *ending, char **argv);
 /* Replaces this process by plantcast-film, passing on the options that all commands share. Returns only if it cannot be run, with the
    reason printed. */

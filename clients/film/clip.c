@@ -23,8 +23,8 @@ struct film {
     struct view view;
     struct daemon_url url;
     struct text query;
-    const char *said; /* text to draw into the pictures; "": none */
-    long count;       /* pictures made so far */
+    const char *said;                   /* text to draw into the pictures of the present stop; "": none */
+    long count;                         /* pictures made so far */
     struct film_statements *statements; /* statements of a signed film; NULL: the film is not signed */
 };
 
@@ -106,15 +106,15 @@ static bool shoot(struct film *film, picture_fn *picture, long count, double all
     return good;
 }
 
-/* Switches to the view of a stop. */
+/* Switches to the view of a stop (one view of a tour). */
 static bool turn(struct film *film, const json_t *stop)
 {
     struct snapshot_options *options = film->options;
     size_t own = options->arg_count;
     bool good = tour_add_view(stop, options);
     film->query.length = 0;
-    good = good && (film->offline.plant ? offline_renderer_take_view(&film->offline, options, &film->view)
-                                        : snapshot_query(options, &film->query));
+    good = good &&
+           (film->offline.plant ? offline_renderer_take_view(&film->offline, options, &film->view) : snapshot_query(options, &film->query));
     while (options->arg_count > own)
         mem_free(options->args[--options->arg_count]);
     film->said = options->is_signed ? "" : tour_text(stop); /* drawing a text would invalidate the signature */
@@ -132,22 +132,20 @@ static bool write_texts(const struct film *film, const json_t *stops)
     double *from_s = mem_array(json_array_size(stops) + 1, sizeof(*from_s));
     const json_t *stop;
     size_t i;
-    json_array_foreach(stops, i, stop)
-        from_s[i + 1] = from_s[i] + (double)pictures_of(film, stop) / film->options->fps;
+    json_array_foreach(stops, i, stop) from_s[i + 1] = from_s[i] + (double)pictures_of(film, stop) / film->options->fps;
     bool good = tour_write_subtitles(stops, from_s, film->options->out);
     mem_free(from_s);
     return good;
 }
 
-/* stops: of a tour; NULL: film from one instant to another. */
+/* stops: the stops of a tour; NULL: a film of a single view from one instant to another. */
 static bool make(struct film *film, picture_fn *picture, const json_t *stops)
 {
     const struct snapshot_options *options = film->options;
     double count = stops ? 0 : floor((double)(options->to_us - options->from_us) / (options->speed / options->fps * 1e6)) + 1;
     json_t *stop;
     size_t i;
-    json_array_foreach(stops, i, stop)
-        count += (double)pictures_of(film, stop);
+    json_array_foreach(stops, i, stop) count += (double)pictures_of(film, stop);
     bool good = count <= MAX_PICTURES;
     if (!good)
         fprintf(stderr, "plantcast: %.0f pictures would be made, and at most %d are; a greater --speed, or less time\n", count,

@@ -85,7 +85,7 @@ struct film_reader {
     AVFrame *frame;
     bool ended;
     struct film_size size; /* display size */
-    json_t *statements; /* JSON array of [statement, signature] pairs */
+    json_t *statements;    /* JSON array of [statement, signature] pairs */
     char why[SIGNED_PICTURE_WHY_BYTES];
 };
 
@@ -178,8 +178,8 @@ static bool next_picture(struct film_reader *reader)
     }
 }
 
-/* Returns whether the stream describes the picture's colours and shape as video.c wrote them. Checked for each picture, because a stream
-   may change the description later. */
+/* Returns whether the stream describes the picture's colours and shape exactly as film/video.c writes them. Checked for each picture,
+   because a stream may change the description later. */
 static bool is_plain_picture(struct film_reader *reader)
 {
     const AVFrame *frame = reader->frame;
@@ -217,12 +217,12 @@ struct film_check {
     const struct signing_key *key;
     const struct redraw_options *options;
     struct film_reader reader;
-    bool tour;               /* whether the view may change */
-    json_t *first;           /* statement of the first picture */
-    json_t *views;           /* array of views in order: query and start time */
-    int64_t at_us, step_us;  /* instant of the previous picture; step between pictures, 0: not known yet */
-    int64_t pts, pts_step;   /* presentation time of the previous picture; step, 0: not known yet */
-    size_t count;            /* number of verified pictures */
+    bool tour;              /* whether the view may change */
+    json_t *first;          /* statement of the first picture */
+    json_t *views;          /* array of views in order: query and start time */
+    int64_t at_us, step_us; /* instant of the previous picture; step between pictures, 0: not known yet */
+    int64_t pts, pts_step;  /* presentation time of the previous picture; step, 0: not known yet */
+    size_t count;           /* number of verified pictures */
     int code;
 };
 
@@ -236,7 +236,7 @@ static bool same_view(const json_t *query, const json_t *other)
     return same;
 }
 
-/* Checks the view: constant in a film, changing in a tour. */
+/* Checks the view of a picture: without --tour it must equal that of the first picture; in a tour it may change. */
 static bool takes_view(struct film_check *check, const json_t *statement)
 {
     struct film_reader *reader = &check->reader;
@@ -305,9 +305,7 @@ static void print_view(const json_t *view)
     size_t i;
     timestamp_print(json_integer_value(json_object_get(view, "at_us")), since);
     printf("  view from %s:", since);
-    json_array_foreach(query, i, arg)
-        if (strncmp(json_string_value(arg), "at=", 3) != 0)
-            printf(" %s", json_string_value(arg));
+    json_array_foreach(query, i, arg) if (strncmp(json_string_value(arg), "at=", 3) != 0) printf(" %s", json_string_value(arg));
     puts(json_array_size(query) > 1 ? "" : " the plant's own");
 }
 
@@ -321,8 +319,7 @@ static void print_film(const struct film_check *check, const char *path)
     printf("%s: the signatures of all %zu pictures are good, and none is missing between the first and the last\n", path, check->count);
     printf("  plant %s, configuration %s, plantcastd %s\n", json_string_value(json_object_get(check->first, "plant")),
            json_string_value(json_object_get(check->first, "configuration")), json_string_value(json_object_get(check->first, "server")));
-    json_array_foreach(check->views, i, view)
-        print_view(view);
+    json_array_foreach(check->views, i, view) print_view(view);
     printf("  from %s to %s (history), a picture each %.6g s\n", from, to, (double)check->step_us / 1e6);
 }
 

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Signed films: store the server's statement and signature of each picture beside losslessly encoded pictures, so that the pixels are the
-   signed ones (SIGNED.md). Thread: one. */
+/* Signed films: store the server's statement and signature of each picture together with losslessly encoded pictures, so that the pixels
+   are the signed ones (SIGNED.md). Thread: one. */
 #ifndef FILM_SIGNED_FILM_H
 #define FILM_SIGNED_FILM_H
 #include "clients/cli/picture/redraw.h"
 #include "video.h"
 
 struct film_statements;
-struct film_statements *film_statements_create(void); /* never NULL */
+struct film_statements *film_statements_create(void);              /* never NULL */
 void film_statements_destroy(struct film_statements **statements); /* &NULL is fine; leaves NULL */
 /* Takes statement and signature of the next picture from its PNG file. Returns false if the file has none. */
 bool film_statements_add(struct film_statements *statements, const uint8_t *png, size_t count);

@@ -18,7 +18,8 @@ struct decoder {
     uint8_t *pixels;
     size_t pixel_bytes;
 #ifdef PLANTCAST_H264
-    const struct h264_decoder_functions *functions; /* NULL: H.264 not used yet; so are the members below */
+    /* functions of the H.264 module; NULL: not loaded yet, and the members below are not valid */
+    const struct h264_decoder_functions *functions;
     struct h264_decoder *h264;
 #endif
 };

@@ -10,7 +10,7 @@
 #define H264_DECODER_WHY_BYTES 320
 
 struct h264_decoder;
-struct h264_decoded { /* YUV 4:2:0 at full range; owned by the decoder, valid until its next call */
+struct h264_decoded { /* YUV 4:2:0 at full range; planes owned by the decoder, valid until its next call */
     const uint8_t *at[3];
     int pitches[3];
     int width_px, height_px;

@@ -10,7 +10,7 @@
 struct shown {                /* content of a frame; owned by the source, valid until its next call */
     cairo_surface_t *picture; /* NULL: show the text card */
     const char *headline, *detail;
-    gint64 since_us; /* UTC since when the reason for the card holds; 0: not shown */
+    gint64 since_us; /* UTC time at which the reason for the card began; 0: the card shows no time */
     const char *title;
     gint64 age_ms;   /* age of the oldest value; -1: no values */
     GTimeZone *zone; /* time zone of the plant */

@@ -9,7 +9,7 @@ struct video_encoder;
 /* Starts a stream into `outputs`, which must outlive the encoder. Returns NULL with the reason printed. The caller destroys it. */
 struct video_encoder *encoder_create(const struct video_options *options, struct outputs *outputs);
 void encoder_destroy(struct video_encoder **encoder); /* &NULL is fine; leaves NULL */
-/* Returns whether the encoder accepts another frame now; if not, it is behind. */
+/* Returns whether the encoder accepts another frame now; false if it has not finished earlier ones. */
 bool encoder_is_ready(const struct video_encoder *encoder);
 /* Encodes frame number `index` of a stream with a fixed frame rate. Takes ownership of the pixels (BGRX). */
 void encoder_add(struct video_encoder *encoder, GstBuffer *pixels, guint64 index);

@@ -23,7 +23,7 @@ struct video_program {
     struct rtsp *rtsp;
     struct video_branch srt;
     struct metrics *metrics; /* NULL: off */
-    bool card; /* whether the newest frame is a text card */
+    bool card;               /* true: the newest frame shows a text card in place of the picture */
     GSource *ticks;
     gint64 begin_us, alive_us;
     guint64 next; /* number of the next frame */

@@ -8,7 +8,7 @@ static const GstClockTimeDiff SLACK = 500 * GST_MSECOND;
 struct output {
     GstAppSrc *src;
     bool begun, timed;
-    GstClockTimeDiff offset; /* difference from the encoder's running time to this output's */
+    GstClockTimeDiff offset; /* this output's running time minus the encoder's */
 };
 
 struct outputs {

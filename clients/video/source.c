@@ -25,7 +25,7 @@ enum ask { ASK_PLANT, ASK_VIEWS, ASK_PICTURE, ASK_COUNT };
 
 struct video_source {
     const struct video_options *options;
-    struct http_request http; /* handle of the request; while `asking`, the request's thread owns it */
+    struct http_request http; /* libcurl handle of the request; owned by the request's thread while `asking` is true */
     CURLcode code;            /* result of the request */
     bool asking;
     _Atomic bool ended;
@@ -36,7 +36,7 @@ struct video_source {
     char *view, *view_query, *view_title; /* saved view: as stored, as a query, and its title; NULL: not known yet, or no saved view */
     cairo_surface_t *picture;
     gint64 picture_us, age_ms;
-    bool valued; /* whether some value is expected in the picture; without one there is no age */
+    bool valued; /* true: the picture should have values; false: it has none, so no age is shown */
     char headline[120], detail[240], said[240];
     gint64 since_us;    /* UTC, start of the text card; 0: a picture is shown */
     gint64 seen_utc_us; /* UTC instant of the newest picture */
@@ -60,7 +60,7 @@ static void keep(char *said, char *out, gsize size)
     g_free(said);
 }
 
-/* Sets card and log: the card in the chosen language, the log in English. */
+/* Sets the text card, and logs the reason: the card in the chosen language, the log in English. */
 static void fail(struct video_source *source, enum video_word headline, enum video_word detail, const char *a, const char *b)
 {
     char said[sizeof(source->said)];
@@ -72,7 +72,7 @@ static void fail(struct video_source *source, enum video_word headline, enum vid
     g_strlcpy(source->said, said, sizeof(source->said));
 }
 
-/* Hides the picture, and withdraws all that was shown. */
+/* Deletes the picture, so that the text card is shown in its place. */
 static void bar(struct video_source *source)
 {
     source->barred = true;
@@ -352,7 +352,7 @@ static void go_on(struct video_source *source, gint64 now_us)
         ask(source, ASK_PLANT, now_us);
 }
 
-/* --- what may be shown ------------------------------------------------------------------------------------------ */
+/* --- choosing picture or card ----------------------------------------------------------------------------------- */
 
 void source_look(struct video_source *source, struct shown *out)
 {

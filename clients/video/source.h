@@ -10,8 +10,8 @@ struct video_source;
 /* Starts fetching. options must outlive the source. Returns NULL with the reason printed. The caller destroys it. */
 struct video_source *source_create(const struct video_options *options);
 void source_destroy(struct video_source **source); /* &NULL is fine; leaves NULL */
-/* Cancels overdue requests, starts due ones, and writes what to show to *out. Call it once per frame. What *out points to belongs to the
-   source and is valid until the next call. */
+/* Cancels overdue requests, starts due ones, and writes what to show to *out. Call it once per frame. The source owns the data that *out
+   points to; valid until the next call. */
 void source_look(struct video_source *source, struct shown *out);
 guint64 source_pictures(const struct video_source *source); /* number of pictures received */
 

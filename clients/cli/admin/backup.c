@@ -75,7 +75,7 @@ static const char *as_written(const struct plant *plant, const char *path)
     return !strncmp(path, plant->folder, n) && path[n] == '/' ? path + n + 1 : path;
 }
 
-/* Files with user-made content in the history folder. */
+/* Names of files with user-made content in the history folder. */
 static const char *const lists[] = { NAMED_VIEWS_FILE, NOTES_FILE, WALL_REMOTE_FILE, PAIRINGS_FILE };
 enum { LISTS = sizeof(lists) / sizeof(lists[0]) };
 
@@ -137,7 +137,7 @@ static bool add_history(struct backup_job *job, const char *folder)
     return good;
 }
 
-/* Returns the history folder as the plant file writes it; NULL: the default, beside the plant file. */
+/* Returns the history folder as the plant file writes it; NULL: the default, next to the plant file. */
 static const char *history_name(const struct plant *plant)
 {
     return plant->history.folder ? as_written(plant, plant->history.folder) : NULL;
@@ -235,7 +235,7 @@ static json_t *read_manifest(const char *folder)
     return manifest;
 }
 
-/* Rejects names from the manifest that would leave the folder. */
+/* Returns false for a name in the manifest that would lead out of the backup's folder. */
 static bool is_plain(const char *name)
 {
     return name && *name && *name != '.' && !strchr(name, '/');
@@ -267,7 +267,7 @@ static bool is_free(const char *path)
     return lstat(path, &st) != 0 || say(path, "is in the way; nothing was restored");
 }
 
-/* Returns the destination path of a backup file. tags: path of the tag list as the plant file writes it; NULL: beside the plant file.
+/* Returns the destination path of a backup file. tags: path of the tag list as the plant file writes it; NULL: next to the plant file.
    mem_free. */
 static char *place_of(const char *name, const char *plant_path, const char *history, const char *tags)
 {
@@ -343,7 +343,7 @@ static bool is_database(const char *name)
     return length > 7 && !strcmp(name + length - 7, ".sqlite");
 }
 
-/* Compares each restored file with its hash. Copying a database also reads and checks all of it. */
+/* Compares each restored file with its hash. Copying a database also reads and checks every page of that database. */
 static bool each_restored(struct backup_job *job, const char *plant_path, const char *history)
 {
     size_t i;

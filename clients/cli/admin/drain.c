@@ -12,7 +12,8 @@
 #include "base/clock.h"
 #include "clients/cli/commands.h"
 
-enum { WAIT_S = 13 /* 2 s until a load balancer notices, 10 s for closing the sessions, 1 s in reserve */, LOOK_US = 50000 };
+/* seconds to wait for the daemon: 2 until a load balancer notices, 10 for closing the sessions, 1 in reserve */
+enum { WAIT_S = 13, LOOK_US = 50000 };
 
 static void print_usage(FILE *out)
 {
@@ -25,7 +26,7 @@ static void print_usage(FILE *out)
           out);
 }
 
-/* Check the name first: SIGUSR1 would end any other program. */
+/* Checks the process's name first: SIGUSR1 would end any other program. */
 static bool is_daemon(pid_t pid)
 {
     char path[64], name[32] = "";

@@ -18,20 +18,19 @@ enum { TIMEOUT_S = 600 };
 
 static void print_usage(FILE *out)
 {
-    fputs(
-        "usage: plantcast reload PID [--runtime DIR] [--timeout SECONDS]\n"
-        "\n"
-        "Sends SIGHUP to the daemon with this process ID and waits until it has reloaded plant file and tag list. If the daemon\n"
-        "rejects them, prints the reasons; the daemon keeps the old ones. For ExecReload= of a systemd unit; over the network use\n"
-        "POST /api/v1/reload.\n"
-        "\n"
-        "  --runtime DIR      RUNTIME_DIRECTORY of the daemon (default: that of the environment)\n"
-        "  --timeout SECONDS  wait at most this long (default: 600)\n"
-        "Exit status: 0 reloaded, 1 rejected.\n",
-        out);
+    fputs("usage: plantcast reload PID [--runtime DIR] [--timeout SECONDS]\n"
+          "\n"
+          "Sends SIGHUP to the daemon with this process ID and waits until it has reloaded plant file and tag list. If the daemon\n"
+          "rejects them, prints the reasons; the daemon keeps the old ones. For ExecReload= of a systemd unit; over the network use\n"
+          "POST /api/v1/reload.\n"
+          "\n"
+          "  --runtime DIR      RUNTIME_DIRECTORY of the daemon (default: that of the environment)\n"
+          "  --timeout SECONDS  wait at most this long (default: 600)\n"
+          "Exit status: 0 reloaded, 1 rejected.\n",
+          out);
 }
 
-/* Returns NULL if no result is there yet of a reload that began at since_ns or later. */
+/* Returns NULL if there is no result yet of a reload that began at since_ns or later. */
 static json_t *read_result(const char *path, int64_t since_ns)
 {
     json_t *file = json_load_file(path, 0, NULL), *result = NULL;

@@ -55,7 +55,7 @@ static bool is_foreign(const struct stat *st)
     return st->st_uid != 0 && st->st_uid != geteuid();
 }
 
-/* Returns why the folder of `path` is unsafe, or NULL. Users who may write to a folder can replace the files in it. */
+/* Returns NULL if the folder of `path` is safe, else the reason why not. Users who may write to a folder can replace the files in it. */
 static const char *folder_fault(const char *path)
 {
     struct stat st;
@@ -71,7 +71,7 @@ static const char *folder_fault(const char *path)
     return fault;
 }
 
-/* Returns why the token file must not be used, or NULL. */
+/* Returns NULL if the token file may be used, else the reason why not. */
 static const char *file_fault(const struct stat *st)
 {
     if (!S_ISREG(st->st_mode))
@@ -173,8 +173,8 @@ static void print_holder(const struct token_holder *holder)
     if (holder->display)
         snprintf(display, sizeof(display), "  display %s:%d", holder->wall, holder->display);
     printf("%-10s %s  %s%s%s%s%s%s%s%s%s\n", name_of(names_role, (int)holder->role), holder->name, *until ? "until " : "without end", until,
-           holder->plant[0] ? "  plant " : "", holder->plant, holder->views[0] ? "  views " : "", holder->views,
-           display, holder->unattended ? "  unattended" : "", holder->until_utc_ns <= clock_utc_ns() ? "  (its time is over)" : "");
+           holder->plant[0] ? "  plant " : "", holder->plant, holder->views[0] ? "  views " : "", holder->views, display,
+           holder->unattended ? "  unattended" : "", holder->until_utc_ns <= clock_utc_ns() ? "  (its time is over)" : "");
 }
 
 static int list(const char *path)
@@ -242,15 +242,11 @@ static bool take_option(int option, struct token_holder *holder)
 
 int cmd_token(int argc, char **argv)
 {
-    static const struct option options[] = { { "role", required_argument, NULL, 'r' },
-                                             { "name", required_argument, NULL, 'n' },
-                                             { "until", required_argument, NULL, 'u' },
-                                             { "plant", required_argument, NULL, 'p' },
-                                             { "unattended", no_argument, NULL, 'w' },
-                                             { "views", required_argument, NULL, 'v' },
-                                             { "display", required_argument, NULL, 'd' },
-                                             { "help", no_argument, NULL, 'h' },
-                                             { NULL, 0, NULL, 0 } };
+    static const struct option options[] = {
+        { "role", required_argument, NULL, 'r' },    { "name", required_argument, NULL, 'n' }, { "until", required_argument, NULL, 'u' },
+        { "plant", required_argument, NULL, 'p' },   { "unattended", no_argument, NULL, 'w' }, { "views", required_argument, NULL, 'v' },
+        { "display", required_argument, NULL, 'd' }, { "help", no_argument, NULL, 'h' },       { NULL, 0, NULL, 0 }
+    };
     struct token_holder holder = { .role = ROLE_NOBODY, .until_utc_ns = INT64_MAX };
     for (int option; (option = getopt_long(argc, argv, "", options, NULL)) != -1;) {
         if (option == 'h') {

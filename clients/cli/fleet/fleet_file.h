@@ -9,17 +9,17 @@
 enum { FLEET_PLANTS = 1000 };
 
 struct fleet_plant {
-    char *id;                    /* identifier in addresses and metrics */
-    char *name;                  /* display name; equals the id if none is given */
-    char *url;                   /* ends with a slash */
-    char *token_file, *ca_file;  /* NULL: none */
-    double poll_s, picture_s;    /* shortest intervals between two requests to this server, seconds; picture_s 0: no picture */
+    char *id;                   /* identifier in addresses and metrics */
+    char *name;                 /* display name; equals the id if none is given */
+    char *url;                  /* ends with a slash */
+    char *token_file, *ca_file; /* NULL: none */
+    double poll_s, picture_s;   /* minimum intervals, in seconds, between two requests to this server; picture_s 0: requests no pictures */
     int line;
 };
 
 struct fleet_file {
     char *path, *folder, *name;
-    double poll_s, picture_s;    /* default intervals of plants that give none */
+    double poll_s, picture_s; /* default intervals of plants that give none */
     struct fleet_plant *plants;
     size_t count;
 };

@@ -76,7 +76,7 @@ static bool make_request(const struct fleet_plant *plant, struct fleet_request *
     return true;
 }
 
-/* Stores a complete response. Returns NULL, or what is wrong with it. */
+/* Stores a complete response. Returns NULL if the response is good, else what is wrong with it. */
 static const char *note_answer(struct fleet_poll *poll, struct fleet_request *request)
 {
     struct fleet_plant_state *known = &poll->states[request->plant];
@@ -105,7 +105,7 @@ static void note_failure(struct fleet_poll *poll, const struct fleet_request *re
 {
     struct fleet_plant_state *known = &poll->states[request->plant];
     struct picture *picture = &poll->pictures[request->plant];
-    if (request->kind == PICTURE) { /* a failed request drops the picture: an old one would pass for the current state */
+    if (request->kind == PICTURE) { /* a failed request drops the picture: viewers would take an old one for the current state */
         mem_free(picture->at);
         picture->at = NULL;
         known->picture = 0;
@@ -217,7 +217,7 @@ struct fleet_poll *fleet_poll_start(const struct fleet_file *file)
         struct fleet_request *request = &poll->requests[i];
         request->plant = (int)(i / KINDS);
         request->kind = (enum fleet_question)(i % KINDS);
-        /* spread over 5 s, so that the requests do not all coincide forever */
+        /* first requests are spread over 5 s; otherwise all requests would always be sent at the same time */
         request->due_ns = now_ns + (int64_t)(i / KINDS) * 5 * NS_PER_S / (int64_t)file->count;
     }
     curl_global_init(CURL_GLOBAL_DEFAULT);

@@ -22,13 +22,13 @@ struct fleet_state {
 bool fleet_state_read(const char *metrics, struct fleet_state *out);
 
 struct fleet_plant_state {
-    struct fleet_state state;   /* from the last answer */
+    struct fleet_state state; /* from the last answer */
     bool answers;
-    int64_t answered_us;        /* time of the server's last answer, microseconds since 1970; 0: never */
-    int64_t silent_us;          /* since when the server does not answer, microseconds since 1970; 0: it answers */
-    uint64_t picture;           /* number of the server's picture; 0: none, or the last request for one failed */
-    char why[256];              /* why the server does not answer */
-    int64_t asked;              /* number of requests so far */
+    int64_t answered_us; /* time of the server's last answer, microseconds since 1970; 0: never */
+    int64_t silent_us;   /* time of the first failed request since the last answer, microseconds since 1970; 0: it answers */
+    uint64_t picture;    /* id of the server's newest picture; 0: none, or the last request for one failed */
+    char why[256];       /* why the server does not answer */
+    int64_t asked;       /* number of requests so far */
 };
 
 /* Return the fleet's state as JSON, or write it as Prometheus metrics. states: one per plant of the file, in the file's order. */

@@ -34,7 +34,7 @@ static bool load_baseline(struct offline_renderer *offline, struct snapshot_opti
     return good;
 }
 
-/* Reads the values of this picture only; those of the previous picture are dropped. */
+/* Reads the picture's values from the file, and drops the values of the previous picture. */
 static bool load_values(struct offline_renderer *offline, struct snapshot_options *options, struct diag *diag)
 {
     bool good = true;
@@ -92,7 +92,7 @@ bool offline_renderer_open_gl(struct offline_renderer *offline, const struct sna
     return offline->renderer != NULL;
 }
 
-/* Registers the plant's colour maps and image files that are given in place of a colour map's name. */
+/* Registers the plant's colour maps and image files that --colormap names in place of a colour map. */
 static bool add_colormaps(const struct offline_renderer *offline, const struct snapshot_options *options)
 {
     static const char name[] = "colormap=";

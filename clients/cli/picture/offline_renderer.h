@@ -13,7 +13,7 @@ struct offline_renderer { /* members are freed in reverse order */
     struct scene *scene;
     struct snapshot *snapshot; /* readings to draw */
     struct baselines *baselines;
-    uint32_t turn; /* number of the current set of values */
+    uint32_t turn; /* sequence number of the present set of readings; grows with each new set */
     struct workers *workers;
     struct field *field;
     struct gl *gl;
@@ -36,8 +36,7 @@ int offline_renderer_reopen(struct offline_renderer *offline, struct snapshot_op
 /* Creates the GL context and the renderer. Returns false if it cannot, logged. */
 bool offline_renderer_open_gl(struct offline_renderer *offline, const struct snapshot_options *options);
 /* Opens the plant's recorded history. Returns false if there is none, with the reason printed. */
-bool offline_renderer_open_history(struct offline_renderer *offline,
-                                   const struct snapshot_options *options);
+bool offline_renderer_open_history(struct offline_renderer *offline, const struct snapshot_options *options);
 /* Sets the readings and the view to an instant of recorded history. Returns false if the history cannot be read (logged) or has no readings
    before that instant (printed). */
 bool offline_renderer_seek(struct offline_renderer *offline, int64_t at_us, struct view *view);

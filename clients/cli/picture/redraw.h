@@ -6,8 +6,8 @@
 
 struct redraw_options {
     const char *plant;    /* plant file; NULL: no redraw */
-    const char *prepared; /* folder of prepared files; NULL: beside the plant file */
-    const char *history;  /* folder; NULL: readings are not compared */
+    const char *prepared; /* folder of prepared files; NULL: next to the plant file */
+    const char *history;  /* history folder; NULL: readings are not compared */
 };
 
 /* Draws the statement's view from its readings and compares pixels, configuration, asset files and, if options->history is set, readings.

@@ -16,21 +16,21 @@ struct snapshot_options {
     size_t arg_count;
     const char *values[SNAPSHOT_MAX]; /* CSV files */
     size_t value_count;
-    bool pick;            /* whether to print what is at place_px */
+    bool pick; /* true: prints what is at the pixel place_px */
     double place_px[2];
     const char *baseline; /* CSV file, or for a daemon the name of a saved baseline; NULL: none */
-    const char *prepared; /* folder of prepared files; NULL: beside the plant file */
+    const char *prepared; /* folder of prepared files; NULL: next to the plant file */
     enum gl_kind gl;
     struct gl_device gl_device;
     bool has_gl_device;
-    const char *at;      /* instant as written on the command line; NULL: now */
-    int64_t at_us;       /* `at` in microseconds since 1970 */
-    const char *history; /* history folder; NULL: the plant file's */
+    const char *at;                  /* instant as written on the command line; NULL: now */
+    int64_t at_us;                   /* `at` in microseconds since 1970 */
+    const char *history;             /* history folder; NULL: the plant file's */
     const char *from_text, *to_text; /* first and last instant of a clip, as written and in microseconds */
     int64_t from_us, to_us;
-    const char *tour; /* id of a clip's tour; NULL: one view */
+    const char *tour; /* id of the tour (sequence of views) that a clip shows; NULL: a single view */
     double speed, fps;
-    bool is_signed; /* whether a clip keeps the server's signatures */
+    bool is_signed;                                      /* true: the clip contains the server's signatures */
     bool per_fragment, moving, no_overlay, offline_only; /* offline_only: an option was given that a daemon does not offer */
 };
 

@@ -29,7 +29,7 @@ static void print_pick(struct offline_renderer *offline, const struct snapshot_o
     mem_free(answer);
 }
 
-/* Seeks to a recorded instant if one is given and no values are. */
+/* Reads the values of a recorded instant, if the options give an instant but no file of values. */
 static bool go_back(struct offline_renderer *offline, const struct snapshot_options *options, struct view *view)
 {
     return !options->at || options->value_count > 0 ||

@@ -35,7 +35,7 @@ static void print_statement(const char *path, const json_t *statement)
     puts(json_array_size(args) ? "" : " the plant's own");
 }
 
-/* statement: verified, so its size and pixels can be trusted. */
+/* statement: already verified, so the picture's size and pixels can be trusted. */
 static int redraw(const struct redraw_options *options, const json_t *statement, const char *png, size_t count)
 {
     char why[PNG_WHY_BYTES];

@@ -40,7 +40,7 @@ static void print_usage(FILE *out)
           out);
 }
 
-/* Saves the list. Takes ownership of `before` and `after`; if one is NULL, `failed` has the reason. */
+/* Saves the list. Takes ownership of `before` and `after`. If one is NULL, saves nothing and prints the reason in `failed`. */
 static int save(const char *path, char *before, char *after, const struct refusal *failed)
 {
     struct tag_save saved = { .path = (char *)path, .before = before, .after = after };
@@ -143,7 +143,7 @@ static int run(const struct accept_options *options)
     if (!plant)
         return 1;
     struct log *log = log_create(LOG_WARN);
-    char real[PATH_MAX]; /* earlier versions are stored beside the target of a symlink */
+    char real[PATH_MAX]; /* earlier versions are stored next to the target of the symlink */
     const char *path = realpath(plant->tags_path, real) ? real : plant->tags_path;
     int code = options->undo ? undo(options, path) : accept_in(options, plant, log, path);
     log_destroy(&log);
@@ -153,11 +153,16 @@ static int run(const struct accept_options *options)
 
 int cmd_sensors_accept(int argc, char **argv)
 {
-    static const struct option all[] = { { "asset", required_argument, NULL, 'a' },      { "group", required_argument, NULL, 'g' },
-                                         { "tags", required_argument, NULL, 't' },       { "within", required_argument, NULL, 'w' },
-                                         { "confidence", required_argument, NULL, 'c' }, { "prepared", required_argument, NULL, 'd' },
-                                         { "undo", required_argument, NULL, 'u' },       { "dry-run", no_argument, NULL, 'n' },
-                                         { "help", no_argument, NULL, 'h' },             { 0 } };
+    static const struct option all[] = { { "asset", required_argument, NULL, 'a' },
+                                         { "group", required_argument, NULL, 'g' },
+                                         { "tags", required_argument, NULL, 't' },
+                                         { "within", required_argument, NULL, 'w' },
+                                         { "confidence", required_argument, NULL, 'c' },
+                                         { "prepared", required_argument, NULL, 'd' },
+                                         { "undo", required_argument, NULL, 'u' },
+                                         { "dry-run", no_argument, NULL, 'n' },
+                                         { "help", no_argument, NULL, 'h' },
+                                         { 0 } };
     struct accept_options options = { 0 };
     for (int option; (option = getopt_long(argc, argv, "", all, NULL)) != -1;)
         switch (option) {

@@ -77,10 +77,13 @@ static bool read_url(const char *url, struct plant_source *source, char host[256
 
 static bool read_options(int argc, char **argv, struct plant_source *source, char host[256], int *code)
 {
-    static const struct option options[] = { { "certificate", required_argument, NULL, 'c' }, { "key", required_argument, NULL, 'k' },
+    static const struct option options[] = { { "certificate", required_argument, NULL, 'c' },
+                                             { "key", required_argument, NULL, 'k' },
                                              { "trusted", required_argument, NULL, 't' },
-                                             { "server-name", required_argument, NULL, 's' }, { "login", required_argument, NULL, 'l' },
-                                             { "help", no_argument, NULL, 'h' },              { NULL, 0, NULL, 0 } };
+                                             { "server-name", required_argument, NULL, 's' },
+                                             { "login", required_argument, NULL, 'l' },
+                                             { "help", no_argument, NULL, 'h' },
+                                             { NULL, 0, NULL, 0 } };
     bool good = true;
     for (int option; good && (option = getopt_long(argc, argv, "", options, NULL)) != -1;) {
         char **const to = option == 'c'   ? &source->opcua.certificate
@@ -114,7 +117,7 @@ int tags_browse(int argc, char **argv)
     int code = 2;
     if (!read_options(argc, argv, &source, host, &code))
         return code;
-    int stop_fd = eventfd(0, EFD_CLOEXEC); /* never readable, so that nothing interrupts the browsing */
+    int stop_fd = eventfd(0, EFD_CLOEXEC); /* a descriptor that never becomes readable, so that browsing is never interrupted */
     struct opcua_client *client = opcua_client_create(&source, 0, &nodes, &events, why);
     int status = client ? opcua_client_connect(client, stop_fd, clock_mono_ns() + CONNECT_NS, why) : -1;
     if (status == 0) {

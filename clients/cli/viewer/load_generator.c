@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Runs all blind viewers in one epoll loop. */
+/* Runs all blind viewers (which do not decode frames) in one epoll loop. */
 #include "load_generator.h"
 
 #include <errno.h>
@@ -15,8 +15,8 @@
 
 enum { EVENTS = 256 };
 static const int64_t CONNECT_TIMEOUT_NS = 20 * NS_PER_S; /* time limit for connecting */
-/* Interval between polls; packets that arrived meanwhile are handled together. Waking for each packet would run inside the daemon's send()
-   and took a quarter of its time. */
+/* Interval between polls; packets that arrived meanwhile are handled together. Waking for each packet is avoided, because it happens inside
+   the daemon's send() and took a quarter of that time. */
 static const int64_t POLL_INTERVAL_NS = 2 * NS_PER_MS;
 
 struct load_generator {

@@ -8,7 +8,7 @@ struct probe {
     struct daemon_url url;
     const char *url_text, *codec, *signs, *folder;
     int sessions, stalled, width_px, height_px;
-    int watching; /* number of viewers at the front of `viewers` that do not stall */
+    int watching; /* the first so many of `viewers` do not stall (stop reading) */
     double seconds, hz;
     enum motion motion;
     bool as_json, blind, follow, spread;

@@ -27,7 +27,7 @@ static void append(struct latency_samples *all, const struct latency_samples *so
     all->count += some->count;
 }
 
-/* of: sorted samples. Returns NaN if there are none. */
+/* Argument `of`: sorted samples. Returns NaN if there are none. */
 static double percentile(const struct latency_samples *of, double p)
 {
     if (!of->count)

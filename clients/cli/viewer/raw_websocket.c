@@ -23,14 +23,14 @@ struct raw_websocket {
     enum { ASKING, ASKED, OPEN } state;
     char request[1024];
     struct text head;     /* head of the server's HTTP response */
-    unsigned char in[10]; /* bytes of the current frame's header so far */
+    unsigned char in[10]; /* number of bytes received of the current frame's header */
     size_t in_count;
     bool in_payload, final;
     int opcode;         /* opcode of the current frame */
     size_t left;        /* payload bytes still to come */
-    bool binary, begun; /* of the current message: binary, and whether a frame of it has arrived */
+    bool binary, begun; /* current message: whether it is binary, and whether its first frame has arrived */
     struct text message, control;
-    size_t count; /* bytes of the current message so far */
+    size_t count; /* number of bytes received of the current message */
 };
 
 /* --- connecting ---------------------------------------------------------------------------------------------------------------- */
@@ -96,7 +96,8 @@ static bool send_frame(const struct raw_websocket *raw, int opcode, const char *
         out[2] = (unsigned char)(count >> 8);
         out[3] = (unsigned char)count;
     }
-    memset(out + head - 4, 0, 4); /* RFC 6455 demands a mask against HTTP caches; a mask of zeros leaves the data unchanged */
+    /* RFC 6455 requires clients to mask payloads, as a protection of HTTP caches; a mask of zeros leaves the data unchanged */
+    memset(out + head - 4, 0, 4);
     memcpy(out + head, bytes, count);
     return send_all(raw, out, head + count);
 }
@@ -165,7 +166,7 @@ static void begin_payload(struct raw_websocket *raw)
     raw->message.length = raw->count = 0;
 }
 
-/* Reads the frame header. Returns > 0 once complete, else as take(). */
+/* Reads the frame header. Returns > 0 once the header is complete, else the result of take(). */
 static ssize_t read_frame_header(struct raw_websocket *raw, const char **why)
 {
     while (raw->in_count < header_bytes(raw)) {
@@ -178,7 +179,7 @@ static ssize_t read_frame_header(struct raw_websocket *raw, const char **why)
     return 1;
 }
 
-/* Reads the frame's payload. Returns as take(). */
+/* Reads the frame's payload. Returns the result of take(). */
 static ssize_t read_payload(struct raw_websocket *raw, const char **why)
 {
     static char bytes[64 * 1024];

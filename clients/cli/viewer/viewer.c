@@ -53,7 +53,7 @@ static void on_pong(struct viewer *viewer, int64_t server_us)
     viewer->offset_us = server_us - (clock_utc_ns() - rtt_ns / 2) / 1000;
 }
 
-/* Returns whether to skip the message unparsed; with many viewers most messages are of these types. */
+/* Returns whether to skip the message without parsing: most messages have types that the measurement does not need. */
 static bool is_passed_over(const struct text *text)
 {
     static const char *const types[] = { "tags", "markers" };
@@ -102,7 +102,7 @@ static void record_input(struct viewer *viewer, uint32_t camera_seq, int64_t now
             add(&viewer->result.input, (double)(now_ns - viewer->sent_ns[(viewer->shown_camera_seq + 1) % SENT_RING]) / 1e6);
 }
 
-/* Records how far this follower is behind its leader, by the camera of the frame. */
+/* Records how long after its leader this follower shows the camera of the frame. */
 static void record_behind(struct viewer *viewer, const struct wire_frame *frame, int64_t now_ns)
 {
     struct leader *lead = viewer->params.lead;

@@ -32,15 +32,15 @@ struct viewer_params {
     const char *codec; /* "jpeg", "h264" */
     enum motion motion;
     double seconds, hz;  /* hz: camera updates per second */
-    double start_deg;    /* start angle of the orbit; in a still view, the angle from home (0: home) */
+    double start_deg;    /* start angle of the orbit; in a still view, the angle from the plant's initial camera (0: that camera) */
     unsigned seed;       /* seed of random motion */
     bool blind;          /* whether to acknowledge without decoding */
     const char *signs;   /* frames to request signed: `refined`, `all`; NULL: none */
     const char *folder;  /* folder for signed frames; NULL: do not save */
-    int number;          /* number of this viewer, part of the file names */
-    bool stalls;         /* whether to stop reading after the first frame */
+    int number;          /* index of this viewer, part of the names of saved files */
+    bool stalls;         /* true: the viewer stops reading from the socket after the first frame, like a client that hangs */
     struct leader *lead; /* shared state of leader and followers; NULL: neither leads nor follows */
-    bool follows;        /* whether this viewer follows; else it leads */
+    bool follows;        /* true: this viewer follows; false: it leads */
 };
 
 struct latency_samples { /* milliseconds */
@@ -71,7 +71,8 @@ struct viewer *viewer_create(const struct viewer_params *params);
 void viewer_connect(struct viewer *viewer, struct lws_context *context);
 /* Returns whether the viewer has finished. */
 bool viewer_done(const struct viewer *viewer);
-/* If the viewer only waits for its socket (*fd; -1: none) or its timer, returns the monotonic time when the timer fires; else 0. */
+/* Returns the monotonic time at which the viewer's timer fires, if the viewer waits for nothing but that timer and its socket (*fd; -1:
+   none); else 0. */
 int64_t viewer_rests_until_ns(const struct viewer *viewer, int *fd);
 /* Returns the viewer's measurements, which belong to the viewer. */
 const struct viewer_result *viewer_result(const struct viewer *viewer);

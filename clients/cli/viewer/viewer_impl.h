@@ -17,7 +17,7 @@ struct viewer {
     struct raw_websocket *raw;
     lws_sorted_usec_list_t timer;
     struct decoder *decoder;
-    int64_t decode_ns; /* decoding time so far of a picture that comes in parts */
+    int64_t decode_ns; /* time spent so far on decoding a picture that arrives in several rectangles */
     struct text in;    /* incoming message; over a raw WebSocket, of a binary message only the beginning */
     size_t in_count;   /* length of the incoming message */
     bool greeted, welcomed, camera_due, ping_due, follow_due, followed, done;
@@ -25,7 +25,7 @@ struct viewer {
     uint64_t session;
     uint32_t camera_seq, shown_camera_seq;
     int64_t sent_ns[SENT_RING], begin_ns, next_ns;
-    int64_t ping_ns, rtt_ns, offset_us; /* round trip; offset_us: server clock minus ours, at the shortest round trip */
+    int64_t ping_ns, rtt_ns, offset_us; /* shortest round trip so far; offset_us: server clock minus ours, measured by that round trip */
     double angle_deg, speed_deg;        /* of random motion since leg_ns */
     int64_t leg_ns, leg_end_ns;
     struct {

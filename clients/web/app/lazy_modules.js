@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Loads modules on first use that the first picture does not need: script, style sheets, markup, and with the first of them the shared
-// words.
+// Loads modules on first use that the first picture does not need: script, style sheets, markup, and the shared words together with the
+// first module.
 import { learnWords, say } from '../core/words.js';
 import { sayAll, styled } from './common/dom.js';
 import { renewIfOld } from './install.js';
@@ -58,7 +58,7 @@ export class LazyModules {
         Object.assign(this, { page, tell });
         this.made = new Map();     // created parts by name
         this.awaited = new Map();  // name -> promise of a part being loaded
-        this.uses = new Map();     // name -> callbacks to run once the part is loaded, by kind
+        this.uses = new Map(); // name -> callbacks, by kind, that run once the part is loaded
         this.missed = new Set();   // names of parts that the user waits for and whose failure was not shown yet
         this.pauses = new Set();   // functions that end a retry interval early
     }

@@ -14,8 +14,8 @@ import { Tools } from './toolbar/tools.js';
 import { Toolbar } from './toolbar/toolbar.js';
 
 const ADDRESS_WAIT_MS = 400, TOAST_MS = 6000;
-const WATCH_AFTER_MS = 5000; // delay of the watchdog, so that the first picture loads before it
-const MANY_PICTURES = 30; // after this many pictures, an inter-frame codec pays off
+const WATCH_AFTER_MS = 5000; // delay before the watchdog is loaded, so that the first picture loads before it
+const MANY_PICTURES = 30; // number of pictures after which an inter-frame codec (H.264) pays off
 // names of commands that lazily loaded parts receive
 const COMMANDS = ['selectTag', 'showTag', 'flyToTag', 'fitView', 'selectAsset', 'showTrend', 'addTrend', 'showAsset'];
 
@@ -118,7 +118,7 @@ session.on('params', async () => {
         if (['difference', 'uncertainty', 'blind'].includes(half.show))
             modules.get('coverage');
     }
-    // loads the clip gizmo when something is clipped, except on a wall
+    // loads the clip gizmo when section planes cut the plant, except on a wall
     if (params.clip && !document.body.classList.contains('wall') && await modules.get('clipGizmo'))
         refresh();
 });
@@ -160,7 +160,7 @@ session.on('followers', () => modules.get('share'));
 session.on('following', () => session.leader !== null && modules.get('following'));
 session.on('ignored', (what) => console.warn(`ignored: ${what}`));
 
-// Loads a part inside the panel of views, after that panel.
+// Loads the panel of views, then a module that is shown inside that panel.
 async function bring(name) {
     await modules.get('views');
     modules.get(name);
@@ -211,7 +211,7 @@ function tell(text, ms = TOAST_MS) {
 
 // --- the page
 
-// Returns whether the user has changed nothing since the greeting; the URL then stays as it was.
+// Returns whether the user has changed nothing since the greeting; the URL then stays unchanged.
 const isUntouched = () => !location.hash && session.paramsSeq <= 1 && !moved && !selection.tag && session.time.atUs === null;
 
 let addressTimer;

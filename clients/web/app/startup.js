@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the first picture needs: connection, session and viewport. main.js loads the rest meanwhile.
+// Connection, session and viewport: everything that the first picture needs. main.js loads the rest meanwhile.
 import { Connection } from '../core/connection.js';
 import { browserDecoding } from '../core/decoding.js';
 import { Session } from '../core/session.js';
@@ -11,7 +11,8 @@ import { chooseTheme } from './common/theme.js';
 import { Viewport } from './viewport/viewport.js';
 
 const query = new URLSearchParams(location.search);
-if (query.has('wall') && !/^[\d.,]*$/.test(query.get('wall'))) { // a wall's id, not its size in inches and metres
+// the value of `wall` in the URL is the id of a wall, not its size in inches and metres
+if (query.has('wall') && !/^[\d.,]*$/.test(query.get('wall'))) {
     location.replace(`wall.html${location.search}`);
     await new Promise(() => {}); // never resolves: the browser is leaving for the wall's page
 }

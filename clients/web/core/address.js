@@ -4,7 +4,7 @@ import { valid } from './camera.js';
 import { clipText, numbersText, readNumbers, readSensors, sensorsText } from './query.js';
 
 const CHOICES = {
-    // null: any name; the server validates it
+    // parameter -> its valid names; null: any name, which the server checks
     group : null,
     interpolation : null,
     distance : null,

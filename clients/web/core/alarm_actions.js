@@ -19,7 +19,7 @@ export function actionsFor({ state }, mode, role) {
 export const asideOf = ({ rows }) =>
     [...rows.values()].filter(({ state }) => !calls(state)).sort((a, b) => (a.tag.index ?? -1) - (b.tag.index ?? -1));
 
-// Returns all alarms of a row in the list: the tag's displayed alarm, and its others.
+// Returns all alarms of a row in the list: the tag's displayed alarm, and the tag's other alarms.
 const allOf = (row) => [row, ...(row.others ?? [])];
 
 // Returns the alarms of a row to which an action applies.
@@ -32,7 +32,7 @@ const IS = { // predicates by filter choice
     all: () => true, waiting: ({ waiting }) => waiting, active: ({ state }) => !isGone(state), gone: ({ state }) => isGone(state),
 };
 
-// Returns whether a row passes the filter. which: a key of IS, or a priority; words: all of them must be in the text of the row.
+// Returns whether a row passes the filter. which: a key of IS, or a priority; words: every one must be in the text of the row.
 export function passes(row, text, { which, words }) {
     const is = IS[which] ?? (({ priority }) => priority === Number(which)), lower = text.toLowerCase();
     return is(row) && words.toLowerCase().split(/\s+/).every((word) => lower.includes(word));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Selects the alarm that a wall's pane shows in place of its view: unacknowledged alarms in turn, active before returned, then by urgency
-// and age. Shows none during a flood, when jumping around would help nobody.
+// and age. Selects none during a flood of alarms, since a picture that keeps changing would help nobody.
 import { isGone } from './alarms.js';
 
 export const TURN_MS = 10000;  // minimum time between two changes of the picture

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The abnormal alarms that the server sends; which of them are annunciated, one per tag, and in what order.
+// Stores the alarms that are not normal, as the server sends them, and selects the annunciated ones, one per tag and sorted.
 
 const CALLS = ['unacknowledged', 'active', 'returned', 'latched', 'acknowledged']; // annunciated states
 
 export const calls = (state) => CALLS.includes(state);
 const isWaiting = (state) => state === 'unacknowledged' || state === 'returned';
 export const isGone = (state) => state === 'returned' || state === 'latched'; // returned to normal: drawn hollow
-// Stands in for the tag in an alarm of a device, the source of many tags.
+// Object used in place of a tag in the alarms of a device.
 const deviceOf = (name) => ({ name, index: null, group: null, asset: null, description: '' });
 
 const isOuter = ({ kind }) => kind === 'HH' || kind === 'LL';
@@ -19,7 +19,8 @@ export class Alarms {
         Object.assign(this, { tags, mode: 'display', known: false });
         this.rows = new Map(); // "tag index/kind" -> alarm
         this.then = null; // readings of a past instant that is shown; they then determine each tag's alarm
-        // tag index or device name -> its most urgent annunciated alarm, with `waiting` (whether any is unacknowledged)
+        // tag index or device name -> its most urgent annunciated alarm, with `waiting`: true if the tag or device has any unacknowledged
+        // alarm
         this.byTag = new Map();
         // and `others` (its other alarms)
     }
@@ -58,8 +59,8 @@ export class Alarms {
         return this.byTag.get(index) ?? null;
     }
 
-    // Returns counts of tags and devices: { active, waiting (unacknowledged), latched, of: active ones by priority, gone: returned ones by
-    // priority }
+    // Returns numbers of tags and devices with alarms: { active, waiting (unacknowledged), latched, of: active ones by priority, gone: ones
+    // that have returned to normal, by priority }
     counts() {
         const list = this.list(), of = [0, 0, 0, 0], gone = [0, 0, 0, 0];
         for (const { priority, state } of list)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cameras from which a sensor is looked at, to be tried in order, the best first.
+// Computes cameras that look at a sensor, the best first; app/input/approach.js tries them in this order.
 import { face, orbit } from './camera_moves.js';
 import { subtract } from './vector.js';
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The tree of equipment as rows: areas, assets, their tags, and tags without an asset; and which of them are expanded.
+// The tree of equipment as rows: areas, assets, their tags, and tags without an asset; and which rows are expanded.
 
 // A row is { kind: area | asset | tag, level, id, open (areas and assets), item (asset or tag), text (of an area), setSize, place }.
 export class Tree {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Finds out why no WebSocket opens although the page was loaded from the same server. Usually a proxy in between is set up without
+// Finds the reason if no WebSocket opens although the page was loaded from the same server. Usually a proxy in between is set up without
 // WebSockets: the message names the proxy and the settings that it needs.
 import { put } from './refusals.js';
 import { say } from './words.js';
@@ -13,7 +13,7 @@ const proxyOf = (headers) => headers.get('server')?.split(/[/ ]/)[0] || /^\S+ ([
 // url: of the WebSocket. Returns the reason; '' if the server does not answer over HTTP either.
 async function whyBlocked(url) {
     const address = new URL(url.replace(/^ws/, 'http'));
-    address.search = '?why'; // without ?why the server logs requests that are not WebSockets
+    address.search = '?why'; // ?why keeps the server from logging this request as a failed WebSocket
     const answer = await fetch(address, { cache: 'no-store', signal: AbortSignal.timeout(ANSWER_MS) });
     if (answer.status >= 500)
         return '';

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Places the labels of alarm rings: each by itself, or several that are close together in one call-out (protocol/LABELS.md).
+// Places the labels of alarm rings: each ring gets its own label, or several rings that are close together share one label, a call-out
+// (protocol/LABELS.md).
 import { boxAt, CLEARANCE, hasArea, meets, SLOTS } from './labels.js';
 
 // units: rings closer than CLOSE share a call-out; those that already do stay together up to STILL_CLOSE
 const CLOSE = 26, STILL_CLOSE = 34;
 const MOST_GROUPS = 24, FARTHER = 1.25;     // maximum number of ring labels; distances grow by FARTHER until the limit is met
 const STEP_X = 24, STEP_Y = 15, STEPS = 60; // units: grid of label positions around the centre of the rings
-const FARTHEST = 170;                       // units; beyond this a label is only placed if there is no other to join
+const FARTHEST = 170; // units: largest distance of a label from its rings, unless it is the only label left
 const MOST_GROWTHS = 100;                   // maximum number of growth steps; by then distances exceed any picture
 
 const OFFSETS = []; // [x, y, squared distance], nearest first
@@ -41,7 +42,7 @@ function group(members, measure) {
     const xs = members.map(({ x }) => x), ys = members.map(({ y }) => y);
     const [left, right, top, bottom] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
     const [one] = members, alone = members.length === 1, { width, height } = alone ? one : measure(members);
-    // a member whose previous label was of the same kind (own label or call-out)
+    // the member whose previous position is reused: its previous label was of the same kind (single or call-out)
     const before = members.find(({ callout }) => (callout === undefined) === alone);
     return {
         members, x: (left + right) / 2, y: (top + bottom) / 2, across: (right - left) / 2, down: (bottom - top) / 2, width, height,
@@ -88,11 +89,11 @@ export function placeRings(all, { area, unit, taken, measure }) {
         const joined = components(groups.length, (i, k) => mates.get(i) === k || mates.get(k) === i)
             .map((list) => group(order.filter((item) => list.some((i) => groups[i].members.includes(item))), measure)).filter(hasFiniteBox);
         if (joined.length >= groups.length)
-            return out; // no two can be joined: the rest stays without a label
+            return out; // no two groups can be merged: the groups without room stay without labels
         groups = joined;
     }
 
-    // Finds a free position. Returns null: none nearby; Infinity: none at all, and no label to join.
+    // Returns the index of a free position; null: there is none nearby; Infinity: there is none, and no other label to merge with.
     function find(one, out, alone) {
         const free = (slot, more, over) => {
             const box = boxOf(one, slot, unit), owner = slot < SLOTS.length ? one.owner : null;

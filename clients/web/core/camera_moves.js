@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Camera moves: orbit, pan, zoom, look around, fit. Every function that moves returns a new camera, or the
-// one it was given if the move makes none that the server accepts. Positions in the picture are pixels from the top left.
+// Camera moves: orbit, pan, zoom, look around, fit. Every function that moves returns a new camera, or the given one if the server would
+// not accept the moved one. Positions in the picture are pixels from the top left.
 import { basis, heightAt, isParallel, LEAST_M, MAX_COORDINATE_M, metresPerPixel, RADIANS, USUAL_FOV, validOr } from './camera.js';
 import { add, along, cross, dot, length, middle, scale, subtract, unit } from './vector.js';
 
 export const USUAL_LIMITS = { near_m: 0.05, far_m: 1e5 }; // limits of zooming
 export const MAX_ELEVATION_DEG = 89; // at 90 degrees the horizon has no direction, and the picture would spin
 
-// Rodrigues: v turned by `angle` radians about a unit axis, right-handed.
+// Rodrigues' formula: returns v turned by `angle` radians about a unit axis, right-handed.
 function turn(v, axis, angle) {
     const c = Math.cos(angle), s = Math.sin(angle);
     return add(add(scale(v, c), scale(cross(axis, v), s)), scale(axis, dot(axis, v) * (1 - c)));
@@ -103,7 +103,8 @@ export function pan(camera, dxPx, dyPx, heightPx, depth = distance(camera)) {
     return validOr({ ...camera, eye: add(camera.eye, move), target: add(camera.target, move) }, camera);
 }
 
-// Returns the viewing ray through a pixel: { origin, direction }, the direction one metre deep along `forward`.
+// Returns the viewing ray through a pixel: { origin, direction }, `direction` is scaled so that it is one metre long when projected onto
+// `forward`.
 export function sight(camera, xPx, yPx, widthPx, heightPx) {
     const { forward, right, up } = basis(camera);
     const step = metresPerPixel(camera, heightPx, 1);
@@ -130,12 +131,12 @@ export function zoom(camera, factor, xPx, yPx, widthPx, heightPx, depth = distan
     return validOr({ ...camera, eye, target: along(eye, basis(camera).forward, wanted) }, camera);
 }
 
-// Returns where a ray enters a box, in units of its direction; null if it misses or starts inside.
+// Returns where a ray enters a box, as a multiple of the ray's `direction`; null if it misses or starts inside.
 export function enterBox(origin, direction, box) {
     let near = -Infinity, far = Infinity;
     for (let i = 0; i < 3; i++) {
         const a = (box.min[i] - origin[i]) / direction[i], b = (box.max[i] - origin[i]) / direction[i];
-        if (Number.isNaN(a) || Number.isNaN(b)) // 0/0: the ray is parallel to this pair of faces, and exactly in one of them
+        if (Number.isNaN(a) || Number.isNaN(b)) // 0/0: the ray is parallel to this pair of faces, and exactly in one of the two faces
             continue;
         near = Math.max(near, Math.min(a, b));
         far = Math.min(far, Math.max(a, b));

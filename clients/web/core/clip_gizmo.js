@@ -4,7 +4,7 @@ import { basis, isParallel } from './camera.js';
 import { AXES } from './section.js';
 import { add, along, cross, dot, finite, length, middle, mix, scale, subtract, unit } from './vector.js';
 
-const LEAST_BOX_M = 0.05, MARGIN = 1e-3; // MARGIN: a plane stays inside the plant by this fraction
+const LEAST_BOX_M = 0.05, MARGIN = 1e-3; // MARGIN: a plane stays inside the plant's bounds by at least this fraction of their size
 const NEAR_M = 0.02;                     // lines are clipped this many metres in front of the camera
 const STEEP = 0.03;                      // minimum squared sine between view and handle direction; below it a drag is undefined
 
@@ -63,7 +63,7 @@ function sideGrip(box, index, high, bounds) {
 }
 
 // Returns the finite handles of a clip: [{ id, axis (null: oblique), turned (keeps the smaller side), direction (unit vector), at, low,
-// high (metres along it), corners }].
+// high (position and its limits in metres along `direction`), corners }].
 export function gripsOf(clip, bounds) {
     if (clip?.planes)
         return clip.planes.map((plane, index) => planeGrip(plane, index, bounds)).filter(isSound);

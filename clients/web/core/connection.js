@@ -110,7 +110,7 @@ export class Connection {
             if (back)
                 this.leastWait = back[1] * 1000;
             const known = CLOSE_REASONS[event.code];
-            // Skips the first failure: a restarting server is back by the second attempt.
+            // Does not test after the first failure: a restarting server is back by the second attempt.
             const again = this.state === 'connecting' && !known && this.unopened++;
             this.lose(known ? say(known) : event.reason || this.blocked || say('reason.unreachable'));
             if (again)
@@ -129,7 +129,7 @@ export class Connection {
         this.nextPing = this.lastHeard + PING_MS;
         this.watch();
         this.state = 'open';
-        // Before onState: what the last server said no longer holds.
+        // Called before onState, because statements of the previous server are no longer valid.
         this.onOpen();
         this.become('open');
     }
@@ -170,7 +170,7 @@ export class Connection {
         return this.pingAt !== null && now - this.pingAt >= ANSWER_MS ? now - this.lastHeard : 0;
     }
 
-    // After a sleep, or another doubt about the peer: counts it as silent until it answers.
+    // After a sleep, or when the peer may be gone for another reason: treats the peer as silent until it answers.
     doubt() {
         if (this.state !== 'open')
             return;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Thins out markers where there are many (protocol/LABELS.md).
 
-const MOST = 6, NEAR = 30, HELD = 0.8; // MOST: markers within NEAR units; HELD: weight of a marker drawn in the previous picture
+// MOST: maximum number of markers within NEAR units; HELD: weight of a marker drawn in the previous picture
+const MOST = 6, NEAR = 30, HELD = 0.8;
 
 // items: { x, y, depth, occluded, kept (always drawn), held (drawn in the previous picture) }. Returns the items to draw, in order.
 export function thinOut(items, unit = 1) {

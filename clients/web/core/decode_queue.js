@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Queue of frames to decode: one is being decoded; of the waiting ones only the newest key frame and later ones are kept. A slow decoder
-// lowers the picture rate without adding delay.
+// Queue of frames to decode: one is being decoded; of the frames that wait, only the newest key frame and the frames after it are kept. A
+// slow decoder lowers the picture rate without adding delay.
 
 export class DecodeQueue {
     // decode(frame): returns a promise of a picture. ready(frame, picture, decodeMs): called in order. failed(frame, error). now():

@@ -4,7 +4,7 @@
 const WORKED = { acknowledge: 'acknowledged', shelve: 'shelved', unshelve: 'shelved', out_of_service: 'aside', in_service: 'aside' };
 
 // rows: of the journal, in any order. Returns { raised: [{ tag, kind, priority, count, first, last }, most frequent first], acknowledged,
-// shelved, aside: rows, oldest first }.
+// shelved, aside: lists of rows, oldest first }; aside: alarms suppressed or out of service.
 export function sortJournal(rows) {
     const raised = new Map(), out = { acknowledged: [], shelved: [], aside: [] };
     for (const row of [...rows].sort((a, b) => a.time_us - b.time_us || a.id - b.id)) {
@@ -19,7 +19,7 @@ export function sortJournal(rows) {
     return { ...out, raised: [...raised.values()].sort(order) };
 }
 
-// Reads the journal of a span page by page, up to `most` rows. Returns { rows, cut (rows were left out) }. get(query): fetches
+// Reads the journal of a span page by page, up to `most` rows. Returns { rows, cut: true if rows were left out }. get(query): fetches
 // /api/v1/alarms/journal.
 export async function readJournal(get, from, to, most = 20000) {
     const rows = [];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The one answer to "may I trust this picture?": kind, words, and since when.
+// Decides whether the picture may be trusted, for all parts of the page: kind of state, words for it, and its begin.
 import { ageText, title, zoneClock } from './format.js';
 import { say } from './words.js';
 

@@ -130,11 +130,11 @@ export function raised(rows) {
         .sort((a, b) => a.us - b.us);
 }
 
-// Returns the next such row after a time or, backwards, before it; null if there is none.
+// Returns the first row of raisedAlarms() after a time, or with `backwards` the last one before it; null if there is none.
 export const nextTo = (marks, us, backwards) =>
     (backwards ? marks.findLast((mark) => mark.us < us) : marks.find((mark) => mark.us > us)) ?? null;
 
-// Groups marks closer together than nearUs: { us and priority of the most urgent, of: all of them }.
+// Groups marks closer together than nearUs: { us and priority of the most urgent, of: all marks of the group }.
 export function clustered(marks, nearUs) {
     const out = [];
     for (const mark of marks) {
@@ -147,12 +147,12 @@ export function clustered(marks, nearUs) {
     return out.map(({ of }) => ({ ...of.reduce((gravest, mark) => (mark.priority < gravest.priority ? mark : gravest)), of }));
 }
 
-// Returns the seconds that an arrow key moves a slider of that span: at most a minute.
+// Returns by how many seconds an arrow key moves a slider of that span: at most a minute.
 export const arrowS = (spanS) => Math.max(1, Math.min(60, Math.round(spanS / 900)));
 
 const MOST_TICKS = 1000;
 
-// Returns at most `most` round times between two instants: [us]. None if an instant is not finite or they are centuries apart.
+// Returns at most `most` round times between two instants: [us]. Returns none if an instant is not finite or they are centuries apart.
 export function ticks(fromUs, toUs, most, offsetUs = 0) {
     const steps = [1, 5, 10, 30, 60, 300, 600, 1800, 3600, 7200, 14400, 28800, 43200, 86400, 172800, 604800].map((s) => s * 1e6);
     const step = steps.find((one) => (toUs - fromUs) / one <= most) ?? steps.at(-1);

@@ -12,7 +12,7 @@ const COMMANDS = {
     t: 'top', i: 'corner', o: 'projection', v: 'views', p: 'picture', x: 'hide', g: 'ghost', l: 'only', u: 'showAll', m: 'timings',
     e: 'alarms', y: 'past', n: 'live', ' ': 'hold', r: 'measure', c: 'snapshot', k: 'share', z: 'theme',
 };
-export const TAP_S = 1 / 15; // a key moves this much at once, and steadily once held for longer
+export const TAP_S = 1 / 15; // seconds of motion that each press of a key causes immediately; a key held for longer moves steadily
 export const HOLD_S = 0.25;
 
 function motionName({ key, code, shiftKey }) {
@@ -68,7 +68,8 @@ export class HeldKeys {
     }
 
     release(event) {
-        const names = new Set([motionName(event), event.code, SHIFTED[event.code]]); // shift may have been pressed or released in between
+        // deletes the key under its names with and without shift, which may have been pressed or released while the key was held
+        const names = new Set([motionName(event), event.code, SHIFTED[event.code]]);
         for (const name of names)
             this.held.delete(name);
     }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Decides which labels are shown beside their markers, and where (protocol/LABELS.md).
+// Decides which labels are shown next to their markers, and where (protocol/LABELS.md).
 
-// SPACINGS: between labels, fractions of the area's width; HELD: factor for labels of the previous picture
+// SPACINGS: minimum distances between labels, as fractions of the area's width; HELD: factor on spacing and depth of labels that were in
+// the previous picture, so that they tend to stay
 const SPACINGS = [0.16, 0.08, 0], HELD = 0.8;
 const MARK = 5, RING = 13, NEAR_GAP = 8, FAR_GAP = 22; // units
 export const CLEARANCE = 3;
@@ -51,7 +52,7 @@ class Taken {
     }
 }
 
-// Returns the box of a label in a slot. across, down: from the centre of several markers to the outermost.
+// Returns the box of a label in a slot. across, down: half the width and height of a group of markers around its centre; 0 for one marker.
 export function boxAt({ x, y, width, height, ring, across = 0, down = 0 }, slot, unit) {
     const [side, edge] = SLOTS[slot];
     const gap = (slot < FIRST_FAR ? NEAR_GAP : FAR_GAP) * unit;

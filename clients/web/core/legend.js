@@ -69,7 +69,7 @@ export function edges(scale) {
     return count <= 64 && Number.isFinite(min) ? Array.from({ length: count - 1 }, (_, i) => min + (i + 1) * interval) : [];
 }
 
-// Returns the position whose colour a value's band has. The last band ends at max and includes it.
+// Returns the position on the colour map whose colour is used for the band of a value. The last band ends at max and includes it.
 function bandPlace(scale, value) {
     const { min, max, interval } = scale;
     if (scale.breaks?.length > 0) {
@@ -115,7 +115,8 @@ export function scaleTicks(scale, lines, most = 9) {
     return [min, ...decades.filter((v) => near(v) && placeOf(scale, v) > 0.05 && placeOf(scale, v) < 0.95), max];
 }
 
-// The operator's colours by place between limits, as the server has them (shaders/maps/operator.csv): bands from the lowest.
+// The colours of the operator's view, by position between alarm limits, as the server has them (shaders/maps/operator.csv): bands from the
+// lowest.
 export const LIMIT_BANDS = [
     { from: -3, to: -2, colour: [90, 141, 192] }, { from: -2, to: -1, colour: [146, 174, 203] },
     { from: -1, to: 1, colour: [201, 201, 201] },

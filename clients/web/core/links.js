@@ -2,8 +2,8 @@
 // Links that open the current view on another device.
 import { writeAddress } from './address.js';
 
-// Returns URLs: { view, follow, tag and asset (if one is selected) }. Those of tag and asset contain nothing else, since QR codes with
-// fewer modules are easier to scan.
+// Returns URLs: { view, follow, tag and asset (if one is selected) }. The links to the tag and to the asset contain nothing else, since QR
+// codes with fewer modules are easier to scan.
 export function shareLinks({ location, session, tag }) {
     const { camera, params, time, ownParams: own } = session, page = `${location.origin}${location.pathname}`;
     const asset = params.selected;

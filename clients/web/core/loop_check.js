@@ -7,7 +7,7 @@ const LEAST_RATIO = 8;   // minimum change, as a multiple of the tag's noise
 
 export class LoopCheckSession {
     constructor() {
-        this.noise = new Map(); // tag index -> average change from one value to the next
+        this.noise = new Map(); // tag index -> average change from one value to the next: the tag's noise
         this.last = new Map();
         this.base = null;       // tag index -> value when the check was armed; null: not armed
     }

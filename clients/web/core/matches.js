@@ -97,8 +97,8 @@ export class Matches {
             this.decisions.set(match.tag, { status, asset });
     }
 
-    // Returns the doubtful matches of the same pattern that can be accepted at once, as [match, asset]: the proposed asset, or the one
-    // decided for another tag of the pattern if it is a candidate.
+    // Returns the doubtful matches of the same pattern that can be accepted at once, as [match, asset]. asset: the proposed one, or the
+    // asset that the user chose for another tag of the pattern, if it is a candidate.
     alike({ tag }) {
         const pattern = patternOf(tag), decided = [...this.decisions].filter(([name, { asset }]) => asset && patternOf(name) === pattern);
         return this.all.filter((one) => patternOf(one.tag) === pattern && this.kindOf(one) === 'likely').map((one) => [one, one.asset ||
@@ -120,7 +120,7 @@ export class Matches {
     }
 }
 
-// Returns the plant's width, depth and height in metres; `times` converts to another unit than was assumed.
+// Returns the plant's width, depth and height in metres; times: factor, for a unit other than the assumed one.
 const METRES = { m: 1, mm: 0.001, cm: 0.01, in: 0.0254, ft: 0.3048 };
 export const sizeOf = ({ min, max }, times = 1) => max.map((x, i) => (x - min[i]) * times);
 export const timesOf = (from, to) => (METRES[to] && METRES[from] ? METRES[to] / METRES[from] : 1);

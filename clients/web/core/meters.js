@@ -29,7 +29,7 @@ export class LatencyMeter {
         this.inputs.set(seq, inputTime);
     }
 
-    // A drawn picture covers its own input and all before; only its own is measured, once.
+    // A drawn picture answers its own camera's input and all earlier ones. Only its own is measured, once.
     drawn(seq, now) {
         const input = this.inputs.get(seq);
         if (input !== undefined)
@@ -44,7 +44,7 @@ export class LatencyMeter {
         this.inputs.clear();
     }
 
-    // Returns the median of recent motion; null if there was none.
+    // Returns the median latency of recent camera moves; null if there were none.
     median(now) {
         while (this.samples.length > 1 && now - this.samples[0].time > this.keepMs)
             this.samples.shift();

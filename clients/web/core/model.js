@@ -29,7 +29,7 @@ export class Model {
         this.clockSet = true; // whether the server's clock is synchronised
         this.clockErrorMs = null; // maximum clock error; null: unknown
         this.leapS = 0; // leap second at the end of the month: 1 or -1; 0: none
-        this.oldest = null; // { ms, at }: upper bound on the age of all readings that are not bad
+        this.oldest = null; // { ms, at }: no reading that is not bad is older than `ms` at the time `at`
     }
 
     // Freezes the model at a past instant: ages and alarms then come from `tags`.
@@ -55,7 +55,8 @@ export class Model {
             this.proofs.set(index, { state, timeUs, value, expected, tolerance, who, remark });
     }
 
-    // Returns the loop check state of a tag that has not passed; null if it passed, is computed, or no loop check was ever begun.
+    // Returns the loop check state of a tag that has not passed; null if the tag passed, is a derived tag, or no loop check of any tag was
+    // made.
     unproven(tag) {
         const state = this.proofs.get(tag.index)?.state ?? 'none';
         return this.provingBegun && tag.source && state !== 'pass' ? state : null;
@@ -97,7 +98,7 @@ export class Model {
         return changed;
     }
 
-    // The server sends a reading when it changes; `oldest` says for all unchanged ones together that they were refreshed.
+    // The server sends a reading when it changes; `oldest` bounds the age of all unchanged readings together.
     notOlder(ms, now) {
         this.oldest = ms === null ? null : { ms, at: now };
     }

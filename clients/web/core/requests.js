@@ -30,8 +30,8 @@ export function actOnAlarm(session, action, alarms, more = {}) {
     session.post({ type: 'alarm', seq: ++session.alarmSeq, action, alarms, ...more });
 }
 
-// Sends a message of the engineering panel: place, gaps, save_tags or prove; the event of the same type answers. Returns its number; 0 if
-// not connected.
+// Sends a message of the engineering panel: place, gaps, save_tags or prove; the event of the same type answers. Returns its sequence
+// number; 0 if not connected.
 export function tellAsEngineer(session, type, fields = {}) {
     if (!session.welcomed)
         return 0;

@@ -20,13 +20,13 @@ export function readCut(clip) {
     return { axis: AXES[index], at: turned ? plane[3] : -plane[3], turned };
 }
 
-// Returns a box clip centred in the bounds; part 1: the full size of the bounds.
+// Returns a box clip centred in the bounds; part: size relative to the bounds; 1: their full size.
 export function boxAround({ min, max }, part) {
     const side = (i, turn) => (min[i] + max[i]) / 2 + (turn * part * (max[i] - min[i])) / 2;
     return { box: { min: [0, 1, 2].map((i) => side(i, -1)), max: [0, 1, 2].map((i) => side(i, 1)) } };
 }
 
-// Returns the part of such a box; null if it is none, or was resized by dragging.
+// Returns `part` of a box that boxClip() made; null for other clips, and for boxes that were resized by dragging.
 export function readBox(clip, bounds) {
     if (!clip?.box)
         return null;
@@ -38,7 +38,7 @@ export function readBox(clip, bounds) {
 
 const without = (list, id) => (list ?? []).filter((other) => other !== id);
 
-// Returns the parameters after `how` (hide, ghost, only) was pressed for an asset; pressing again undoes it.
+// Returns the parameters after `how` (hide, ghost, only) was pressed for an asset; pressing the same button again undoes the change.
 export function showAsset(params, how, id) {
     const name = { hide: 'hidden', ghost: 'ghost', only: 'isolate' }[how];
     const was = (params[name] ?? []).includes(id);

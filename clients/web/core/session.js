@@ -41,14 +41,14 @@ export class Session {
         this.params = { ...wanted.params };
         this.token = null;       // access token, where one is needed
         this.resume = null;      // secret that resumes this session on the server
-        this.anew = false;       // whether to resume only the session's number, by which others follow it
+        this.anew = false; // true: resumes only the session's id, by which others follow it, and not its view
         this.confirmed = null;   // parameters that the server last confirmed
         this.size = { width: 640, height: 360 };
         this.visible = true;
         this.unsent = {};        // parameters changed while disconnected
         this.asked = new Map();  // seq -> earlier parameters that pictures may still show
         this.cameraSeq = this.paramsSeq = this.fitSeq = this.pickSeq = this.alarmSeq = this.toldSeq = 0;
-        this.cameraNews = false; // whether the camera changed and was not sent yet
+        this.cameraNews = false; // true: the camera changed and was not sent yet
         this.cameraInput = null; // time of the input that set the camera; start of the latency
         this.markers = new Map();
         this.serverTime = null;  // { us, at }: server time, and when it arrived
@@ -58,13 +58,15 @@ export class Session {
         this.latency = new LatencyMeter();
         this.recent = [];        // recent pictures: { picture, decodeMs, hereUs }
         this.skew = null;        // { us, roundTripMs }: server clock minus ours, at the shortest round trip
-        this.id = null;          // number of this session, by which others follow it
-        this.following = null;   // the followed view: { session, width, height, gone (its last view) }
+        this.id = null; // id of this session, by which others follow it
+        // followed session: { session: its id, width, height, gone: true if it has ended and only its last view is known }
+        this.following = null;
         this.leader = null;      // session to follow, also after a reconnect; null: none
         this.lent = null;        // camera taken over from the followed session; null: none
         this.followers = { count: 0, sessions: [] }; // sessions that follow this one
         this.forget();
-        this.time = { ...NOW, ...wanted.time }; // what the server shows: atUs null: now; fromUs null: nothing is recorded
+        // state of the time bar as the server reports it: atUs null: now; fromUs null: nothing is recorded
+        this.time = { ...NOW, ...wanted.time };
         connection.onOpen = () => {
             const compares = this.params.show === 'difference' && this.params.baseline?.name;
             this.hello(['camera', 'params', ...(compares ? ['baseline'] : [])]);
@@ -89,7 +91,7 @@ export class Session {
             listener();
     }
 
-    // Queues all messages except frames until listen() is called.
+    // Queues all text messages until listen() is called; frames are handled immediately.
     wait() {
         this.unheard = [];
     }
@@ -135,7 +137,7 @@ export class Session {
             this.connection.send(message);
     }
 
-    // parts: the parts of our view to request.
+    // parts: names of the parts of our view (camera, parameters, ...) to request from the server.
     hello(parts) {
         const { shown } = this;
         this.welcomed = false;
@@ -151,7 +153,8 @@ export class Session {
         this.cameraSeq = this.paramsSeq = 0;
         this.asked = new Map([[-1, shown]]);
         if (this.picture)
-            this.picture.paramsSeq = -1; // marks the picture as one of the previous connection, whose numbers no longer count
+            // marks the picture as one of the previous connection, whose sequence numbers mean nothing to the new one
+            this.picture.paramsSeq = -1;
         this.greetedCamera = parts.includes('camera') ? this.camera : null;
         const message = { type: 'hello', ...this.size, ...this.proofs(), codecs: this.codecs };
         if (this.time.atUs !== null)
@@ -258,7 +261,7 @@ export class Session {
         this.cameraInput = null;
     }
 
-    // session: to follow; null: none, our own view returns.
+    // session: id of the session to follow; null: none, so that our own view is shown again.
     follow(session) {
         this.leader = session;
         if (session === null)
@@ -297,7 +300,7 @@ export class Session {
             this.emit('camera');
     }
 
-    // Acknowledges a frame that cannot be decoded, too: withholding the acknowledgement would not help.
+    // Also acknowledges a frame that cannot be decoded, because the server would otherwise send nothing more.
     passedOver(frame) {
         if (!frame.more)
             this.connection.send({ type: 'ack', seq: frame.seq });

@@ -39,7 +39,8 @@ export function wallFit(wall, screen, { width, height }, least = LEAST) {
 // Displays of a wall reconnect all at once: each waits up to this much longer.
 export const SPREAD_MS = 2000;
 
-// Returns a display's brightness: 1, or less within its dimming hours; minute: of the day. Full while an alarm calls.
+// Returns a display's brightness: 1, or less within its dimming hours; minute: of the day. Full brightness while an unacknowledged alarm is
+// shown.
 export function brightness(dim, minute, calls) {
     const { from_min: from, to_min: to, percent } = dim ?? { from_min: 0, to_min: 0 };
     const within = from <= to ? minute >= from && minute < to : minute >= from || minute < to;
@@ -50,5 +51,5 @@ export function brightness(dim, minute, calls) {
 const SHIFT_US = 180e6, SHIFTS = [[0, 0], [2, 1], [3, -1], [1, -3], [-1, -2], [-3, 0], [-2, 2], [0, 3]];
 export const burnShift = (us) => SHIFTS[Math.floor(us / SHIFT_US) % SHIFTS.length] ?? SHIFTS[0];
 
-// Returns whether legends lie below the picture or stand beside it, for a wall's size in units.
+// Returns whether legends lie below the picture or stand at its side, for a wall's size in units.
 export const legendsLie = (width, height, split) => width < height || (split && width < 800);

@@ -51,9 +51,9 @@ export function decodeFrame(bytes) {
         flags, codec: CODECS[view.getUint8(1)],
         key: (flags & FLAG_KEY) !== 0, still: (flags & FLAG_STILL) !== 0, noLiveData: (flags & FLAG_NO_LIVE_DATA) !== 0,
         data: (flags & FLAG_DATA) !== 0,
-        // Shows the instant dataTimeUs, not now.
+        // Flag: the frame shows the past instant dataTimeUs, not the present.
         past: (flags & FLAG_PAST) !== 0,
-        // Another part of the same picture follows.
+        // Flag: another frame with a further rectangle of the same picture follows.
         more: (flags & FLAG_MORE) !== 0,
         seq: u32(8), cameraSeq: u32(12), paramsSeq: u32(16),
         oldestAgeMs: u32(20) === NO_AGE ? null : u32(20),

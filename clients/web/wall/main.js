@@ -41,7 +41,7 @@ connection.onUnopened = () => import('../core/blocked.js').then(({ explain }) =>
 connection.spreadMs = SPREAD_MS;
 const session = new Session({ connection, now: clock.now, codecs: ['jpeg'] });
 session.token = token;
-session.size = { width: 16, height: 16 }; // tiny pictures: this session is for alarms and texts only
+session.size = { width: 16, height: 16 }; // requests tiny pictures, because this session only needs alarms and texts
 session.on('frame', (frame) => session.drawn(frame, 0));
 
 let wall = null, shape = '', panes = [], scale = 1;

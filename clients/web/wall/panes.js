@@ -26,7 +26,7 @@ export function paneOf(pane, context) {
     return { element, kind: pane.kind, tick };
 }
 
-// Returns an alarm's value as the alarm bar shows it; without the present value while the server is silent.
+// Returns an alarm's value as the alarm bar shows it; without the present value while no messages arrive from the server.
 const nowText = (session, alarm) => limitText(session, alarm, !['lost', 'silent'].includes(health(session, clock.now()).kind));
 
 const ageOf = (ms) => say('walls.age', { age: ms === null ? '–' : ageText(ms) });
@@ -59,7 +59,7 @@ function pageIn({ wall, theme, body }, kind, place) {
     return { get page() { return frame.contentWindow?.plantcast ?? null; } };
 }
 
-// --- views, and the location of an alarm
+// views, and the position of an alarm
 
 function ViewsPane(pane, context) {
     const { session, call, title, element, wall, display } = context, place = `${wall.id}/${display}/${pane.area}`;
@@ -77,7 +77,7 @@ function ViewsPane(pane, context) {
         return make('i', {}, say(held ? 'walls.held' : 'walls.sent', { who, time }));
     }
 
-    // wrong: what the view refers to and the plant does not have; showing another picture instead would mislead.
+    // wrong: items that the view names but the plant lacks. They are listed in place of the picture, since another picture would mislead.
     function showView(page, order, wrong) {
         const id = pane.items[at];
         if (wrong)
@@ -154,7 +154,7 @@ function ViewsPane(pane, context) {
 function TrendPane(pane, context) {
     const { session, wall, display, title } = context, inner = pageIn(context, 'trend', `${wall.id}/${display}/${pane.area}`);
     const about = make('span', { class: 'about' });
-    let begun = null; // window of the iframe whose trend was started; another one after a reload
+    let begun = null; // window of the iframe whose trend was started; a reloaded iframe has another window and needs a new start
     title.replaceChildren(pane.title ?? pane.items.join(', '), about);
     return { tick() {
         const { page } = inner;
@@ -290,7 +290,7 @@ function fitIn(body) {
 
 const shareOf = ({ min, max }, value) => Math.max(0, Math.min(1, (value - min) / (max - min)));
 
-// --- the plant's time; a text
+// pane with the plant's time, and pane with a text
 
 function ClockPane(pane, { session, body, title }) {
     const day = make('span', {}), hour = make('b', {});

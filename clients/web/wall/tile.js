@@ -55,7 +55,7 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
     });
     requestAnimationFrame(flush);
 
-    // --- what is shown, decided by the leading display
+    // choice of the view by the leading display
 
     let refused = '';
     session.on('error', ({ text, refusal, code }) => { refused = refusalText(text, refusal, code); });
@@ -100,7 +100,7 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
 
     // --- texts
 
-    // Only the leading display knows what is shown: the first display, unless several places show it.
+    // Only the leading display knows what is shown: the first display, unless the picture is shown several times.
     function sayTitle() {
         const { model } = session, group = model.group(session.shown.group), { leads } = session.tiles, order = leads ? findOrder() : null;
         const alarms = words.model.alarms.list(), { active, waiting } = words.model.alarms.counts(), alarm = leads ? called : null;
@@ -174,7 +174,7 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
         return mark;
     }
 
-    // Marks an alarm everywhere: also behind something, and of a quantity that is not shown.
+    // Draws the mark of an alarm in any case: also if its sensor is hidden behind something, or its quantity is not shown.
     function drawMarks() {
         const { model } = words, place = placer(), known = session.markersOf(frame.seq), marked = new Set(), out = [];
         const alarms = model.alarms.list().filter(({ state, waiting }) => waiting || !isGone(state));

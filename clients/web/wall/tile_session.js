@@ -3,7 +3,8 @@
 import { DecodeQueue } from '../core/decode_queue.js';
 import { Session } from '../core/session.js';
 
-const PING_MS = 2000, CLOCK_MS = 60000, EARLY_MS = 4; // EARLY_MS: show up to this much early, since the screen's next refresh is 17 ms away
+// EARLY_MS: a picture is shown up to so many milliseconds early, because the screen's next refresh is only 17 ms later
+const PING_MS = 2000, CLOCK_MS = 60000, EARLY_MS = 4;
 
 export class TileSession extends Session {
     // tile: { wall, display, columns, rows }. canvases: two, the one with the class `front` is visible. Further events: tiles (which

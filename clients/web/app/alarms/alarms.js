@@ -17,7 +17,7 @@ export class AlarmList {
     // showTag(tag), flyToTag(tag), overlay (for its `fresh`): from the page.
     constructor({ session, modules, overlay, showTag, flyToTag }) {
         Object.assign(this, { session, modules, overlay, showTag, flyToTag });
-        this.chosen = new Map(); // rows selected for acknowledgement: tag -> its unacknowledged alarms at selection, as text
+        this.chosen = new Map(); // rows selected for acknowledgement: tag -> the tag's unacknowledged alarms when it was selected, as text
         this.filter = { which: 'all', words: '' };
         const priorities = [1, 2, 3, 4].map((priority) => [priority, say('alarms.priority', { priority })]);
         fillSelect(byId('alarms-which'), [...WHICH.map((name) => [name, say(`which.${name}`)]), ...priorities], 'all');
@@ -66,7 +66,7 @@ export class AlarmList {
             byId('alarm-strip').focus();
     }
 
-    // The role that decides about actions; null while the server is silent.
+    // The user's role, which decides about actions; null while no messages arrive from the server.
     get role() {
         return this.overlay.fresh ? this.session.role : null;
     }
@@ -243,7 +243,7 @@ export class AlarmList {
 
     flyTo(tag) {
         if (this.small.matches)
-            this.setOpen(false); // narrow screens have room for only one of plant and alarm list
+            this.setOpen(false); // narrow screens show either the plant or the alarm list, so the list closes
         this.showTag(tag);
         this.flyToTag(tag);
     }

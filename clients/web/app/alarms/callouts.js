@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Call-outs: a two-line label for several alarm rings that are close together; also labels of held alarms.
+// Call-outs: a two-line label shared by several alarm rings (circles around markers of tags in alarm) that are close together. Also labels
+// of alarms whose reading is bad..
 import { graver } from '../../core/alarms.js';
 import { placeRings } from '../../core/callouts.js';
 import { zoneClock } from '../../core/format.js';
@@ -17,7 +18,8 @@ export class Callouts {
         refresh();
     }
 
-    // Returns the label of an alarm whose reading is bad: the alarm holds its state since the last value. null: there never was a value.
+    // Returns the label of an alarm whose reading is bad: the alarm keeps the state that it had at the last usable value. Returns null if
+    // there never was a value.
     held(tag, { kind }) {
         const { session } = this, { model, time } = session, ageMs = model.ageMs(tag.index, session.now());
         const nowUs = time.atUs ?? session.clockUs();

@@ -9,7 +9,8 @@ import { narrow } from '../startup.js';
 import { LongList } from './list.js';
 
 const SEARCH_MS = 80, ASSET_PX = 53;
-const KEYS = /^(Arrow(Up|Down|Left|Right)|Home|End|Page(Up|Down)|Enter| )$/; // keys handled by the rows; other keys propagate
+// keys that the rows handle; other keys are left to other handlers
+const KEYS = /^(Arrow(Up|Down|Left|Right)|Home|End|Page(Up|Down)|Enter| )$/;
 const keyOf = ({ kind, id }) => `${kind}/${id}`;
 
 export class Assets {

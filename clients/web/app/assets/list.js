@@ -43,7 +43,7 @@ export class LongList {
         for (let i = from; i < to; i++)
             wanted.add(i);
         if (this.active !== null)
-            wanted.add(this.places.get(this.active)); // keep the active row's element, or keyboard users would lose their position
+            wanted.add(this.places.get(this.active)); // keeps the element of the active row, or keyboard users would lose their position
         const before = this.shown;
         this.shown = new Map();
         for (const i of [...wanted].sort((a, b) => a - b))

@@ -10,7 +10,7 @@ import { driftOf, driftText } from './drift.js';
 const AGAIN_MS = 3000, LISTED = 5;
 
 const sensors = (query, token) => ask('api/v1/neighbours', query, token).then((answer) => answer.json()).then((rows) => rows.sensors)
-    .catch(() => []); // after a failed request show no prediction rather than an old one
+    .catch(() => []); // after a failed request, no prediction is shown rather than an old one
 
 // Returns a text such as 81.3 °C ± 2.0 and the deviation of the reading, or null if there is no prediction.
 export function neighbourText(row, group) {

@@ -7,7 +7,7 @@ import { byId, make, setText } from './dom.js';
 const explained = (kind, ...values) => values.map((value) => [value, say(`${kind}.${value}`), say(`${kind}.${value}.why`)]);
 export const distances = (group) => explained('distance', 'geodesic', 'euclidean', 'heat')
     .filter(([value], i) => i < 2 || group?.prepared?.includes(value));
-// The first two are always available, the others only where they were prepared for the group.
+// Interpolations: the first two are always available, the others only if preparation computed them for the group.
 export const interpolations = (group) => explained('interpolation', 'shepard', 'paper', 'harmonic', 'fin', 'gp')
     .filter(([value], i) => i < 2 || group?.prepared?.includes(value));
 export const fills = () => explained('fill', 'none', 'neighbours');
@@ -19,7 +19,7 @@ export function numberField(id, words, attributes, onNumber) {
     return { input, label: make('label', { class: 'choice' }, make('span', {}, words), input) };
 }
 
-// Leaves the field alone while the user types in it.
+// Sets the field's value, except while the user types in it.
 export function writeNumber({ input }, value) {
     if (document.activeElement !== input)
         input.value = value ?? '';

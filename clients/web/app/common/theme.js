@@ -6,7 +6,8 @@ import { stored } from './storage.js';
 export function wear(theme) {
     document.documentElement.dataset.theme = theme;
     if (theme === 'dark')
-        styled('common/dark').catch(() => {}); // a style sheet that failed to load is requested again at the next change of theme
+        // ignored: a style sheet that failed to load is requested again the next time that the theme changes
+        styled('common/dark').catch(() => {});
     return theme;
 }
 

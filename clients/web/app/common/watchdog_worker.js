@@ -17,7 +17,8 @@ onmessage = ({ data }) => {
         ({ scale } = data);
         [band.width, band.height] = [data.width, data.height];
     }
-    if (typeof data === 'string') // only 'beat' and 'rest' change this: a hidden page, which rests, may send a new size too
+    // only the messages 'beat' and 'rest' change this: a hidden page also sends messages with a new size, but stays at rest
+    if (typeof data === 'string')
         rests = data === 'rest';
     silent = 0;
     // Clears the warning. Also draws once at the start, because a canvas's first frame, its size and its font need the main thread.

@@ -8,7 +8,7 @@ import { make, setText } from '../common/dom.js';
 import { store, stored } from '../common/storage.js';
 import { fill } from '../common/widgets.js';
 
-const ASK_MS = 300; // milliseconds after the last change of the filter
+const ASK_MS = 300; // milliseconds between the last change of the filter and the request to the server
 
 export class Accepting {
     constructor({ session, refresh }) {
@@ -17,7 +17,7 @@ export class Accepting {
         this.found = null;      // latest `places_accepted` for the current filter
         this.sent = null;       // 'accept' or 'restore', until `tags_saved` arrives
         this.kept = stored('accepted') || null; // version of the list before the last acceptance; survives a page reload
-        this.restores = false;  // whether a `tags_diff` of an earlier version was requested
+        this.restores = false; // true: a `tags_diff` against an earlier version was requested
         this.build();
         session.on('places_accepted', (message) => this.onFound(message));
     }
@@ -126,7 +126,7 @@ export class Accepting {
             this.end('');
     }
 
-    // Returns whether `tags_saved` answers a request of this part.
+    // Returns whether the message `tags_saved` answers a request that this module sent.
     onSaved(message) {
         const { saved, kept } = message;
         const { sent } = this;

@@ -51,7 +51,7 @@ export class Engineer {
         this.page.refresh();
     }
 
-    // Chooses a part of the panel as if its button had been pressed.
+    // Opens a tab of the panel as if its button had been pressed.
     take(part) {
         this.element.querySelector(`input[value="${part}"]`).click();
     }
@@ -83,7 +83,7 @@ export class Engineer {
         return this.open && this.part === 'place' && this.parts.place.accepting.names.has(tag.name);
     }
 
-    // Returns whether mark() draws something; such a marker is not thinned out.
+    // Returns whether mark() draws something for the tag; such a marker is drawn even where many overlap.
     isMarked(tag) {
         return this.page.session.model.placed.has(tag.name) || this.isAccepted(tag) || this.isAt('place', 'tag', tag) ||
             this.isAt('prove', 'stirred', tag);

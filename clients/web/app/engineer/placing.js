@@ -58,7 +58,7 @@ export class Placing {
         session.on('tags_saved', (message) => this.onSaved(message));
         session.on('error', ({ about }) => { if (about === 'place') this.step(); }); // a rejected position: the sensor stays where it was
         session.on('error', ({ about }) => { if (SAVING.includes(about)) this.stopSaving(); });
-        session.on('hello', () => this.stopSaving()); // the answer was lost with the previous connection
+        session.on('hello', () => this.stopSaving()); // the connection was replaced, so the answer will not arrive
         session.on('welcome', () => this.onWelcome());
         session.on('params', () => this.show());
         const on = (name, f) => this.viewport.element.addEventListener(name, f, { capture: true });
@@ -218,7 +218,7 @@ export class Placing {
 
     showDiff({ file, conflict, hash, lines, more }) {
         if (hash !== null && hash === this.confirmed)
-            return; // the difference is of the list that is already being applied
+            return; // ignores the answer: it describes the list that is already being saved
         this.stopSaving();
         const close = () => this.dialog.close();
         const change = ([number, before, after]) => make('div', { class: 'change' }, make('span', {}, say('eng.diff.line', { n: number })),

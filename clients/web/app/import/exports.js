@@ -6,8 +6,8 @@ import { say } from '../../core/words.js';
 const LOOK_MS = 700;
 
 export class Exports {
-    // onState(state): called with the server's import state; onEnd(state, sent): called when a job has ended; sent: this page's request, {
-    // path, query }, else null.
+    // onState(state): called with the server's import state; onEnd(state, sent): called when a job has ended; sent: the request { path,
+    // query } if this page sent it, else null.
     constructor({ session, onState, onEnd }) {
         Object.assign(this, { session, onState, onEnd, state: null, sent: null });
     }

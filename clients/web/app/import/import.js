@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The import panel: model and tag files, the size of the plant beside a person, and the matches of the tags.
+// The import panel: model and tag files, the size of the plant compared with a person, and the matches of the tags.
 import { numberText } from '../../core/format.js';
 import { sizeOf, timesOf } from '../../core/matches.js';
 import { say } from '../../core/words.js';
@@ -224,7 +224,7 @@ export class Import {
             setText(this.wrong, plain(state.failed ?? ''));
     }
 
-    // Shows the settings of the active models. Choices not yet applied stay until the settings change.
+    // Shows the settings with which the models in use were read. Choices not yet applied stay until the settings change.
     takeUnits({ units, up, encoding, mesh_units }) {
         if (this.known?.encoding !== encoding) {
             if (encoding && ![...this.encoding.options].some(({ value }) => value === encoding))

@@ -6,7 +6,7 @@ import { say } from '../../core/words.js';
 
 const INK = '#1d252d', LIGHT = '#ffffff', LIT = '#2a5f8f', LEAST_PERSON_PX = 12, BESIDE_M = 0.8;
 const FACES = [[0, 1, 3, 2], [4, 5, 7, 6], [0, 1, 5, 4], [2, 3, 7, 6], [0, 2, 6, 4], [1, 3, 7, 5]];
-// Outline in metres: right of the middle, and above the ground.
+// Outline of a person: [metres to the right of the middle, metres above the ground].
 const BODY = [[-0.2, 1.42], [0.2, 1.42], [0.3, 0.82], [0.23, 0.8], [0.17, 1.15], [0.16, 0.82], [0.14, 0], [0.03, 0], [0, 0.75],
     [-0.03, 0], [-0.14, 0], [-0.16, 0.82], [-0.17, 1.15], [-0.23, 0.8], [-0.3, 0.82]];
 const HEAD = Array.from({ length: 16 }, (_, i) => [0.1 * Math.sin(i * Math.PI / 8), 1.66 + 0.14 * Math.cos(i * Math.PI / 8)]);
@@ -19,7 +19,7 @@ export class Lit {
         overlay.drawMore = () => this.draw();
     }
 
-    // assets: the first is the chosen one. person: whether to draw the person.
+    // assets: candidates for the tag; the first is the chosen one. person: whether to draw the person.
     show({ assets = this.assets, person = this.person }) {
         Object.assign(this, { assets, person });
         this.refresh();
@@ -89,7 +89,7 @@ export class Lit {
         c.fillText(text, left + 5, bottom - 4);
     }
 
-    // Draws the person on the ground, beside the side of the plant that is nearest to the camera.
+    // Draws the person on the ground, at the side of the plant that is nearest to the camera.
     drawPerson({ min, max }, camera, at) {
         const middle = [0, 1].map((axis) => (min[axis] + max[axis]) / 2), { right } = basis(camera);
         const sides = [[min[0] - BESIDE_M, middle[1]], [max[0] + BESIDE_M, middle[1]], [middle[0], min[1] - BESIDE_M],

@@ -152,7 +152,7 @@ export class TagTable {
         list.shown.get(row.tag)?.focus({ preventScroll: true });
     }
 
-    // Single letters are quick to press; digits choose a candidate.
+    // Keys of the table: letters for decisions, digits for the candidates.
     press(event) {
         if (event.ctrlKey || event.altKey || event.metaKey)
             return;

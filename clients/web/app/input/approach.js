@@ -8,7 +8,7 @@ import { length, subtract } from '../../core/vector.js';
 const ANSWER_MS = 700, TRIES = 3; // a pick is retried because another pick request may replace it
 const SEARCH_MS = 1500, MOST_SEEN_THROUGH = 4, MOST_GHOSTS = 8;
 const AROUND = [[-0.12, 0], [0.12, 0], [0, -0.12], [0, 0.12], [-0.2, -0.2], [0.2, -0.2], [-0.2, 0.2], [0.2, 0.2]], BEFORE = 0.9;
-const NEAR_M = 0.05; // a surface hit this close to a sensor is the one it sits on
+const NEAR_M = 0.05; // metres: a surface nearer to a sensor than this is the surface on which the sensor is mounted
 
 const has = (list, id) => (list ?? []).includes(id);
 const without = (list, id) => (list ?? []).filter((other) => other !== id);
@@ -17,7 +17,7 @@ export class Approach {
     constructor({ session, viewport }) {
         Object.assign(this, { session, viewport });
         this.ghosts = [];    // ids of assets made transparent automatically because they hide the tag (not by the user)
-        this.number = 0;     // number of the latest approach; earlier ones are abandoned
+        this.number = 0; // sequence number of the latest approach; code of earlier ones sees that it changed and stops
         this.heard = null;
         session.on('picked', (picked) => picked.purpose === 'sight' && this.heard?.(picked));
     }
@@ -48,7 +48,7 @@ export class Approach {
             this.session.setParams({ ghost });
     }
 
-    // Calls fly(camera) with a destination at once, and again if that view turns out to be blocked.
+    // Calls fly(camera) immediately, and again with another camera if assets turn out to block the first view.
     async go(tag, asset, fly) {
         const number = ++this.number, isOvertaken = () => number !== this.number;
         this.setGhosts([]);
@@ -101,7 +101,8 @@ export class Approach {
         }
     }
 
-    // Returns what a camera sees at its centre: { seen (whether the tag), asset (what is in front, or null) }; null: no answer.
+    // Returns what a camera sees at its centre: { seen: true if the tag is visible, asset: id of the asset in front, or null }; null: no
+    // answer.
     async look(camera, tag) {
         const picked = await this.ask(camera, [0, 0]);
         if (!picked)

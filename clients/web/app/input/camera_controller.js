@@ -14,11 +14,12 @@ import { clock } from '../common/clock.js';
 import { probeCodecs } from '../startup.js';
 import { isOnPicture } from './input.js';
 
-const DEGREES_PER_HEIGHT = 180; // orbit angle of a drag over the whole height of the picture
+const DEGREES_PER_HEIGHT = 180; // angle by which a drag orbits over the whole height of the picture
 const DOUBLE_CLICK_MS = 350, DOUBLE_CLICK_PX = 24;
-const ANCHOR_MS = 600, ANCHOR_PX = 10; // a wheel event within this time and distance continues the previous one, about the same anchor
+// a wheel event within this time and distance continues the previous one, zooming about the same point
+const ANCHOR_MS = 600, ANCHOR_PX = 10;
 const LEAST_ARRIVAL_DEG = 15;   // minimum elevation of an arriving camera, to stay above the floor
-const MOST_BACK = 30;           // maximum number of flights to go back through
+const MOST_BACK = 30; // maximum number of flights that can be undone
 const WRITTEN = 'input:not([type="radio"], [type="checkbox"], [type="range"]), select, textarea'; // fields that take typed text
 
 // Returns whether two cameras are equal up to rounding.
@@ -31,7 +32,7 @@ export class CameraController {
         this.gestures = new Gestures();
         this.keys = new HeldKeys();
         this.fly = null;
-        this.before = [];   // stack for going back: { camera, ghosts } before each flight
+        this.before = []; // stack for going back: the state { camera, ghosts } before each flight; ghosts: assets drawn transparent
         this.approach = new Approach({ session, viewport });
         this.lastTick = null;
         this.lastClick = null;
@@ -77,7 +78,8 @@ export class CameraController {
         askPick(this.session, this.viewport.pixelOf(x, y), 'anchor');
     }
 
-    // Returns the half, the position in it, and the depth of the nearest box there; depth null: none.
+    // Returns the half of a split view under the pointer, the position in that half, and the depth of the nearest bounding box there (null:
+    // no box).
     under(camera, x, y) {
         const half = halfAt(this.session.shown, this.viewport.width, x), at = x - half.left;
         const boxes = this.session.model?.assets.map((asset) => asset.bounds) ?? [];
@@ -200,7 +202,7 @@ export class CameraController {
         return halfAt(this.session.params, this.viewport.width, 0).width / this.viewport.height;
     }
 
-    // Ends a flight when the user takes over.
+    // Ends a flight when the user moves the camera.
     land() {
         this.fly = null;
         this.approach.stop();
@@ -219,7 +221,7 @@ export class CameraController {
         this.viewport.invalidate();
     }
 
-    // Remembers where a flight starts; a second flight on the way keeps the first start.
+    // Remembers where a flight starts; a second flight that begins during the first keeps the first one's start.
     remember() {
         if (!this.fly)
             this.before = [...this.before.slice(1 - MOST_BACK), { camera: this.session.camera, ghosts: this.approach.ghosts }];

@@ -123,7 +123,7 @@ function commandsOf({ session, modules, selection, overlay, saveAddress, refresh
         }
     }
 
-    // Adds the parameters that a `show` needs: the selected sensor, else the first of the group; the current instant.
+    // Adds the parameters that the chosen quantity (`show`) needs: the selected sensor, else the first of the group; the current instant.
     function showParams(show) {
         const { model, params } = session;
         const chosen = [selection.tag, params.sensor].map((name) => model.tag(name)).find((tag) => tag?.group === params.group);

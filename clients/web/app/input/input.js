@@ -12,7 +12,7 @@ export const isOnPicture = (event) => !event.target.closest('button, .card, .ban
 const isMeant = ({ type, key, target }) => type === 'pointerdown' || type === 'wheel' ||
     (type === 'keydown' && /^(.|Arrow.*)$/.test(key) && !target.closest('input, select, textarea'));
 
-// Handles what cannot wait until the controller is loaded.
+// Handles the parts of input events that cannot wait until the controller is loaded, such as preventDefault().
 function takeAtOnce(event, element) {
     if (event.type === 'wheel' || event.button === 1)
         event.preventDefault(); // prevents scrolling

@@ -171,7 +171,7 @@ export class Notes {
         this.pointer = null;
     }
 
-    // --- in step with the picture
+    // positions that follow the picture
 
     show() {
         const { picture, shown } = this.session, half = picture && halves(shown, picture.shownWidth)[0];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sensor coverage, independent of the readings: how far the field may be off, and which hot spots no sensor would show. Includes the
-// legend's rarer titles. Loaded where one of these is shown, and with the panel of the picture.
+// Sensor coverage, independent of the readings: how far the field may be off, and which hot spots no sensor would show. Also has those
+// titles of the legend that are seldom needed. Loaded where one of these is shown, and with the panel of the picture.
 import { shortNumberText, zoneClock } from '../../core/format.js';
 import { say } from '../../core/words.js';
 import { fillSegments, markSegment } from '../common/choices.js';

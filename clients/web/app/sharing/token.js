@@ -37,7 +37,7 @@ export class TokenDialog {
         setText(byId('token-why'), say({ bad_token: 'token.bad', locked: 'token.locked' }[code] ?? 'token.needed'));
         field.value = '';
         const nothing = { sign_in: null, notice: null }, late = new Promise((done) => setTimeout(done, 3000, nothing));
-        // asks without the token, since a wrong one would be rejected
+        // sends the request without the stored token, because a wrong token would be rejected
         const me = await Promise.race([whoAmI({ token: null }).catch(() => nothing), late]);
         if (!document.body.classList.contains('denied')) // access was granted meanwhile, from another tab
             return;

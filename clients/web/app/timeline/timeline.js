@@ -164,7 +164,7 @@ export class Timeline {
             const found = next === null || length < 2e6 ? nextTo(raised(rows), us, false) : null;
             if (found)
                 return found;
-            // too many journal rows: shortens the span; few enough: moves on to the next, longer span
+            // too many journal rows: shortens the span that is searched; few enough: searches the next, longer span
             [from, length] = next === null ? [from + length, length * 4] : [from, length / 8];
         }
         return null;

@@ -13,7 +13,8 @@ const DASHES = [[], [8, 4], [2, 3], [10, 3, 2, 3], [5, 5], [1, 4]];
 const MOST = DASHES.length, FRESH_MS = 5000, AXIS_PX = 58;
 const EXPAND = 2; // uPlot's mode that expands gaps (nulls) to neighbouring instants
 const LIMIT_PX = 15;
-const isPane = () => document.body.classList.contains('pane-trend'); // whether this is a trend pane of a wall, which the chart fills
+// true: this page is a trend pane of a wall, and the chart fills the whole pane
+const isPane = () => document.body.classList.contains('pane-trend');
 const highPx = () => (isPane() ? Math.max(80, byId('trend-chart').clientHeight)
     : Math.round(Math.max(120, Math.min(210, 0.2 * innerHeight)))); // the same height as #trend-chart in the style sheet
 
@@ -142,8 +143,8 @@ export class Trends {
         return { tags: this.tags.map(({ name }) => name).join(','), from: (from / 1e6).toFixed(3), to: (to / 1e6).toFixed(3) };
     }
 
-    // `pending` counts requests on their way. The timer waits for them: a newer request discards the answer of an older one, and on a slow
-    // link no answer would ever be drawn.
+    // `pending` counts requests that were not answered yet. The timer waits for them: a newer request discards the answer of an older one,
+    // and on a slow link no answer would ever be drawn.
     async refresh() {
         if (this.tags.length === 0 || !this.session.model)
             return;
@@ -295,7 +296,7 @@ export class Trends {
         ctx.restore();
     }
 
-    // Writes each limit's name at its line, over everything else; where lines are close together, beside the previous name.
+    // Writes each limit's name at its line, over everything else; where lines are close together, next to the previous name.
     nameLimits(chart) {
         const { ctx, bbox } = chart, px = devicePixelRatio, height = LIMIT_PX * px, placed = [];
         ctx.save();

@@ -61,15 +61,17 @@ function at(element, place) {
     return element;
 }
 
-// By `show`, from the quantity's name and the parameters: [title, suffix, note]. Rarer titles are in coverage.js.
+// By value of `show`: a function of the quantity's name and the parameters that returns [title, suffix, note]. Seldom needed titles are in
+// coverage.js.
 export const TITLES = { distance: (name, { sensor }) => [say('legend.distance', { tag: sensor ?? '–' })] };
-// Shows that do not depend on readings and so are never uncertain; values: lowest value as a fraction of the range (blind: 5 % plus
-// rounding).
+// Values of `show` that do not depend on readings, so that they are never uncertain -> lowest value as a fraction of the range (blind: 5 %
+// plus rounding).
 const LEAST = { distance: 0, uncertainty: 0, blind: 0.05005 };
 const LIMIT_PLACES = { LL: -2, L: -1, H: 1, HH: 2 };
 
 export class Legend {
-    // paramsOf: maps the picture's parameters to those of the half that this legend explains; null: none.
+    // paramsOf: function from the picture's parameters to those of the half that this legend explains; it returns null if the legend
+    // explains none.
     constructor({ session, element, paramsOf, lying = window.matchMedia('(max-width: 719px)') }) {
         Object.assign(this, { session, element, paramsOf, lying });
         this.lying.addEventListener('change', () => this.show(true));
@@ -197,7 +199,7 @@ export class Legend {
         return this.ticksAt(places, this.apart(places, 15, 32), values.map(text));
     }
 
-    // Places numbers beside the bar; leader lines connect numbers that had to move apart.
+    // Places numbers next to the bar; leader lines connect numbers that had to move apart.
     ticksAt(from, to, texts) {
         const lying = this.lying.matches, line = (a, b) => (lying ? { x1: 100 * a, y1: 0, x2: 100 * b, y2: 1 }
             : { x1: 0, y1: 100 - 100 * a, x2: 1, y2: 100 - 100 * b });
@@ -207,7 +209,7 @@ export class Legend {
         return make('div', { class: 'ticks' }, svg, ...texts.map((text, i) => at(make('span', {}, text), to[i])));
     }
 
-    // Draws a line at each limit, with its name beside it.
+    // Draws a line at each limit, with its name next to the line.
     limits(rule, limits, text) {
         const { min, max } = rule;
         const inside = Object.entries(limits).filter(([, value]) => value !== null && value >= min && value <= max);
@@ -230,7 +232,7 @@ export class Legend {
         return this.session.model.tags.some((tag) => tag.group === group && tag.position && tag.place === 'equipment');
     }
 
-    // Draws the patterns in small, never coarser than recognisable.
+    // Draws small samples of the patterns, fine enough to be recognised.
     keys(params, colour) {
         const { show } = params;
         const period = (height) => Math.min(height / 2, patternPeriodPx(this.session.size.height));

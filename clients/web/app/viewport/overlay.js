@@ -39,13 +39,15 @@ export class Overlay {
         this.font = getComputedStyle(document.body).fontFamily;
         this.unit = 1;     // size of a unit in CSS pixels; larger on a wall
         this.calm = document.body.classList.contains('pane'); // in a pane only abnormal readings have a label
-        this.all = [];     // { tag, x, y, depth, occluded, reading }, in units: tags of the shown group, and tags with alarms
+        // markers { tag, x, y, depth, occluded, reading }, positions in units: of the shown group's tags and of tags with alarms
+        this.all = [];
         this.markers = []; // the drawn subset of `all`
         this.places = new Map();
         this.widths = new Map();
-        this.onRings = () => {}; // called when call-outs are needed: several rings, or a ring without a label
+        // called to load call-outs (labels shared by several alarm rings): there are several rings, or a ring without a label
+        this.onRings = () => {};
         this.dirty = true;
-        this.fresh = true; // whether values are current; false: those of a lost connection
+        this.fresh = true; // true: values are current; false: they are the last ones from before the connection was lost
     }
 
     get wide() {
@@ -85,9 +87,10 @@ export class Overlay {
             markers.push({
                 tag, x: (left + place[0]) * scale[0], y: place[1] * scale[1], depth: place[2], half: number,
                 occluded: said.occluded, reading: difference || away ? newest : pictured, alarm,
-                // change to a saved comparison; null: unknown; false: not shown
+                // change to a saved comparison; null: unknown; false: the view does not show changes
                 change: difference && (said.quality === 'bad' ? null : said.value ?? null),
-                // distance from the chosen sensor; null: none, as on other equipment; false: not shown
+                // distance from the chosen sensor; null: there is none, for example on other equipment; false: the view does not show
+                // distances
                 distance_m: away && (said.value ?? null),
                 origin: away && tag.name === params.sensor,
             });
@@ -102,7 +105,7 @@ export class Overlay {
     // Thins out the markers of each half; returns the drawn ones, farthest first.
     thinned() {
         const id = ({ tag, half }) => tag.index * 2 + half, { selected } = this.session.params;
-        // without markers that were drawn only because they are always kept
+        // leaves out markers that were drawn only because they are exempt from thinning
         const before = new Set(this.markers.filter(({ kept, held }) => held || !kept).map(id));
         for (const marker of this.all) {
             const { tag, alarm, origin, reading } = marker;
@@ -164,7 +167,8 @@ export class Overlay {
         return tag.name === this.selection.tag || tag === this.selection.hover;
     }
 
-    // Places the labels of each half. Call-outs are loaded when rings may need them.
+    // Places the labels of each half of a split view. Requests the code of call-outs (labels shared by several alarm rings) when rings may
+    // need them.
     place(labels) {
         const { shown } = this.session, { wide: width, high: height, callouts } = this, blocked = this.blocked();
         const placed = halves(shown, width).map((half, number) => placeLabels(labels.filter((label) => label.half === number), {
@@ -236,8 +240,8 @@ export class Overlay {
         this.context.font = `${weight} 12.5px ${this.font}`;
     }
 
-    // Draws a ring: its colour is the priority; thick and slowly blinking while unacknowledged, thin once acknowledged, hollow after return
-    // to normal.
+    // Draws an alarm ring around a marker. The colour shows the priority. The form shows the state: thick and slowly blinking while
+    // unacknowledged, thin once acknowledged, hollow after return to normal.
     drawAlarm({ priority, state, waiting }) {
         const c = this.context, blinks = waiting && document.body.classList.contains('alarm-blink');
         const wide = !waiting || blinks ? 2 : 4, colour = ALARM_COLOURS[priority - 1][0], solid = [[INK, wide + 2], [colour, wide]];

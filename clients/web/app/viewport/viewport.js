@@ -13,7 +13,7 @@ function devicePixels(cssPx, exact) {
 const sizeOf = (width, height) => ({ ...pictureSize(width, height), pixel_ratio: Math.min(8, Math.max(0.25, window.devicePixelRatio)) });
 
 export class Viewport {
-    // onTick(now): once per animation frame, before drawing. onDrawn(frame): after.
+    // onTick(now): called once per animation frame, before drawing. onDrawn(frame): called after drawing.
     constructor({ element, canvas, session, decoding }) {
         Object.assign(this, { element, canvas, session });
         this.context = canvas.getContext('2d', { alpha: false });
@@ -80,7 +80,7 @@ export class Viewport {
             this.invalidate();
     }
 
-    // Drops queued frames when the connection is lost: a new connection numbers frames anew.
+    // Drops queued frames when the connection is lost: a new connection numbers frames from the start again.
     forget() {
         this.slot.clear();
         for (const { picture } of this.decoded)

@@ -29,7 +29,8 @@ export class ClipGizmo {
         viewport.element.append(this.label);
     }
 
-    // Handles within the plant's bounds; none while following another session. A box's centre handle comes first and keeps its place.
+    // Handles within the plant's bounds; none while following another session. The centre handle of a box comes first so no other handle
+    // takes that place.
     get grips() {
         const { model, params, following } = this.session;
         return model && !following ? [wholeOf(params.clip), ...gripsOf(params.clip, model.plant.bounds)].filter(Boolean) : [];
@@ -185,7 +186,7 @@ export class ClipGizmo {
         return grip.id === 'whole' ? facing(camera, point, line) : alongSight(point, grip.direction, line);
     }
 
-    // Returns metres along the line. For a line that points at the camera, dragging up and down counts instead.
+    // Returns metres along the line. If the line points at the camera, the pointer's vertical movement is used instead.
     taken(dragging) {
         const { at, from, grip, y: began } = dragging;
         if (from === null)
@@ -242,7 +243,7 @@ const middleText = ([middle]) => `${middle.map((m) => numberText(m, 2)).join(' �
 const textOf = ({ id, corners, axis, turned, at }) => (id === 'whole' ? middleText(corners) : say('views.stays', {
     axis: axis ? axis.toUpperCase() : say('cut.oblique'), sign: turned ? '≤' : '≥', at: numberText(at, 2) }));
 
-// Draws each edge of the section or box once.
+// Draws the outline of the section, or the edges of the box, each edge once.
 function outline(grips, { camera, project }) {
     const faces = grips.map(({ corners }) => corners).filter((corners) => corners.length > 1);
     const edges = faces.flatMap((corners) => corners.map((p, i) => [p, corners[(i + 1) % corners.length]]));

@@ -31,7 +31,7 @@ export class NamedViews {
 
     // --- opening
 
-    // fly: animate the camera; else jump.
+    // fly: true: the camera is animated; false: it jumps.
     open(id, fly = true) {
         const view = this.session.views.find((one) => one.id === id);
         if (!view) {
@@ -52,7 +52,7 @@ export class NamedViews {
         if (fly)
             modules.use('cameraController', (cameraController) => cameraController.flyTo(camera));
         else {
-            modules.there('cameraController')?.land(); // ends a running flight, which would go on to its old destination
+            modules.there('cameraController')?.land(); // ends a running flight, which would continue to its old destination
             session.setCamera(camera);
         }
     }

@@ -118,7 +118,8 @@ export class Remote {
         askPick(this.session, this.viewport.pixelOf(pointed.x, pointed.y), 'point');
     }
 
-    // Waits before a pick request: the server only answers the latest, and a user's click takes precedence.
+    // Waits for the answer to the previous pick before the next request: the server only answers the latest, and a user's click takes
+    // precedence.
     waitsFor(now) {
         const { pickSeq } = this.session;
         if (pickSeq !== this.seenSeq)

@@ -6,9 +6,9 @@ import { legendsLie, readWall, SPREAD_MS, wallFit } from '../../core/wall.js';
 import { keepScreenOn } from '../common/clock.js';
 import { byId, make, setVariable, styled } from '../common/dom.js';
 
-const FAR_MS = 60000; // how long the notice on readable distance is shown, for whoever installs the wall
+const FAR_MS = 60000; // duration for which the notice on the readable distance is shown to the person who installs the wall
 const LEAST_PICTURE = 0.3; // minimum picture height, as a fraction of the window's; below this, the whole page shrinks
-const TIGHT = 620;    // width in units below which the date does not fit beside the time
+const TIGHT = 620; // width in units below which the date does not fit next to the time
 
 // Sets page.unit (size of a unit on the page) and calls page.onUnit() when it changes. page.lying: whether legends lie flat, with a media
 // query's interface. Legends and the note on simulated values get their own space, so that they cover no reading.
@@ -48,7 +48,7 @@ export async function hangOnWall(search, page) {
         const [name, display] = page.hangs?.split('/') ?? [], { session } = page;
         if (name)
             session.connection.spreadMs = SPREAD_MS;
-        if (name) // tells the server which display shows this
+        if (name) // tells the server on which display of the wall this page is
             session.greeted(() => session.model.plant.only || session.post({ type: 'display', wall: name, display: Number(display) }));
         const metres = fit();
         if (metres < wall.metres && await learnWords().then(() => true, () => false))
