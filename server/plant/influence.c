@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads which interpolations a group needs prepared, and checks their parameters. */
+/* Reads which interpolations plantcast-prep must prepare for a group, and checks their parameters. */
 #include "plant/influence.h"
 
 #include <math.h>
@@ -47,7 +47,8 @@ void plant_gp_read(struct yaml_reader *reader, yaml_node_t *node, void *record)
     yaml_map_read(reader, node, "gp", keys, &group->gp, &map);
 }
 
-/* Sets defaults for `gp`: without readings to fit to, a quarter of the group's range is the deviation, and a 200th of it the noise. */
+/* Sets defaults for `gp` if there are no readings to fit to: the deviation is a quarter of the group's range, the noise a 200th of the
+   range. */
 void plant_gp_check(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant, struct plant_group *group)
 {
     struct plant_gp *gp = &group->gp;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Interpolations with a physical meaning: plantcast-prep computes the weight of each sensor at each vertex, and the daemon only sums
-   them (PLANT.md, *Interpolations with a meaning*). Thread: any. */
+/* Interpolations with a physical meaning: plantcast-prep computes the weight of each sensor at each vertex, and the daemon only forms
+   weighted sums of the readings (PLANT.md, *Interpolations with a meaning*). Thread: any. */
 #ifndef PLANT_INFLUENCE_H
 #define PLANT_INFLUENCE_H
 #include "plant/plant.h"
@@ -12,10 +12,10 @@
 #define PLANT_GP_DEVIATION 0.25 /* assumed standard deviation of the field, as a fraction of the group's range */
 #define PLANT_GP_NOISE 0.005    /* assumed standard deviation of a reading's noise, as a fraction of the group's range */
 
-#define PLANT_SEEN_PART 0.05 /* smallest visible difference, as a fraction of the group's range */
+#define PLANT_SEEN_PART 0.05 /* smallest difference that is visible in the colours, as a fraction of the group's range */
 #define PLANT_HOT_SPOT_M 0.5 /* size in metres of the hot spots for which blind areas are computed */
 
-/* Returns whether plantcast-prep computes the weights of an interpolation; otherwise weights follow from distances. */
+/* Returns whether plantcast-prep computes the weights of an interpolation; false: the daemon computes them from distances. */
 static inline bool interpolation_is_prepared(enum interpolation interpolation)
 {
     return interpolation >= INTERPOLATION_HARMONIC;

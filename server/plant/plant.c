@@ -21,7 +21,7 @@ static char *folder_of(const char *path)
     return slash == path ? mem_strdup("/.") : mem_printf("%.*s", (int)(slash - path), path);
 }
 
-/* Hashes the bytes of both files, so that a file that is changed back has its old hash. */
+/* Hashes the bytes of both files, so that the old hash returns when a file is changed back. */
 static void hash_files(struct plant *plant)
 {
     const char *const paths[] = { plant->path, plant->tags_path };
@@ -154,8 +154,8 @@ static void free_tags(struct plant *plant)
 {
     for (size_t i = 0; i < plant->tag_count; i++) {
         struct plant_tag *tag = &plant->tags[i];
-        char *const texts[] = { tag->name, tag->description, tag->unit, tag->own_unit, tag->address, tag->topic, tag->path, tag->node,
-                                tag->lost_asset };
+        char *const texts[] = { tag->name,  tag->description, tag->unit, tag->own_unit,  tag->address,
+                                tag->topic, tag->path,        tag->node, tag->lost_asset };
         for (size_t k = 0; k < sizeof(texts) / sizeof(*texts); k++)
             mem_free(texts[k]);
         expression_destroy(&tag->expression);
@@ -207,7 +207,8 @@ void plant_destroy(struct plant **plant_ptr)
     *plant_ptr = NULL;
 }
 
-/* Finds the record with that id by binary search; records begin with `char *id`, `order` lists them by id. Returns an index or -1. */
+/* Finds the record with that id by binary search; records begin with `char *id`; `order` holds their indices, sorted by id. Returns an
+   index or -1. */
 static int find_sorted(const int *order, size_t count, const void *things, size_t stride, const char *id)
 {
     size_t low = 0, high = count;

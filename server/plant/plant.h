@@ -22,10 +22,11 @@ enum interpolation {
 };
 /* heat: geodesic distances by the heat method, as in the paper */
 enum distance_mode { DISTANCE_GEODESIC, DISTANCE_EUCLIDEAN, DISTANCE_HEAT, DISTANCES };
-enum fill_mode { FILL_NONE, FILL_NEIGHBOURS };             /* whether the readings of neighbours fill in for a lost sensor */
-enum plant_show { PLANT_SHOW_VALUE, PLANT_SHOW_OPERATOR }; /* what a client shows first: values, or values relative to their limits */
+enum fill_mode { FILL_NONE, FILL_NEIGHBOURS }; /* whether neighbours' readings replace those of a lost sensor */
+/* display at the start of a client: values, or values relative to their limits */
+enum plant_show { PLANT_SHOW_VALUE, PLANT_SHOW_OPERATOR };
 enum plant_start { PLANT_START_SHOWN, PLANT_START_GHOST, PLANT_START_HIDDEN }; /* initial display state of an asset */
-enum { PLANT_STARTS = 4096 }; /* number of assets, the first of the plant, that can be hidden one by one */
+enum { PLANT_STARTS = 4096 }; /* the first assets of the plant, as many as this, can be hidden one by one; the others cannot */
 enum axis { AXIS_Y, AXIS_Z }; /* upward axis */
 enum data_type {
     DATA_BIT,
@@ -43,18 +44,19 @@ enum data_type {
 /* Order in which the bytes of a value A B C D (A most significant) arrive. For 64 bits: CDAB reverses the registers, BADC swaps the
    bytes of each register, DCBA does both. NONE: not stated. */
 enum byte_order { BYTE_ORDER_NONE, BYTE_ORDER_ABCD, BYTE_ORDER_CDAB, BYTE_ORDER_BADC, BYTE_ORDER_DCBA };
-enum register_table { TABLE_COIL, TABLE_DISCRETE, TABLE_INPUT, TABLE_HOLDING }; /* Modbus function codes 1, 2, 4, 3 */
+enum register_table { TABLE_COIL, TABLE_DISCRETE, TABLE_INPUT, TABLE_HOLDING }; /* in this order: Modbus function codes 1, 2, 4, 3 */
 enum scaling { SCALING_NONE, SCALING_LINEAR, SCALING_SQUARE_ROOT };
 enum limit { LIMIT_LL, LIMIT_L, LIMIT_H, LIMIT_HH, LIMIT_COUNT };
-enum alarm_mode {                 /* which system manages the alarms */
-                  ALARMS_DISPLAY, /* another system: limits are watched and shown, nothing can be acknowledged here */
-                  ALARMS_MIRROR,  /* another system, whose alarm bits are read */
-                  ALARMS_LOCAL    /* this daemon */
+enum alarm_mode { /* which system manages the alarms */
+                  /* alarms are managed by another system: limits are watched and shown here, but no alarm can be acknowledged here */
+                  ALARMS_DISPLAY,
+                  ALARMS_MIRROR, /* alarm bits of another system are read */
+                  ALARMS_LOCAL   /* this daemon */
 };
 enum { ALARM_PRIORITIES = 4, ALARM_PRIORITY_DEFAULT = 2 };
 extern const char *const plant_limit_names[LIMIT_COUNT];
 
-struct plant_view { /* initial camera of a client; plant frame, metres */
+struct plant_view { /* initial camera of a client; positions in metres in the plant frame */
     bool set;
     double eye_m[3], target_m[3], fov_deg;
 };
@@ -68,59 +70,61 @@ struct plant_asset {
     char *id, *tag, *description; /* tag defaults to id */
     char *area;                   /* part of the plant under which the asset is listed; "": none */
     char *model;                  /* path; a relative name is resolved against the plant file's folder */
-    char *nodes;                  /* node patterns (nodes.h), one a line; a matching node brings its sub-tree. NULL: the whole model */
-    double unit_m;                /* metres per model unit, including the scale of the placement */
-    enum axis up;                 /* upward axis of the model */
-    double tolerance_m;           /* metres; gaps up to this size are closed when distances are computed; 0: chosen from the model */
+    char *nodes;   /* node patterns (nodes.h), one a line; each matching node is taken with its sub-tree. NULL: the whole model */
+    double unit_m; /* length of a model unit in metres, including the scale of the asset's placement */
+    enum axis up;  /* upward axis of the model */
+    /* metres; gaps in the surface up to this size are bridged when distances along it are computed; 0: chosen from the model */
+    double tolerance_m;
     /* transform from asset frame (Z up) to plant frame, column-major; rotation and translation only: both frames are in metres */
     double placement[16];
     enum plant_start start;
     double thickness_m;                /* wall thickness in metres; 0: not stated */
     double conductivity;               /* W/(m K) */
     double heat_transfer;              /* W/(m2 K), to the surroundings */
-    bool sensors_in_asset_frame;       /* X, Y, Z of its tags are in the asset frame; otherwise in the plant frame */
+    bool sensors_in_asset_frame;       /* true: X, Y, Z of the asset's tags are in the asset frame; false: in the plant frame */
     struct plant_property *properties; /* user-defined properties, in the order of the file */
     size_t property_count;
     int line;
 };
 
-struct plant_alarm_settings { /* when alarms are raised and cleared */
+struct plant_alarm_settings { /* how and when alarms of this group or tag are raised and cleared */
     double deadband;          /* engineering units */
     double on_delay_s, off_delay_s;
-    int priority; /* priority of LL and HH, from 1 (most urgent) to ALARM_PRIORITIES; L and H are one less urgent */
-    bool latch;   /* the alarm stays until an operator resets it */
+    int priority; /* priority of LL and HH, from 1 (most urgent) to ALARM_PRIORITIES; L and H get the next less urgent one */
+    bool latch;   /* true: the alarm is latched: it stays until an operator resets it */
 };
 
 struct plant_mirror {  /* meaning of a tag that is an alarm bit of another system */
     int tag;           /* index of the tag that has the alarm, or -1 */
-    int limit;         /* enum limit; LIMIT_COUNT: an alarm without a limit */
+    int limit;         /* enum limit at which the alarm is; LIMIT_COUNT: an alarm without a limit */
     bool acknowledged; /* the bit means "acknowledged" rather than "alarm present" */
 };
 
 struct plant_gp {                     /* parameters of the interpolation `gp` */
-    double range_m, noise, deviation; /* metres, then two values in the group's unit; NaN: fitted to readings */
+    double range_m, noise, deviation; /* length in metres, then noise and deviation in the group's unit; NaN: to be fitted to readings */
     char *fit;                        /* path of a file with readings to fit the parameters to; NULL: no fitting */
 };
 
 enum { PLANT_BREAKS = 16, PLANT_ISOLINES = 32 };
 struct plant_group {
     char *id, *quantity, *unit;
-    bool as_written; /* `units: as-written`: values are taken to be in the group's unit, whatever the rows state */
+    bool as_written; /* true (`units: as-written`): values are taken to be in the group's unit, even if the tag's row states another */
     double min, max;
     double limits[LIMIT_COUNT]; /* default limits of the group's tags; NaN: none */
     struct plant_alarm_settings alarm_settings;
     enum interpolation interpolation;
     enum distance_mode distance;
     double strength, decay, power;
-    double radius_m;   /* R of Algorithm 1 in metres; 0: the largest distance on the asset */
+    double radius_m;   /* radius R of Algorithm 1 in metres; 0: the largest distance on the asset */
     double reach_m;    /* metres beyond which a sensor has no influence; INFINITY: no limit */
     unsigned prepared; /* bit mask of the interpolations that plantcast-prep computes (plant/influence.h), including the group's own */
-    double disc_m;     /* metres; radius of the disc that represents a sensor in harmonic, fin and gp */
+    double disc_m;     /* radius in metres of the disc that represents a sensor in the interpolations harmonic, fin and gp */
     double ambient;    /* temperature of the surroundings for `fin`, in the group's unit; NaN: not stated */
-    bool directed;     /* some of its tags have a direction, which is shown with arrows */
+    bool directed;     /* true: some tags of the group have a direction, which is shown with arrows */
     bool heat;         /* `geodesic: heat`: plantcast-prep also computes the heat-method distances of the paper */
     struct plant_gp gp;
-    double hot_spot_m; /* metres; radius of the hot spots for `show: blind`, where a spot has fallen to exp(-1/2) */
+    /* radius in metres of the hot spots for `show: blind`: distance at which the spot's excess has fallen by a factor exp(-1/2) */
+    double hot_spot_m;
     bool cuts_singles; /* `singles: cut`; see plant_cuts_singles() */
     enum fill_mode fill;
     bool log;                    /* `scale: log`; requires min > 0 */
@@ -131,9 +135,9 @@ struct plant_group {
 };
 
 enum { PLANT_COLORMAPS = 16 };
-struct plant_colormap { /* colour map read from an image */
+struct plant_colormap { /* a colour map that is read from an image */
     char *name;
-    uint8_t rgb[256][3]; /* sRGB, from the group's `min` to `max` */
+    uint8_t rgb[256][3]; /* colours in sRGB, from the group's `min` to its `max` */
 };
 
 enum transport { TRANSPORT_TCP, TRANSPORT_RTU_TCP /* RTU frames over TCP */, TRANSPORT_RTU /* a serial line */ };
@@ -149,22 +153,28 @@ struct plant_mqtt { /* MQTT settings of a source or of `publish`; texts that are
     char *client_id;
     bool has_tls;
     char *ca, *certificate, *key; /* PEM files for TLS; ca NULL: the system's trusted certificates */
-    char *will;                   /* topic of the last will, where the broker publishes "offline" after we disconnect */
+    char *will;                   /* topic of the last will: after a disconnection the broker publishes "offline" there */
     char *topic;                  /* topic template for tags whose address has no topic */
     char *value, *time, *quality; /* paths of value, time and quality in JSON payloads */
     bool will_stays;              /* the last will is a retained message */
-    bool rebirth;                 /* a Sparkplug node may be asked for its birth certificate; nothing else is ever published */
+    bool rebirth; /* true: birth certificates may be requested from Sparkplug nodes; that request is the only message published */
 };
 
-enum opcua_policy { OPCUA_BEST /* the best one that the server has */, OPCUA_AES256, OPCUA_BASIC256, OPCUA_AES128, OPCUA_NONE };
+enum opcua_policy {
+    OPCUA_BEST /* the best security policy that the server offers */,
+    OPCUA_AES256,
+    OPCUA_BASIC256,
+    OPCUA_AES128,
+    OPCUA_NONE
+};
 
 struct plant_opcua {                   /* OPC UA settings of a source; texts that are not given are NULL */
-    bool has_security;                 /* the key `security` is given; a source without it is refused */
-    enum opcua_policy policy;          /* message security is SignAndEncrypt, except for OPCUA_NONE */
+    bool has_security;                 /* the key `security` was given; a source without the key is refused */
+    enum opcua_policy policy;          /* messages are signed and encrypted (SignAndEncrypt), except with OPCUA_NONE */
     char *certificate, *key;           /* our certificate and key, files in PEM or DER */
     char *trusted;                     /* folder of trusted certificates and revocation lists */
     char *server_name;                 /* host name in the server's certificate, if it differs from the host */
-    char *user_certificate, *user_key; /* certificate and key of the user, instead of a login */
+    char *user_certificate, *user_key; /* certificate and key of the user; used in place of a login file */
     char *path;                        /* path of the endpoint URL */
     char *name_space;                  /* namespace URI of nodes whose address has none */
     int queue;                         /* number of values that the server queues per node between two notifications */
@@ -181,15 +191,15 @@ struct plant_source {
     int baud, parity, stop_bits;       /* parity: 'N', 'E' or 'O' */
     int port, unit;                    /* unit: Modbus unit identifier */
     int poll_ms, timeout_ms, pause_ms; /* milliseconds; pause_ms: between two requests */
-    int connect_delay_ms;              /* milliseconds between connecting and the first request */
+    int connect_delay_ms;              /* milliseconds from connecting to the first request */
     bool close_between_polls;          /* one request per connection */
     int max_registers, max_bits;       /* maximum registers or bits in one request */
-    int max_gap;                       /* maximum number of unused registers or bits between two tags that one request may read along */
+    int max_gap; /* maximum number of unneeded registers or bits between two tags that are still read by one request */
     enum byte_order byte_order;
     int address_base; /* number of the first register in plain addresses, 0 or 1; see base_stated */
     bool base_stated;
-    char *heartbeat;    /* name of the tag that must keep changing; NULL: none */
-    int heartbeat_tag;  /* index of that tag, or -1 */
+    char *heartbeat;    /* heartbeat: name of the tag whose value must keep changing; NULL: none */
+    int heartbeat_tag;  /* index of the heartbeat tag, or -1 */
     double heartbeat_s; /* maximum time in seconds between two changes of the heartbeat; 0: no heartbeat */
     char *file;         /* CSV file of a replay source */
     double speed;
@@ -218,21 +228,21 @@ struct plant_postgres {
 
 struct plant_history {
     bool off;
-    char *folder; /* NULL: the folder that plant_history_folder() returns */
+    char *folder; /* folder of the history; NULL: the folder that plant_history_folder() returns */
     double keep_days, keep_gb;
     double deadband_percent; /* deadband in percent of a tag's span, for tags without a deadband of their own */
     double override_s;       /* maximum time in seconds between two recorded points of a tag */
     struct plant_postgres postgres;
 };
 
-/* A raw value that means "no sensor", given as bits or as a number. */
+/* Sentinel: a raw value that means "no sensor", given as bits or as a number. */
 struct plant_sentinel {
     bool is_bits;
     uint64_t bits;
     double number;
 };
 
-/* Another tag that tells whether this tag's value is valid: valid if ((value & mask) == want) != negate. */
+/* Another tag that tells whether this tag's value is valid: it is if ((value & mask) == want) != negate. */
 struct plant_quality_tag {
     int tag;             /* index */
     uint64_t mask, want; /* mask 0: no quality tag */
@@ -242,49 +252,51 @@ struct plant_quality_tag {
 enum { PLANT_SENTINELS = 4 };
 struct plant_tag {
     char *name, *description;
-    char *unit;                /* unit of its readings, limits and deadbands: the group's unit, else the row's */
-    char *own_unit;            /* unit of the values at its address, of scaled_low and scaled_high: the row's unit, else `unit` */
+    char *unit; /* unit of the tag's readings, limits and deadbands: the group's unit; for a tag without a group, the row's */
+    /* unit of the values at the tag's address, and of scaled_low and scaled_high: the row's unit; if the row has none, `unit` */
+    char *own_unit;
     struct unit_change change; /* conversion from own_unit to unit */
     int source, group, asset;  /* index, or -1 */
-    char *lost_asset;          /* id of a missing asset (plant_load_with_orphans()), or NULL */
+    char *lost_asset;          /* id in the tag list of an asset that does not exist (plant_load_with_orphans()), or NULL */
     /* `Place: equipment`: the exact position on the asset is unknown; the reading represents the whole asset (field/field.h) */
     bool place_assumed;
     char *address; /* address as written: a register, a series name, a topic, or = and an expression */
-    /* Of an MQTT source: the full topic, and the path of the value in its payload ("": the source's default). Of Sparkplug:
-       GROUP/NODE[/DEVICE], and the metric. Of OPC UA: the namespace URI, and an identifier such as s=NAME. Of other sources: NULL. */
+    /* MQTT: the full topic, and the path of the value in its payload ("": the source's default). Sparkplug: GROUP/NODE[/DEVICE], and the
+       metric. OPC UA: the namespace URI, and an identifier such as s=NAME. Other sources: NULL. */
     char *topic, *path;
-    int element;     /* index in an OPC UA array; -1: the value is no array */
-    int modbus_unit; /* Modbus unit identifier; -1: the source's */
+    int element;     /* index of the element in an OPC UA array; -1: the value is no array */
+    int modbus_unit; /* Modbus unit identifier; -1: that of the source */
     enum register_table table;
     int register_index; /* register number, from 0, as on the wire */
-    int bit;            /* bit of a register; -1: the whole register */
+    int bit;            /* number of the bit within the register; -1: the whole register */
     enum data_type type;
-    enum byte_order byte_order; /* resolved for 32 and 64 bits. 16 bits: as the row states, else NONE (the standard); bits: NONE */
-    int scan_ms;                /* scan interval in milliseconds; 0: the source's poll_ms */
+    /* byte order: for 32 and 64 bits always known; for 16 bits as the row states, otherwise NONE (standard order); for single bits NONE */
+    enum byte_order byte_order;
+    int scan_ms; /* scan interval in milliseconds; 0: the source's poll_ms */
     enum scaling scaling;
-    double raw_low, raw_high, scaled_low, scaled_high; /* range of raw values and its scaled range; scaled values are in own_unit */
-    bool has_range;                                    /* scaled_low to scaled_high is the instrument's measuring range */
-    bool ne43; /* raw_low and raw_high are 4 and 20 mA, and currents beyond them are judged by NAMUR NE 43 */
+    double raw_low, raw_high, scaled_low, scaled_high; /* range of raw values, and the range to which it is scaled, in own_unit */
+    bool has_range;                                    /* true: scaled_low to scaled_high is the instrument's measuring range */
+    bool ne43; /* true: raw_low and raw_high are 4 and 20 mA, so currents outside are judged by NAMUR NE 43 */
     struct plant_sentinel sentinels[PLANT_SENTINELS];
     int sentinel_count;
     bool negate;
-    bool has_position;             /* position_m is set; otherwise see `node` */
+    bool has_position;             /* true: position_m is set; false: see `node` */
     double position_m[3];          /* position in metres, in the frame that the asset states */
     char *node;                    /* name of the model node that gives the position, or NULL */
-    double strength, decay;        /* tag's own value, else the group's */
-    double stale_s;                /* age in seconds from which the reading is stale; default 3 polls, at least 5 s */
+    double strength, decay;        /* the tag's own values; otherwise the group's */
+    double stale_s;                /* age in seconds from which the reading is stale; default: three poll intervals, at least 5 s */
     double flatline_s;             /* seconds without a change after which the value is uncertain; 0: never */
     bool states_stale;             /* the row states stale_s */
-    struct expression *expression; /* expression of a derived tag; else NULL */
+    struct expression *expression; /* expression of a derived tag; NULL for other tags */
     struct plant_quality_tag quality;
     double limits[LIMIT_COUNT];                 /* tag's own limits, else the group's; NaN: none */
     double deadband;                            /* maximum error of the recorded history in the tag's unit; NaN: the history's default */
-    struct plant_alarm_settings alarm_settings; /* tag's own settings, else the group's */
-    int suppressed_by;                          /* index of a bit tag; while it is 1 the alarm is suppressed by design; -1: none */
+    struct plant_alarm_settings alarm_settings; /* alarm settings of the tag's row; otherwise the group's */
+    int suppressed_by; /* index of a bit tag; while that bit is 1, this tag's alarms are suppressed by design; -1: none */
     struct plant_mirror mirror;
     int direction[3];    /* indices of the tags with the direction of the value: components along X, Y and Z of the plant, or a bearing */
-    int direction_count; /* number of those tags: 0: no direction; 1: a bearing in degrees; 3: components */
-    int line, column;    /* position of its name in the tag list */
+    int direction_count; /* number of tags with the direction: 0: no direction; 1: a bearing in degrees; 3: components */
+    int line, column;    /* position of the tag's name in the tag list */
 };
 
 enum { PLANT_ENVIRONMENTS = 8 };
@@ -310,14 +322,14 @@ struct plant_conversion { /* a model that plantcast-prep makes by running anothe
 struct plant {
     char *path, *folder; /* path of the plant file, and its folder without trailing slash */
     char *tags_path;
-    char hash[17];          /* hexadecimal hash of both files; identifies the configuration */
-    bool keeps_orphans;     /* set while loading: tags of missing assets are no error */
+    char hash[17];          /* hash, in hexadecimal, of plant file and tag list; identifies the configuration */
+    bool keeps_orphans;     /* set while loading: tags of assets that do not exist are no error */
     bool without_models;    /* set while loading: missing models are no error */
     char *name, *time_zone; /* time_zone: IANA name; default UTC */
     enum axis up;           /* upward axis of the plant frame */
     struct plant_view view;
     enum plant_show show;
-    struct plant_environment environments[PLANT_ENVIRONMENTS]; /* the first one is the default */
+    struct plant_environment environments[PLANT_ENVIRONMENTS]; /* environments (panoramas); the first one is the default */
     size_t environment_count;
     struct plant_link links[PLANT_LINKS];
     size_t link_count;
@@ -340,25 +352,25 @@ struct plant {
     struct plant_colormap colormaps[PLANT_COLORMAPS];
     size_t colormap_count;
     int *assets_by_id, *tags_by_name; /* indices sorted by id and by name; assets_by_id is NULL until the whole file is read */
-    int *derived;                     /* indices of the derived tags, each after the tags in its expression */
+    int *derived;                     /* indices of the derived tags, in an order in which each follows the tags in its expression */
     size_t derived_count;
 };
 
 /* Loads a plant file and its tag list. Findings go to diag. Returns NULL if there was any error. */
 struct plant *plant_load(const char *path, struct diag *diag);
-struct plant *plant_load_or_print(const char *path); /* like plant_load(), but prints findings to standard error */
-/* Does the same as plant_load_or_print(), but a missing model is no error: for programs that need no models. */
+struct plant *plant_load_or_print(const char *path); /* Does the same as plant_load(), and prints the findings to standard error. */
+/* Does the same as plant_load_or_print(), but a missing model file is no error: for programs that need no models. */
 struct plant *plant_load_without_models(const char *path);
-/* Does the same as plant_load(), but accepts tags whose asset does not exist: they have no asset, and lost_asset is set. */
+/* Does the same as plant_load(), but accepts tags whose asset does not exist: such tags get no asset, and their lost_asset is set. */
 struct plant *plant_load_with_orphans(const char *path, struct diag *diag);
 void plant_destroy(struct plant **plant); /* Frees a plant. &NULL is fine; leaves NULL. */
 
 int plant_find_asset(const struct plant *plant, const char *id); /* All plant_find functions return an index, or -1. */
 int plant_find_group(const struct plant *plant, const char *id);
-/* Returns 0 for "sky", 1 for the plant's first environment, and so on; -1: unknown. */
+/* Returns the index of an environment by name: 0 for "sky", 1 for the plant's first panorama, and so on; -1: unknown. */
 int plant_find_environment(const struct plant *plant, const char *name);
 int plant_find_tag(const struct plant *plant, const char *name);
-/* Returns whether readings of a tag are simulated: its source is, or the source of a tag in its expression. */
+/* Returns whether readings of a tag are simulated: the tag's source is simulated, or that of a tag in its expression. */
 bool plant_tag_simulated(const struct plant *plant, int tag);
 /* Returns the folder of the prepared asset files: FOLDER/NAME.prepared next to NAME.yaml. Free with mem_free(). */
 char *plant_prepared_folder(const struct plant *plant);

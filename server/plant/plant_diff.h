@@ -5,14 +5,14 @@
 #include "plant/plant.h"
 
 struct plant_diff { /* zero-initialise */
-    char **lines;   /* lines such as "tag TT-101: HH 90 > 95"; at most PLANT_DIFF_LINES. more: number of lines left out */
+    char **lines;   /* lines such as "tag TT-101: HH 90 > 95"; at most PLANT_DIFF_LINES. more: number of further lines that were left out */
     size_t count, capacity, more;
 };
 enum { PLANT_DIFF_LINES = 200 };
 /* Appends a line for each difference. */
 void plant_diff(const struct plant *before, const struct plant *after, struct plant_diff *out);
 void plant_diff_finish(struct plant_diff *diff);
-/* Returns which setting of the new plant a running daemon cannot apply without a restart (static); NULL: none. */
+/* Returns the name of a setting of the new plant that a running daemon cannot apply without a restart (static); NULL: none. */
 const char *plant_needs_restart(const struct plant *before, const struct plant *after);
 
 #endif

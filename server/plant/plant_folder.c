@@ -20,7 +20,7 @@
 #include "base/text/text.h"
 
 enum { LOOK_MS = 50 };
-/* record of an undone revision; the next program that locks the folder removes its remains */
+/* name of the record of a revision whose undoing is complete; the next program that locks the folder removes the rest */
 static const char undone[] = ".import-undone";
 static const size_t max_text_bytes = (size_t)64 << 20;
 
@@ -38,7 +38,7 @@ char *revision_version_of(const char *record, const char *version, const char *n
 int plant_folder_sync(const char *folder)
 {
     int fd = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC), status = fd < 0 ? -errno : 0;
-    if (fd >= 0 && fsync(fd) != 0 && errno != EINVAL) /* some file systems cannot sync a folder */
+    if (fd >= 0 && fsync(fd) != 0 && errno != EINVAL) /* ignores the error: some file systems cannot sync a folder */
         status = -errno;
     if (fd >= 0)
         close(fd);
@@ -63,7 +63,7 @@ static void remove_tree(const char *path)
     nftw(path, remove_one, 16, FTW_DEPTH | FTW_PHYS);
 }
 
-/* --- record of a revision ------------------------------------------------------------------------------------------------------- */
+/* --- reads and writes the record of a revision ---------------------------------------------------------------------------------- */
 
 int revision_record_read(struct revision_record *record, const char *folder, const char *name)
 {
@@ -122,9 +122,8 @@ static int put_elsewhere(const char *from, const char *to)
 static int move_into_place(const struct revision_record *record, const char *folder, const char *from, const char *name)
 {
     char *source = revision_version_of(record->path, from, name), *target = plant_folder_file(folder, name);
-    int status = access(source, F_OK) != 0 ? 0 /* no such version: the file was moved already, or is unchanged by the revision */
-                 : *name == '/'            ? put_elsewhere(source, target)
-                                           : move(source, target);
+    /* this version does not exist: the file was moved already, or the revision does not change it */
+    int status = access(source, F_OK) != 0 ? 0 : *name == '/' ? put_elsewhere(source, target) : move(source, target);
     mem_free(source);
     mem_free(target);
     return status;
@@ -152,7 +151,7 @@ int revision_go_on_undoing(const char *folder)
     struct revision_record record;
     char *last = plant_folder_file(folder, undone);
     int status = revision_record_read(&record, folder, REVISION_UNDOING);
-    if (status == -ENOENT) /* the record is gone: all files were put back, and its removal had begun */
+    if (status == -ENOENT) /* no record: all files were put back, and the removal of the revision's folder had begun */
         status = 0;
     for (size_t i = record.count; i-- > 0 && status == 0;) {
         char *path = plant_folder_file(folder, record.entries[i].name);
@@ -174,7 +173,7 @@ int revision_go_on_undoing(const char *folder)
     return status;
 }
 
-/* Returns whether killed programs left work folders; with `now` it removes them. */
+/* Returns whether killed programs left work folders; if `now`, removes them. */
 static bool remove_left(const char *folder, const char *own, bool now)
 {
     DIR *dir = opendir(folder);
@@ -229,7 +228,7 @@ static char *say_holder(int fd)
                    : mem_strdup("another program is at work in it");
 }
 
-/* Opens the folder, or duplicates the descriptor of the parent process, which must refer to this folder and holds the lock. */
+/* Opens the folder, or duplicates the descriptor of the parent process, which must refer to the same folder and hold its lock. */
 static int open_folder(const struct plant_folder_params *params)
 {
     struct stat lent, folder;
@@ -276,9 +275,9 @@ int plant_folder_lock(const struct plant_folder_params *params, char **why)
     while (status == 0 && flock(fd, LOCK_EX | LOCK_NB) != 0)
         if (errno == EWOULDBLOCK && clock_mono_ns() < until_ns)
             usleep(LOOK_MS * 1000);
-        /* folders cannot be locked here (NFS): continue without a lock */
+        /* this file system has no locks for folders (NFS): continues without a lock */
         else if (errno == EBADF || errno == ENOLCK || errno == EOPNOTSUPP)
-            return fd; /* without a lock, leave work folders alone: another program may be using them */
+            return fd; /* without a lock, work folders stay: another program may be using them */
         else if (errno != EINTR)
             status = -errno;
     if (status == 0) {
@@ -309,7 +308,7 @@ bool plant_folder_settle(const struct plant_folder_params *params, char **why)
     int lock = plant_folder_lock(&at_once, why);
     if (lock >= 0)
         close(lock);
-    if (!killed) { /* either an import is running that has not begun to replace files, or we lack the permission to clean up */
+    if (!killed) { /* either an import is running and has not begun to replace files, or this program may not remove the remains */
         mem_free(*why);
         *why = NULL;
         return true;

@@ -12,16 +12,16 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#define REVISION_MADE    ".revision"
+#define REVISION_MADE ".revision"
 #define REVISION_PENDING ".revision.pending"
 #define REVISION_UNDOING ".revision.undoing"
 
 struct plant_folder_params {
     const char *folder;
-    const char *own; /* path of a work folder inside it that must not be removed; NULL: none */
+    const char *own; /* path of a work folder in the plant's folder that must not be removed; NULL: none */
     int lent;        /* descriptor with which the parent process has locked the folder; 0: none */
     int wait_ms;     /* milliseconds to wait for another program to finish; 0: no waiting */
-    /* receives the name of a killed program's revision that was finished: "an import", "the undoing of an import"; NULL: not wanted */
+    /* receives what was finished for a killed program: "an import", "the undoing of an import"; NULL: not wanted */
     const char **finished;
 };
 
@@ -29,10 +29,11 @@ struct plant_folder_params {
    descriptor, or -errno with a one-line reason in *why (mem_free), which does not name the folder. */
 int plant_folder_lock(const struct plant_folder_params *params, char **why);
 /* Call this before reading files: waits for a revision in progress, finishes the revision of a killed program, and removes what killed
-   programs left, unless another program has locked the folder. Returns whether no revision is in progress any more; if false, *why has
-   the reason as above. Sets *params->finished. */
+   programs left, unless another program has locked the folder. Returns true once no revision is in progress. If false, *why has the reason
+   as above. Sets *params->finished. */
 bool plant_folder_settle(const struct plant_folder_params *params, char **why);
-/* Returns whether a revision is in progress or was killed: the files in the folder are then neither the old plant nor the new one. */
+/* Returns true if a revision is in progress, or its program was killed. The files in the folder are then neither the old plant nor the new
+   one. */
 bool plant_folder_unsettled(const char *folder);
 /* Returns the folder of a plant file; free with mem_free(). */
 char *plant_folder_of(const char *plant_path);
@@ -49,7 +50,8 @@ struct revision_record {
     struct revision_entry *entries;
     size_t count, room;
 };
-/* Reads the record of that name (one of the three above). Call revision_record_finish() even after an error. */
+/* Reads the record of the revision from the folder `name` (.revision, .revision.pending or .revision.undoing). Call
+   revision_record_finish() even after an error. */
 int revision_record_read(struct revision_record *record, const char *folder, const char *name);
 void revision_record_finish(struct revision_record *record);
 /* Continue a pending revision, or one that is being undone. This program must have locked the folder. */

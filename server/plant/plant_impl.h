@@ -5,7 +5,7 @@
 #include "plant/parse/yaml_reader.h"
 #include "plant/plant.h"
 
-#define PLANT_MAX_VALUE 1e30 /* maximum of a reading or a limit: the field is computed in floats */
+#define PLANT_MAX_VALUE 1e30 /* maximum absolute value of a reading or a limit, because the field is computed in floats */
 
 /* Reads the plant file into a plant whose path and folder are set. Findings go to diag. tags_path stays NULL if the file cannot be read. */
 void plant_file_read(struct plant *plant, struct diag *diag);
@@ -27,19 +27,21 @@ void plant_other_plants_read(struct yaml_reader *reader, yaml_node_t *node, stru
 void plant_walls_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
 /* Reads a group's list `prepare` (plant/influence.h). */
 void plant_influence_read(struct yaml_reader *reader, yaml_node_t *node, void *record);
-/* plant_gp_read() reads a group's key `gp`; plant_gp_check() checks its values and sets defaults. */
+/* plant_gp_read() reads a group's key `gp`; plant_gp_check() checks the values and sets defaults. */
 void plant_gp_read(struct yaml_reader *reader, yaml_node_t *node, void *group);
 void plant_gp_check(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant, struct plant_group *group);
-/* Reports what is missing for the interpolation `fin`: the group's ambient, and the thickness of assets with sensors of the group. */
+/* Reports keys that the interpolation `fin` needs and that are missing: the group's ambient, and the thickness of assets with sensors of
+   the group. */
 void plant_influence_check(const struct plant *plant, struct diag *diag);
-/* Report unknown views, tags, tours and plants that tour stops and wall panes name. Call them after the tag list has been read. */
+/* Report views, tags, tours and plants that do not exist but are named by tour stops or wall panes. Call them after the tag list has been
+   read. */
 void plant_tours_check(const struct plant *plant, struct diag *diag);
 void plant_walls_check(const struct plant *plant, struct diag *diag);
 void plant_views_free(struct plant *plant);
 void plant_tours_free(struct plant *plant);
 void plant_other_plants_free(struct plant *plant);
 void plant_walls_free(struct plant *plant);
-/* Reads an asset's `nodes`: a pattern, or a list of patterns. */
+/* Reads an asset's key `nodes`: one pattern, or a list of patterns. */
 void plant_nodes_read(struct yaml_reader *reader, yaml_node_t *node, struct plant_asset *asset);
 /* Reads an asset's `properties`. */
 void plant_properties_read(struct yaml_reader *reader, yaml_node_t *node, struct plant_asset *asset);
@@ -48,7 +50,7 @@ void plant_properties_free(struct plant_asset *asset);
 bool plant_properties_same(const struct plant_asset *a, const struct plant_asset *b);
 /* Reads the key `postgres` of `history` into a struct plant_history. */
 void plant_postgres_read(struct yaml_reader *reader, yaml_node_t *node, void *history);
-/* Checks the login file of `postgres`; the plant's folder must be set. */
+/* Checks that the login file of `postgres` can be read; the plant's folder must be set. */
 void plant_postgres_check(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant,
                           struct plant_postgres *postgres);
 void plant_postgres_finish(struct plant_postgres *postgres);
@@ -63,7 +65,7 @@ void plant_mqtt_read_tls(struct yaml_reader *reader, yaml_node_t *node, void *so
 /* Checks the keys of an MQTT source, and sets defaults. */
 void plant_mqtt_check(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant, struct plant_source *source);
 void plant_mqtt_finish(struct plant_mqtt *mqtt);
-/* The same for OPC UA: reads the key `security`, checks all keys, frees the settings. */
+/* The same functions for OPC UA: read the key `security`, check all keys, free the settings. */
 void plant_opcua_read_security(struct yaml_reader *reader, yaml_node_t *node, void *source);
 void plant_opcua_check(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant, struct plant_source *source);
 void plant_opcua_finish(struct plant_opcua *opcua);
@@ -82,7 +84,7 @@ void plant_resolve_path(const struct plant *plant, char **path);
 
 /* Reads the tag list, plant->tags_path; assets, groups and sources must have been read. */
 void tag_list_read(struct plant *plant, struct diag *diag);
-/* Returns whether limits do not ascend (LL < L < H < HH; NaN: none), with the indices of the first two that do not. */
+/* Returns true if limits do not ascend (LL < L < H < HH; NaN: not set), with the indices of the first two that do not. */
 bool plant_limits_wrong(const double limits[LIMIT_COUNT], int *lower, int *upper);
 
 /* Reads the list `colormaps`. */

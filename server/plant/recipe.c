@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Hashes the inputs from which an asset is prepared. */
+/* Computes hashes of the inputs from which plantcast-prep prepares an asset. */
 #include "plant/recipe.h"
 
 #include <errno.h>

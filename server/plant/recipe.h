@@ -10,7 +10,7 @@
 
 /* Computes the hash of a model file, without the files that a .gltf refers to. Returns false with errno if the file cannot be read. */
 bool plant_model_hash(const char *path, uint64_t *out);
-/* Returns the hash of an asset's model, nodes, units, up axis and tolerance. */
+/* Returns the hash of the settings of an asset that change its prepared file: model, nodes, units, up axis and tolerance. */
 uint64_t plant_recipe(const struct plant_asset *asset, uint64_t model_hash);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds assets with a single sensor of a group. */
+/* Finds assets on which a group has a single sensor. */
 #include "plant/singles.h"
 
 #include "base/mem.h"

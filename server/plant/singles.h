@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Assets with a single sensor of a group. With the interpolation `shepard` the group's field is constant there, and plantcast-prep does
-   not subdivide their triangles, unless the plant file asks for `paper` or `singles: cut`. Undivided triangles can show neither `paper`
-   nor distances correctly. Sensors with an assumed place do not count. Thread: any. */
+/* Assets with a single sensor of a group. With the interpolation `shepard` the group's field is constant there, and plantcast-prep does not
+   subdivide their triangles, unless the plant file asks for `paper` or `singles: cut`. On undivided triangles, neither `paper` nor
+   distances are shown correctly. Sensors with an assumed place do not count. Thread: any. */
 #ifndef PLANT_SINGLES_H
 #define PLANT_SINGLES_H
 #include "plant/plant.h"
 
-/* Returns whether triangles are subdivided for `paper` and distances even where the group has a single sensor. */
+/* Returns whether triangles are subdivided for `paper` and distances also on assets with a single sensor of the group. */
 bool plant_cuts_singles(const struct plant_group *group);
-/* Counts the assets with exactly one sensor of the group. Returns their number; if it is not 0, *first is the index of the first one. */
+/* Counts the assets with exactly one sensor of the group. Returns the count; if it is not 0, *first is the index of the first one. */
 size_t plant_singles(const struct plant *plant, int group, int *first);
 /* Returns whether the tag is its group's only sensor on its asset. */
 bool plant_is_single(const struct plant *plant, int tag);

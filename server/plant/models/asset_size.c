@@ -9,13 +9,13 @@
 
 #include "base/mem.h"
 
-/* Bounds of plausible sizes: halls and platforms are below LARGE_M, transmitters above SMALL_M. LARGE_BESIDE_M applies to an asset that
-   is also TIMES_MEDIAN larger than the plant's median. */
+/* Bounds of plausible sizes: halls and platforms are below LARGE_M, transmitters above SMALL_M. An asset is also implausible if it exceeds
+   both LARGE_BESIDE_M and TIMES_MEDIAN times the plant's median. */
 #define LARGE_M 300.0
 #define SMALL_M 0.03
 #define LARGE_BESIDE_M 60.0
 #define TIMES_MEDIAN 50.0
-/* Range of the longest side of most assets. */
+/* Range, in metres, of the longest side of most assets. */
 #define USUAL_LOW_M 0.1
 #define USUAL_HIGH_M 60.0
 
@@ -71,8 +71,8 @@ bool asset_size_doubtful(const struct plant_asset *asset, const double size_m[3]
         double times = units[i].m / asset->unit_m, other_m[3] = { size_m[0] * times, size_m[1] * times, size_m[2] * times };
         if (fabs(times - 1) < 1e-9 || longest_m * times < USUAL_LOW_M || longest_m * times > USUAL_HIGH_M)
             continue;
-        snprintf(why + length, SIZE_WHY_BYTES - length, " If its numbers are in %s (`units: %s`), it is %s",
-                 units[i].name, units[i].name, asset_size_text(other_m, text));
+        snprintf(why + length, SIZE_WHY_BYTES - length, " If its numbers are in %s (`units: %s`), it is %s", units[i].name, units[i].name,
+                 asset_size_text(other_m, text));
         break;
     }
     return true;

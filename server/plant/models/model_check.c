@@ -12,10 +12,11 @@
 #include "plant/sensors.h"
 
 #define SAME_PLACE_M 1e-3 /* same value as in plantcast-prep */
-#define SLACK_M 0.5       /* tolerated distance of a sensor from its asset's box, in addition to a fraction of the diagonal */
+/* tolerated distance of a sensor from its asset's bounding box in metres, in addition to a fraction of the box's diagonal */
+#define SLACK_M 0.5
 #define SLACK 0.05
 enum { WHY_BYTES = 400, SHOWN_NODES = 6 };
-/* Memory for serving, measured with 20 million triangles in 3,040 assets: 3.1 GB. */
+/* Bytes of memory for serving a plant: per triangle, and a fixed amount. Measured with 20 million triangles in 3,040 assets: 3.1 GB. */
 enum { TRIANGLE_BYTES = 150, BASE_BYTES = 350 << 20 };
 
 struct plant_models_check {
@@ -75,7 +76,7 @@ static bool find_better(const struct plant_asset *asset, const struct model_box 
     static const struct {
         const char *name;
         double m;
-    /* in ascending order, so that the smallest unit that fits is chosen */
+        /* units in ascending order, so that the smallest unit that fits is chosen */
     } units[] = { { "mm", 1e-3 }, { "cm", 1e-2 }, { "in", 0.0254 }, { "ft", 0.3048 }, { "m", 1 } };
     size_t best = within, placed;
     for (int pass = 0; pass < 3; pass++) /* another axis, other units, both */
@@ -123,8 +124,8 @@ static void place_of(const struct model_header *header, uint32_t node, double ou
         out[axis] = box.low[axis] <= box.high[axis] ? (box.low[axis] + box.high[axis]) / 2 : NAN;
 }
 
-/* Returns whether all nodes of a name are at one place, considering only the asset's own nodes if it has any. *count receives the number
-   considered. */
+/* Returns whether all nodes of a name have the same position, considering only the asset's own nodes if it has any. *count receives the
+   number considered. */
 static bool is_one_place(const struct plant_models_check *check, const struct plant_asset *asset, size_t *count)
 {
     size_t own = 0;
@@ -196,7 +197,7 @@ static bool check_asset(struct plant_models_check *check, size_t index, double s
     return true;
 }
 
-/* Checks all assets of one model; `first` is the index of the first one. */
+/* Checks all assets of one model; `first` is the index of the model's first asset. */
 static void check_model(struct plant_models_check *check, size_t first, bool *done, double (*sizes_m)[3])
 {
     const struct plant *plant = check->plant;

@@ -4,7 +4,7 @@
 #define PLANT_MODELS_MODEL_HEADER_H
 #include "plant/models/nodes.h"
 
-struct model_box { /* bounding box; low > high: empty */
+struct model_box { /* bounding box; empty if a low coordinate is greater than the high one */
     double low[3], high[3];
 };
 
@@ -12,11 +12,11 @@ struct model_header {
     struct model_node *nodes; /* nodes of the scene, depth first */
     struct model_box *boxes;  /* bounding box of each node's own mesh in scene coordinates, in the model's units and axes */
     size_t count;
-    bool partial; /* boxes may be too small, because the model has instances, or accessors without min and max */
+    bool partial; /* true: boxes may be too small, because the model has instances, or accessors without min and max */
     void *json;   /* the parsed JSON, which owns the names */
 };
 
-/* Reads a file. Returns false with the reason in `why` on failure, and then there is nothing to finish. */
+/* Reads a file. Returns false with the reason in `why` on failure, and then model_header_finish() is not needed. */
 bool model_header_read(struct model_header *header, const char *path, char *why, size_t why_bytes);
 /* Returns the number of triangles of the node's own mesh, from the counts of its accessors. */
 uint64_t model_header_triangles(const struct model_header *header, size_t node);

@@ -18,7 +18,7 @@ enum pattern_kind { NAME, GLOB, NUMBER, MESH, PATH };
 struct pattern {
     enum pattern_kind kind;
     bool excludes;
-    char *text; /* text without ! and mesh:; for a PATH, cut into segments */
+    char *text; /* text of the pattern without ! and mesh:; for a PATH, the text is cut into segments */
     uint64_t number;
     bool from_root; /* the PATH begins with a slash */
     const char *segments[SEGMENTS_MAX];
@@ -130,7 +130,7 @@ static bool matches(const struct pattern *pattern, const struct model_node *node
     return false;
 }
 
-/* --- patterns without a match ------------------------------------------------------------------------------------------------- */
+/* --- messages for patterns that match no node --------------------------------------------------------------------------------- */
 
 static const char *near_mesh(const char *text, const struct node_list *model)
 {
@@ -179,7 +179,7 @@ static void say_none(const struct pattern *pattern, const char *text, const stru
 
 /* --- applying patterns -------------------------------------------------------------------------------------------------------- */
 
-/* Returns false if no node matches. */
+/* Marks the nodes that a pattern matches. Returns false if no node matches. */
 static bool mark(const struct pattern *pattern, const struct node_list *model, bool *marks, bool value)
 {
     bool any = false;
@@ -195,7 +195,7 @@ static bool mark(const struct pattern *pattern, const struct node_list *model, b
     return any;
 }
 
-/* Applies all including patterns, or all excluding ones. */
+/* Applies either all patterns that include nodes, or all that exclude nodes (with !). */
 static bool mark_all(const char *patterns, bool excludes, const struct node_list *model, bool *taken, size_t *done, char *why, size_t bytes)
 {
     bool good = true;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Matches the node patterns of a plant file, an asset's `nodes` and a tag's `Node` (PLANT.md), with the nodes of a model. Thread: any. */
+/* Matches the node patterns of a plant file, an asset's `nodes` and a tag's `Node` (PLANT.md), against the nodes of a model. Thread:
+   any. */
 #ifndef PLANT_MODELS_NODES_H
 #define PLANT_MODELS_NODES_H
 #include <stdbool.h>
@@ -10,13 +11,13 @@ struct model_node {          /* nodes are stored depth first: the sub-tree of a 
     const char *name, *mesh; /* names of the node and its mesh; "": none */
     int parent;              /* index of the parent node, or -1 */
     uint32_t end;
-    uint32_t number; /* index in the file's list of nodes; instances below a node have the node's number */
+    uint32_t number; /* node's index in the file; nodes that were added for instances have the index of their node */
 };
 
 #define NODES_SEPARATOR '\n' /* separates the patterns of an asset */
 
-/* Sets taken[i] for each node that a pattern matches and for its sub-tree; patterns that begin with ! exclude such nodes. patterns NULL:
-   all nodes. Returns false with the pattern in `why` if a pattern matches no node. */
+/* Sets taken[i] for each node that a pattern matches, and for the node's sub-tree. Patterns that begin with ! clear it for their nodes.
+   patterns NULL: all nodes. Returns false with the pattern in `why` if a pattern matches no node. */
 bool nodes_take(const char *patterns, const struct model_node *nodes, size_t count, bool *taken, char *why, size_t why_bytes);
 
 /* Finds the nodes that a pattern matches, without their sub-trees. `found` must hold `count` indices. Returns the number of matches; if

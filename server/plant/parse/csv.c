@@ -78,7 +78,7 @@ static void read_plain(struct csv *csv, struct csv_cell *cell, char **end)
     }
 }
 
-/* Reads a cell. Returns whether another cell of this row follows. */
+/* Reads a cell. Returns true if another cell of the same row follows. */
 static bool read_cell(struct csv *csv, struct csv_row *row)
 {
     mem_grow(&row->cells, &row->capacity, row->count + 1, sizeof(*row->cells));

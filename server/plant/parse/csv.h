@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads the rows of a CSV file (RFC 4180, separated by comma, semicolon or tab) with the line and column of each cell. plant_load()
-   makes a tag of each row that csv_next() returns: row n is tag n. Thread: one. */
+/* Reads the rows of a CSV file (RFC 4180, separated by comma, semicolon or tab) with the line and column of each cell. plant_load() makes
+   one tag of each row that csv_next() returns, so row n is tag n. Thread: one. */
 #ifndef PLANT_PARSE_CSV_H
 #define PLANT_PARSE_CSV_H
 #include <stdbool.h>
@@ -19,7 +19,7 @@ struct csv_row {
     size_t count, capacity;
 };
 
-struct csv { /* reader state; read only for callers */
+struct csv { /* state of the reader; callers may read the members but not change them */
     char *path;
     struct diag *diag;
     char *bytes, *at; /* the whole file, and the read position in it */
@@ -34,7 +34,8 @@ bool csv_open(struct csv *csv, const char *path, struct diag *diag);
 /* Does the same as csv_open() for a file of another program in any encoding: see input_read_foreign(). */
 bool csv_open_foreign(struct csv *csv, const char *path, const char *encoding, struct diag *diag, struct charset_choice *choice);
 void csv_close(struct csv *csv);
-/* Reads the next row that is not blank. Returns false after the last row. Wrong quotes and wrong numbers of cells are reported to diag. */
+/* Reads the next row that is not blank. Returns false after the last row. Rows with faulty quotes, or with another count of cells than the
+   header, are reported to diag. */
 bool csv_next(struct csv *csv);
 /* Returns the separator that occurs most often, outside quotes, in the first line that is not blank. */
 char csv_separator(const char *text);
@@ -42,7 +43,7 @@ char csv_separator(const char *text);
 int csv_find(const struct csv *csv, const char *name);
 /* Returns the text of a cell of the current row; "" if column is -1 or the row is shorter. Valid until csv_close(). */
 const char *csv_text(const struct csv *csv, int column);
-/* Return the line and column of a cell; of the row's first cell if the row has no such cell. */
+/* csv_line() returns the line, csv_column() the column of a cell; of the row's first cell if the row has no such cell. */
 int csv_cell_line(const struct csv *csv, int column);
 int csv_cell_column(const struct csv *csv, int column);
 #define csv_error(csv, col, ...) diag_error((csv)->diag, (csv)->path, csv_cell_line(csv, col), csv_cell_column(csv, col), __VA_ARGS__)

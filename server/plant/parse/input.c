@@ -11,9 +11,12 @@
 #include "base/text/utf8.h"
 #include "plant/parse/file_kind.h"
 
-enum { REPORTED_LINES = 10, TEXT_AT_LEAST = 10 /* TEXT_AT_LEAST: characters required for each invalid byte */ };
+enum {
+    REPORTED_LINES = 10,
+    TEXT_AT_LEAST = 10 /* TEXT_AT_LEAST: a file counts as text if it has at least this many characters for each invalid byte */
+};
 
-/* Returns false if the bytes are not text at all; nothing is then reported. */
+/* Reports invalid bytes. Returns false if the bytes are not text at all; nothing is then reported. */
 static bool check_characters(char *text, size_t bytes, const char *path, struct diag *diag)
 {
     size_t wrong = 0;
@@ -58,7 +61,7 @@ static bool is_blank(const char *text, size_t bytes)
     return true;
 }
 
-/* Returns NULL after an error (reported). */
+/* Reads the file. Returns NULL after an error (reported). */
 static char *read_bytes(const char *path, const char *wanted, struct diag *diag, size_t *bytes)
 {
     const char *kind = file_kind_of(path);
@@ -74,7 +77,7 @@ static char *read_bytes(const char *path, const char *wanted, struct diag *diag,
     return text;
 }
 
-/* Checks `text` and takes its ownership. Returns NULL after an error (reported). */
+/* Checks `text` and takes ownership of the text. Returns NULL after an error (reported). */
 static char *check_text(char *text, size_t bytes, const char *path, const char *wanted, struct diag *diag)
 {
     if (is_blank(text, bytes))

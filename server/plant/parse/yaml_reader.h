@@ -25,14 +25,14 @@ struct yaml_choice { /* one allowed text and its value; a table of choices ends 
 
 enum key_kind {
     KEY_TEXT,   /* char *, any text */
-    KEY_NAME,   /* char *, text that is not empty */
+    KEY_NAME,   /* type of the member: char *, for text that is not empty */
     KEY_NUMBER, /* double */
     KEY_INT,    /* int */
-    KEY_CHOICE, /* int (or an enum), from `choices` */
+    KEY_CHOICE, /* type of the member: int (or an enum), by a name from `choices` */
     KEY_FLAG,   /* bool, from `choices` */
     KEY_FACTOR, /* double, from `choices` */
     KEY_POINT,  /* double[3] */
-    KEY_CUSTOM  /* any type, read by the function `read` */
+    KEY_CUSTOM  /* any type; the function `read` reads the value */
 };
 
 struct yaml_key { /* one key of a mapping; a table of keys ends with { 0 } */
@@ -46,11 +46,11 @@ struct yaml_key { /* one key of a mapping; a table of keys ends with { 0 } */
 };
 
 #define YAML_MAP_MAX_KEYS 56
-struct yaml_map { /* positions of a mapping and its values, and whether the values were good */
+struct yaml_map { /* for a mapping that was read: the position of the mapping and of its values, and which values were good */
     const struct yaml_key *keys;
     struct text_position place;
     struct text_position values[YAML_MAP_MAX_KEYS];
-    bool good[YAML_MAP_MAX_KEYS]; /* the key was given, and its value read without an error */
+    bool good[YAML_MAP_MAX_KEYS]; /* true: the key was given and its value was read without an error */
 };
 
 /* Parses a file. Returns false if it is unreadable, not text or not YAML (reported); yaml_reader_close() is then not needed. The path is
@@ -60,7 +60,7 @@ void yaml_reader_close(struct yaml_reader *reader);
 
 struct text_position yaml_place(const yaml_node_t *node);
 void yaml_error(struct yaml_reader *reader, struct text_position place, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
-/* Reports `name: expected ..., found ...` at a node. */
+/* Reports the finding "NAME: expected ..., found ..." at a node's position. */
 void yaml_expected(struct yaml_reader *reader, const yaml_node_t *node, const char *name, const char *expected);
 /* Returns whether a node is null: an empty plain scalar, `~` or `null` in lower case. The pointer must not be NULL. */
 bool yaml_is_null(const yaml_node_t *node);

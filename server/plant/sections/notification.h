@@ -5,7 +5,12 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum { NOTIFY_RECIPIENTS = 32, NOTIFY_RULES = 32, NOTIFY_STEPS = 8, NOTIFY_LIST = 16 /* NOTIFY_LIST: addresses or areas in one list */ };
+enum {
+    NOTIFY_RECIPIENTS = 32,
+    NOTIFY_RULES = 32,
+    NOTIFY_STEPS = 8,
+    NOTIFY_LIST = 16 /* NOTIFY_LIST: maximum number of addresses or areas in one list */
+};
 
 enum notify_kind { NOTIFY_EMAIL, NOTIFY_WEBHOOK, NOTIFY_ALERTMANAGER };
 
@@ -29,20 +34,20 @@ struct notify_recipient {
     int line;
 };
 
-struct notify_shift {     /* a time span in the plant's time zone */
+struct notify_shift {     /* shift: a time span in the plant's time zone */
     unsigned days;        /* bit mask of the days on which the shift begins; the lowest bit is Monday */
-    int from_min, to_min; /* minutes of the day; equal: the whole day; to_min before from_min: ends on the next day */
+    int from_min, to_min; /* minutes of the day; from_min equal to to_min: the whole day; to_min before from_min: ends on the next day */
 };
 
 struct notify_step {
-    double after_min; /* minutes since the alarm; 0 in the first step, ascending afterwards */
-    uint32_t to;      /* bit mask of recipients, by index */
+    double after_min; /* minutes since the alarm: 0 in the first step, ascending in the later ones */
+    uint32_t to;      /* bit mask of the recipients by index */
 };
 
 struct notify_rule {
     char *id;
     int priority;             /* lowest priority that the rule covers; more urgent alarms are included */
-    struct notify_list areas; /* patterns of areas; none: every area */
+    struct notify_list areas; /* patterns of area names to which the rule applies; none: all areas */
     struct notify_shift shift;
     struct notify_step steps[NOTIFY_STEPS];
     size_t step_count;

@@ -11,7 +11,7 @@
 
 struct alarm_reference {
     char *text;
-    size_t tag; /* index of the tag whose row has the reference */
+    size_t tag; /* index of the tag whose row refers to another tag */
     enum tag_column column;
     int line, at_column;
 };
@@ -114,7 +114,7 @@ static void resolve_suppression(struct plant *plant, struct diag *diag, const st
     plant->tags[reference->tag].suppressed_by = by;
 }
 
-/* If the last word of the text is one of the list, cuts it off and returns its index. */
+/* If the last word of the text is in the list, cuts that word off and returns its index in the list; otherwise returns -1. */
 static int take_word(char *text, const char *const *words, int count)
 {
     char *blank = strrchr(text, ' ');

@@ -17,7 +17,7 @@
 
 #define ZONE_FOLDER "/usr/share/zoneinfo"
 
-/* Record of the whole file while it is read. */
+/* Data collected while the whole file is read. */
 struct plant_file {
     struct plant *plant;
     char *tags;
@@ -426,7 +426,7 @@ static void read_environment(struct yaml_reader *reader, yaml_node_t *node, void
     plant_environments_read(reader, node, ((struct plant_file *)record)->plant);
 }
 
-/* Key handler that does nothing: these keys have been read before. */
+/* Key handler that does nothing, because these keys were read before. */
 static void skip_conversions(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
     (void)reader;

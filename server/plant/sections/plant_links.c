@@ -16,8 +16,8 @@ static size_t scheme_length(const char *url)
     return 0;
 }
 
-/* Returns what is wrong with a URL template, or NULL. Scheme and host must end before the first brace, so that a value cannot change the
-   host. */
+/* Returns a message that says what is wrong with a URL template, or NULL. Scheme and host must end before the first brace, so that a value
+   cannot change the host. */
 static const char *wrong_with(const char *url, bool of_tags)
 {
     static const char *const of_asset[] = { "{id}", "{tag}", "{area}" }, *const of_tag[] = { "{name}", "{asset}", "{group}" };
@@ -41,12 +41,10 @@ static const char *wrong_with(const char *url, bool of_tags)
 
 void plant_links_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant)
 {
-    static const struct yaml_key keys[] = {
-        { "name", KEY_NAME, true, offsetof(struct plant_link, name), 0, 0, NULL, NULL },
-        { "url", KEY_NAME, true, offsetof(struct plant_link, url), 0, 0, NULL, NULL },
-        { "of", KEY_FLAG, false, offsetof(struct plant_link, of_tags), 0, 0, of_choices, NULL },
-        { 0 }
-    };
+    static const struct yaml_key keys[] = { { "name", KEY_NAME, true, offsetof(struct plant_link, name), 0, 0, NULL, NULL },
+                                            { "url", KEY_NAME, true, offsetof(struct plant_link, url), 0, 0, NULL, NULL },
+                                            { "of", KEY_FLAG, false, offsetof(struct plant_link, of_tags), 0, 0, of_choices, NULL },
+                                            { 0 } };
     int count = yaml_list_count(reader, node, "links");
     if (count > PLANT_LINKS)
         yaml_error(reader, yaml_place(node), "links: expected at most %d, found %d", PLANT_LINKS, count);

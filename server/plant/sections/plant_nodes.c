@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads an asset's `nodes`: which nodes of its model belong to it. */
+/* Reads an asset's key `nodes`: the patterns that select the model's nodes for the asset. */
 #include <string.h>
 
 #include "base/mem.h"

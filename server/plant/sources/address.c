@@ -15,18 +15,14 @@ struct type_name {
     enum data_type type;
 };
 
-/* Names of data types: for each type ours first, then Kepware's. */
+/* Names of data types; for each type our own name comes first, then Kepware's. */
 static const struct type_name type_names[] = {
-    { "bool", DATA_BIT },       { "boolean", DATA_BIT },   { "bit", DATA_BIT },
-    { "int16", DATA_INT16 },    { "short", DATA_INT16 },
-    { "uint16", DATA_UINT16 },  { "word", DATA_UINT16 },
-    { "int32", DATA_INT32 },    { "long", DATA_INT32 },
-    { "uint32", DATA_UINT32 },  { "dword", DATA_UINT32 },
-    { "float32", DATA_FLOAT32 }, { "float", DATA_FLOAT32 },
-    { "int64", DATA_INT64 },    { "llong", DATA_INT64 },
-    { "uint64", DATA_UINT64 },  { "qword", DATA_UINT64 },
-    { "float64", DATA_FLOAT64 }, { "double", DATA_FLOAT64 },
-    { "bcd", DATA_BCD },        { "lbcd", DATA_LBCD },
+    { "bool", DATA_BIT },      { "boolean", DATA_BIT },     { "bit", DATA_BIT },        { "int16", DATA_INT16 },
+    { "short", DATA_INT16 },   { "uint16", DATA_UINT16 },   { "word", DATA_UINT16 },    { "int32", DATA_INT32 },
+    { "long", DATA_INT32 },    { "uint32", DATA_UINT32 },   { "dword", DATA_UINT32 },   { "float32", DATA_FLOAT32 },
+    { "float", DATA_FLOAT32 }, { "int64", DATA_INT64 },     { "llong", DATA_INT64 },    { "uint64", DATA_UINT64 },
+    { "qword", DATA_UINT64 },  { "float64", DATA_FLOAT64 }, { "double", DATA_FLOAT64 }, { "bcd", DATA_BCD },
+    { "lbcd", DATA_LBCD },
 };
 
 const char data_type_all[] = "bool, int16, uint16, int32, uint32, float32, int64, uint64, float64, bcd, lbcd, or Kepware's names";
@@ -60,17 +56,14 @@ int data_type_registers(enum data_type type)
     case DATA_INT32:
     case DATA_UINT32:
     case DATA_FLOAT32:
-    case DATA_LBCD:
-        return 2;
+    case DATA_LBCD: return 2;
     case DATA_INT64:
     case DATA_UINT64:
-    case DATA_FLOAT64:
-        return 4;
+    case DATA_FLOAT64: return 4;
     case DATA_BIT:
     case DATA_INT16:
     case DATA_UINT16:
-    case DATA_BCD:
-        break;
+    case DATA_BCD: break;
     }
     return 1;
 }
@@ -78,7 +71,7 @@ int data_type_registers(enum data_type type)
 bool byte_order_parse(const char *text, enum byte_order *out)
 {
     static const struct {
-        const char *name, *suffix; /* suffix: the two letters after # */
+        const char *name, *suffix; /* suffix: the two letters after # in the address, which name the byte order */
         enum byte_order order;
     } orders[] = {
         { "ABCD", "LL", BYTE_ORDER_ABCD },
@@ -94,7 +87,7 @@ bool byte_order_parse(const char *text, enum byte_order *out)
     return false;
 }
 
-/* Reads decimal digits, at most 6. Returns their number (more than 6 count as 7). */
+/* Reads decimal digits, at most 6. Returns the count of digits; 7 if there are more than 6. */
 static int read_digits(const char **p, long *value)
 {
     int count = 0;
@@ -108,7 +101,7 @@ static int read_digits(const char **p, long *value)
     return count;
 }
 
-/* Parses hr:0 and similar addresses, which count from 0 as on the wire. */
+/* Parses addresses such as hr:0, whose register numbers count from 0, as on the wire. */
 static bool read_named_table(const char **p, struct modbus_address *out, char why[200])
 {
     static const struct {
@@ -134,7 +127,7 @@ static bool read_named_table(const char **p, struct modbus_address *out, char wh
     return true;
 }
 
-/* Parses 40001 and 400001: the first digit selects the table, the others count from address_base. */
+/* Parses 40001 and 400001: the first digit selects the table, the other digits are the register number, counted from address_base. */
 static bool read_digit_table(const char **p, int address_base, struct modbus_address *out, char why[200])
 {
     static const enum register_table tables[] = { TABLE_COIL, TABLE_DISCRETE, 0, TABLE_INPUT, TABLE_HOLDING }; /* by first digit */
@@ -153,8 +146,8 @@ static bool read_digit_table(const char **p, int address_base, struct modbus_add
     }
     long index = number - (first - '0') * (digits == 5 ? 10000L : 100000L) - address_base;
     if (index < 0 || index > 65535) {
-        snprintf(why, 200, "expected a number from %d to %d after the first digit (address_base is %d)",
-                 address_base, 65535 + address_base, address_base);
+        snprintf(why, 200, "expected a number from %d to %d after the first digit (address_base is %d)", address_base, 65535 + address_base,
+                 address_base);
         return false;
     }
     out->table = tables[first - '0'];

@@ -208,7 +208,7 @@ static const char *refusal_in_bracket(const char *at)
     }
 }
 
-/* Reads a step in brackets: [0], [-1], ["name"], ['name'] or [?@.name=='text']. */
+/* Reads one step of a path in brackets: [0], [-1], ["name"], ['name'] or [?@.name=='text']. */
 static bool read_bracket(const char **at, struct json_path_step *out, char why[200])
 {
     const char *begin = *at, *p = begin + 1;

@@ -23,18 +23,18 @@ enum json_path_kind { JSON_PATH_NAME, JSON_PATH_INDEX, JSON_PATH_FILTER };
 struct json_path_step {
     enum json_path_kind kind;
     char name[JSON_PATH_TEXT_BYTES];                  /* name of a member, 0-terminated */
-    long index;                                       /* index of an array item; negative: from the end */
-    struct json_path_test tests[JSON_PATH_MAX_TESTS]; /* comparisons of a filter; an item is selected if all of them hold */
+    long index;                                       /* index of an item in the array; negative: counted from the end */
+    struct json_path_test tests[JSON_PATH_MAX_TESTS]; /* comparisons of a filter; an item is selected if all comparisons hold */
     int test_count;
 };
 
-/* Returns whether `text` is a path; if not, `why` has the expected form. relative: a path that begins with `@` is accepted too. */
+/* Returns whether `text` is a valid path; if not, `why` has the expected form. relative: a path that begins with `@` is accepted too. */
 bool json_path_check(const char *text, bool relative, char why[200]);
 /* Returns the position of a path's first step: after its `$` or `@`. */
 const char *json_path_begin(const char *text);
 /* Reads one step and moves *at past it. Returns false at the end of the path (`why` unchanged) or at a syntax error (reason in `why`). */
 bool json_path_next(const char **at, struct json_path_step *out, char why[200]);
-/* The same in a path inside a filter, where a name ends at blanks and operators. */
+/* Does the same for a path inside a filter, where a name also ends at blanks and operators. */
 bool json_path_next_operand(const char **at, struct json_path_step *out, char why[200]);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parses OPC UA addresses. The element is a prefix because names of nodes may themselves end in brackets. */
+/* Parses OPC UA addresses. The array element is a prefix, because names of nodes may themselves end in brackets. */
 #include "plant/sources/opcua_address.h"
 
 #include <ctype.h>

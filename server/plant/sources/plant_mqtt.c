@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Checks across the keys of a source of type mqtt. PLANT.md describes them. */
+/* Checks the keys of a source of type mqtt against each other. PLANT.md describes the keys. */
 #include <string.h>
 
 #include "base/mem.h"
@@ -12,12 +12,11 @@ static const char WILL_PREFIX[] = "plantcast/";
 
 void plant_mqtt_read_tls(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
-    static const struct yaml_key keys[] = {
-        { "ca", KEY_NAME, true, offsetof(struct plant_source, mqtt.ca), 0, 0, NULL, NULL },
-        { "certificate", KEY_NAME, false, offsetof(struct plant_source, mqtt.certificate), 0, 0, NULL, NULL },
-        { "key", KEY_NAME, false, offsetof(struct plant_source, mqtt.key), 0, 0, NULL, NULL },
-        { 0 }
-    };
+    static const struct yaml_key keys[] = { { "ca", KEY_NAME, true, offsetof(struct plant_source, mqtt.ca), 0, 0, NULL, NULL },
+                                            { "certificate", KEY_NAME, false, offsetof(struct plant_source, mqtt.certificate), 0, 0, NULL,
+                                              NULL },
+                                            { "key", KEY_NAME, false, offsetof(struct plant_source, mqtt.key), 0, 0, NULL, NULL },
+                                            { 0 } };
     struct plant_source *source = record;
     struct yaml_map map;
     source->mqtt.has_tls = yaml_map_read(reader, node, "tls", keys, source, &map);
@@ -59,7 +58,8 @@ static void check_paths(struct yaml_reader *reader, const struct yaml_map *map, 
             yaml_error(reader, yaml_map_place(map, paths[i].key), "%s: '%.60s': %s", paths[i].key, paths[i].path, why);
 }
 
-/* Requires a time path for persistent sessions: messages kept while we were away would look fresh without their own time. */
+/* Requires a time path for persistent sessions: messages that the broker kept while we were disconnected would look new without a time of
+   their own. */
 static void check_session(struct yaml_reader *reader, const struct yaml_map *map, const struct plant_mqtt *mqtt)
 {
     if (mqtt->persistent && !mqtt->time)
@@ -87,8 +87,8 @@ void plant_mqtt_check(struct yaml_reader *reader, const struct yaml_map *map, co
 
 void plant_mqtt_finish(struct plant_mqtt *mqtt)
 {
-    char *const texts[] = { mqtt->client_id, mqtt->ca, mqtt->certificate, mqtt->key,
-                            mqtt->will, mqtt->topic, mqtt->value, mqtt->time, mqtt->quality };
+    char *const texts[] = { mqtt->client_id, mqtt->ca,    mqtt->certificate, mqtt->key,    mqtt->will,
+                            mqtt->topic,     mqtt->value, mqtt->time,        mqtt->quality };
     for (size_t i = 0; i < sizeof(texts) / sizeof(*texts); i++)
         mem_free(texts[i]);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Checks across the keys of a source of type opcua. PLANT.md describes them. */
+/* Checks the keys of a source of type opcua against each other. PLANT.md describes the keys. */
 #include <string.h>
 
 #include "base/mem.h"
@@ -62,8 +62,8 @@ void plant_opcua_check(struct yaml_reader *reader, const struct yaml_map *map, c
 
 void plant_opcua_finish(struct plant_opcua *opcua)
 {
-    char *const texts[] = { opcua->certificate, opcua->key, opcua->trusted, opcua->server_name, opcua->user_certificate, opcua->user_key,
-                            opcua->path, opcua->name_space };
+    char *const texts[] = { opcua->certificate,      opcua->key,      opcua->trusted, opcua->server_name,
+                            opcua->user_certificate, opcua->user_key, opcua->path,    opcua->name_space };
     for (size_t i = 0; i < sizeof(texts) / sizeof(*texts); i++)
         mem_free(texts[i]);
 }

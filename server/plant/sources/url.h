@@ -6,7 +6,7 @@
 
 #include "plant/parse/yaml_reader.h"
 
-/* Returns whether the host in a URL is this machine, by name. */
+/* Returns true if the host name in a URL means this machine (localhost or a loopback address). */
 bool url_is_here(const char *url);
 /* Reports an invalid URL as the value of a key: a scheme other than `plain` and `secure`, no server, a password or white space in it. */
 void url_check(struct yaml_reader *reader, const struct yaml_map *map, const char *key, const char *url, const char *plain,

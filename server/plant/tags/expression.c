@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A recursive-descent parser that produces steps for a stack machine. */
+/* Compiles expressions by recursive descent into steps of a stack machine, and runs these. */
 #include "plant/tags/expression.h"
 
 #include <assert.h>
@@ -18,7 +18,7 @@ enum operation { OP_NUMBER, OP_INPUT, OP_ADD, OP_SUBTRACT, OP_MULTIPLY, OP_DIVID
 struct expression_step {
     enum operation operation;
     double number;
-    int index, arguments; /* index: of the input or the function */
+    int index, arguments; /* index: index of the input or of the function, depending on the step */
 };
 
 struct expression {
@@ -100,9 +100,9 @@ static const struct {
     int least, most;
     double (*of)(const double *values, int count);
 } functions[] = {
-    { "mean", 1, MAX_ARGUMENTS, mean_of },  { "sum", 1, MAX_ARGUMENTS, sum_of }, { "min", 1, MAX_ARGUMENTS, least_of },
-    { "max", 1, MAX_ARGUMENTS, most_of },   { "abs", 1, 1, magnitude_of },       { "sqrt", 1, 1, root_of },
-    { "difference", 2, 2, difference_of },  { "approach", 4, 4, approach_of },   { "lmtd", 4, 4, lmtd_of },
+    { "mean", 1, MAX_ARGUMENTS, mean_of }, { "sum", 1, MAX_ARGUMENTS, sum_of }, { "min", 1, MAX_ARGUMENTS, least_of },
+    { "max", 1, MAX_ARGUMENTS, most_of },  { "abs", 1, 1, magnitude_of },       { "sqrt", 1, 1, root_of },
+    { "difference", 2, 2, difference_of }, { "approach", 4, 4, approach_of },   { "lmtd", 4, 4, lmtd_of },
 };
 enum { FUNCTIONS = sizeof(functions) / sizeof(*functions) };
 

@@ -8,12 +8,13 @@
 #include "plant/parse/number.h"
 #include "plant/parse/suggest.h"
 
-struct column_name { /* the name must be the first member, for suggest_nearest() */
+struct column_name { /* the name must be the first member, as suggest_nearest() expects */
     const char *name;
     enum tag_column column;
 };
 
-static const struct column_name column_names[] = { /* names of columns; messages use the first name of each */
+static const struct column_name column_names[] = {
+    /* names of columns; messages use the first name of each */
     { "Tag Name", COL_NAME },
     { "Address", COL_ADDRESS },
     { "Data Type", COL_DATA_TYPE },

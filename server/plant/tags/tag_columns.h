@@ -9,14 +9,53 @@
 
 enum tag_column {
     /* Kepware's */
-    COL_NAME, COL_ADDRESS, COL_DATA_TYPE, COL_SCAN_RATE, COL_SCALING, COL_RAW_LOW, COL_RAW_HIGH, COL_SCALED_LOW, COL_SCALED_HIGH,
-    COL_ENG_UNITS, COL_NEGATE, COL_DESCRIPTION, COL_CLAMP_LOW, COL_CLAMP_HIGH,
-    COL_RESPECT_DATA_TYPE, COL_CLIENT_ACCESS, COL_SCALED_DATA_TYPE, /* Kepware columns that are ignored when reading */
+    COL_NAME,
+    COL_ADDRESS,
+    COL_DATA_TYPE,
+    COL_SCAN_RATE,
+    COL_SCALING,
+    COL_RAW_LOW,
+    COL_RAW_HIGH,
+    COL_SCALED_LOW,
+    COL_SCALED_HIGH,
+    COL_ENG_UNITS,
+    COL_NEGATE,
+    COL_DESCRIPTION,
+    COL_CLAMP_LOW,
+    COL_CLAMP_HIGH,
+    COL_RESPECT_DATA_TYPE,
+    COL_CLIENT_ACCESS,
+    COL_SCALED_DATA_TYPE, /* columns written by Kepware that the reader ignores */
     /* ours */
-    COL_SOURCE, COL_GROUP, COL_ASSET, COL_NODE, COL_X, COL_Y, COL_Z, COL_STRENGTH, COL_DECAY, COL_BYTE_ORDER, COL_STALE,
-    COL_LL, COL_L, COL_H, COL_HH, COL_NE43, COL_OPEN_CIRCUIT, COL_QUALITY_TAG,
-    COL_FLATLINE, COL_DEADBAND, COL_ALARM_DEADBAND, COL_ON_DELAY, COL_OFF_DELAY, COL_PRIORITY, COL_LATCH, COL_SUPPRESSED_BY, COL_MIRRORS,
-    COL_PLACE, COL_DIRECTION,
+    COL_SOURCE,
+    COL_GROUP,
+    COL_ASSET,
+    COL_NODE,
+    COL_X,
+    COL_Y,
+    COL_Z,
+    COL_STRENGTH,
+    COL_DECAY,
+    COL_BYTE_ORDER,
+    COL_STALE,
+    COL_LL,
+    COL_L,
+    COL_H,
+    COL_HH,
+    COL_NE43,
+    COL_OPEN_CIRCUIT,
+    COL_QUALITY_TAG,
+    COL_FLATLINE,
+    COL_DEADBAND,
+    COL_ALARM_DEADBAND,
+    COL_ON_DELAY,
+    COL_OFF_DELAY,
+    COL_PRIORITY,
+    COL_LATCH,
+    COL_SUPPRESSED_BY,
+    COL_MIRRORS,
+    COL_PLACE,
+    COL_DIRECTION,
     COL_COUNT
 };
 
@@ -30,7 +69,7 @@ bool tag_columns_open(struct tag_columns *columns, const char *path, struct diag
 void tag_columns_need(struct tag_columns *columns, enum tag_column column); /* Reports the column if it is missing. */
 const char *tag_column_name(enum tag_column column);
 
-/* Returns the text of a cell of the current row. */
+/* Returns the text of a cell of the current row; "" if the list has no such column. */
 const char *cell_text(const struct tag_columns *columns, enum tag_column column);
 /* Returns whether the cell is not blank; false if the list has no such column. */
 bool cell_given(const struct tag_columns *columns, enum tag_column column);
@@ -38,8 +77,8 @@ bool cell_given(const struct tag_columns *columns, enum tag_column column);
    (reported). */
 bool cell_number(struct tag_columns *columns, enum tag_column column, double low, double high, double *out);
 bool cell_flag(struct tag_columns *columns, enum tag_column column); /* Reads a flag: 1, true, yes; 0, false, no or blank. */
-/* Returns the index of the thing that the cell names, or -1 if the cell is blank or the name unknown (reported). `things` are records
-   that begin with their id. */
+/* Returns the index, in `things`, of the record that the cell names, or -1 if the cell is blank or the name unknown (reported). `things`
+   are records that begin with their id. */
 int cell_reference(struct tag_columns *columns, enum tag_column column, const char *what, const void *things, size_t count, size_t stride);
 #define cell_error(columns, c, ...) csv_error(&(columns)->csv, (columns)->at[c], __VA_ARGS__)
 #define cell_warning(columns, c, ...) csv_warning(&(columns)->csv, (columns)->at[c], __VA_ARGS__)

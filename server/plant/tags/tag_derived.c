@@ -10,7 +10,7 @@ enum mark { UNSEEN, OPEN, DONE };
 
 struct derived_walk {
     struct plant *plant;
-    char *marks; /* state of the depth-first search by tag, enum mark */
+    char *marks; /* progress of the depth-first search, by tag (enum mark) */
 };
 
 static int find_tag(const void *plant, const char *name)
@@ -48,8 +48,8 @@ static void check_units(const struct tag_link *link, const struct plant *plant, 
     }
 }
 
-/* Depth-first topological sort: inputs come before a tag. Unless its row states stale_s, a tag gets the largest stale_s of its inputs.
-   Returns false on a cycle. */
+/* Depth-first topological sort: the inputs of a tag come before the tag. Unless its row states stale_s, a tag gets the largest stale_s of
+   its inputs. Returns false on a cycle. */
 static bool visit(struct derived_walk *walk, int index)
 {
     struct plant_tag *tag = &walk->plant->tags[index];
@@ -88,7 +88,7 @@ void tag_derived_resolve(const struct tag_links *derived, struct plant *plant, s
             continue;
         diag_error(diag, plant->tags_path, link->line, link->column, "Address: '%.60s' is computed from itself",
                    plant->tags[link->tag].name);
-        break; /* report one tag only: all others of the cycle would be reported too */
+        break; /* reports the cycle for one tag only: otherwise each tag of the cycle would be reported */
     }
     mem_free(walk.marks);
 }

@@ -14,7 +14,7 @@
 enum edited { EDIT_NAME, EDIT_ASSET, EDIT_GROUP, EDIT_NODE, EDIT_PLACE, EDIT_X, EDIT_Y, EDIT_Z, EDIT_COLUMNS };
 static const char *const names[EDIT_COLUMNS] = { "Tag Name", "Asset", "Group", "Node", "Place", "X", "Y", "Z" };
 
-struct cell_span { /* a cell in the text, including quotes and blanks */
+struct cell_span { /* a cell's range in the text, including quotes and blanks */
     const char *begin, *end;
 };
 
@@ -28,7 +28,7 @@ struct tag_text {
     char separator;
     const char *at;
     struct tag_row row;
-    int column[EDIT_COLUMNS]; /* column of the file; -1: the header lacks it */
+    int column[EDIT_COLUMNS]; /* index of the column in the file; -1: the header lacks the column */
     size_t width;             /* number of columns in the header */
 };
 
@@ -148,7 +148,7 @@ static void print_metres(double metres, char out[32])
         strcpy(out, "0");
 }
 
-/* Returns the new text that the edit gives to a column of the file. False: the column stays unchanged. */
+/* Returns the new text that the edit gives to a column of the file. Returns false if the column stays unchanged. */
 static bool wanted(const struct tag_text *list, const struct tag_edit *edit, size_t column, char number[32], const char **out)
 {
     if (edit->place_only) {
@@ -308,8 +308,8 @@ static void say(struct tag_lines *out, int line, const struct cell_span *before,
     out->at[out->count++] = (struct tag_line){ line, before ? copy_of(*before) : NULL, after ? copy_of(*after) : NULL };
 }
 
-/* Lists the lines between the common head and tail: pairwise if both texts have the same number of lines, else removed lines, then added
-   lines. */
+/* Lists the lines between the first and the last difference: pairwise if both texts have the same number of lines, else removed lines, then
+   added lines. */
 static void say_middle(const struct text_lines *a, const struct text_lines *b, size_t head, size_t tail, struct tag_lines *out)
 {
     bool even = a->count == b->count;

@@ -13,23 +13,23 @@ struct tag_edit {
     const char *asset, *group; /* new ids; NULL: unchanged */
     const char *node, *place;  /* new texts; NULL: cleared */
     double position_m[3];      /* new position in the frame that the asset states, written to the millimetre; NaN: cleared */
-    bool place_only;           /* only clears `Place` and changes nothing else */
+    bool place_only;           /* true: only clears the cell `Place` and changes nothing else */
 };
 
 struct tag_line {         /* one line that differs between two texts */
     int line;             /* line number from 1 in the new text; for a removed line, in the old text */
-    char *before, *after; /* the line without its line end; NULL: absent */
+    char *before, *after; /* the line without its line end; NULL: the text has no such line */
 };
 struct tag_lines { /* zero-initialise */
     struct tag_line *at;
-    size_t count, capacity, more; /* more: number of differing lines beyond TAG_LINES */
+    size_t count, capacity, more; /* more: number of differing lines that did not fit into the list (TAG_LINES) */
 };
 enum { TAG_LINES = 200 };
 
 /* Returns the new text; free with mem_free(). Returns NULL if a tag is missing or the list is invalid, with the reason in *why
    (mem_free()). */
 char *tag_edit(const char *text, const struct tag_edit *edits, size_t count, struct refusal *why);
-/* Appends the lines in which two texts differ to *out, at most TAG_LINES of them. If both texts have the same number of lines, they are
+/* Appends the lines in which two texts differ to *out, at most TAG_LINES lines. If both texts have the same number of lines, they are
    compared one by one; otherwise all lines between the first and the last difference are listed, including equal ones: removed lines
    first, then added lines. Free with tag_lines_finish(). */
 void tag_lines(const char *before, const char *after, struct tag_lines *out);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Quality tags, directions and heartbeats: resolves the names of other tags. */
+/* Resolves the names of other tags in quality tags, directions and heartbeats. */
 #include "plant/tags/tag_links.h"
 
 #include <stdlib.h>
@@ -55,7 +55,7 @@ static void add(struct tag_links *links, struct tag_columns *columns, enum tag_c
     };
 }
 
-/* Records one tag name, or three separated by blanks. */
+/* Records one name of another tag, or three names separated by blanks, for later resolution. */
 static void add_direction(struct tag_links *links, struct tag_columns *columns, size_t tag)
 {
     const char *at = cell_text(columns, COL_DIRECTION);

@@ -105,7 +105,7 @@ static void read_place(struct tag_list *list)
 
 /* --- unit, limits, timing --------------------------------------------------------------------------------------------------- */
 
-/* Reports why the unit of a row cannot be converted to its group's unit. */
+/* Reports the reason why the unit of a row cannot be converted to the unit of its group. */
 static void report_unit(struct tag_list *list, enum unit_match match, const char *text)
 {
     static const char otherwise[] = "'units: as-written' in the group takes values as they stand";
@@ -114,9 +114,8 @@ static void report_unit(struct tag_list *list, enum unit_match match, const char
     if (!kind && unit_suggest(text, near))
         snprintf(hint, sizeof(hint), "; did you mean '%s'?", near);
     if (match == UNITS_OTHER_KIND)
-        cell_error(&list->columns, COL_ENG_UNITS,
-                   "Eng Units: '%.60s' (%s) cannot be converted to '%.60s' (%s), the unit of its group; %s", text, kind, of_group,
-                   unit_kind(of_group), otherwise);
+        cell_error(&list->columns, COL_ENG_UNITS, "Eng Units: '%.60s' (%s) cannot be converted to '%.60s' (%s), the unit of its group; %s",
+                   text, kind, of_group, unit_kind(of_group), otherwise);
     else
         cell_error(&list->columns, COL_ENG_UNITS,
                    "Eng Units: '%.60s' cannot be converted to '%.60s', the unit of its group, since %s is not known%s; %s", text, of_group,
@@ -160,8 +159,8 @@ static void read_limits(struct tag_list *list)
                    list->tag->change.converts ? list->tag->unit : "");
 }
 
-/* Returns whether the source reports the loss of values by itself, so that silence does not mean stale: a Sparkplug node, whose death
-   certificate tells that it is gone, or an OPC UA server. */
+/* Returns whether the source reports the loss of values by itself, so that a silent tag is not stale. This holds for Sparkplug nodes, which
+   have death certificates, and for OPC UA servers. */
 static bool is_announced(const struct tag_list *list)
 {
     const struct plant_source *source = list->tag->source >= 0 ? &list->plant->sources[list->tag->source] : NULL;

@@ -83,7 +83,7 @@ static bool read_type(struct tag_wire *wire, const struct modbus_address *addres
     return one_bit == (tag->type == DATA_BIT);
 }
 
-/* Returns whether the value already is a number in engineering units, from a file or from other tags. */
+/* Returns true if the value at the address already is a number in engineering units: from a file, or computed from other tags. */
 static bool is_number(const struct tag_wire *wire)
 {
     const char *kind = wire->tag->source >= 0 ? wire->plant->sources[wire->tag->source].kind : NULL;
@@ -111,7 +111,7 @@ static bool comes_from(const struct tag_wire *wire, const char *kind)
     return !tag_is_derived(wire->columns) && its_kind && !strcmp(its_kind, kind);
 }
 
-/* Reads type and address of a published value: a number, unless the row states that it is a bit. */
+/* Reads type and address of a published value: the type is a number, unless the row states bool. */
 static void read_published(struct tag_wire *wire)
 {
     struct plant_tag *tag = wire->tag;
@@ -193,8 +193,8 @@ static void read_scaling(struct tag_wire *wire)
         cell_error(wire->columns, COL_SCALING, "Scaling: expected None, Linear or Square Root, found '%.60s'", text);
     if (tag->scaling != SCALING_NONE && is_number(wire))
         cell_error(wire->columns, COL_SCALING, "Scaling: expected None, since the value is in engineering units already");
-    tag->has_range = tag->scaling != SCALING_NONE ||
-                     (cell_given(wire->columns, COL_SCALED_LOW) && cell_given(wire->columns, COL_SCALED_HIGH));
+    tag->has_range =
+        tag->scaling != SCALING_NONE || (cell_given(wire->columns, COL_SCALED_LOW) && cell_given(wire->columns, COL_SCALED_HIGH));
     if (tag->scaling != SCALING_NONE)
         read_range(wire, COL_RAW_LOW, COL_RAW_HIGH, &tag->raw_low, &tag->raw_high);
     else if (!*text && cell_given(wire->columns, COL_RAW_LOW) && cell_given(wire->columns, COL_SCALED_LOW))

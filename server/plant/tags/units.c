@@ -12,9 +12,40 @@
 enum { NAME_BYTES = 48 };
 
 enum quantity_kind {
-    UNKNOWN, TEMPERATURE, TEMPERATURE_DIFFERENCE, PRESSURE, PRESSURE_ABSOLUTE, PRESSURE_GAUGE, VOLUME_FLOW, FLOW_AT_0_C, FLOW_AT_15_C,
-    FLOW_AT_60_F, MASS_FLOW, LENGTH, VELOCITY, VELOCITY_RMS, VELOCITY_PEAK, ACCELERATION, POWER, APPARENT_POWER, REACTIVE_POWER, RATIO,
-    PARTS, VOLUME, MASS, DENSITY, TIME, FREQUENCY, SPEED_OF_ROTATION, CURRENT, VOLTAGE, RESISTANCE, ENERGY, CONDUCTIVITY, FORCE, ANGLE
+    UNKNOWN,
+    TEMPERATURE,
+    TEMPERATURE_DIFFERENCE,
+    PRESSURE,
+    PRESSURE_ABSOLUTE,
+    PRESSURE_GAUGE,
+    VOLUME_FLOW,
+    FLOW_AT_0_C,
+    FLOW_AT_15_C,
+    FLOW_AT_60_F,
+    MASS_FLOW,
+    LENGTH,
+    VELOCITY,
+    VELOCITY_RMS,
+    VELOCITY_PEAK,
+    ACCELERATION,
+    POWER,
+    APPARENT_POWER,
+    REACTIVE_POWER,
+    RATIO,
+    PARTS,
+    VOLUME,
+    MASS,
+    DENSITY,
+    TIME,
+    FREQUENCY,
+    SPEED_OF_ROTATION,
+    CURRENT,
+    VOLTAGE,
+    RESISTANCE,
+    ENERGY,
+    CONDUCTIVITY,
+    FORCE,
+    ANGLE
 };
 
 static const char *const kind_names[] = {
@@ -69,7 +100,7 @@ static const char *const kind_names[] = {
 #define DAY 86400.0
 
 struct unit_entry {
-    const char *names; /* normalised names separated by |; the first one is for messages */
+    const char *names; /* names of the unit, normalised and separated by |; messages use the first one */
     enum quantity_kind kind;
     double factor, offset; /* conversion: SI value = value * factor + offset */
 };
@@ -263,13 +294,33 @@ static void normalise(const char *name, char out[NAME_BYTES])
     static const struct {
         const char *written, *means;
     } signs[] = {
-        { "\xC2\xB0", "deg" }, { "\xC2\xBA", "deg" },     { "\xE2\x84\x83", "degC" }, { "\xE2\x84\x89", "degF" },
-        { "\xC2\xB2", "2" },   { "\xC2\xB3", "3" },       { "\xE2\x82\x82", "2" },    { "\xC2\xB5", "u" },
-        { "\xCE\xBC", "u" },   { "\xCE\x94", "delta" },   { "\xE2\x88\x86", "delta" }, { "\xE2\x80\xB0", "permille" },
-        { "\xCE\xA9", "ohm" }, { "\xE2\x84\xA6", "ohm" }, { "\xC2\xB7", "" },         { "\xC2\xA0", "" },
-        { "\xE2\x8B\x85", "" }, { " ", "" },              { "(", "" },                { ")", "" },
-        { "[", "" },           { "]", "" },               { "^", "" },                { "_", "" },
-        { ".", "" },           { "*", "" },               { "'", "" },
+        { "\xC2\xB0", "deg" },
+        { "\xC2\xBA", "deg" },
+        { "\xE2\x84\x83", "degC" },
+        { "\xE2\x84\x89", "degF" },
+        { "\xC2\xB2", "2" },
+        { "\xC2\xB3", "3" },
+        { "\xE2\x82\x82", "2" },
+        { "\xC2\xB5", "u" },
+        { "\xCE\xBC", "u" },
+        { "\xCE\x94", "delta" },
+        { "\xE2\x88\x86", "delta" },
+        { "\xE2\x80\xB0", "permille" },
+        { "\xCE\xA9", "ohm" },
+        { "\xE2\x84\xA6", "ohm" },
+        { "\xC2\xB7", "" },
+        { "\xC2\xA0", "" },
+        { "\xE2\x8B\x85", "" },
+        { " ", "" },
+        { "(", "" },
+        { ")", "" },
+        { "[", "" },
+        { "]", "" },
+        { "^", "" },
+        { "_", "" },
+        { ".", "" },
+        { "*", "" },
+        { "'", "" },
     };
     size_t length = 0;
     while (*name && length < NAME_BYTES - 10) {
@@ -297,7 +348,7 @@ static bool has_name(const struct unit_entry *unit, const char *name, bool exact
     return false;
 }
 
-/* Finds a unit by name. Ignoring case is tried second, and counts only if a single unit matches: MPA may be two. */
+/* Finds a unit by name. Ignoring case is tried second, and counts only if a single unit matches: MPA could be MPa or mPa. */
 static const struct unit_entry *look_up(const char *name)
 {
     const struct unit_entry *found = NULL;

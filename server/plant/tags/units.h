@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Engineering units: which of them measure the same quantity, and conversion between them. Pure. Thread: any. Names are UCUM codes
+/* Engineering units: tells which units measure the same quantity, and converts between such units. Pure. Thread: any. Names are UCUM codes
    (https://ucum.org/ucum, 2.1) and others in common use; factors are from NIST SP 811 (2008), appendix B. */
 #ifndef PLANT_TAGS_UNITS_H
 #define PLANT_TAGS_UNITS_H
@@ -12,7 +12,7 @@ struct unit_change {
 };
 
 enum unit_match {
-    UNITS_SAME, /* the same unit; also two unknown units that are written alike */
+    UNITS_SAME, /* the same unit; also two unknown units whose names are spelled alike */
     UNITS_CONVERT,
     UNITS_OTHER_KIND, /* two known units of different quantities, including absolute and gauge pressure */
     UNITS_UNKNOWN     /* at least one of the units is unknown */
@@ -24,7 +24,8 @@ enum unit_match units_compare(const char *from, const char *to, struct unit_chan
 /* Returns the quantity that a unit measures, such as "volume flow" (static); NULL if the unit is unknown. */
 const char *unit_kind(const char *name);
 enum { UNIT_NAME_BYTES = 16 };
-bool unit_suggest(const char *name, char near[UNIT_NAME_BYTES]); /* Finds a known unit with a similar name; returns whether one exists. */
+/* Finds a known unit with a name similar to a wrong one; returns false if there is none. */
+bool unit_suggest(const char *name, char near[UNIT_NAME_BYTES]);
 
 /* Converts a value from `from` to `to`. */
 static inline double unit_change_value(const struct unit_change *change, double from)

@@ -10,7 +10,7 @@
 struct burn_shift {
     int x_px, y_px; /* offset in pixels to the right and down */
 };
-/* Returns the offset at a time of the plant's clock: all displays of a wall move together. */
+/* Returns the offset at a time of the plant's clock, by which all displays of a wall move together. */
 struct burn_shift burn_shift_at(int64_t utc_ns);
 
 #endif

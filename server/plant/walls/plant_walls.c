@@ -8,9 +8,10 @@
 #include "plant/plant_impl.h"
 #include "plant/walls/wall.h"
 
-const char *const pane_kind_names[] = { [PANE_VIEWS] = "views",   [PANE_TREND] = "trend", [PANE_ALARMS] = "alarms",
-                                        [PANE_TILES] = "tiles", [PANE_CLOCK] = "clock", [PANE_TEXT] = "text",
-                                        [PANE_TOUR] = "tour",   [PANE_SNAPSHOT] = "snapshot" };
+const char *const pane_kind_names[] = {
+    [PANE_VIEWS] = "views", [PANE_TREND] = "trend", [PANE_ALARMS] = "alarms", [PANE_TILES] = "tiles",
+    [PANE_CLOCK] = "clock", [PANE_TEXT] = "text",   [PANE_TOUR] = "tour",     [PANE_SNAPSHOT] = "snapshot"
+};
 
 static const double MAX_BEZEL_MM = 200;
 
@@ -39,11 +40,11 @@ static void read_items(struct yaml_reader *reader, yaml_node_t *node, struct wal
     }
 }
 
-#define READ_AS(name, of_kind)                                                            \
-    static void name(struct yaml_reader *reader, yaml_node_t *node, void *record)         \
-    {                                                                                     \
-        ((struct wall_pane *)record)->kind = (of_kind);                                   \
-        read_items(reader, node, record);                                                 \
+#define READ_AS(name, of_kind)                                                                                                             \
+    static void name(struct yaml_reader *reader, yaml_node_t *node, void *record)                                                          \
+    {                                                                                                                                      \
+        ((struct wall_pane *)record)->kind = (of_kind);                                                                                    \
+        read_items(reader, node, record);                                                                                                  \
     }
 READ_AS(read_views, PANE_VIEWS)
 READ_AS(read_trend, PANE_TREND)
@@ -144,22 +145,20 @@ static void check_grid(struct yaml_reader *reader, struct text_position place, c
 static void read_pane(struct yaml_reader *reader, yaml_node_t *node, struct wall_display *display, struct wall_pane *pane)
 {
     static const struct yaml_choice yes[] = { { "no", 0 }, { "yes", 1 }, { 0 } };
-    static const struct yaml_key keys[] = {
-        { "area", KEY_NAME, true, offsetof(struct wall_pane, area), 0, 0, NULL, NULL },
-        { "title", KEY_NAME, false, offsetof(struct wall_pane, title), 0, 0, NULL, NULL },
-        { "every_s", KEY_NUMBER, false, offsetof(struct wall_pane, every_s), 5, 86400, NULL, NULL },
-        { "hours", KEY_NUMBER, false, offsetof(struct wall_pane, hours), 0.1, 24 * 31, NULL, NULL },
-        { "on_alarm", KEY_FLAG, false, offsetof(struct wall_pane, on_alarm), 0, 0, yes, NULL },
-        { "views", KEY_CUSTOM, false, 0, 0, 0, NULL, read_views },
-        { "trend", KEY_CUSTOM, false, 0, 0, 0, NULL, read_trend },
-        { "alarms", KEY_CUSTOM, false, 0, 0, 0, NULL, read_alarms },
-        { "tiles", KEY_CUSTOM, false, 0, 0, 0, NULL, read_tiles },
-        { "clock", KEY_CUSTOM, false, 0, 0, 0, NULL, read_clock },
-        { "text", KEY_CUSTOM, false, 0, 0, 0, NULL, read_text },
-        { "tour", KEY_CUSTOM, false, 0, 0, 0, NULL, read_tour },
-        { "snapshot", KEY_CUSTOM, false, 0, 0, 0, NULL, read_snapshot },
-        { 0 }
-    };
+    static const struct yaml_key keys[] = { { "area", KEY_NAME, true, offsetof(struct wall_pane, area), 0, 0, NULL, NULL },
+                                            { "title", KEY_NAME, false, offsetof(struct wall_pane, title), 0, 0, NULL, NULL },
+                                            { "every_s", KEY_NUMBER, false, offsetof(struct wall_pane, every_s), 5, 86400, NULL, NULL },
+                                            { "hours", KEY_NUMBER, false, offsetof(struct wall_pane, hours), 0.1, 24 * 31, NULL, NULL },
+                                            { "on_alarm", KEY_FLAG, false, offsetof(struct wall_pane, on_alarm), 0, 0, yes, NULL },
+                                            { "views", KEY_CUSTOM, false, 0, 0, 0, NULL, read_views },
+                                            { "trend", KEY_CUSTOM, false, 0, 0, 0, NULL, read_trend },
+                                            { "alarms", KEY_CUSTOM, false, 0, 0, 0, NULL, read_alarms },
+                                            { "tiles", KEY_CUSTOM, false, 0, 0, 0, NULL, read_tiles },
+                                            { "clock", KEY_CUSTOM, false, 0, 0, 0, NULL, read_clock },
+                                            { "text", KEY_CUSTOM, false, 0, 0, 0, NULL, read_text },
+                                            { "tour", KEY_CUSTOM, false, 0, 0, 0, NULL, read_tour },
+                                            { "snapshot", KEY_CUSTOM, false, 0, 0, 0, NULL, read_snapshot },
+                                            { 0 } };
     struct yaml_map map;
     int kinds = 0;
     *pane = (struct wall_pane){ .every_s = 30, .hours = 8 };
@@ -232,10 +231,10 @@ static void read_bezel(struct yaml_reader *reader, yaml_node_t *node, void *reco
         yaml_number(reader, yaml_list_item(reader, node, i), "bezel_mm", 0, MAX_BEZEL_MM, &bezel_mm[i]);
 }
 
-#define READ_TILE_AS(name, read)                                                          \
-    static void name(struct yaml_reader *reader, yaml_node_t *node, void *record)         \
-    {                                                                                     \
-        read(reader, node, &((struct wall_tile *)record)->pane);                          \
+#define READ_TILE_AS(name, read)                                                                                                           \
+    static void name(struct yaml_reader *reader, yaml_node_t *node, void *record)                                                          \
+    {                                                                                                                                      \
+        read(reader, node, &((struct wall_tile *)record)->pane);                                                                           \
     }
 READ_TILE_AS(read_tile_views, read_views)
 READ_TILE_AS(read_tile_tour, read_tour)
@@ -243,17 +242,16 @@ READ_TILE_AS(read_tile_tour, read_tour)
 static void read_tile(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
     static const struct yaml_choice yes[] = { { "no", 0 }, { "yes", 1 }, { 0 } };
-    static const struct yaml_key keys[] = {
-        { "columns", KEY_INT, true, offsetof(struct wall_tile, columns), 1, WALL_DISPLAYS, NULL, NULL },
-        { "rows", KEY_INT, true, offsetof(struct wall_tile, rows), 1, WALL_DISPLAYS, NULL, NULL },
-        { "bezel_mm", KEY_CUSTOM, false, 0, 0, 0, NULL, read_bezel },
-        { "title", KEY_NAME, false, offsetof(struct wall_tile, pane.title), 0, 0, NULL, NULL },
-        { "every_s", KEY_NUMBER, false, offsetof(struct wall_tile, pane.every_s), 5, 86400, NULL, NULL },
-        { "on_alarm", KEY_FLAG, false, offsetof(struct wall_tile, pane.on_alarm), 0, 0, yes, NULL },
-        { "views", KEY_CUSTOM, false, 0, 0, 0, NULL, read_tile_views },
-        { "tour", KEY_CUSTOM, false, 0, 0, 0, NULL, read_tile_tour },
-        { 0 }
-    };
+    static const struct yaml_key keys[] = { { "columns", KEY_INT, true, offsetof(struct wall_tile, columns), 1, WALL_DISPLAYS, NULL, NULL },
+                                            { "rows", KEY_INT, true, offsetof(struct wall_tile, rows), 1, WALL_DISPLAYS, NULL, NULL },
+                                            { "bezel_mm", KEY_CUSTOM, false, 0, 0, 0, NULL, read_bezel },
+                                            { "title", KEY_NAME, false, offsetof(struct wall_tile, pane.title), 0, 0, NULL, NULL },
+                                            { "every_s", KEY_NUMBER, false, offsetof(struct wall_tile, pane.every_s), 5, 86400, NULL,
+                                              NULL },
+                                            { "on_alarm", KEY_FLAG, false, offsetof(struct wall_tile, pane.on_alarm), 0, 0, yes, NULL },
+                                            { "views", KEY_CUSTOM, false, 0, 0, 0, NULL, read_tile_views },
+                                            { "tour", KEY_CUSTOM, false, 0, 0, 0, NULL, read_tile_tour },
+                                            { 0 } };
     struct wall_tile *tile = &((struct wall *)record)->tile;
     struct yaml_map map;
     tile->pane.every_s = 30;
@@ -400,7 +398,7 @@ static void check_items(const struct plant *plant, const struct wall_pane *pane,
     }
 }
 
-/* Returns how many displays of the tiled picture to skip: all of them show the same, so only one is checked. */
+/* Returns the number of displays of the tiled picture to skip: every display has the same panes, so checking one suffices. */
 static size_t tiles_but_one(const struct wall *wall)
 {
     int count = wall->tile.columns * wall->tile.rows;

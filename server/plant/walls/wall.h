@@ -9,9 +9,19 @@
 #include "plant/parse/yaml_reader.h"
 
 enum {
-    NAMED_VIEW_ID_BYTES = 49, NAMED_VIEW_TITLE_BYTES = 121, NAMED_VIEW_ADDRESS_BYTES = 2049, /* sizes include the terminating 0 */
-    NAMED_VIEWS = 256, WALLS = 16, WALL_DISPLAYS = 16, WALL_PANES = 24, WALL_ROWS = 12, PANE_ITEMS = 16,
-    TOURS = 32, TOUR_STOPS = 64, TOUR_TEXT_BYTES = 241, OTHER_PLANTS = 16
+    NAMED_VIEW_ID_BYTES = 49,
+    NAMED_VIEW_TITLE_BYTES = 121,
+    NAMED_VIEW_ADDRESS_BYTES = 2049, /* sizes include the terminating 0 */
+    NAMED_VIEWS = 256,
+    WALLS = 16,
+    WALL_DISPLAYS = 16,
+    WALL_PANES = 24,
+    WALL_ROWS = 12,
+    PANE_ITEMS = 16,
+    TOURS = 32,
+    TOUR_STOPS = 64,
+    TOUR_TEXT_BYTES = 241,
+    OTHER_PLANTS = 16
 };
 
 struct named_view {
@@ -37,8 +47,8 @@ struct tour {
 struct other_plant {
     char *id, *url;
     char *token_file, *ca_file; /* paths; NULL: none */
-    char *view;                 /* id of a view in its plant file; NULL: the whole plant */
-    double every_s;             /* interval in seconds at which its server is asked */
+    char *view;                 /* id of a view in the other plant's file; NULL: the whole plant */
+    double every_s;             /* interval in seconds at which the other plant's server is queried */
     int width_px, height_px;
     int line;
 };
@@ -47,14 +57,14 @@ enum pane_kind { PANE_VIEWS, PANE_TREND, PANE_ALARMS, PANE_TILES, PANE_CLOCK, PA
 extern const char *const pane_kind_names[]; /* names of pane kinds, by enum pane_kind: the keys of a pane in the plant file */
 
 struct wall_pane {
-    char *area, *title; /* area: name of its area in the grid; title NULL: none */
+    char *area, *title; /* area: name of the pane's area in the grid; title NULL: no title */
     enum pane_kind kind;
     char *items[PANE_ITEMS]; /* names of views, shown in turn; tags of a trend or of tiles; the text; a tour; or another plant */
     size_t item_count;
     int item_lines[PANE_ITEMS], item_columns[PANE_ITEMS];
     double every_s; /* seconds for which each view is shown */
     double hours;   /* hours that a trend covers */
-    bool on_alarm;  /* views and tours: the pane shows the view of a new alarm */
+    bool on_alarm;  /* for panes of views and tours: when an alarm is raised, the pane shows the alarm's view */
 };
 
 struct wall_display {
@@ -71,7 +81,7 @@ struct day_span {
 
 /* One picture across the first columns * rows displays of a wall, row by row. */
 struct wall_tile {
-    int columns, rows;     /* number of displays; 0: no such picture */
+    int columns, rows;     /* number of displays; 0: the wall has no such picture */
     double bezel_mm[2];    /* millimetres between the pictures of two neighbouring displays: horizontally, vertically */
     struct wall_pane pane; /* content of the picture: views or a tour */
 };
@@ -82,7 +92,7 @@ struct wall {
     struct wall_tile tile;
     struct day_span dim;           /* time of day when the displays are dimmed; equal ends: never */
     double dim_percent;            /* brightness in percent while dimmed */
-    struct wall_display *displays; /* displays; those of `tile` come first, each with one pane, `main` */
+    struct wall_display *displays; /* displays; the displays of `tile` come first, each with a single pane `main` */
     size_t display_count;
     int line;
 };
@@ -104,7 +114,7 @@ bool wall_display_shows_tag(const struct wall_display *display, const char *tag)
 bool wall_display_shows_view(const struct plant *plant, const struct wall_display *display, const char *id);
 /* Returns whether a display has a pane of that kind with that item; item NULL: with any item. */
 bool wall_display_has(const struct wall_display *display, enum pane_kind kind, const char *item);
-/* Returns what is wrong with a title or a view address (static), or NULL. */
+/* Returns a message (static) that says what is wrong with a title or a view address, or NULL. */
 const char *named_view_title_wrong(const char *title);
 const char *named_view_address_wrong(const char *address);
 
