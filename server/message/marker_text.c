@@ -163,7 +163,7 @@ static void add_list(struct text *text, const char *name, const char *list)
     text_add_bytes(text, list, strlen(list));
 }
 
-/* Appends the markers that the client needs: all of them with positions, or only changed values if the client knows the positions. */
+/* Appends the markers that the client needs: all markers with positions, or only changed values if the client knows the positions. */
 static void add_markers(struct text *text, struct frame *frame, const struct known_markers *known, struct marker_text_cache *lists)
 {
     if (!same_places(frame, known)) {

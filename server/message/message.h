@@ -243,8 +243,8 @@ struct params_context {
     int64_t now_us;                  /* UTC; for queries */
     bool bare;                       /* for queries: the picture has no legend and no clock */
 };
-/* Applies a change to a view. If part of it is wrong, returns false with *error and leaves the view unchanged. A change of the group first
-   resets the view to that group's settings. */
+/* Applies a change to a view. If part of the change is wrong, returns false with *error and leaves the view unchanged. A change of the
+   group first resets the view to that group's settings. */
 bool params_apply(const struct params_context *context, const struct params_change *change, struct view *view, struct message_error *error);
 /* Called by params_parse() and params_apply() for the members `show`, `sensor`, `baseline` and `sensors` (params_show.c). */
 bool params_parse_show(const struct plant *plant, const json_t *o, struct params_change *out, struct message_error *error);

@@ -4,7 +4,7 @@
 const WORKED = { acknowledge: 'acknowledged', shelve: 'shelved', unshelve: 'shelved', out_of_service: 'aside', in_service: 'aside' };
 
 // rows: of the journal, in any order. Returns { raised: [{ tag, kind, priority, count, first, last }, most frequent first], acknowledged,
-// shelved, aside: lists of rows, oldest first }; aside: alarms suppressed or out of service.
+// shelved, aside: lists of rows, oldest first }; aside: rows about taking alarms out of service and back.
 export function sortJournal(rows) {
     const raised = new Map(), out = { acknowledged: [], shelved: [], aside: [] };
     for (const row of [...rows].sort((a, b) => a.time_us - b.time_us || a.id - b.id)) {

@@ -6,14 +6,14 @@ import { say } from '../core/words.js';
 import { clock } from '../app/common/clock.js';
 import { make, setText } from '../app/common/dom.js';
 
-const ASK_MS = 1000, UNHEARD_MS = 5000; // if this plant's server has been silent for so long, the other plant's state counts as unknown
+const ASK_MS = 1000, UNHEARD_MS = 5000; // if this plant's server has been silent for that long, the other plant's state counts as unknown
 
 // Returns { tick(now) }. timeOf(us): formats the plant's time.
 export function SnapshotPane(pane, { session, title, body, timeOf }) {
     const [id] = pane.items, image = make('img', { alt: '', hidden: '' }), card = make('div', { class: 'gone' });
     const about = make('span', { class: 'about' }), name = make('span', { class: 'said' });
     let state = null, asks = false, askedAt = -Infinity;
-    let shown = null, changedAt = 0; // shown: { picture, ageMs, at }; changedAt: time of the last change of the title's state
+    let shown = null, changedAt = 0; // shown: { picture, ageMs, at }; changedAt: time at which the server last announced another picture
     title.replaceChildren(name, about);
     body.append(image, card);
 

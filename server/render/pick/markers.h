@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Projects the sensors of the shown group into the frame and tests which of them are hidden. Thread: the one of the GL context. */
+/* Projects the sensors of the shown group into the frame and tests which sensors are hidden. Thread: the one of the GL context. */
 #ifndef RENDER_PICK_MARKERS_H
 #define RENDER_PICK_MARKERS_H
 #include "render/frame.h"

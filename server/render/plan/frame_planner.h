@@ -4,7 +4,7 @@
 #define RENDER_PLAN_FRAME_PLANNER_H
 #include "render/plan/frame_plan.h"
 
-struct frame_planner { /* inputs of frame plans; all of them outlive the plans */
+struct frame_planner { /* inputs of frame plans; all inputs outlive the plans */
     const struct gpu_scene *gpu_scene;
     struct fields *fields;
     struct light *light;

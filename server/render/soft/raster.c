@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Rasterizes the faces of a part into a tile: the nearest face at each pixel and its mark. Small faces are set up eight at a time. A pixel
-   on an edge that two triangles share belongs to exactly one of them: both compute the edge function from the same end in the same way; one
-   takes non-negative values, the other negative ones. */
+   on an edge that two triangles share belongs to exactly one of the two triangles: both compute the edge function from the same end in the
+   same way; one takes non-negative values, the other negative ones. */
 #include "render/soft/kernels.h"
 #include "render/soft/section_colors.h"
 #include "render/soft/sixteen.h"
