@@ -15,7 +15,7 @@ enum { CHANGE_BEFORE = 3, CHANGE_AFTER = 1 };
 static const double FAST_FACTOR = 2;  /* an hour in which the plant changes by this multiple of the usual change has half the weight */
 static const double STILL_PART = 0.1; /* a change per hour below this multiple of the noise counts as no change */
 static const double MEAN_PART = 0.25; /* noise of an hourly mean relative to a reading's noise, for at least 16 independent readings */
-/* BESIDE: number of hours averaged before a jump, and after it; WITHIN: number of hours between the two means */
+/* numbers of hours: averaged before a jump, and again after the jump; between the two means */
 enum { BESIDE = 3, WITHIN = 2 };
 static const double MIN_JUMP_FACTOR = 6;     /* smallest jump, relative to the usual change of residuals over the same number of hours */
 static const double LAG_HOURS = 12;          /* time that heat takes from the other sensors to this one */

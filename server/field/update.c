@@ -49,7 +49,7 @@ static size_t blocks_of(size_t vertex_count)
 
 /* --- choosing the work ------------------------------------------------------------------------------------------------------ */
 
-/* Lists the members to add: all, or those that changed. */
+/* Lists the sensors (members of the sum) whose columns are added: all, or those whose input changed. */
 static struct weights_terms choose_terms(struct field_state *state, bool all)
 {
     const struct weights *weights = state->weights;

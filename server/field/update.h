@@ -16,7 +16,7 @@ bool update_is_light(const struct field_state *state);
 /* Does the whole update on the calling thread, after update_begin(), if update_is_light() returned true. update_end() must follow. Thread:
    any, in parallel with updates of other states. */
 void update_run(struct field_state *state);
-/* Completes an update_run(). Thread: the field's. */
+/* Completes the update after update_run(). Thread: the one that owns the field. */
 void update_end(struct field_state *state, uint64_t *versions);
 /* Returns whether the readings of state->now differ by no more than the range that preparation assumed. */
 bool update_is_in_range(const struct field_state *state);

@@ -11,17 +11,19 @@
 #include "base/system/huge_pages.h"
 #include "plant/influence.h"
 
-#define MIN_KNOWN_PART 0.1   /* gp: smallest part of the prior's variance that sensors must remove; else there is no data */
-#define MIN_SENSOR_SHARE 0.1 /* fin: smallest part of a value that must come from sensors rather than ambient; else there is no data */
+/* gp: smallest part of the prior's variance that readings must remove at a vertex; below it, the vertex has no data */
+#define MIN_KNOWN_PART 0.1
+/* fin: smallest part of a value that must come from sensors rather than ambient; below it, the vertex has no data */
+#define MIN_SENSOR_SHARE 0.1
 
-/* largest standard deviation, in multiples of the stated one: without this, it has no bound if all sensors of a body are lost */
+/* limit of a standard deviation, as a multiple of the prior's: without this, it has no bound if all sensors of a body are lost */
 #define MAX_DEVIATIONS 4.0
 
-struct key_head { /* without padding, since it is compared as bytes */
+struct key_head { /* the struct has no padding, because keys are compared as bytes */
     const struct asset *file;
     uint32_t interpolation, distance;
     float power, reach_m, radius_m;
-    uint32_t trial; /* trial of the layout; the key's length gives the number of sensors */
+    uint32_t trial; /* trial of the layout. The number of sensors is not stored: the key's length gives it */
 };
 struct key_sensor {
     uint32_t column, usable;
@@ -468,7 +470,7 @@ struct workroom {
     float near_log2[KERNEL_BLOCK], distance_m[KERNEL_BLOCK], weights[KERNEL_COLUMNS][KERNEL_BLOCK], terms[KERNEL_COLUMNS][KERNEL_BLOCK];
 };
 
-/* weight: NULL if only the term is wanted. */
+/* weight: receives the weights; NULL: only the term is wanted. */
 static void make_column(const struct weights *weights, uint32_t member, size_t begin, size_t count, struct workroom *room, float *weight,
                         float *term)
 {
@@ -512,7 +514,7 @@ void weights_add(struct weights *weights, size_t begin, size_t count, const stru
 {
     static const double ones[KERNEL_COLUMNS] = { 1, 1, 1, 1, 1, 1, 1, 1 };
     bool paper = weights->interpolation == INTERPOLATION_PAPER, keeps = begin / KERNEL_BLOCK < weights->kept_blocks;
-    size_t before = begin / KERNEL_BLOCK * weights->member_count; /* number of columns of the previous blocks */
+    size_t before = begin / KERNEL_BLOCK * weights->member_count; /* number of columns in all previous blocks */
     struct workroom room;
     if (!paper && !weights->prepared && weights->power != 2.0f)
         kernel_log2(weights->near_m + begin, count, room.near_log2);

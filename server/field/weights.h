@@ -13,7 +13,7 @@
 enum sensor_use {
     SENSOR_LOST, /* the sensor does not contribute; there is no data around it */
     SENSOR_USED,
-    SENSOR_NO_LIMITS, /* the sensor does not contribute, but the area around it is known to be well measured */
+    SENSOR_NO_LIMITS, /* the sensor does not contribute, but the area around it counts as well measured */
     SENSOR_ASIDE      /* ignored: another sensor gives the asset's value */
 };
 
@@ -25,7 +25,7 @@ enum place {
     PLACE_NO_LIMITS /* the nearest sensor within reach is SENSOR_NO_LIMITS */
 };
 
-/* bits that say which arrays are filled: near_m and place; top; total */
+/* bits that say which arrays of a block are filled: near_m and place; top; total */
 enum weights_known { KNOWN_NEAR = 1, KNOWN_TOP = 2, KNOWN_TOTAL = 4 };
 
 struct weights_key { /* everything that G depends on, as bytes */
@@ -34,7 +34,7 @@ struct weights_key { /* everything that G depends on, as bytes */
     uint64_t hash;
 };
 
-enum { WEIGHTS_ERRING = 9 }; /* number of error classes, down to 2^-8, a step of colour */
+enum { WEIGHTS_ERRING = 9 }; /* number of error classes, in powers of 1/2 down to 2^-8, which is a step of colour */
 
 struct weights {
     struct weights_key key;
@@ -42,12 +42,13 @@ struct weights {
     enum interpolation interpolation;
     enum distance_mode distance;
     float power, reach_m, radius_m, steps_per_m; /* steps_per_m: units of `lacking` per metre */
-    bool alike;                                  /* whether all members have the same strength */
+    bool alike;                                  /* true: all members (sensors in the sum) have the same strength */
     float *strength, *decay;                     /* by sensor of the layout */
     /* for each sensor of the layout: whether it would contribute if its quality were good; more than 1: SENSOR_NO_LIMITS */
     uint8_t *configured;
     uint8_t *takes_part; /* for each sensor of the layout: 1 if used */
-    uint32_t *members;   /* used sensors of the layout, in the order of the columns; if prepared: all sensors */
+    /* members of the sum, in the order of the columns: the used sensors of the layout; for prepared interpolations all sensors */
+    uint32_t *members;
     size_t member_count;
     float *near_m, *top;         /* for each vertex: distance of the nearest usable sensor; scale (kernels.h) */
     float *total;                /* sum of the weights of each vertex */
@@ -59,11 +60,12 @@ struct weights {
     double *ones;                /* prepared: by sensor, its value if all used sensors read 1; else NULL */
     float decay_m;               /* fin: decay length; gp: 1/k of its kernel */
     const float *deviations;     /* gp: standard deviation of the field at each vertex while all sensors are used; else NULL */
-    const float *priors;         /* gp: the same without any sensor */
+    const float *priors;         /* gp: standard deviation of the field at each vertex without any sensor */
     float deviation;             /* gp: standard deviation of the prior */
     float *errors;       /* for each vertex: linear interpolation error of the adjacent triangles (drawn_error.h); NULL: not measured */
     float largest_error; /* largest element of `errors` */
-    /* [b]: largest part of any level's surface with an error of at least 2^-b. Prepared: part of the vertices */
+    /* [b]: part of the surface with an error of at least 2^-b, in the level of detail with the largest such part. Prepared: part of the
+       vertices */
     float erring[WEIGHTS_ERRING];
     uint64_t measured_levels; /* one bit per level of detail that `errors` covers */
     unsigned errors_version;  /* counts changes of `errors` */
@@ -89,7 +91,8 @@ bool weights_key_equal(const struct weights_key *a, const struct weights_key *b)
    destroys them. */
 struct weights *weights_create(const struct field_layout *layout, const struct field_params *params, float radius_m, const uint8_t *usable,
                                struct weights_key *key);
-/* Copies the arrays that are equal in `from`, which has been summed; while a parameter is dragged, most are. */
+/* Copies from `from`, which has been summed, the arrays that are equal for both parameter sets: most of them while a user drags one
+   parameter. */
 void weights_copy_known(struct weights *weights, const struct weights *from);
 /* Frees the weights. &NULL is fine; sets it to NULL. */
 void weights_destroy(struct weights **weights);
@@ -107,10 +110,10 @@ void weights_drop_columns(struct weights *weights);
 
 /* Encodes a distance in metres beyond the border of the data (negative: inside) as struct scalar's `lacking`. */
 uint8_t weights_lacking(const struct weights *weights, float beyond_m);
-/* Returns a vertex's byte for struct scalar's `lacking`. filled: lost sensors leave no hole. The vertex must be prepared. */
+/* Returns a vertex's byte for struct scalar's `lacking`. filled: true: areas around lost sensors have data. The vertex must be prepared. */
 uint8_t weights_lacking_at(const struct weights *weights, size_t vertex, bool filled);
-/* Computes what is missing of near_m, top and place for a block of vertices (begin: a multiple of KERNEL_BLOCK; count <= KERNEL_BLOCK).
-   Thread: any, on different blocks. */
+/* Computes the missing arrays among near_m, top and place for a block of vertices (begin: a multiple of KERNEL_BLOCK; count <=
+   KERNEL_BLOCK). Thread: any, on different blocks. */
 void weights_prepare(struct weights *weights, size_t begin, size_t count);
 
 /* gp: writes the standard deviation at vertices of one block, exact for the used sensors apart from the sampling done by preparation. Takes
@@ -126,8 +129,9 @@ struct weights_terms {
 };
 /* Sums of one block, which weights_add() adds to. */
 struct weights_sums {
-    double *values;         /* sum of factor times column */
-    double *total, *marked; /* sum of weights: of all in the list; of the marked ones; NULL: not needed (marked requires total) */
+    double *values; /* sum of factor times column */
+    /* total: sum of the weights of all columns in the list; marked: of the marked ones; NULL: not needed (marked requires total) */
+    double *total, *marked;
 };
 /* Adds the terms' columns to the sums of a prepared block; computes columns that are not cached, and caches them if caching is on. Thread:
    any, on different blocks. */

@@ -15,7 +15,7 @@ struct episode { /* episode of one alarm: begins when the alarm needs attention;
     int64_t began_us;
     int64_t ended_us;            /* UTC microseconds; 0: the alarm still needs attention */
     int64_t cleared_us;          /* when the alarm stopped being annunciated; 0: still annunciated */
-    int64_t told_us;             /* time of the last notification; 0: acknowledged since then */
+    int64_t told_us;             /* time of the last notification; 0: none, or the alarm was acknowledged since */
     uint32_t rules;              /* bit mask of the rules that applied when the episode began */
     uint32_t told;               /* bit mask of the recipients notified */
     uint8_t steps[NOTIFY_RULES]; /* by rule: number of escalation steps taken */

@@ -16,7 +16,7 @@ import { Toolbar } from './toolbar/toolbar.js';
 const ADDRESS_WAIT_MS = 400, TOAST_MS = 6000;
 const WATCH_AFTER_MS = 5000; // delay before the watchdog is loaded, so that the first picture loads before it
 const MANY_PICTURES = 30; // number of pictures after which an inter-frame codec (H.264) pays off
-// names of commands that lazily loaded parts receive
+// names of the commands that main.js passes to modules that are loaded on first use
 const COMMANDS = ['selectTag', 'showTag', 'flyToTag', 'fitView', 'selectAsset', 'showTrend', 'addTrend', 'showAsset'];
 
 const selection = { tag: address.tag, hover: null };

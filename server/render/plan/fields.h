@@ -15,7 +15,7 @@ struct fields_entry { /* field of one asset. An entry without a slice could not 
     int asset;
     struct field_params params;
     double step;            /* smallest value step that can be seen (scale_step) */
-    uint64_t flags_version; /* flags version of the shown scalars */
+    uint64_t flags_version; /* scalars->flags_version of the shown values */
     double travel;    /* scalars->travel at the shown values, less their known error: `scalars->travel - travel` bounds the change since */
     uint64_t content; /* hash of the first `hashed` shown scalars, as many as the last request needed */
     size_t hashed;

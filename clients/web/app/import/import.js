@@ -15,7 +15,7 @@ const UNITS = ['', 'm', 'mm', 'cm', 'in', 'ft'], AXES = ['', 'y', 'z'];
 // Encodings of `plantcast match --encoding` offered here; others are for the command line.
 const ENCODINGS = ['UTF-8', 'GB18030', 'Big5', 'Shift-JIS', 'EUC-JP', 'EUC-KR', 'Windows-1250', 'Windows-1251', 'Windows-1252',
     'Windows-1253', 'Windows-1254', 'KOI8-R', 'CP866', 'CP850', 'UTF-16LE', 'UTF-16BE'];
-const PLACEHOLDER = 'person'; // the only asset of a plant without an import
+const PLACEHOLDER = 'person'; // id of the only asset in a new plant into which nothing was imported yet
 
 const choice = (key, values, onchange) => {
     const select = make('select', { onchange }, ...values.map((value) =>
