@@ -12,8 +12,8 @@
 #include "base/mem.h"
 #include "base/thread.h"
 
-enum { MAX_ROWS = 2048 /* journal rows remembered for a standby */ };
-enum { QUEUE_MAX = 1000000 /* maximum number of samples within a tenth of a second */, RATE_SLOTS = 60 };
+enum { MAX_ROWS = 2048 /* number of journal rows kept in memory for a standby that connects */ };
+enum { QUEUE_MAX = 1000000 /* maximum number of samples queued between two evaluations (a tenth of a second) */, RATE_SLOTS = 60 };
 static const int64_t TICK_NS = NS_PER_S / 10, RATE_NS = 600 * NS_PER_S;
 
 struct alarm_event_queue {
@@ -32,19 +32,19 @@ struct alarm_service {
     struct alarm_event_queue taken;
     struct snapshot *snapshot;
     int64_t counted_ns;
-    int raised[RATE_SLOTS]; /* alarms raised per slot; ring of slots of RATE_NS / RATE_SLOTS */
+    int raised[RATE_SLOTS]; /* ring of counts of raised alarms, one per time slot of RATE_NS / RATE_SLOTS */
     int64_t slot;
-    pthread_mutex_t queue_lock; /* may be taken while the store's lock is held */
+    pthread_mutex_t queue_lock; /* lock of the sample queue; a thread that holds the store's lock may take it */
     /* --- below: protected by queue_lock */
     struct alarm_event_queue queue;
-    struct thread thread; /* its lock may be held while the store's lock is taken */
+    struct thread thread; /* lock of the alarms; a thread that holds it may take the store's lock */
     /* --- below: protected by thread.lock */
     struct alarms *alarms;
     int raised_now;
     struct journal_entry *rows; /* ring buffer of the last rows; NULL: there is no journal */
-    uint64_t row_count;         /* number of all rows so far */
+    uint64_t row_count;         /* total number of journal rows so far, including those no longer in the ring buffer */
     bool ending, lost;          /* ending: the journal is being closed; lost: it was closed with rows that are not on disk */
-    void (*changed)(void *arg); /* called after changes; NULL: no listener */
+    void (*changed)(void *arg); /* listener, called after alarms changed; NULL: none */
     void *changed_arg;
 };
 
@@ -95,7 +95,7 @@ static void take_events(struct alarm_service *service)
     }
 }
 
-/* Counts alarms raised within the last ten minutes. */
+/* Returns the number of alarms raised within the last ten minutes. */
 static int rate(struct alarm_service *service, int64_t now_ns, int raised)
 {
     int64_t slot = now_ns / (RATE_NS / RATE_SLOTS);
@@ -360,7 +360,7 @@ void alarm_service_end(struct alarm_service *service, struct settling_ticket *ti
     pthread_mutex_lock(&service->thread.lock);
     if (service->journal)
         journal_end(service->journal, ticket);
-    /* the service was halted after alarm_service_begin(): rows were lost, or it is not known yet whether they were */
+    /* the service was halted after alarm_service_begin(): rows were lost, or their write is still undecided */
     else if (service->ending || service->lost)
         ticket->last = UINT64_MAX;
     pthread_mutex_unlock(&service->thread.lock);
@@ -370,7 +370,7 @@ int alarm_service_settled(struct alarm_service *service, const struct settling_t
 {
     bool any = ticket->last > ticket->first;
     pthread_mutex_lock(&service->thread.lock);
-    int state = service->journal        ? journal_settled(service->journal, ticket)
+    int state = service->journal         ? journal_settled(service->journal, ticket)
                 : any && service->ending ? -EINPROGRESS
                 : any && service->lost   ? -EIO
                                          : 0;
@@ -413,7 +413,8 @@ void alarm_service_mirror_row(struct alarm_service *service, const struct journa
         return;
     journal_add_entry(service->journal, row);
     pthread_mutex_lock(&service->thread.lock);
-    service->rows[++service->row_count % MAX_ROWS] = *row; /* the previous leader may lack this row in its journal when it returns */
+    /* remembers the row: the former leader may lack it when it returns as a standby */
+    service->rows[++service->row_count % MAX_ROWS] = *row;
     pthread_mutex_unlock(&service->thread.lock);
 }
 

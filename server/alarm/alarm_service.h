@@ -13,12 +13,13 @@ struct alarm_service_params {
     struct log *log;
     struct counters *counters;
     const struct plant *plant;
-    struct store *store;  /* plant and store must outlive the service */
-    const char *folder;   /* folder of the journal; NULL: no journal, so states are lost when the daemon ends */
+    struct store *store; /* plant and store must outlive the service */
+    const char *folder;  /* folder of the journal; NULL: no journal, so states are lost when the daemon ends */
     double keep_days;
-    bool mirrors;         /* states come from a core (alarm_service_mirror) and not from samples: nothing is evaluated or stored */
+    /* true: states come from a core (alarm_service_mirror), not from samples: nothing is evaluated, and tags in the store get no alarms */
+    bool mirrors;
     struct alarm_service *before; /* after a reload: the halted service of the old plant, whose alarm states are taken over; NULL: none */
-    void (*notify)(void *arg); /* called when an alarm changed, by the thread or within alarm_service_act(); may be NULL */
+    void (*notify)(void *arg);    /* called when an alarm changed, by the thread or within alarm_service_act(); may be NULL */
     void *notify_arg;
 };
 
@@ -34,14 +35,14 @@ void alarm_service_stop(struct alarm_service **service);
 /* Sets the listener. changed(arg) is called after alarms changed, by the service's thread or within alarm_service_act(), under a lock:
    it may only wake another thread. There is one listener; NULL: none. */
 void alarm_service_listen(struct alarm_service *service, void (*changed)(void *arg), void *arg);
-/* Returns the number of the last change of any alarm; it increases with each change. */
+/* Returns the sequence number of the last change of any alarm. */
 uint64_t alarm_service_number(const struct alarm_service *service);
 /* Calls each() under the lock for every alarm that changed after change number `since`, newest first; since 0: for every alarm that is
    not normal. Returns alarm_service_number(). */
 uint64_t alarm_service_changes(struct alarm_service *service, uint64_t since, void (*each)(void *arg, const struct alarm *alarm),
                                void *arg);
-/* Carries out an operator's action: acknowledge, shelve and so on. name: of a tag; for ALARM_LINK of a device. Returns why it was
-   refused, or REFUSAL_NONE. */
+/* Carries out an operator's action: acknowledge, shelve and so on. name: name of the tag; for ALARM_LINK, of the device. Returns the reason
+   of a refusal, or REFUSAL_NONE. */
 enum refusal_code alarm_service_act(struct alarm_service *service, const char *name, enum alarm_kind kind, const struct alarm_act *act);
 /* Tell whether changes of alarms between alarm_service_begin() and alarm_service_end() are in the journal on disk
    (base/files/settling.h). Without a journal they count as on disk. Changes that are not on disk are in force, but would be lost if the
@@ -49,18 +50,19 @@ enum refusal_code alarm_service_act(struct alarm_service *service, const char *n
 struct settling_ticket alarm_service_begin(struct alarm_service *service);
 void alarm_service_end(struct alarm_service *service, struct settling_ticket *ticket);
 int alarm_service_settled(struct alarm_service *service, const struct settling_ticket *ticket);
-/* For a service that mirrors: sets alarms, found by name and kind, to the core's states, in list order. whole: all other alarms are
-   normal. Returns NULL, or why it cannot (static text); then nothing changed. */
+/* For a service that mirrors: sets alarms, found by name and kind, to the core's states, in list order. whole: all other alarms are normal.
+   Returns NULL; or an error message (static text), and then nothing changed. */
 const char *alarm_service_mirror(struct alarm_service *service, const struct alarm *list, size_t count, bool whole);
 /* On a standby: returns the time of the newest change in its journal; 0: none. Thread: that of alarm_service_mirror_row(). */
 int64_t alarm_service_journal_utc_ns(const struct alarm_service *service);
-/* Calls each() under the lock for changes after number `since` and after a time, oldest first, as far as they are remembered (some
-   thousands). Returns the number of the last change. */
+/* Calls each() under the lock for changes after number `since` and after a time, oldest first, as far back as the service keeps them in
+   memory (some thousands). Returns the number of the last change. */
 uint64_t alarm_service_rows(struct alarm_service *service, uint64_t since, int64_t after_utc_ns,
                             void (*each)(void *arg, const struct journal_entry *row), void *arg);
 /* Writes a change that a core made to the journal. Call it before alarm_service_mirror() takes the resulting states. */
 void alarm_service_mirror_row(struct alarm_service *service, const struct journal_entry *row);
-/* Ends mirroring: the service evaluates samples itself from now on, and continues with the mirrored states. */
+/* Ends mirroring, when this daemon becomes the leader: from now on the service evaluates samples, and continues with the mirrored
+   states. */
 void alarm_service_lead(struct alarm_service *service);
 /* Counts alarms by state. */
 void alarm_service_counts(struct alarm_service *service, struct alarm_counts *out);

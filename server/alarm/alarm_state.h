@@ -11,32 +11,32 @@ enum alarm_event {
     ALARM_RAISE, /* the alarm's cause is present */
     ALARM_CLEAR,
     ALARM_ACKNOWLEDGE,
-    ALARM_RESET, /* resets a latched alarm */
-    ALARM_SHELVE, /* a shelved alarm may be shelved again, with another end */
+    ALARM_RESET,    /* resets a latched alarm */
+    ALARM_SHELVE,   /* a shelved alarm may be shelved again, with another end */
     ALARM_UNSHELVE, /* ends shelving, by hand or because the shelving time is over */
     ALARM_SUPPRESS,
     ALARM_UNSUPPRESS,
-    ALARM_TAKE_OUT, /* takes the alarm out of service */
+    ALARM_TAKE_OUT, /* takes the alarm out of service (event of an operator) */
     ALARM_PUT_BACK,
     ALARM_CARRY, /* suppresses the alarm, because the alarm of its device reports the failure */
-    ALARM_CALL,  /* ends ALARM_CARRY: the alarm of the device no longer covers this alarm */
+    ALARM_CALL,  /* ends ALARM_CARRY: the device's alarm no longer reports this failure */
     ALARM_EVENTS
 };
 
 enum { ALARM_ASIDE_SHELVED = 1, ALARM_ASIDE_SUPPRESSED = 2, ALARM_ASIDE_OUT = 4, ALARM_ASIDE_CARRIED = 8, ALARM_ASIDE_ALL = 15 };
 
-struct alarm_state { /* zero-initialised: normal */
+struct alarm_state {     /* zero-initialised: normal */
     bool active;         /* the alarm's cause is present */
-    bool unacknowledged; /* never true while `aside` is not 0 */
+    bool unacknowledged; /* the alarm is not acknowledged yet; never true while `aside` is not 0 */
     bool latched;
-    uint8_t aside;       /* bit mask of ALARM_ASIDE_...: reasons why the alarm is not annunciated; 0: the alarm is annunciated */
+    uint8_t aside; /* bit mask of ALARM_ASIDE_...: reasons why the alarm is not annunciated; 0: the alarm is annunciated */
 };
 
 struct alarm_rule {
-    bool acknowledges; /* the alarm must be acknowledged; false: it is only active or normal */
+    bool acknowledges; /* true: the alarm must be acknowledged; false: the alarm only knows the states active and normal */
     bool latches;
-    bool forgets;      /* the alarm becomes normal when its cause ends, even if it was not acknowledged */
-    bool carried;      /* when the alarm is raised now, the alarm of its device covers it, so it is suppressed */
+    bool forgets; /* the alarm becomes normal when its cause ends, even if it was not acknowledged */
+    bool carried; /* true: when the alarm is raised now, the device's alarm already reports the failure, so this alarm is suppressed */
 };
 
 enum alarm_outcome { ALARM_CHANGED, ALARM_AS_IT_WAS, ALARM_REFUSED /* not possible in this state */ };

@@ -59,7 +59,8 @@ static void add_bad(struct alarms *alarms, int tag)
     add_suppression(alarms, index);
 }
 
-/* Adds or adjusts the LINK alarm of a device: it has the shortest delay of its tags, and one level below their highest priority. */
+/* Adds or adjusts the LINK alarm of a device: its delay is the shortest of its tags' delays, and its priority one level less urgent than
+   their most urgent. */
 static void add_link(struct alarms *alarms, struct alarm_device *device, int tag, int64_t least_on_ns)
 {
     const struct plant_alarm_settings *settings = &alarms->plant->tags[tag].alarm_settings;
@@ -204,7 +205,7 @@ static int by_tag_and_kind(const void *pa, const void *pb, void *list_ptr)
     return a->tag != b->tag ? a->tag - b->tag : (int)a->kind - (int)b->kind;
 }
 
-/* Builds the indices by tag: the entries of tag t are at firsts[t]..firsts[t + 1]. */
+/* Builds the indices by tag: the entries of tag t run from firsts[t] up to, but not including, firsts[t + 1]. */
 static void index_all(struct alarms *alarms)
 {
     size_t tags = alarms->plant->tag_count;
@@ -376,7 +377,7 @@ static void follow_acknowledgement(struct alarms *alarms, int index, struct inst
     step(alarms, index, &change, at.mono_ns);
 }
 
-/* Returns the device whose LINK alarm covers this alarm: the tag's device is lost as a whole, so one alarm reports it. NULL: none. */
+/* Returns the device whose LINK alarm covers this alarm: that is so while the tag's device is lost as a whole. NULL: none. */
 static const struct alarm_device *carrier_of(const struct alarms *alarms, const struct alarm *alarm)
 {
     int of = alarm->kind == ALARM_BAD ? alarms->devices->of_tag[alarm->tag] : -1;
@@ -399,7 +400,7 @@ static void turned(struct alarms *alarms, int index, double value, struct instan
     follow_acknowledgement(alarms, index, at);
 }
 
-/* Applies delays that have ended, with the times at which they ended. */
+/* Applies delays whose end has passed, each at the time at which it ended. */
 static void advance(struct alarms *alarms, int index, struct instant now)
 {
     struct alarm *alarm = &alarms->list[index];
@@ -501,8 +502,7 @@ static void look_at_devices(struct alarms *alarms, struct instant now)
     }
 }
 
-/* Returns whether the alarm is the tag's own again, not the device's: the device sends readings, but this tag has had none for as long
-   as would make it stale. */
+/* Returns true if a bad tag needs its own alarm again: its device sends readings, but this tag has had none for its stale time. */
 static bool calls_by_itself(const struct alarms *alarms, const struct alarm *alarm, int64_t mono_ns)
 {
     const struct alarm_device *device = &alarms->devices->list[alarms->devices->of_tag[alarm->tag]];
@@ -520,14 +520,14 @@ static void call_those_left(struct alarms *alarms, struct instant now)
     }
 }
 
-/* A tag that never becomes stale keeps its last value while its device is lost. */
+/* A tag that never becomes stale keeps its last value while its device is lost, so quality alone does not show the loss. */
 static enum device_status status_of(const struct alarms *alarms, size_t tag, uint32_t quality)
 {
     bool lost = quality == QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE && never_stale(alarms, tag);
     return lost ? DEVICE_GONE : device_status_of(quality);
 }
 
-/* Devices are evaluated before their tags. */
+/* Devices are evaluated before their tags, so that a device's alarm can suppress those of its tags. */
 void alarms_put(struct alarms *alarms, const struct sample_event *event, size_t count)
 {
     for (size_t i = 0; i < count; i++)
@@ -557,7 +557,7 @@ static bool is_waiting_too_long(struct alarms *alarms, int tag, int64_t mono_ns)
     return (double)(mono_ns - alarms->begun_ns) >= stale_s * 1e9;
 }
 
-/* Returns whether a tag's quality needs no event: no alarm depends on it, or it is unchanged. */
+/* Returns true if a tag's quality needs no event: no alarm depends on the tag, or its quality is unchanged. */
 static bool is_no_news(const struct alarms *alarms, size_t tag, bool bad, uint32_t quality)
 {
     const struct last_sample *seen = &alarms->seen[tag];

@@ -20,29 +20,29 @@ struct instant {
 };
 
 struct alarm {
-    const char *name;          /* name of the alarm's tag, or of its device (alarm/devices.h) */
-    int tag;                   /* index of the tag; -1: the alarm belongs to a device, and kind is ALARM_LINK */
+    const char *name; /* name of the alarm's tag, or of its device (alarm/devices.h) */
+    int tag;          /* index of the tag; -1: the alarm belongs to a device, and kind is ALARM_LINK */
     enum alarm_kind kind;
-    int priority;              /* 1 is the most urgent */
-    double limit;              /* limit value; NaN: none */
+    int priority; /* 1 is the most urgent */
+    double limit; /* limit value; NaN: none */
     struct alarm_rule rule;
     struct alarm_state state;
-    bool acknowledged_there;   /* a bit of another alarm system says that the alarm is acknowledged there */
-    bool held;                 /* the measurement is bad, so the alarm keeps its last state */
-    double value;              /* value when the alarm was raised; NaN: none */
-    int64_t raised_utc_ns;     /* UTC: when it was last raised; 0: never */
-    int64_t changed_utc_ns;    /* UTC: when it last changed */
-    struct instant until;      /* when shelving of the alarm ends; 0: the alarm is not shelved */
+    bool acknowledged_there;                                /* a bit of another alarm system says that the alarm is acknowledged there */
+    bool held;                                              /* true: the measurement is bad, so the alarm keeps its last state */
+    double value;                                           /* value when the alarm was raised; NaN: none */
+    int64_t raised_utc_ns;                                  /* UTC: when it was last raised; 0: never */
+    int64_t changed_utc_ns;                                 /* UTC: when it last changed */
+    struct instant until;                                   /* when shelving of the alarm ends; 0: the alarm is not shelved */
     char who[ALARM_NAME_BYTES], reason[ALARM_REASON_BYTES]; /* operator and reason of the last action; "": none */
-    uint64_t number;           /* number of the alarm's last change, counted over all alarms; 0: the alarm never changed */
+    uint64_t number; /* sequence number of the alarm's last change, counted over all alarms; 0: the alarm never changed */
     /* --- below: private to alarms*.c */
     struct condition condition;
     struct condition_delays delays;
     /* raised_mono_ns: when the alarm was last raised; recent_ns: ring buffer of the last times when it was raised */
     int64_t raised_mono_ns, recent_ns[ALARM_RECENT];
     unsigned raised_count;
-    int older, newer;          /* doubly linked list of alarms by change number; -1: none */
-    bool timed;                /* the alarm may change as time passes */
+    int older, newer; /* neighbours in the doubly linked list of alarms, sorted by change number; -1: none */
+    bool timed;       /* true: the alarm may change merely because time passes (it is in `timed`) */
 };
 
 /* One change of one alarm, as the listener receives it. */
@@ -51,13 +51,13 @@ struct alarm_change {
     enum alarm_event event;
     enum alarm_status before, after;
     int64_t utc_ns;
-    double value;              /* value of the sample; NaN: none */
-    const char *who, *reason;  /* "": no operator, no reason */
+    double value;             /* value of the sample; NaN: none */
+    const char *who, *reason; /* "": no operator, no reason */
 };
 
 struct alarms_listener {
     void (*changed)(void *arg, const struct alarm_change *change);
-    /* Called when the tag shows another alarm, or its alarm is in another state. */
+    /* Called when the tag shows a different alarm, or its shown alarm has a new state. */
     void (*of_tag)(void *arg, int tag, enum alarm_kind kind, enum alarm_status status);
     void *arg;
 };
@@ -73,8 +73,8 @@ void alarms_put(struct alarms *alarms, const struct sample_event *event, size_t 
 void alarms_tick(struct alarms *alarms, const struct snapshot *now);
 
 struct alarm_act {
-    enum alarm_event event;    /* one of ACKNOWLEDGE, RESET, SHELVE, UNSHELVE, TAKE_OUT, PUT_BACK */
-    int64_t for_ns;            /* for SHELVE: duration, at most ALARM_LONGEST_SHELF_NS */
+    enum alarm_event event; /* one of ACKNOWLEDGE, RESET, SHELVE, UNSHELVE, TAKE_OUT, PUT_BACK */
+    int64_t for_ns;         /* for SHELVE: duration, at most ALARM_LONGEST_SHELF_NS */
     const char *who, *reason;
 };
 /* Carries out an operator's action on the alarm with that index. Returns REFUSAL_NONE, or why it was refused. */
@@ -84,18 +84,18 @@ enum refusal_code alarms_act(struct alarms *alarms, int index, const struct alar
 size_t alarms_count(const struct alarms *alarms);
 const struct alarm *alarms_at(const struct alarms *alarms, int index);
 int alarms_find(const struct alarms *alarms, int tag, enum alarm_kind kind); /* returns the index, or -1 */
-/* returns the index, or -1; name: of a tag, for ALARM_LINK of a device */
+/* returns the index of an alarm, or -1; name: name of the tag; for ALARM_LINK, of the device */
 int alarms_find_named(const struct alarms *alarms, const char *name, enum alarm_kind kind);
-enum alarm_status alarm_status_of(const struct alarm *alarm);       /* returns the state as one word */
-uint64_t alarms_number(const struct alarms *alarms);                 /* returns the number of the last change of any alarm */
+enum alarm_status alarm_status_of(const struct alarm *alarm); /* returns the state as one word */
+uint64_t alarms_number(const struct alarms *alarms);          /* returns the sequence number of the last change of any alarm */
 /* Returns the index of the alarm that changed last, or -1; follow ->older for the ones before. */
 int alarms_newest(const struct alarms *alarms);
 
 struct alarm_counts {
     int statuses[ALARM_STATUSES];
-    int active;      /* number of alarms that are annunciated while their cause is present */
-    int standing;    /* number of alarms in `active` that have been active for longer than a day */
-    int chattering;  /* number of alarms raised three times or more within the last minute */
+    int active;     /* number of alarms that are annunciated while their cause is present */
+    int standing;   /* number of alarms in `active` that have been active for longer than a day */
+    int chattering; /* number of alarms raised three times or more within the last minute */
     int held;
     int priorities[ALARM_PRIORITIES]; /* annunciated alarms by priority; index 0 is priority 1 */
 };
@@ -105,13 +105,13 @@ struct alarm_counts {
 void alarms_counts(const struct alarms *alarms, int64_t now_mono_ns, struct alarm_counts *out);
 
 /* --- restoring --- */
-/* Sets an alarm to a state from the journal. The listener gets only the tag's shown alarm (of_tag). States that do not exist in this
-   plant's alarm mode are dropped. */
+/* Sets an alarm to a state from the journal. The listener is called only for the tag's shown alarm (of_tag), not for the change. States
+   that do not exist in this plant's alarm mode are dropped. */
 void alarms_restore(struct alarms *alarms, int index, const struct alarm *saved, struct instant now);
 /* Sets alarms, found by name and kind, to another daemon's states, in list order. whole: all other alarms are normal. Returns false if
    an alarm does not exist; then nothing changed. */
 bool alarms_mirror(struct alarms *alarms, const struct alarm *list, size_t count, bool whole);
-/* Ends mirroring: alarms continue from their mirrored states; each is held until its next sample. */
+/* Ends mirroring: alarms continue from their mirrored states; each keeps its state until its tag's next sample. */
 void alarms_lead(struct alarms *alarms, struct instant now);
 /* Takes over the states of alarms with the same tag and kind from another plant, including running delays. */
 void alarms_adopt(struct alarms *alarms, const struct alarms *before);

@@ -6,7 +6,7 @@
 #include "alarm/devices.h"
 
 enum feed_role { FEED_VALUE, FEED_BIT, FEED_BADNESS, FEED_ACKNOWLEDGED, FEED_SUPPRESSES };
-struct feed { /* a tag whose samples an alarm depends on, and what they mean for the alarm */
+struct feed { /* feed: a tag whose samples an alarm depends on, and the meaning of these samples for the alarm */
     int tag, alarm;
     enum feed_role role;
 };
@@ -27,18 +27,19 @@ struct alarms {
     size_t count, capacity;
     struct feed *feeds; /* sorted by tag */
     size_t feed_count, feed_capacity;
-    int *by_tag;        /* indices of alarms, sorted by tag */
-    int *first_feed, *first_alarm; /* index by tag, with one entry more than tags: a tag's first entry in feeds, and in by_tag */
+    int *by_tag; /* indices of alarms, sorted by tag */
+    /* index by tag, with one extra entry at the end: position of the tag's first entry in feeds, and in by_tag */
+    int *first_feed, *first_alarm;
     struct last_sample *seen;
     struct devices *devices;
     struct sample_event *noticed; /* scratch memory of alarms_tick(): events found, one per tag */
     struct gravest *gravest;
-    int *timed;         /* indices of alarms with a running delay and of shelved ones */
+    int *timed; /* indices of the alarms that have a running delay or are shelved */
     size_t timed_count, timed_capacity;
-    int carried;        /* number of alarms that are suppressed because the alarm of their device covers them */
+    int carried; /* number of alarms that are suppressed because the alarm of their device covers them */
     uint64_t number;
     int newest;
-    int64_t begun_ns;   /* monotonic time of the first tick */
+    int64_t begun_ns; /* monotonic time of the first tick */
 };
 
 void alarms_touch(struct alarms *alarms, int index); /* gives the alarm a new change number */

@@ -5,7 +5,8 @@
 #include "alarm/alarms_impl.h"
 #include "base/mem.h"
 
-/* Adapts a restored state to the plant's alarm mode. Without acknowledgements no operator could end what was set aside by hand. */
+/* Adapts a restored state to the plant's alarm mode. In a mode without operators' actions, shelving and out-of-service are dropped, because
+   no operator could end them. */
 static void fit_to_rule(struct alarm *alarm, bool by_hand)
 {
     if (!alarm->rule.acknowledges)
@@ -43,9 +44,9 @@ static void take(struct alarms *alarms, int index, const struct alarm *from)
 void alarms_restore(struct alarms *alarms, int index, const struct alarm *saved, struct instant now)
 {
     struct alarm from = *saved;
-    if (from.until.utc_ns) /* if the shelving time is over, shelving ends in 1 ns, that is, at once */
+    if (from.until.utc_ns) /* if the shelving time is over already, sets its end 1 ns ahead, so that the next tick ends it */
         from.until.mono_ns = now.mono_ns + (from.until.utc_ns > now.utc_ns ? from.until.utc_ns - now.utc_ns : 1);
-    /* the alarm is held until the next sample of its tag */
+    /* the alarm keeps its state until the next sample of its tag */
     alarms->list[index].held = alarms->list[index].kind != ALARM_BAD && alarms->list[index].kind != ALARM_LINK;
     alarms->list[index].raised_mono_ns = now.mono_ns - (from.raised_utc_ns ? now.utc_ns - from.raised_utc_ns : 0);
     take(alarms, index, &from);

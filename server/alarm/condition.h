@@ -11,7 +11,7 @@
 struct condition { /* zero-initialised: inactive */
     bool active;
     enum { CONDITION_RESTS, CONDITION_COMES, CONDITION_GOES } pending; /* which delay is running: none, the on delay, the off delay */
-    int64_t since_ns; /* monotonic: when the delay began */
+    int64_t since_ns;                                                  /* monotonic: when the delay began */
 };
 
 struct condition_delays {
@@ -20,7 +20,7 @@ struct condition_delays {
 
 enum condition_side { CONDITION_CLEAR, CONDITION_BETWEEN /* within the deadband */, CONDITION_BEYOND };
 
-/* Returns on which side of its limit a value is. */
+/* Returns the side of the limit on which a value is. */
 enum condition_side condition_side(enum alarm_kind kind, double limit, double deadband, double value);
 /* Advances the time. Returns true if a delay ended: the condition changed at *at_ns. */
 bool condition_advance(struct condition *condition, const struct condition_delays *delays, int64_t now_ns, int64_t *at_ns);

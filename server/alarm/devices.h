@@ -5,29 +5,30 @@
 #define ALARM_DEVICES_H
 #include "plant/plant.h"
 
-enum device_status { DEVICE_UNKNOWN, DEVICE_USABLE, DEVICE_GONE /* no data, or the controller has stopped */, DEVICE_OTHER };
+enum device_status { DEVICE_UNKNOWN, DEVICE_USABLE, DEVICE_GONE /* no data arrives, or the controller has stopped */, DEVICE_OTHER };
 
 struct alarm_device {
-    char *name;          /* name of the source, with the unit if the source has several: "plc1", "gateway/7" */
+    char *name; /* name of the source, with the unit if the source has several: "plc1", "gateway/7" */
     int source, unit;
-    int usable, gone;    /* number of the device's tags that are DEVICE_USABLE, and DEVICE_GONE */
-    int64_t back_ns;     /* monotonic: since when a tag of the device is usable; 0: none is */
-    int alarm;           /* index of the device's LINK alarm; -1: none */
-    bool changed;        /* changed since alarms.c last evaluated the device */
+    int usable, gone; /* counts of the device's tags whose status is DEVICE_USABLE, and DEVICE_GONE */
+    int64_t back_ns;  /* monotonic: since when a tag of the device is usable; 0: none is */
+    int alarm;        /* index of the device's LINK alarm; -1: none */
+    bool changed;     /* true: the device changed since alarms.c last evaluated it */
 };
 
 struct devices {
     struct alarm_device *list;
     size_t count, capacity;
-    int *of_tag;         /* device index by tag; -1: none */
-    uint8_t *statuses;      /* enum device_status by tag */
+    int *of_tag;       /* device index by tag; -1: none */
+    uint8_t *statuses; /* enum device_status by tag */
 };
 
-struct devices *devices_create(const struct plant *plant); /* plant must outlive the result; never returns NULL */
-void devices_destroy(struct devices **devices);            /* &NULL is allowed; sets *devices to NULL */
+struct devices *devices_create(const struct plant *plant);         /* plant must outlive the result; never returns NULL */
+void devices_destroy(struct devices **devices);                    /* &NULL is allowed; sets *devices to NULL */
 int devices_find(const struct devices *devices, const char *name); /* returns the index, or -1 */
 
-enum device_status device_status_of(uint32_t quality); /* returns what a tag's quality says about its device */
+/* Returns the status that a tag's quality gives. */
+enum device_status device_status_of(uint32_t quality);
 /* Records the status that a tag has from mono_ns on. */
 void devices_put(struct devices *devices, int tag, enum device_status status, int64_t mono_ns);
 /* returns whether the device has failed: no tag is usable, and at least one is gone */

@@ -37,7 +37,7 @@ struct journal {
     /* --- below: protected by thread.lock */
     struct entries waiting;
     bool asks;
-    bool urgent; /* a caller waits for rows to be on disk */
+    bool urgent; /* a caller of journal_end() waits for rows to be on disk */
     struct settling settling;
 };
 
@@ -68,7 +68,7 @@ static int write_taken(struct journal *journal, int64_t mono_ns)
     return error;
 }
 
-/* Notes the result of a write. count: rows written by this attempt. */
+/* Records the result of a write attempt. count: number of rows written by this attempt. */
 static void count_written(struct journal *journal, size_t count, int error)
 {
     pthread_mutex_lock(&journal->thread.lock);
@@ -76,7 +76,7 @@ static void count_written(struct journal *journal, size_t count, int error)
     pthread_mutex_unlock(&journal->thread.lock);
 }
 
-/* Writes the taken rows. now: tries even if the retry delay after a failure is not over. */
+/* Writes the rows taken from the queue. now: tries even if the retry delay after a failure is not over. */
 static void try_to_write(struct journal *journal, bool now)
 {
     int64_t mono_ns = clock_mono_ns();
@@ -99,7 +99,7 @@ static void try_to_write(struct journal *journal, bool now)
     count_written(journal, rows - journal->taken.count, error);
 }
 
-/* Appends waiting rows to those that could not be written. The caller holds the lock. */
+/* Moves rows from the queue to those that are to be written. The caller holds the lock. */
 static void take(struct journal *journal)
 {
     struct entries *taken = &journal->taken, *waiting = &journal->waiting;
@@ -116,8 +116,8 @@ static void take(struct journal *journal)
     waiting->count = 0;
 }
 
-/* Waits for rows, then GATHER_NS more so that one transaction takes them together. Rows that journal_end() asks for are not delayed:
-   then *urgent is set. */
+/* Waits for rows, then GATHER_NS more so that one transaction takes them together. If journal_end() waits for the rows, returns at once
+   with *urgent set. */
 static bool wait_for_work(struct journal *journal, bool *urgent)
 {
     int64_t until_ns = clock_mono_ns() + GATHER_NS;

@@ -25,12 +25,12 @@ bool journal_stop(struct journal **journal);
 void journal_add(struct journal *journal, const struct alarm_change *change, const char *tag);
 /* Returns the time of the newest row: at opening, or added by journal_add_entry() since; 0: none. Thread: that of journal_add_entry() */
 int64_t journal_newest_utc_ns(const struct journal *journal);
-/* Tell whether rows that are queued between journal_begin() and journal_end() are on disk (base/files/settling.h). journal_end() makes
-   the thread write them at once, even after a failed attempt. None of them waits for the disk. */
+/* Tell whether rows that are queued between journal_begin() and journal_end() are on disk (base/files/settling.h). journal_end() makes the
+   thread write them at once, even after a failed attempt. None of these functions waits for the disk. */
 struct settling_ticket journal_begin(struct journal *journal);
 void journal_end(struct journal *journal, struct settling_ticket *ticket);
 int journal_settled(struct journal *journal, const struct settling_ticket *ticket);
-/* Returns the row of a change; names are copied. */
+/* Returns the journal row for a change of an alarm; names are copied. */
 struct journal_entry journal_entry_of(const struct alarm_change *change, const char *tag);
 void journal_add_entry(struct journal *journal, const struct journal_entry *entry); /* queues a row to be written; does not wait */
 /* Returns true once after a new file was created: the caller must then pass each alarm that is not normal to journal_keep(). */

@@ -204,7 +204,7 @@ static void tell(sqlite3_stmt *s, void (*each)(void *arg, const struct journal_r
     each(arg, &row);
 }
 
-/* Returns the time of a row; INT64_MIN: the row does not exist any more. */
+/* Returns the time of a row; INT64_MIN: no such row, for example because it was deleted. */
 static int64_t time_of(struct journal_file *file, int64_t id)
 {
     sqlite3_stmt *s = database_statement(&file->db, SQL_TIME_OF);

@@ -26,7 +26,7 @@ struct journal_row {
 };
 struct journal_query {
     int64_t from_us, to_us;
-    int64_t before_id; /* only rows with a smaller id; INT64_MAX: all */
+    int64_t before_id; /* query: only rows with a smaller id; INT64_MAX: all rows */
     const char *tag;   /* NULL: all tags */
     int limit;         /* maximum number of rows, newest first */
 };
