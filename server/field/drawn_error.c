@@ -13,7 +13,7 @@
 enum { GROUP = 64, GRAIN = 1024, MAX_PIECES = 96 };
 /* largest length of a piece (part of a triangle), relative to its distance to the nearest sensor; longer pieces are halved */
 #define STEP 0.3f
-#define MAX_POWER 2.0f /* largest power of shepard for which STEP is fine enough */
+#define MAX_POWER 2.0f /* largest power of shepard at which STEP samples finely enough */
 /* L^2 K / (6 d^2) bounds the error of a triangle of side L if the second derivative of the weights is at most K / d^2 */
 #define SHEPARD_ACCEPTED 6.0f
 #define PAPER_ACCEPTED 0.015f /* triangles up to this size need no samples: relative to the distance d of the nearest sensor, and to R */

@@ -83,8 +83,8 @@ static void collect(const struct week *week, struct drift_rows *rows)
     rows->columns = 3 + week->nearest_count;
 }
 
-/* Makes the columns orthonormal and removes their components from time and value. largest: of the values' magnitudes. Returns the number of
-   columns kept. */
+/* Makes the columns orthonormal and subtracts their components from the columns of time and value. largest: the largest magnitude of the
+   values. Returns the number of columns that were kept. */
 static int reduce(struct drift_rows *rows, double largest)
 {
     int kept = 0, n = rows->count;

@@ -37,7 +37,7 @@ struct field_layout {
     const struct plant_tag *tags; /* the plant's tags */
     struct layout_sensor *sensors;
     size_t sensor_count, vertex_count;
-    const struct layout_points *points; /* points at which distances are requested; NULL: at the file's vertices */
+    const struct layout_points *points; /* points at which distances are requested; NULL: at the asset file's vertices */
     bool assumed; /* true: the positions of all sensors are assumed, so one sensor gives the value of the whole asset (field.h) */
     float largest_m[DISTANCES]; /* largest distance for each distance_mode; 0: not computed yet */
     uint32_t trial;             /* trial that some of the positions belong to; 0: none */

@@ -37,7 +37,7 @@ struct field_params {
     double radius_m;        /* R of paper; 0: the largest distance on the asset from any of its configured sensors */
     double reach_m;         /* INFINITY: no limit */
     size_t override_count;
-    struct field_override overrides[FIELD_OVERRIDES]; /* overrides sorted by tag; zero beyond the count */
+    struct field_override overrides[FIELD_OVERRIDES]; /* overrides sorted by tag; unused elements are zero */
 };
 /* Fills in the group's defaults from the plant file. */
 void field_params_default(const struct plant *plant, int group, struct field_params *params);

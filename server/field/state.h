@@ -9,7 +9,7 @@
 
 struct update; /* update.h */
 
-struct state_input {           /* input of one sensor to the sums */
+struct state_input {           /* values of one sensor that enter the sums */
     double value;              /* engineering units; for `paper` 0..1 */
     uint8_t usable, uncertain; /* usable: enum sensor_use */
 };

@@ -494,8 +494,8 @@ static void make_column(const struct weights *weights, uint32_t member, size_t b
         kernel_shepard(&column, term);
 }
 
-/* Returns the cached columns of the terms after the first `done`: of this block, else the first ones of the next block. They need not be
-   filled yet. NULL: there are fewer than KERNEL_COLUMNS. */
+/* Returns columns to prefetch: the cached columns of the terms after the first `done` in this block, or, if there are none left, the first
+   ones of the next block. They may not be filled yet. NULL: there are fewer than KERNEL_COLUMNS. */
 static const float *const *columns_after(const struct weights *weights, size_t begin, const struct weights_terms *terms, size_t done,
                                          const float **room)
 {

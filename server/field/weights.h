@@ -91,7 +91,7 @@ bool weights_key_equal(const struct weights_key *a, const struct weights_key *b)
    destroys them. */
 struct weights *weights_create(const struct field_layout *layout, const struct field_params *params, float radius_m, const uint8_t *usable,
                                struct weights_key *key);
-/* Copies from `from`, which has been summed, the arrays that are equal for both parameter sets: most of them while a user drags one
+/* Copies from `from`, which has been summed, the arrays that are equal for both parameter sets: most arrays while a user drags one
    parameter. */
 void weights_copy_known(struct weights *weights, const struct weights *from);
 /* Frees the weights. &NULL is fine; sets it to NULL. */

@@ -98,7 +98,7 @@ struct params_change {
     int colormap;
     double ramp_interval;
     struct color_scale color_scale;
-    double isoline_step; /* distance between isolines; 0: color_scale has a list of isolines */
+    double isoline_step; /* distance between isolines, in the unit of the values; 0: color_scale lists the isolines */
     bool breaks_of_group, breaks_of_limits;
     bool range_of_group; /* the message had `range: null`: use the group's range */
     double range_min, range_max;
@@ -169,7 +169,7 @@ struct coverage_request {
 struct loop_check_request {
     int tag;
     double expected, tolerance;
-    bool fail; /* record as failed, whatever the value is */
+    bool fail; /* true: the loop check is recorded as failed, whatever the value is */
     char remark[LOOP_CHECK_REMARK_BYTES];
 };
 

@@ -17,7 +17,7 @@ struct frame_context {
     const struct light_set *light;
     const struct target *target;
     struct field *field;
-    const struct fields_entry **fields; /* field of each asset; NULL: the asset shows no field */
+    const struct fields_entry **fields; /* by asset: its field; NULL: the asset shows no field */
     const int *visible;                 /* indices of visible assets, nearest first */
     size_t visible_count;
     struct shaded_colormap colormap;

@@ -10,7 +10,7 @@ enum render_store {
     STORE_PICTURES, /* visibility buffers (triangle and light of each pixel) of views whose camera stands still */
     STORE_TARGETS,  /* framebuffers */
     STORE_ROOM,     /* working memory of the software renderer */
-    STORE_MODELS,   /* geometry on the GPU that is not mapped from files; no cache, cannot be evicted */
+    STORE_MODELS,   /* geometry on the GPU, except data mapped from files; needed for every frame, so it is never evicted */
     RENDER_STORES
 };
 extern const char *const render_store_names[RENDER_STORES];

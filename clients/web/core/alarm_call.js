@@ -12,7 +12,7 @@ const keyOf = ({ tag, kind }) => `${tag.index}/${kind}`;
 
 export class AlarmCall {
     constructor() {
-        this.shown = null;     // key of the shown alarm; null: the view
+        this.shown = null; // key of the shown alarm; null: the pane shows its view
         this.changedAt = -Infinity;
     }
 

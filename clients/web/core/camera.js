@@ -40,7 +40,7 @@ export function basis(camera) {
 // Returns whether the camera is orthographic.
 export const isParallel = (camera) => camera.height_m !== undefined;
 
-// Return the height of the picture in metres, and metres per pixel, at a depth.
+// Return, for a depth along the view, the height of the picture in metres, and the metres per pixel.
 export const heightAt = (camera, depth) => camera.height_m ?? 2 * depth * Math.tan((camera.fov * RADIANS) / 2);
 export const metresPerPixel = (camera, heightPx, depth) => heightAt(camera, depth) / heightPx;
 

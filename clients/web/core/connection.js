@@ -180,7 +180,7 @@ export class Connection {
         this.watch();
     }
 
-    // Abandons the socket at once: a close over a dead line can take minutes.
+    // Abandons the socket at once: an orderly close over a dead connection can take minutes.
     drop() {
         this.clock.clearTimeout(this.timer);
         const socket = this.socket;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Keyboard: the meaning of keys, and steady motion while a key is held.
 
-const MOTIONS = { // per second: [orbit right, orbit up] degrees, [pan right, pan up] in picture heights, zoom as a natural logarithm
+// speed of each key, per second: [orbit right, orbit up] degrees, [pan right, pan up] in picture heights, zoom as a natural logarithm
+const MOTIONS = {
     ArrowLeft: { orbit: [-45, 0] }, ArrowRight: { orbit: [45, 0] }, ArrowUp: { orbit: [0, 45] }, ArrowDown: { orbit: [0, -45] },
     KeyA: { pan: [-0.5, 0] }, KeyD: { pan: [0.5, 0] }, KeyW: { pan: [0, 0.5] }, KeyS: { pan: [0, -0.5] },
     '+': { zoom: -1 }, '-': { zoom: 1 },

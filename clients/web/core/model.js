@@ -26,9 +26,9 @@ export class Model {
         this.links = [];
         this.live = null; // null: no message yet
         this.stopped = false; // see stop()
-        this.clockSet = true; // whether the server's clock is synchronised
+        this.clockSet = true; // true: the server's clock is synchronised
         this.clockErrorMs = null; // maximum clock error; null: unknown
-        this.leapS = 0; // leap second at the end of the month: 1 or -1; 0: none
+        this.leapS = 0; // leap second announced for the end of the month: 1: inserted, -1: removed; 0: none
         this.oldest = null; // { ms, at }: no reading that is not bad is older than `ms` at the time `at`
     }
 

@@ -167,7 +167,7 @@ export class Session {
         this.connection.send(message);
     }
 
-    // Returns token and resume secret; resuming restores parameters that we do not send.
+    // Returns token and resume secret; the server then restores parameters that the page does not send itself.
     proofs() {
         return { ...(this.token ? { token: this.token } : {}),
             ...(this.resume ? { resume: this.resume, idle_ms: Math.max(0, Date.now() - this.connection.activeAt) } : {}),
@@ -365,8 +365,8 @@ export class Session {
 
     // --- what the screen asks
 
-    // Returns the home camera for a size in CSS pixels. legendLies(): whether the legend lies across the picture; null: no legend in the
-    // picture.
+    // Returns the home camera for a size in CSS pixels. legendLies(): returns true if the legend lies across the top of the picture; null:
+    // no legend in the picture.
     homeIn(width, height) {
         const { plant, groups: [group] } = this.model, lies = this.legendLies?.() ?? null, title = `${quantityText(group)} ${group.unit}`;
         return home(plant, width, height, lies === null ? {} : besideLegend(width, height, lies, title.length));

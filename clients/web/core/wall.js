@@ -36,7 +36,7 @@ export function wallFit(wall, screen, { width, height }, least = LEAST) {
     return { scale, metres: scale < needed ? (wall.metres * scale) / needed : wall.metres };
 }
 
-// Displays of a wall reconnect all at once: each waits up to this much longer.
+// Displays of a wall reconnect all at once: so each waits longer by a random time up to this.
 export const SPREAD_MS = 2000;
 
 // Returns a display's brightness: 1, or less within its dimming hours; minute: of the day. Full brightness while an unacknowledged alarm is

@@ -75,7 +75,7 @@ function pageOf({ plant, assets }, notes, journal, standing, [fromUs, toUs], mis
     ];
 }
 
-// For operators and engineers only, because it names people.
+// Only for operators and engineers, because the list names users.
 async function show() {
     const { role } = await get('me');
     if (!['operator', 'engineer'].includes(role))

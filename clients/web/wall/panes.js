@@ -245,7 +245,7 @@ function TilesPane(pane, { session, body, title }) {
         }
     }
 
-    // Sets the flag: its colour is the priority; hollow if returned but unacknowledged.
+    // Sets the alarm flag: the colour shows the priority; hollow: returned to normal but unacknowledged.
     function flagOf(tile, alarm) {
         const text = alarm ? `${alarm.priority} ${alarm.state}` : '';
         if (tile.flag.dataset.shows === text)

@@ -146,7 +146,7 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
 
     // --- marks in the picture
 
-    let frame = null, pointer = null; // frame: on the screen; pointer: of a desk: { position, by, until }
+    let frame = null, pointer = null; // frame: the one on the screen; pointer: position at which a desk points: { position, by, until }
 
     // Returns a function to a position on this display, as fractions of its sides; null: behind the camera, or far away.
     function placer() {

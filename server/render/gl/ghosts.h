@@ -11,7 +11,8 @@ struct ghosts {
     struct render_texture depth;
 };
 
-/* Returns whether an asset is ghosted and inside the view frustum; ghosts_any: whether any asset is. */
+/* Returns whether an asset is ghosted (drawn only as an outline with a faint tint) and inside the view frustum; ghosts_any: whether any
+   asset is. */
 bool ghosts_shows(const struct frame_context *context, size_t asset);
 bool ghosts_any(const struct frame_context *context);
 /* Compiles the shader programs of the pass. Returns false on failure, logged. */

@@ -27,7 +27,7 @@ struct pen {
     const struct snapshot *snapshot;
     const struct loop_checks *loop_checks; /* NULL: none */
     bool bare;                             /* true: draws no markers, sensor labels and alarms */
-    bool calm;                             /* labels only for alarms and Bad readings */
+    bool calm;                             /* true: only alarms and Bad readings have labels */
     double unit, text_px;
     struct burn_shift legend_shift;        /* shift of the legend, within its margin */
     struct label_box taken[PEN_MAX_TAKEN]; /* occupied areas */

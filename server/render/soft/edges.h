@@ -12,7 +12,7 @@ struct raster_edge {
     int32_t negative;   /* -1: pixels with negative values of the edge function are inside; 0: those with non-negative values */
 };
 
-struct plane { /* a value interpolated linearly over the frame; low, high: the smallest and largest of its corners */
+struct plane { /* a value interpolated linearly over the frame; low, high: smallest and largest value at the corners */
     float at, dx, dy, low, high;
 };
 

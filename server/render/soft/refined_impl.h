@@ -14,7 +14,7 @@ extern const float refined_samples[SAMPLES][2];
 
 /* Ids of samples that show no triangle (triangle ids: render/soft/tile.h). */
 #define ID_NOTHING 0xffffffffu
-#define ID_CAP 0xfffffffeu /* a section cap: a closed body that is cut open */
+#define ID_CAP 0xfffffffeu /* the sample shows a section cap: the cut face of a closed body */
 
 enum { NORMAL_X, NORMAL_Y, NORMAL_Z, AMBIENT, OPEN, TINT }; /* indices of vertex attributes, eight per vertex */
 enum { BASE, METALLIC = 3, ROUGHNESS, EMISSIVE };           /* indices of material attributes, eight per material */

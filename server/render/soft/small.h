@@ -141,7 +141,7 @@ SOFT_INLINE lanes small_value(const struct small *small, int l, int p, lanes fro
     return thin ? lanes_clamp(value, small->low[p][l], small->high[p][l]) : value;
 }
 
-/* Returns the index of a pixel of the frame in the samples' rows. */
+/* Returns the index, in the tile's sample arrays, of a pixel given in coordinates of the frame. */
 SOFT_INLINE size_t place_in(const struct soft_tile *tile, int column, int row)
 {
     return (size_t)(row - tile->rect.top) * (size_t)tile->pitch_px + (size_t)(column - tile->rect.left);

@@ -47,7 +47,7 @@ static quad between_texels(const struct soft_texture *texture, int level, float 
 
 struct texture_making {
     struct soft_materials *materials;
-    uint8_t bytes[1 << 14]; /* sRGB byte by linear light, 0..1 */
+    uint8_t bytes[1 << 14]; /* table from linear light, 0..1, to the sRGB byte */
 };
 
 static void make_level(const struct texture_making *making, const struct soft_texture *texture, int level, uint8_t (*out)[4])
@@ -60,8 +60,8 @@ static void make_level(const struct texture_making *making, const struct soft_te
         float x = ((float)(i % width) + 0.5f) * by_x - 0.5f, y = ((float)(i / width) + 0.5f) * by_y - 0.5f;
         quad color = between_texels(texture, level - 1, x, y);
         for (int c = 0; c < 4; c++)
-            out[i][c] = srgb && c < 3 ? making->bytes[(int)(color[c] * (sizeof(making->bytes) - 1) + 0.5f)]
-                                      : (uint8_t)(color[c] * 255 + 0.5f);
+            out[i][c] =
+                srgb && c < 3 ? making->bytes[(int)(color[c] * (sizeof(making->bytes) - 1) + 0.5f)] : (uint8_t)(color[c] * 255 + 0.5f);
     }
 }
 

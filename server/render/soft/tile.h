@@ -65,7 +65,7 @@ struct soft_tile {
     int cuts;          /* number of section planes, from the first in raster->cuts, that clip the part */
     enum { DRAW_ALL, DRAW_OPAQUE, DRAW_BLENDED } draws;
     struct soft_fragments *fragments; /* DRAW_BLENDED: receives the fragments; depth and ids are not written */
-    /* --- of the part being drawn */
+    /* --- of the part that is being drawn */
     const struct soft_mesh *mesh;
     const struct soft_parts *parts;
     const struct soft_part *part;
@@ -91,7 +91,7 @@ struct soft_cutout {
 };
 void soft_cutout_init(struct soft_cutout *cutout, const struct soft_tile *tile, const struct soft_face *face);
 bool soft_is_hole(const struct soft_cutout *cutout, float x, float y); /* x, y: point of the frame */
-/* column, row: pixel of the frame. */
+/* Appends a fragment to tile->fragments. column, row: pixel of the frame. */
 void soft_add_fragment(const struct soft_tile *tile, int sample, const struct soft_face *face, int column, int row, float depth);
 
 /* Counts, in the marks of the pixels, the closed bodies that the part bounds. */

@@ -7,7 +7,7 @@
 
 #include "base/mem.h"
 
-struct tile_entry { /* a part in the list of a tile */
+struct tile_entry { /* entry for one part in the list of parts that a tile may show */
     uint64_t order; /* sort key: nearest first; equally near parts in the order in which they were found */
     uint32_t mesh, item;
 };

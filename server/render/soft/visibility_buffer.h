@@ -32,9 +32,10 @@ struct visibility_part { /* one surface of the field in a pixel with several sur
 enum { VISIBILITY_SHARES = 256, VISIBILITY_MOST_PARTS = 4 };
 
 struct visibility_mixed {
-    uint32_t blue_red, first_part; /* sum of the fixed colours times their shares: blue and red, 16 bits each */
-    uint16_t green;                /* the same sum for green */
-    uint16_t x, row;               /* position in the band */
+    /* blue_red: sum of the fixed colours times their shares, 16 bits each for blue and red; first_part: index of the first of its parts */
+    uint32_t blue_red, first_part;
+    uint16_t green;  /* the same sum for green */
+    uint16_t x, row; /* position in the band */
     uint8_t part_count;
 };
 

@@ -201,7 +201,7 @@ export class AlarmList {
         return say('alarms.since', { time, age: ageText((now - raisedUs) / 1000) });
     }
 
-    // Returns who last acted on the alarm, until when, and the reason.
+    // Returns a text: the user who last acted on the alarm, the end of that action (such as a shelving), and the reason.
     note({ state, who, reason, untilUs, held }) {
         const clock = zoneClock(this.session.model.plant.time_zone);
         const until = untilUs === null ? '' : say('alarms.until', { time: clock(untilUs / 1000).time.slice(0, 5) });

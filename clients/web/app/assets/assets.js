@@ -74,7 +74,7 @@ export class Assets {
             Object.assign(this.tree, { open: before.open, folded: before.folded }); // a reconnect keeps the expanded areas and assets
         setText(byId('assets-count'), String(model.assets.length));
         this.selected = undefined;
-        this.list.renew(() => this.mark()); // after a reload a name may belong to another item
+        this.list.renew(() => this.mark()); // rebuilds all rows, because after a reload of the plant a name may belong to another item
     }
 
     filter() {

@@ -9,7 +9,8 @@ export class Arrival {
         this.page = page;
     }
 
-    // link: { camera, params, tag } that opened the page; null after the first time. refused: `error` messages about our view.
+    // link: { camera, params, tag } that opened the page; null after the first time. refused: `error` messages that refuse parts of this
+    // page's view.
     come(link, refused) {
         const { session, selection, selectTag, tell } = this.page, { model } = session;
         const why = refused.map(({ text, refusal }) => refusalText(text, refusal)), unknown = selection.tag && !model.tag(selection.tag);

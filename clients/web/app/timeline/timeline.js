@@ -191,7 +191,7 @@ export class Timeline {
             this.journal({ ...span, limit: MARKS_MOST }).then(({ rows }) => raised(rows)),
             ask('api/v1/history/gaps', span, token).then((answer) => answer.json()).then((said) => said.gaps),
             this.askLost(span),
-        ].map((one) => one.catch(() => []))); // a failed or refused request leaves that kind of mark out
+        ].map((one) => one.catch(() => []))); // if a request fails or is refused, its kind of mark is not drawn
         Object.assign(this, { marks, gaps, lost: all });
         this.draw();
     }

@@ -143,8 +143,8 @@ export class Trends {
         return { tags: this.tags.map(({ name }) => name).join(','), from: (from / 1e6).toFixed(3), to: (to / 1e6).toFixed(3) };
     }
 
-    // `pending` counts requests that were not answered yet. The timer waits for them: a newer request discards the answer of an older one,
-    // and on a slow link no answer would ever be drawn.
+    // `pending` counts requests that were not answered yet. The timer starts no new request meanwhile: it would discard the answer to the
+    // pending one, so that on a slow link no answer would ever be drawn.
     async refresh() {
         if (this.tags.length === 0 || !this.session.model)
             return;

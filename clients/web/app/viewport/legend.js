@@ -152,7 +152,7 @@ export class Legend {
             since && make('span', { class: 'since' }, ` ${since}`));
     }
 
-    // below: whether values below the range are possible.
+    // below: true if values below the range are possible.
     scale(rule, lines, limits, below) {
         const { map, min, max } = rule;
         const decimals = (value) => decimalsFor(rule.log ? value : max - min);

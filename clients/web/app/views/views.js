@@ -47,7 +47,7 @@ export class Views {
         this.modules.use('namedViews', (named) => named.open(id, fly), 'open');
     }
 
-    // Opens a view given as text.
+    // Opens a view that is given as the text of a URL fragment.
     lookAt(text) {
         this.modules.use('namedViews', (named) => named.look(text, false), 'open');
     }
