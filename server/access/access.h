@@ -10,17 +10,18 @@
 enum { ACCESS_MAX_NAMES = 16 };
 
 struct access_params {
-    bool open_viewers;                        /* clients without a token get pictures and nothing else */
-    bool behind_proxy; /* a proxy on this machine forwards connections of others, so a loopback address proves nothing */
-    bool trust_local;                         /* clients on this machine need no token, although others do */
+    bool open_viewers; /* true: clients without a token get pictures and nothing else */
+    /* true: a proxy on this machine forwards other clients' connections, so a loopback address does not prove that a client is local */
+    bool behind_proxy;
+    bool trust_local;                         /* true: clients on this machine need no token, although others do */
     const char *tokens_path;                  /* file of tokens; NULL: tokens are not used */
     const char *openid_path;                  /* file of --openid; NULL: no sign-in with OpenID Connect */
     const char *tls_cert_path, *tls_key_path; /* NULL: no TLS */
     const char *hosts[ACCESS_MAX_NAMES];      /* additional host names that clients may use in the Host header */
     const char *origins[ACCESS_MAX_NAMES];    /* origins of other hosts' pages that may connect, as SCHEME://HOST[:PORT] */
     int host_count, origin_count;
-    const char *notice_path;                  /* file of a text shown before users sign in; NULL: none */
-    double lock_min;                          /* minutes without user activity after which the user must sign in again; 0: never */
+    const char *notice_path; /* file of a text shown before users sign in; NULL: none */
+    double lock_min;         /* minutes without user activity after which the user must sign in again; 0: never */
     struct quotas quotas;
 };
 

@@ -6,7 +6,7 @@
 #include <stdint.h>
 #include <sys/stat.h>
 
-struct file_stamp { /* all 0: the file does not exist */
+struct file_stamp { /* state of the file when it was read; all 0: the file does not exist */
     int64_t seconds, nanoseconds, bytes;
     uint64_t inode;
     unsigned mode, owner;

@@ -27,7 +27,7 @@ struct pairings {
     struct kept_list kept; /* list in devices.json: { id, hash, wall, display, from, by, time_us } */
     struct pending_pairing waiting[PAIRINGS];
     size_t count;
-    uint64_t number;  /* number of the last change of the waiting devices */
+    uint64_t number;  /* sequence number of the last change of the list of waiting devices */
     int64_t wrong_ns; /* monotonic: when the first wrong digits of this minute came */
     int wrong;
 };
@@ -156,7 +156,7 @@ static struct pending_pairing *find_digits(struct pairings *pairings, const char
     return NULL;
 }
 
-/* Returns the index of the waiting device with that secret's hash and display, or pairings->count. */
+/* Returns the index of the waiting device with that secret's hash and display; pairings->count if there is none. */
 static size_t find_waiting(const struct pairings *pairings, const uint8_t hash[TOKEN_HASH_BYTES], const struct wall_place *place)
 {
     size_t i = 0;
@@ -189,8 +189,9 @@ static size_t count_from(const struct pairings *pairings, const uint8_t address[
     return from;
 }
 
-/* Frees a place when all are taken: drops the newest waiting device of the address that has most of them, if that address has at least
-   two more than the asking one (which has `from`). So a few addresses cannot keep others out. Returns false if no address has that many. */
+/* Frees a place when all are taken: drops the newest waiting device of the address with the most waiting devices, if that address has at
+   least two more of these than the requesting address, which has `from`. So a few addresses cannot keep others out. Returns false if no
+   address has that many. */
 static bool make_room(struct pairings *pairings, size_t from)
 {
     size_t most = from + 1, victim = pairings->count;
@@ -212,7 +213,7 @@ static bool make_room(struct pairings *pairings, size_t from)
 
 /* Adds a waiting device. Returns NULL if too many wait. */
 static struct pending_pairing *begin(struct pairings *pairings, const uint8_t hash[TOKEN_HASH_BYTES], const struct pairing_request *request,
-                             int64_t now_ns)
+                                     int64_t now_ns)
 {
     size_t from = count_from(pairings, request->address);
     if (from >= PAIRINGS_FROM || (pairings->count == PAIRINGS && !make_room(pairings, from)))
@@ -284,7 +285,7 @@ static enum refusal_code keep(struct pairings *pairings, const struct pending_pa
     return kept_list_put(&pairings->kept, list);
 }
 
-/* Returns whether digits may be tried: ten wrong attempts a minute, against a million possibilities. */
+/* Returns false once a minute had ten wrong attempts. With a million possibilities, guessing then takes weeks. */
 static bool may_try(struct pairings *pairings, int64_t now_ns)
 {
     if (now_ns - pairings->wrong_ns >= WRONG_NS)
@@ -293,7 +294,7 @@ static bool may_try(struct pairings *pairings, int64_t now_ns)
 }
 
 enum refusal_code pairings_approve(struct pairings *pairings, const char *digits, const char *who, int64_t now_ns, int64_t now_us,
-                             char id[TOKEN_NAME_BYTES])
+                                   char id[TOKEN_NAME_BYTES])
 {
     enum refusal_code why = pairings_refusal(pairings);
     if (why)

@@ -12,11 +12,11 @@
 
 enum {
     PAIRING_DIGITS = 6,
-    PAIRING_S = 300,       /* seconds for which digits are valid, */
-    PAIRING_QUIET_S = 60,  /* unless the device has not asked for this many seconds */
-    PAIRINGS = 64,         /* maximum number of waiting devices, shared equally among addresses */
-    PAIRINGS_FROM = 8,     /* maximum number of waiting devices of one address */
-    PAIRING_WRONG = 10,    /* maximum number of wrong digits within a minute */
+    PAIRING_S = 300,      /* maximum number of seconds for which digits are valid, */
+    PAIRING_QUIET_S = 60, /* and the number of seconds without a request of the device after which they expire earlier */
+    PAIRINGS = 64,        /* maximum number of waiting devices, shared equally among addresses */
+    PAIRINGS_FROM = 8,    /* maximum number of waiting devices of one address */
+    PAIRING_WRONG = 10,   /* maximum number of wrong digits within a minute */
     PAIRED_DEVICES = 256,
 };
 #define PAIRINGS_FILE "devices.json"
@@ -24,10 +24,10 @@ enum {
 enum pairing { PAIRING_WAITS, PAIRING_DONE, PAIRING_FULL, PAIRING_OTHER };
 
 struct pairing_request {
-    const char *secret;     /* secret of the device; see pairings_secret_valid() */
+    const char *secret;      /* secret of the device; see pairings_secret_valid() */
     struct wall_place place; /* display that the device shows; without an area */
-    const uint8_t *address; /* address of the device, as in struct address_usage */
-    const char *from;       /* the same address as text */
+    const uint8_t *address;  /* address of the device, as in struct address_usage */
+    const char *from;        /* the same address as text */
 };
 
 struct pairings;
@@ -37,7 +37,7 @@ struct pairings *pairings_open(struct log *log, const char *folder);
 void pairings_close(struct pairings **pairings); /* &NULL is allowed; sets *pairings to NULL */
 /* Returns whether a device may have that secret: it must have the form of a token (tokens_make), with 256 bits. */
 bool pairings_secret_valid(const char *secret);
-/* Returns why no device can be paired, or REFUSAL_NONE. */
+/* Returns the reason why no device can be paired, or REFUSAL_NONE. */
 enum refusal_code pairings_refusal(const struct pairings *pairings);
 /* Returns whether the device is paired; if it waits, writes its digits and the seconds left. PAIRING_FULL: too many devices wait.
    PAIRING_OTHER: the device is paired with another display, and a secret works for one display only. now_ns: monotonic. */
@@ -46,7 +46,7 @@ enum pairing pairings_ask(struct pairings *pairings, const struct pairing_reques
 /* Pairs the device that shows those digits. who: the approving engineer; now_us: UTC. Returns REFUSAL_NONE with the device's id, or why
    it was refused. */
 enum refusal_code pairings_approve(struct pairings *pairings, const char *digits, const char *who, int64_t now_ns, int64_t now_us,
-                             char id[TOKEN_NAME_BYTES]);
+                                   char id[TOKEN_NAME_BYTES]);
 /* Revokes a device. Returns REFUSAL_NONE, or why it was refused. */
 enum refusal_code pairings_revoke(struct pairings *pairings, const char *id);
 /* Finds a paired device by the hash of its secret, for tokens_set_pairings(). pairings: a struct pairings. Returns false if there is
@@ -57,9 +57,9 @@ char *pairings_text(const struct pairings *pairings);
 
 /* --- for a renderer, whose core approves devices --------------------------------------------------------------------------------- */
 
-/* Returns a number that increases with each change of the paired or waiting devices. */
+/* Returns a sequence number that increases with each change of the paired or waiting devices. */
 uint64_t pairings_number(const struct pairings *pairings);
-/* Returns them as JSON for renderers: { devices, waiting }, with hashes; the caller owns it. */
+/* Returns the paired and the waiting devices as JSON for renderers: { devices, waiting }, with hashes; the caller owns it. */
 json_t *pairings_told(const struct pairings *pairings, int64_t now_ns);
 /* Replaces the devices on a renderer or a standby core by those of the core. Returns false if the JSON is invalid. */
 bool pairings_mirror(struct pairings *pairings, const json_t *told, int64_t now_ns);

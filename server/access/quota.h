@@ -35,7 +35,7 @@ enum quota {
 
 struct quotas {
     int64_t at[QUOTA_COUNT];
-    bool given[QUOTA_COUNT]; /* set on the command line; limits per address then also apply to addresses of this machine */
+    bool given[QUOTA_COUNT]; /* true for a limit set on the command line; limits per address then also apply to addresses of this machine */
 };
 
 /* Returns the default limits. */

@@ -99,7 +99,7 @@ bool tokens_may_see(const struct token_holder *holder, const char *view)
     size_t length = strlen(view);
     for (const char *at = holder->views; *at; at += at[strcspn(at, ",")] ? strcspn(at, ",") + 1 : strlen(at))
         if (!strncmp(at, view, length) && (at[length] == ',' || !at[length]))
-            return named_view_id_valid(view); /* the view is a single id, not a list with commas */
+            return named_view_id_valid(view); /* refuses a list: the view is a single id */
     return !holder->views[0];
 }
 
@@ -124,7 +124,7 @@ static bool take_plant(char *line, char plant[TOKEN_PLANT_BYTES])
     while (n > 0 && strchr(" \t", line[n - 1]))
         line[--n] = 0;
     for (char *next = line; (next = strstr(next, key)); next++)
-        /* searched after the hash only, because a holder's name may contain the word */
+        /* searched only after the hash, because the holder's name may contain the word */
         at = next > line + 2 * TOKEN_HASH_BYTES && !at ? next : at;
     if (!at)
         return true;
@@ -217,7 +217,7 @@ void tokens_print_line(struct text *out, const struct token_holder *holder)
 
 /* --- the file --------------------------------------------------------------------------------------------------------------------- */
 
-/* Returns why the file may not be used; NULL: it may. */
+/* Returns the reason why the file may not be used; NULL: it may be used. */
 static const char *fault_of(const struct stat *st)
 {
     if (!S_ISREG(st->st_mode))

@@ -17,8 +17,8 @@ void core_history_destroy(struct core_history **history); /* &NULL is fine; leav
 void core_history_add(struct text *path, const char *name, const char *value);
 /* Appends the core's answer for the path to *out. Returns false on failure; logged if the cause differs from the last one. */
 bool core_history_get(struct core_history *history, const char *path, struct text *out);
-/* Reads the readings of an instant into *snapshot, and the start of the history into *first_us (0: no history). snapshot NULL: only the
-   latter. Returns false on failure. */
+/* Reads the readings of an instant into *snapshot, and the start of the history into *first_us (0: no history). snapshot NULL: reads only
+   the start of the history. Returns false on failure. */
 bool core_history_instant(struct core_history *history, int64_t at_us, struct snapshot *snapshot, int64_t *first_us);
 
 #endif

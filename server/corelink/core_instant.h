@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The readings of an instant that a core recorded, as bytes for a renderer. Pure. Thread: any. */
+/* Converts the readings of an instant, as a core recorded them, to bytes for a renderer and back. Pure. Thread: any. */
 #ifndef CORELINK_CORE_INSTANT_H
 #define CORELINK_CORE_INSTANT_H
 #include "base/text/text.h"

@@ -25,7 +25,7 @@
 #include "value/backoff.h"
 #include "value/lookup.h"
 
-enum { CORE_ACT_BYTES = 200 * 1024 /* maximum length of an act; less than a core accepts */ };
+enum { CORE_ACT_BYTES = 200 * 1024 /* maximum length in bytes of an act (a forwarded action); below the limit of the core */ };
 enum { MAX_MESSAGE_BYTES = 64 << 20 /* of one message */, TOKEN_BYTES = 256, WHY_BYTES = 300, LOOK_US = 200000, ADDRESSES = 8 };
 static const int64_t CONNECT_NS = 4 * NS_PER_S, CLOCKS_NS = 2 * NS_PER_S /* clock difference above which a warning is logged */;
 /* smaller clock differences are not corrected, so that the clock which pages use does not step */
@@ -51,15 +51,15 @@ struct core_link {
         char said[ADDRESSES][WHY_BYTES]; /* per address: last logged reason why there was no connection */
     } hosts[CORE_URLS];
     int address;                                       /* index of the address being tried */
-    int64_t heard_ns, begun_ns, least_ns, readings_ns; /* least_ns and readings_ns: least_ns and at_ns of struct core_readings */
-    bool ended, taken, votes, introduced, clock_said;  /* votes: connected only to promise leases, without readings */
-    bool at_fault;                                     /* the last error is a misconfiguration of this node or the core, not a lost link */
-    char why[WHY_BYTES];                               /* why this connection ended */
+    int64_t heard_ns, begun_ns, least_ns, readings_ns; /* least_ns, readings_ns: kept for the next core_readings (least_ns, at_ns) */
+    bool ended, taken, votes, introduced, clock_said;  /* votes: the connection is only for lease promises and gets no readings */
+    bool at_fault;       /* true: the last error is a misconfiguration of this node or of the core; false: the link was lost */
+    char why[WHY_BYTES]; /* why this connection ended */
     struct thread thread;
     /* --- below: under thread.lock */
     struct lws_context *context; /* NULL: not connected */
     bool is_up;
-    int up_index;     /* index of the URL that sends readings */
+    int up_index;     /* index of the URL whose core sends readings */
     struct text *out; /* messages that wait to be sent */
     size_t out_count, out_capacity;
     struct pending_request waiting[CORE_ACTS];
@@ -116,7 +116,8 @@ static void queue(struct core_link *link, char *text)
     mem_free(text);
 }
 
-/* Packs an act into a message. Returns NULL if the core could not accept it, which would end the link. */
+/* Packs an act (a user's forwarded action) into a message. Returns NULL if the core could not accept the message, which would end the
+   link. */
 static char *pack_act(const struct core_act *act, uint64_t id)
 {
     json_t *message = json_loads(act->text, 0, NULL);
@@ -178,8 +179,8 @@ static void refuse(struct core_link *link, const char *why)
     end(link, why);
 }
 
-/* Keeps a connection for votes only: the leader's configuration differs from ours, so its readings cannot be used, but it needs our
-   promise not to take the lead. */
+/* Uses the connection only for votes (lease promises): the leader's configuration differs from ours, so its readings cannot be used, but it
+   needs our promise not to take the lead. */
 static void stay_to_vote(struct core_link *link, const char *why)
 {
     char *said = link->hosts[link->turn.index].said[link->address], text[WHY_BYTES];
@@ -236,7 +237,7 @@ static void on_links(struct core_link *link, const json_t *message)
             store_link_down(link->params.store, (int)i, now_ns);
 }
 
-/* Frees the slot of an act. Returns the client that waits for its answer; 0: none any more. */
+/* Frees the entry of an act that was answered. Returns the client that waits for the answer; 0: no client waits any more. */
 static uint64_t take_waiting(struct core_link *link, uint64_t id)
 {
     uint64_t client = 0;
@@ -316,7 +317,7 @@ static void on_text(struct core_link *link)
     json_decref(message);
 }
 
-/* Follows the core's clock for displayed times; readings carry ages, which need no common clock. */
+/* Adjusts the clock for displayed times to the core's clock; readings carry ages, which need no common clock. */
 static void compare_clocks(struct core_link *link, int64_t core_utc_ns, int64_t late_ns)
 {
     int64_t ahead_ns = core_utc_ns - clock_utc_ns();
@@ -325,8 +326,8 @@ static void compare_clocks(struct core_link *link, int64_t core_utc_ns, int64_t 
     bool differ = llabs(ahead_ns) > CLOCKS_NS;
     counter_set(link->behind, ahead_ns / 1000);
     if (differ && !link->clock_said)
-        log_warn(link->params.log, "core: its clock is %.1f s %s this machine's: all times are the core's",
-                 (double)llabs(ahead_ns) / 1e9, ahead_ns > 0 ? "ahead of" : "behind");
+        log_warn(link->params.log, "core: its clock is %.1f s %s this machine's: all times are the core's", (double)llabs(ahead_ns) / 1e9,
+                 ahead_ns > 0 ? "ahead of" : "behind");
     link->clock_said = differ;
 }
 
@@ -369,7 +370,8 @@ static void on_bytes(struct core_link *link)
     }
     link->least_ns = readings.least_ns;
     link->readings_ns = readings.at_ns;
-    if (readings.late_ns > CORE_SILENT_NS) { /* readings delayed by a slow network, or received while this machine slept, are not current */
+    /* rejects readings that a slow network delayed, or that were received while this machine slept: they are not current */
+    if (readings.late_ns > CORE_SILENT_NS) {
         end(link, "its readings come more than 2 s late");
         return;
     }
@@ -472,7 +474,7 @@ static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *use
     case LWS_CALLBACK_CLIENT_CONNECTION_ERROR: on_failure(link, in); break;
     case LWS_CALLBACK_CLIENT_RECEIVE: on_receive(link, in, len); return link->ended ? -1 : 0;
     case LWS_CALLBACK_CLIENT_WRITEABLE: return send_next(link);
-    case LWS_CALLBACK_EVENT_WAIT_CANCELLED: /* a message is queued, or the thread must end */
+    case LWS_CALLBACK_EVENT_WAIT_CANCELLED: /* woken because a message is queued, or the thread must end */
         if (link->wsi)
             lws_callback_on_writable(link->wsi);
         break;
@@ -493,7 +495,7 @@ struct link_wakeup {
     struct core_link *link;
 };
 
-/* Timer that makes lws_service() return regularly. */
+/* Does nothing: a timer that only makes lws_service() return regularly. */
 static void on_look(lws_sorted_usec_list_t *sul)
 {
     struct link_wakeup *look = lws_container_of(sul, struct link_wakeup, sul);
@@ -680,14 +682,14 @@ static void lost(struct core_link *link)
     memcpy(said, link->why, WHY_BYTES);
 }
 
-/* Selects the next address of this core's name, or the next core. Returns when to try it. */
+/* Selects the next address of this core's name, or the next core. Returns the monotonic time at which to try it. */
 static int64_t take_turn(struct core_link *link)
 {
     int *index = &link->hosts[link->turn.index].index, count = link->hosts[link->turn.index].count;
     *index = count ? (link->address + 1) % count : 0;
     if (*index)
         return clock_mono_ns();
-    if (link->turn.backoff.failures > 1) /* limit the reconnect delay to about a second: operators are waiting */
+    if (link->turn.backoff.failures > 1) /* limits the reconnect delay to about a second, because operators are waiting */
         link->turn.backoff.failures = 1;
     return host_turn_next_ns(&link->turn, link->params.url_count, clock_mono_ns());
 }

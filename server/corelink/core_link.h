@@ -20,7 +20,7 @@ struct core_link_params {
     const struct plant *plant;
     struct store *store;
     struct alarm_service *alarm_service; /* alarm service in mirror mode; plant, store and alarm service must outlive the link */
-    const char *urls[CORE_URLS];         /* ws://HOST:PORT or wss://, tried in turn: one of them is the core */
+    const char *urls[CORE_URLS];         /* ws://HOST:PORT or wss://, tried in turn: one of these URLs is the core's */
     int url_count;
     const char *token_path, *ca_path; /* token file, NULL: none; trusted certificates, NULL: the system's */
     const char *version, *node;       /* version of this program; name of this renderer for the core's log */
@@ -48,7 +48,7 @@ struct core_peer {
     /* value of the authorization header, "": none; ca_path as in params. Both live as long as the link */
     const char *authorization, *ca_path;
 };
-/* Returns the core that sends readings now. False: none does. Any thread. */
+/* Returns the core that sends readings now. Returns false if no core does. Any thread. */
 bool core_link_peer(struct core_link *link, struct core_peer *out);
 
 struct core_act {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Format, little-endian: "PCR1", count, the core's UTC and monotonic clocks; then for each reading: tag, quality, value, age, source
-   time. */
+/* Message format, little-endian: "PCR1", count, the core's UTC and monotonic clocks; then for each reading: tag, quality, value, age,
+   source time. */
 #include "corelink/core_readings.h"
 
 #include <math.h>

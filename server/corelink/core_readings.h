@@ -9,14 +9,14 @@
 
 enum { CORE_READINGS_HEAD_BYTES = 24, CORE_READING_BYTES = 32 };
 
-/* The last readings that one renderer was sent, by tag. */
+/* The readings that were last sent to one renderer, by tag. */
 struct core_sent {
     size_t count;
     struct core_sent_reading {
         uint32_t changes;
         int64_t received_utc_ns;
         bool sent;
-    } *at;
+    } * at;
 };
 
 void core_sent_init(struct core_sent *sent, size_t tag_count);
@@ -27,10 +27,10 @@ void core_readings_write(struct text *out, const struct snapshot *snapshot, stru
 
 struct core_readings {
     int64_t utc_ns; /* the core's clock when it took the readings */
-    /* smallest difference of our monotonic clock to the core's in this connection; set to INT64_MAX for a new one */
+    /* smallest difference between our monotonic clock and the core's seen in this connection; set to INT64_MAX for a new one */
     int64_t least_ns;
     int64_t at_ns;   /* arrival time of the last message of this connection; set to 0 for a new one */
-    int64_t late_ns; /* delay of this message compared with the fastest of the connection; included in the ages */
+    int64_t late_ns; /* extra delay of this message over the fastest message of the connection; already added to the ages */
     size_t count;
     struct mirrored *at; /* buffer for one reading of each tag */
 };

@@ -14,7 +14,7 @@ static const char MAGIC[4] = { 'P', 'C', 'S', '1' };
 
 struct core_samples {
     struct store *store;
-    pthread_mutex_t lock; /* taken while the store's lock is held */
+    pthread_mutex_t lock; /* lock of the queue; may be taken while the store's lock is held */
     /* --- below: under `lock` */
     struct sample_event *at;
     size_t count, capacity;

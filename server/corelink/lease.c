@@ -26,7 +26,7 @@ static bool is_same(const struct lease_row *a, const struct lease_row *b)
     return a->epoch == b->epoch && a->beat == b->beat;
 }
 
-/* Makes this node the leader. It may act only once a renewal is confirmed. */
+/* Makes this node the leader. It may not act before a renewal is confirmed. */
 static void lead(struct lease *lease)
 {
     lease->leads = true;
@@ -39,10 +39,10 @@ void lease_saw(struct lease *lease, const struct lease_row *row, int64_t now_ns)
     bool same = lease->known && is_same(row, &lease->row);
     if (lease->leads && (!is_ours(lease, row) || row->epoch != lease->row.epoch))
         lease->lost = true;
-    else if (!lease->leads && lease->bids && is_ours(lease, row)) /* our bid succeeded, but the database's answer was lost */
+    else if (!lease->leads && lease->bids && is_ours(lease, row)) /* this node's bid had succeeded, but the database's answer was lost */
         lead(lease);
     else if (!same)
-        lease->bids = false; /* the row has changed: a late answer to our old bid has no effect any more */
+        lease->bids = false; /* the row has changed, so a late answer to this node's old bid has no effect any more */
     if (!same)
         lease->seen_ns = now_ns;
     lease->row = *row;
@@ -94,7 +94,7 @@ bool lease_promise(struct lease *lease, int64_t now_ns)
 
 void lease_renew(struct lease *lease, const char *standby)
 {
-    if (strcmp(lease->counts, standby) != 0) /* from now on the row may name another standby */
+    if (strcmp(lease->counts, standby) != 0) /* from here on the row may name a different standby */
         lease->counts[0] = 0;
 }
 

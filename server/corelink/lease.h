@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The rule by which two cores agree which of them leads, that is, polls the devices and owns the alarms. Pure: time is an argument. Thread:
+/* The rule by which two cores agree which core leads, that is, polls the devices and owns the alarms. Pure: time is an argument. Thread:
    one at a time.
 
    Three parties vote: the leader, its standby, and a row in a database. The leader may act for LEASE_HOLD_NS from when it sent the last
@@ -22,7 +22,7 @@ enum { LEASE_NODE_BYTES = 64 };
 
 struct lease_row {    /* the row in the database */
     int64_t epoch;    /* increases with each new leader */
-    int64_t beat;     /* increases with each change of the row */
+    int64_t beat;     /* sequence number that increases with each change of the row (beat) */
     int64_t instance; /* random number of the leader's process, which distinguishes a restarted node */
     /* unique names of nodes; leader "": the lease was given back; standby "": none */
     char leader[LEASE_NODE_BYTES], standby[LEASE_NODE_BYTES];
@@ -34,12 +34,12 @@ struct lease {
     struct lease_row row; /* the row as last read or written */
     bool known;           /* `row` is valid */
     bool leads;
-    bool lost;                     /* this node led, and another one leads now */
+    bool lost;                     /* this node was the leader, and another node leads now */
     bool bids;                     /* a bid of this node is in progress, or its outcome is unknown */
     int64_t seen_ns;               /* follower: time since which the row is unchanged */
     int64_t bound_ns;              /* follower: time until which its promise binds it */
     int64_t until_ns;              /* leader: time until which it may act */
-    char counts[LEASE_NODE_BYTES]; /* leader: node whose promises count; "": none */
+    char counts[LEASE_NODE_BYTES]; /* leader: name of the node whose promises count; "": none */
 };
 
 /* Initialises a lease. node: shorter than LEASE_NODE_BYTES. */
@@ -47,7 +47,7 @@ void lease_init(struct lease *lease, const char *node, int64_t instance);
 /* Returns whether this node may act at this time. */
 bool lease_acts(const struct lease *lease, int64_t now_ns);
 
-/* Processes the row that the database returned at now_ns. A leader that finds another node's name in it has lost. */
+/* Processes the row that the database returned at now_ns. A leader that finds another node's name in the row is no longer the leader. */
 void lease_saw(struct lease *lease, const struct lease_row *row, int64_t now_ns);
 
 /* --- for a follower --- */

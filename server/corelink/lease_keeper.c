@@ -34,15 +34,16 @@ struct lease_keeper {
     } counters;
     /* --- below: used by the keeper's thread only */
     struct postgres_link *link; /* connection to the database; NULL: none */
-    bool looks;                 /* the current row is unknown and must be read */
+    bool looks;                 /* true: the current row is unknown and must be read */
     bool told_won, told_lost;
     char said[POSTGRES_WHY_BYTES], led_by[LEASE_NODE_BYTES];
-    /* beat of the row when it first named another core with our name; -1: that core is alive, which was logged; 0: none */
+    /* value of beat when the row first named another core with this node's name; -1: that core is alive, which was logged; 0: no such
+       row */
     int64_t namesake_beat;
     struct thread thread;
     /* --- below: under thread.lock */
     struct lease lease;
-    char standby[LEASE_NODE_BYTES]; /* standby that is connected, or was until gone_ns */
+    char standby[LEASE_NODE_BYTES]; /* name of the standby that is connected, or that was connected until gone_ns */
     int64_t gone_ns;                /* 0: connected */
     bool follows;                   /* the standby has our version and configuration */
     uint64_t asked;
@@ -110,16 +111,17 @@ static int64_t request_timeout_ns(struct lease_keeper *keeper)
 static bool make_table(struct lease_keeper *keeper)
 {
     const char *schema = keeper->postgres.schema;
-    if (!postgres_link_runf(keeper->link, "BEGIN; SELECT pg_advisory_xact_lock(hashtext('plantcast.%s'));"
-                                          "CREATE SCHEMA IF NOT EXISTS \"%s\"; SET LOCAL search_path = \"%s\";"
-                                          "CREATE TABLE IF NOT EXISTS lease(plant text PRIMARY KEY, epoch bigint NOT NULL,"
-                                          " beat bigint NOT NULL, leader text NOT NULL, instance bigint NOT NULL, standby text NOT NULL,"
-                                          " renewed timestamptz NOT NULL); COMMIT; SET search_path = \"%s\"",
+    if (!postgres_link_runf(keeper->link,
+                            "BEGIN; SELECT pg_advisory_xact_lock(hashtext('plantcast.%s'));"
+                            "CREATE SCHEMA IF NOT EXISTS \"%s\"; SET LOCAL search_path = \"%s\";"
+                            "CREATE TABLE IF NOT EXISTS lease(plant text PRIMARY KEY, epoch bigint NOT NULL,"
+                            " beat bigint NOT NULL, leader text NOT NULL, instance bigint NOT NULL, standby text NOT NULL,"
+                            " renewed timestamptz NOT NULL); COMMIT; SET search_path = \"%s\"",
                             schema, schema, schema, schema))
         return false;
-    PGresult *added = postgres_link_ask(keeper->link,
-                                        "INSERT INTO lease VALUES ($1, 0, 0, '', 0, '', now()) ON CONFLICT (plant) DO NOTHING", 1,
-                                        (const char *[]){ keeper->plant });
+    PGresult *added =
+        postgres_link_ask(keeper->link, "INSERT INTO lease VALUES ($1, 0, 0, '', 0, '', now()) ON CONFLICT (plant) DO NOTHING", 1,
+                          (const char *[]){ keeper->plant });
     PQclear(added);
     return added;
 }
@@ -162,7 +164,7 @@ static bool read_row(struct lease_keeper *keeper, struct lease_row *row)
     return there && is_well(keeper);
 }
 
-/* Changes the row if it is still as `seen`. Returns 1: changed; 0: the row differs; -1: unknown. */
+/* Changes the row if it is still as `seen`. Returns 1 if it was changed, 0 if the row differs, -1 if the outcome is unknown. */
 static int change_row(struct lease_keeper *keeper, const char *sql, const struct lease_row *seen, const char *name, int64_t instance)
 {
     char epoch[NUMBER_BYTES], beat[NUMBER_BYTES], own[NUMBER_BYTES];
@@ -183,12 +185,12 @@ static int change_row(struct lease_keeper *keeper, const char *sql, const struct
 #define SEEN " WHERE plant = $1 AND epoch = $2::bigint AND beat = $3::bigint"
 static const char sql_bid[] = "UPDATE lease SET epoch = epoch + 1, beat = beat + 1, instance = $4::bigint, leader = $5, standby = '',"
                               " renewed = now()" SEEN " RETURNING 1";
-static const char sql_renew[] = "UPDATE lease SET beat = beat + 1, standby = $5, renewed = now()" SEEN
-                                " AND instance = $4::bigint RETURNING 1";
-static const char sql_give_back[] = "UPDATE lease SET beat = beat + 1, leader = $5, standby = '', renewed = now()" SEEN
-                                    " AND instance = $4::bigint RETURNING 1";
+static const char sql_renew[] =
+    "UPDATE lease SET beat = beat + 1, standby = $5, renewed = now()" SEEN " AND instance = $4::bigint RETURNING 1";
+static const char sql_give_back[] =
+    "UPDATE lease SET beat = beat + 1, leader = $5, standby = '', renewed = now()" SEEN " AND instance = $4::bigint RETURNING 1";
 
-/* --- cores with our name -------------------------------------------------------------------------------------------------------- */
+/* --- detects other cores with this node's name ---------------------------------------------------------------------------------- */
 
 bool lease_name(char out[LEASE_NODE_BYTES], const char *node, const char *id)
 {
@@ -286,7 +288,7 @@ static void renew(struct lease_keeper *keeper)
     }
 }
 
-/* Reports the outcome of a turn: metrics, log, callbacks. */
+/* Reports the outcome of one round of the keeper's work: metrics, log, callbacks. */
 static void tell(struct lease_keeper *keeper)
 {
     int64_t now_ns = now_of_lease();
@@ -313,7 +315,7 @@ static void tell(struct lease_keeper *keeper)
     }
 }
 
-/* Does the periodic work: connects, reads the row, renews or bids. Returns the time of the next call. */
+/* Does one round of the keeper's work: connects, reads the row, renews or bids. Returns the time of the next call. */
 static int64_t take_turn(struct lease_keeper *keeper)
 {
     int64_t began_ns = now_of_lease();
@@ -332,7 +334,7 @@ static int64_t take_turn(struct lease_keeper *keeper)
     pthread_mutex_lock(&keeper->thread.lock);
     int64_t next_ns = began_ns + (leads ? LEASE_RENEW_NS : LEASE_LOOK_NS), last_ns = keeper->lease.until_ns - SHUTDOWN_NS + 1;
     pthread_mutex_unlock(&keeper->thread.lock);
-    /* wakes the thread in time to report the end of the lease */
+    /* limits the wait, so that the thread wakes in time to report the end of the lease */
     return leads && !keeper->told_lost && last_ns > began_ns && last_ns < next_ns ? last_ns : next_ns;
 }
 

@@ -35,7 +35,7 @@ bool lease_keeper_leads(struct lease_keeper *keeper); /* Returns whether this no
    connection has ended: if the database is lost at the moment of a reload, the standby's promises are all that is left. follows: the
    standby has this core's version and configuration; otherwise it only votes, and does not count as a standby in the metrics. */
 void lease_keeper_set_standby(struct lease_keeper *keeper, const char *node, bool follows);
-/* Returns the number of a question that the caller sends to the standby now. */
+/* Returns the sequence number of a question for the standby; the caller sends it now. */
 uint64_t lease_keeper_ask(struct lease_keeper *keeper);
 /* Processes the standby's promise as the answer to that question. */
 void lease_keeper_promised(struct lease_keeper *keeper, const char *node, uint64_t number);

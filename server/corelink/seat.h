@@ -9,7 +9,7 @@ struct seat {
     char id[9];
 };
 
-/* Locks the identity of a folder, and creates it if it is missing. Returns NULL, or why that failed (mem_free). */
+/* Locks the identity of a folder, and creates it if it is missing. Returns NULL, or an error message (mem_free). */
 char *seat_take(struct seat *seat, const char *folder);
 void seat_leave(struct seat *seat); /* Releases the identity; a zero-initialised struct is fine. */
 

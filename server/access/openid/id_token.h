@@ -12,7 +12,7 @@ enum { ID_TOKEN_BYTES = 64 * 1024, ID_TOKEN_SKEW_S = 60 };
 struct id_token_expected {
     const struct openid_config *config;
     const json_t *jwks; /* the provider's public keys */
-    const char *nonce;  /* NULL: not checked; a refreshed token need not have one */
+    const char *nonce;  /* expected nonce; NULL: not checked, because a refreshed token need not have one */
     const char *sub;    /* expected subject; NULL: not known yet */
     int64_t now_s;      /* UTC */
     int64_t patience_s; /* seconds for which a token is accepted after its `exp` */
@@ -30,7 +30,7 @@ enum id_token_fault id_token_verify(const char *token, const struct id_token_exp
 enum role id_token_role(const struct openid_config *config, const json_t *claims);
 /* Returns whether the claims contain groups at all. */
 bool id_token_has_groups(const struct openid_config *config, const json_t *claims);
-/* Writes the person's name for lists and journals: the name claim, else e-mail, else sub. Returns false if none of them can be
+/* Writes the person's name for lists and journals: the name claim, else e-mail, else sub. Returns false if no such claim can be
    displayed. */
 bool id_token_name(const struct openid_config *config, const json_t *claims, char *out, size_t size);
 

@@ -57,7 +57,7 @@ char *openid_begin(struct openid *openid, const uint8_t address[16], const char 
     return url;
 }
 
-/* Returns whether the answer comes from another provider than the configured one (RFC 9207). */
+/* Returns true if the answer comes from a provider other than the configured one (RFC 9207). */
 static bool is_other_issuer(const struct openid *openid, const char *iss)
 {
     if (iss)
@@ -65,7 +65,7 @@ static bool is_other_issuer(const struct openid *openid, const char *iss)
     return json_is_true(json_object_get(openid->metadata, "authorization_response_iss_parameter_supported"));
 }
 
-/* Returns whether another answer may wait. Waiting answers are limited per address, so that one address cannot use all places. The
+/* Returns whether one more answer may be queued. Queued answers are limited per address, so that one address cannot use all places. The
    caller holds the lock. */
 static bool has_room(const struct openid *openid, const uint8_t address[16])
 {
@@ -75,8 +75,8 @@ static bool has_room(const struct openid *openid, const uint8_t address[16])
     return openid->codes.count < OPENID_CODES && of_address < OPENID_CODES_OF_ADDRESS;
 }
 
-/* Decides how to treat an error that a browser brought from the provider (a refused sign-in, or the provider's own failure). It is no
-   guess at a secret. Anyone can send any number of them, so only one in ERROR_EVERY_NS is recorded. The caller holds the lock. */
+/* Decides how to treat an error that a browser brought from the provider (a refused sign-in, or the provider's own failure). Such an error
+   is no guess at a secret. Anyone can send any number of errors, so only one in ERROR_EVERY_NS is recorded. The caller holds the lock. */
 static enum openid_result judge_error(struct openid *openid, int64_t now_ns)
 {
     if (openid->error_ns && now_ns - openid->error_ns < ERROR_EVERY_NS)
@@ -189,13 +189,12 @@ const char *openid_vouch(struct openid *openid, const char *id_token, struct tok
     pthread_mutex_lock(&openid->lock);
     json_t *keys = json_incref(openid->jwks);
     pthread_mutex_unlock(&openid->lock);
-    const struct id_token_expected expected = { .config = openid->config,
-                                                .jwks = keys,
-                                                .now_s = clock_utc_ns() / NS_PER_S,
-                                                .patience_s = (int64_t)(openid->config->hours * 3600) };
+    const struct id_token_expected expected = {
+        .config = openid->config, .jwks = keys, .now_s = clock_utc_ns() / NS_PER_S, .patience_s = (int64_t)(openid->config->hours * 3600)
+    };
     enum id_token_fault fault = keys ? id_token_verify(id_token, &expected, &claims, &why) : ID_TOKEN_NO_KEY;
     json_decref(keys);
-    if (fault == ID_TOKEN_NO_KEY) { /* the provider may have a new key: make the thread fetch its keys now */
+    if (fault == ID_TOKEN_NO_KEY) { /* the provider may have a new key: makes the thread fetch the provider's keys now */
         pthread_mutex_lock(&openid->lock);
         openid->discover_ns = clock_mono_ns();
         pthread_cond_broadcast(&openid->wake);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Sign-in with OpenID Connect: authorization code flow with PKCE. Threads talk to the identity provider; the event loop begins log-ins,
-   passes on what browsers bring back, and looks up whose cookie it has. The rights of all signed-in users are checked again at
-   intervals; while the provider does not answer they stay as they are. Thread: the event loop, unless said otherwise. */
+   passes on what browsers bring back, and looks up whose cookie it has. The rights of all signed-in users are checked again at intervals;
+   while the provider does not answer, these rights do not change. Thread: the event loop, unless said otherwise. */
 #ifndef OPENID_OPENID_H
 #define OPENID_OPENID_H
 #include "access/openid/openid_config.h"
@@ -31,24 +31,24 @@ const struct openid_config *openid_config_of(const struct openid *openid);
 char *openid_begin(struct openid *openid, const uint8_t address[16], const char *path, int64_t now_ns,
                    char binding[SIGN_IN_SECRET_CHARS + 1], const char **why);
 
-struct openid_return { /* what a browser brings back from the provider; the texts may be NULL */
-    uint64_t request;  /* number of the request, which identifies its answer in openid_collect() */
+struct openid_return { /* the parameters with which a browser returns from the provider; the texts may be NULL */
+    uint64_t request;  /* id of the HTTP request, by which openid_collect() identifies its answer */
     const char *state, *code, *iss, *error, *binding, *from;
 };
 enum openid_finish {
-    OPENID_WAITS,   /* the answer will come later (openid_collect) */
+    OPENID_WAITS,   /* the answer comes later, from openid_collect() */
     OPENID_FOREIGN, /* no log-in of that browser waits for this answer of the provider, so it is a replay or a forgery; only counted */
-    OPENID_FULL,    /* too many log-ins wait; this one must be begun again */
+    OPENID_FULL,    /* too many log-ins wait; the user must begin this one again */
 };
-/* Passes on what the browser brought back. */
+/* Takes the parameters with which a browser returned from the provider. */
 enum openid_finish openid_finish(struct openid *openid, const struct openid_return *brought, int64_t now_ns);
 
 enum openid_result {
     OPENID_LET_IN,
     OPENID_REFUSED, /* recorded: the user logged in at the provider but may not use this server */
     OPENID_GUESSED, /* recorded, and counted like a wrong token: the code was invalid */
-    /* the log-in failed without a guess at a secret, for example because the provider does not answer or refuses this server: not
-       recorded each time */
+    /* the log-in failed without a guess at a secret, for example because the provider does not answer or refuses this server; recorded only
+       at intervals */
     OPENID_AWAY,
 };
 

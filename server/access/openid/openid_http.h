@@ -10,15 +10,15 @@
 struct openid_reply {
     int status;    /* HTTP status; 0: no answer */
     json_t *json;  /* parsed body; NULL: none */
-    char why[256]; /* reason why there is no answer */
+    char why[256]; /* reason why the provider gave no answer */
 };
 
-/* Both functions return whether there was an answer at all; free it with openid_reply_finish(). stop: the request is abandoned when it
-   becomes true. */
-/* Gets JSON. bearer: an access token; NULL: none. */
+/* Both functions return true if there was an answer, even one with an error status; free it with openid_reply_finish(). stop: the request
+   is abandoned when it becomes true. */
+/* Requests a URL with GET and reads the JSON answer. bearer: an access token; NULL: none. */
 bool openid_get(const struct openid_config *config, const char *url, const char *bearer, const _Atomic bool *stop,
                 struct openid_reply *reply);
-/* Posts a form, authenticated as the client: its secret goes into HTTP Basic or, with in_form, into the form. */
+/* Posts a form. Authenticates this server with the client secret, by HTTP Basic or, if in_form, as a field of the form. */
 bool openid_post(const struct openid_config *config, const char *url, const char *form, bool in_form, const _Atomic bool *stop,
                  struct openid_reply *reply);
 void openid_reply_finish(struct openid_reply *reply);

@@ -9,9 +9,10 @@
 #include "access/openid/id_token.h"
 #include "access/openid/openid.h"
 
-enum { OPENID_CODES = 64, OPENID_CODES_OF_ADDRESS = 16 }; /* maximum number of codes that wait to be redeemed: in total, and per address */
+/* maximum number of codes that wait to be exchanged for tokens: in total, and per address */
+enum { OPENID_CODES = 64, OPENID_CODES_OF_ADDRESS = 16 };
 
-struct openid_job { /* a code that a browser brought back, or a token to revoke */
+struct openid_job { /* job: a code that a browser brought back, or a token to revoke */
     uint64_t request;
     struct sign_in sign_in;
     char *code, *from, *revoke; /* revoke: a refresh token to revoke; NULL: redeem `code` */
@@ -32,7 +33,7 @@ struct openid {
     pthread_t thread; /* starts tasks that are due */
     bool started;
     counter *good, *people, *refused, *foreign;
-    /* changed: rights changed since openid_take_changed(); failing: the provider's failure was logged */
+    /* changed: rights changed since the last openid_take_changed(); failing: it was logged that the provider fails */
     _Atomic bool stopping, changed, failing;
     pthread_mutex_t asking; /* held while metadata and keys are requested; never taken while `lock` is held */
     /* --- below: protected by `asking` */
@@ -59,7 +60,7 @@ void openid_add_job(struct openid *openid, struct openid_jobs *jobs, const struc
 void openid_free_jobs(struct openid_jobs *jobs);
 /* Queues the revocation of a copy of a refresh token, if the provider supports that; NULL: does nothing. The caller holds the lock. */
 void openid_revoke_later(struct openid *openid, const char *refresh_token);
-/* Queues an answer; takes ownership of why. The caller holds the lock. */
+/* Queues an answer; takes ownership of the text `why`. The caller holds the lock. */
 void openid_add_answer(struct openid *openid, const struct openid_job *job, enum openid_result result, const char *cookie, char *why);
 /* Write an entry to the audit trail; openid_say_refused() also logs and counts it. */
 void openid_record(struct openid *openid, const char *event, const char *result, const struct token_holder *holder, const char *from,
@@ -72,7 +73,7 @@ void openid_say_refused(struct openid *openid, const char *from, const char *why
 bool openid_knows(struct openid *openid);
 /* Requests metadata and keys if they are unknown or old. Returns whether they are known. */
 bool openid_discover(struct openid *openid);
-/* Reports in the log and the metrics whether the provider answers. why NULL: it does. */
+/* Reports in the log and the metrics whether the provider answers. why NULL: the provider answers. */
 void openid_say(struct openid *openid, const char *why);
 /* Returns an endpoint URL from the metadata (mem_free); NULL: there is none. */
 char *openid_endpoint(struct openid *openid, const char *name);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What is known about the identity provider: its endpoints, its keys, and what it reports about a person. */
+/* Fetches and keeps data about the identity provider: its endpoints, its keys, and its reports about a person. */
 #include <stdio.h>
 #include <string.h>
 
@@ -9,7 +9,7 @@
 #include "base/mem.h"
 
 static const int64_t MAX_AGE_NS = 3600 * NS_PER_S, RETRY_NS = 5 * NS_PER_S;
-/* minimum time between two requests for keys, whatever keys tokens name: outsiders can send any token */
+/* minimum time between two requests for keys, even if tokens name unknown keys: outsiders can send any token */
 static const int64_t KEYS_INTERVAL_NS = 10 * NS_PER_S;
 
 void openid_say(struct openid *openid, const char *why)
@@ -123,7 +123,7 @@ static json_t *take_keys(struct openid *openid)
 static bool renew_keys(struct openid *openid, const json_t *keys)
 {
     pthread_mutex_lock(&openid->asking);
-    bool renewed = openid->jwks != keys; /* another thread has fetched new keys already */
+    bool renewed = openid->jwks != keys; /* another thread has fetched new keys meanwhile, so no request is needed */
     if (!renewed && clock_mono_ns() - openid->jwks_ns > KEYS_INTERVAL_NS)
         renewed = ask_keys(openid);
     pthread_mutex_unlock(&openid->asking);

@@ -24,8 +24,8 @@ static void replace(char **text, const char *by)
     *text = mem_strdup(by);
 }
 
-/* Returns whether the client secret goes into the form: the provider lists its authentication methods, and HTTP Basic, the usual one, is
-   not among them. */
+/* Returns true if the client secret must be sent in the form: the provider lists its authentication methods, and HTTP Basic is not among
+   them. */
 static bool secret_in_form(struct openid *openid)
 {
     pthread_mutex_lock(&openid->lock);
@@ -93,8 +93,8 @@ static struct person *take_tokens(struct openid *openid, const struct openid_job
     return person;
 }
 
-/* Only invalid_grant means that the code is wrong (RFC 6749, 5.2). Every other error is between provider and server: the client secret
-   has expired, or the provider is busy. */
+/* Only invalid_grant means that the code is wrong (RFC 6749, 5.2). Every other error concerns the provider and this server, not the user:
+   the client secret has expired, or the provider is busy. */
 static enum openid_result judge_code(const struct openid_reply *reply, const char *error)
 {
     if (reply->status == 200)
@@ -121,7 +121,7 @@ struct person *openid_redeem(struct openid *openid, const struct openid_job *job
                           error ? error : "it does not say why", reply.status);
     else
         person = take_tokens(openid, job, reply.json, why);
-    if (!person && reply.status == 200) { /* a refresh token that is not used here should not stay valid at the provider */
+    if (!person && reply.status == 200) { /* revokes the refresh token: one that is not used here should not stay valid at the provider */
         pthread_mutex_lock(&openid->lock);
         openid_revoke_later(openid, text_of(reply.json, "refresh_token"));
         pthread_mutex_unlock(&openid->lock);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Requests to the identity provider: one thread starts what is due, and each request runs in a thread of its own, so that neither a slow
-   answer nor a burst of log-ins delays the end of rights. */
+/* Requests to the identity provider: one thread starts the tasks that are due, and each request runs in a thread of its own, so that
+   neither a slow answer nor a burst of log-ins delays the end of rights. */
 #include <string.h>
 
 #include "access/openid/openid_impl.h"

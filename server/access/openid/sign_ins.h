@@ -17,7 +17,7 @@ struct sign_in { /* a log-in that was redirected to the provider */
 struct person {                 /* a signed-in person; the struct owns its texts */
     struct token_holder holder; /* token holder as for other users; the hash is that of the session cookie */
     char *sub, *refresh_token, *access_token;
-    char *id_token; /* the newest ID token */
+    char *id_token;         /* the newest ID token */
     int64_t access_until_s; /* expiry of the access token, seconds of UTC; 0: not known */
     int64_t active_ns;      /* monotonic: when the person was last active at the page */
     int64_t check_ns;       /* monotonic: when the person's rights are to be checked next */
@@ -39,8 +39,8 @@ bool sign_ins_take(struct sign_ins *table, const char *state, const char *bindin
 /* Adds a person; takes ownership of its texts. cookie: receives the new session's secret. *left: refresh token of a session that was
    removed to make room (mem_free); NULL: none. Returns false if the system has no randomness. */
 bool sign_ins_add_person(struct sign_ins *table, struct person *person, char cookie[SIGN_IN_SECRET_CHARS + 1], char **left);
-/* Return the person of a cookie, of a cookie's hash, or with that number; NULL: none. Valid until the next call that adds or removes a
-   person. */
+/* Return the person that owns a cookie, a cookie's hash or a person number; NULL: nobody. Valid until the next call that adds or
+   removes a person. */
 struct person *sign_ins_find(struct sign_ins *table, const char *cookie);
 struct person *sign_ins_find_hash(struct sign_ins *table, const uint8_t hash[TOKEN_HASH_BYTES]);
 struct person *sign_ins_numbered(struct sign_ins *table, uint64_t number);
