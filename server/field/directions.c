@@ -112,7 +112,8 @@ static double mean_m(const struct field_layout *layout, enum distance_mode mode,
     return max_of(sum_m, AT_ONE_PLACE);
 }
 
-/* Computes the sensor's reference unit vector as transported to the point. Returns false if no path leads there. */
+/* Computes the sensor's reference unit vector after parallel transport along the surface to the point. Returns false if no path leads
+   there. */
 static bool carry(const struct field_layout *layout, const float *angles, double turn, const struct direction_place *place, double out[3])
 {
     double normal[3];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Fields with trial sensor positions: their layouts, kept as long as they may be requested. */
+/* Fields with trial sensor positions: creates, looks up and drops their layouts. */
 #include <math.h>
 
 #include "base/mem.h"

@@ -51,7 +51,7 @@ bool layout_is_touched(const struct scene *scene, int asset, int group, const st
 /* Frees the layout. &NULL is fine; sets it to NULL. */
 void layout_destroy(struct field_layout **layout);
 /* Returns a sensor's geodesic distances of each vertex by this mode; if that mode's were not prepared (trial sensors), returns those of the
-   other geodesic mode. NULL: the mode is straight-line, or they are in the asset file, or not known yet. */
+   other geodesic mode. NULL: the mode is straight-line, or the distances are in the asset file or not known yet. */
 const float *layout_along(const struct layout_sensor *sensor, enum distance_mode mode);
 /* Returns whether the sensor's distances by this mode are in its column of the asset file. */
 bool layout_is_in_file(const struct layout_sensor *sensor, enum distance_mode mode);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Leave-one-out predictions: what the other good sensors of a group predict at each sensor's position. Uses the first interpolation
    prepared for the group among gp, harmonic and fin, by the precision P of the prepared sensors: v_i - (P v)_i / P_ii (Dubrule, Cross
-   validation of kriging in a unique neighborhood, 1983); else shepard on geodesic distances. Takes (sensors * sensors) steps and numbers,
-   so with more than NEIGHBOURS_MOST sensors on an asset nothing is predicted. Thread: any that may read the scene. */
+   validation of kriging in a unique neighborhood, 1983); else shepard on geodesic distances. Takes time and memory proportional to sensors
+   * sensors, so with more than NEIGHBOURS_MOST sensors on an asset nothing is predicted. Thread: any that may read the scene. */
 #ifndef FIELD_NEIGHBOURS_H
 #define FIELD_NEIGHBOURS_H
 #include "scene/scene.h"

@@ -128,7 +128,7 @@ static double error_scale(const struct field_state *state)
     return unit * fmax(fabs(low), fabs(high));
 }
 
-/* Returns the range whose 255th is a step of colour. */
+/* Returns the range of the colour map, of which a colour step is 1/255. */
 static double error_range(const struct field_state *state)
 {
     const struct plant_group *group = state->layout->group;

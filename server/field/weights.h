@@ -44,26 +44,27 @@ struct weights {
     float power, reach_m, radius_m, steps_per_m; /* steps_per_m: units of `lacking` per metre */
     bool alike;                                  /* true: all members (sensors in the sum) have the same strength */
     float *strength, *decay;                     /* by sensor of the layout */
-    /* for each sensor of the layout: whether it would contribute if its quality were good; more than 1: SENSOR_NO_LIMITS */
+    /* for each sensor of the layout: 1: it would contribute if its quality were good; 0: it would not; more than 1: SENSOR_NO_LIMITS */
     uint8_t *configured;
     uint8_t *takes_part; /* for each sensor of the layout: 1 if used */
     /* members of the sum, in the order of the columns: the used sensors of the layout; for prepared interpolations all sensors */
     uint32_t *members;
     size_t member_count;
-    float *near_m, *top;         /* for each vertex: distance of the nearest usable sensor; scale (kernels.h) */
+    /* for each vertex: near_m: distance of the nearest usable sensor; top: scale that keeps weights from overflowing (kernels.h) */
+    float *near_m, *top;
     float *total;                /* sum of the weights of each vertex */
     uint8_t *place;              /* by vertex: enum place */
     uint8_t *lost;               /* for each vertex: how much nearer the nearest lost sensor is than near_m, encoded by weights_lacking() */
     uint8_t *known;              /* for each block: bits of enum weights_known for the arrays above */
     const float *prepared;       /* [member][vertex]: columns from the asset's influence file; NULL: columns are computed from distances */
     struct influence_fill *fill; /* prepared with some sensor lost; else NULL */
-    double *ones;                /* prepared: by sensor, its value if all used sensors read 1; else NULL */
-    float decay_m;               /* fin: decay length; gp: 1/k of its kernel */
-    const float *deviations;     /* gp: standard deviation of the field at each vertex while all sensors are used; else NULL */
-    const float *priors;         /* gp: standard deviation of the field at each vertex without any sensor */
-    float deviation;             /* gp: standard deviation of the prior */
-    float *errors;       /* for each vertex: linear interpolation error of the adjacent triangles (drawn_error.h); NULL: not measured */
-    float largest_error; /* largest element of `errors` */
+    double *ones;  /* prepared interpolations with lost sensors: by sensor, the value it gets if all used sensors read 1; else NULL */
+    float decay_m; /* fin: decay length; gp: 1/k of its kernel */
+    const float *deviations; /* gp: standard deviation of the field at each vertex while all sensors are used; else NULL */
+    const float *priors;     /* gp: standard deviation of the field at each vertex without any sensor */
+    float deviation;         /* gp: standard deviation of the prior */
+    float *errors;           /* for each vertex: linear interpolation error of the adjacent triangles (drawn_error.h); NULL: not measured */
+    float largest_error;     /* largest element of `errors` */
     /* [b]: part of the surface with an error of at least 2^-b, in the level of detail with the largest such part. Prepared: part of the
        vertices */
     float erring[WEIGHTS_ERRING];

@@ -91,8 +91,8 @@ static void on_text(struct viewer *viewer)
     json_decref(o);
 }
 
-/* Records a sample for every camera up to this one, also those that were replaced before they were drawn: their sender waited until now
-   too. */
+/* Records a sample for every camera up to this one, also those that were replaced before they were drawn: their senders, too, waited until
+   this frame. */
 static void record_input(struct viewer *viewer, uint32_t camera_seq, int64_t now_ns)
 {
     if (camera_seq > viewer->camera_seq) /* this camera was never sent */

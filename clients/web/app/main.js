@@ -94,7 +94,7 @@ viewport.onDrawn = (newPicture) => {
     }
 };
 new ResizeObserver(refresh).observe(byId('viewport'));
-setInterval(() => modules.there('card')?.tag && refresh(), 500); // updates the age on the card
+setInterval(() => modules.there('card')?.tag && refresh(), 500); // updates the age of the value on the card
 
 for (const name of ['tags', 'alarms', 'proofs'])
     session.on(name, refresh);

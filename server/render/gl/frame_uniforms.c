@@ -46,7 +46,8 @@ static void fill_scale(struct frame_uniforms *block, const struct frame_context 
 /* Sets how brightness maps to a row of the colour map: over all rows, or always to the middle row where light must not change colours. */
 static void fill_shade(struct frame_uniforms *block, const struct view *view)
 {
-    static const double dark = 0.14, bright = 0.86; /* brightness range that the rows cover; darker or brighter surfaces are clamped */
+    /* brightness range that the colour map's rows cover; darker or brighter surfaces are clamped */
+    static const double dark = 0.14, bright = 0.86;
     double rows = COLORMAP_ROWS - 1;
     bool shaded = view->look == LOOK_DEFAULT;
     block->shade[0] = shaded ? (float)(rows / (bright - dark)) : 0;

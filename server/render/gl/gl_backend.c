@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The GL render backend: draws a frame at once on a GPU, tile by tile where GL runs on the processor. */
+/* The GL render backend: draws a frame as a whole if GL runs on a GPU, and tile by tile if GL runs on the processor. */
 #include "render/gl/gl_backend.h"
 
 #include <limits.h>

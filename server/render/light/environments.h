@@ -14,7 +14,7 @@
 
 struct environment_slot {
     struct environment of;
-    GLuint irradiance, mirrored; /* `of` as a uniform buffer and a 3D texture; 0: not loaded */
+    GLuint irradiance, mirrored; /* GL copies of `of`: a uniform buffer and a 3D texture; 0: not loaded */
     struct environment_task *task;
 };
 struct environments {

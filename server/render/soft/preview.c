@@ -143,7 +143,7 @@ bool preview_draw(struct soft *soft, const struct frame_context *context, const 
     if (!raster_make_room(raster, frame))
         return complain(raster);
     frame_uniforms_fill(&raster->block, context);
-    if (context->view->look == LOOK_GLOSSY) { /* rows of the glossy colour map are brightness steps */
+    if (context->view->look == LOOK_GLOSSY) { /* the glossy colour map has one row per brightness step */
         raster->block.shade[0] = COLORMAP_ROWS - 1;
         raster->block.shade[1] = 0.5f;
     }

@@ -53,7 +53,7 @@ struct refined_item { /* one surface within a pixel */
     uint16_t share; /* area of the pixel that the surface covers, 0..VISIBILITY_SHARES */
 };
 
-struct shaded_items { /* results per item that shows the field */
+struct shaded_items { /* results of shading, by index of the refined_item; only items that show the field */
     uint32_t *triangles, *weights;
     uint8_t *rows;
     struct visibility_gloss *gloss;

@@ -78,9 +78,11 @@ struct soft_light {       /* copy of a light_set, read back from the GPU */
     uint32_t *sun_bounds; /* by tile: smallest texel | largest texel << 16 */
     int sun_map_px;       /* width and height of the map on the GPU */
     int sun_tiles;        /* number of tiles in a row */
-    uint32_t *ground; /* brightness of the ground, four bytes: this texel and its right, lower and lower right neighbours; 255: no shadow */
-    uint8_t *open;    /* openness of the ground to the sky, for refined frames; rows from the top */
-    int ground_px;    /* width and height of `ground` and `open` */
+    /* brightness of the ground, four bytes per texel: this texel's and those of its right, lower and lower right neighbours; 255: no
+       shadow */
+    uint32_t *ground;
+    uint8_t *open; /* openness of the ground to the sky, for refined frames; rows from the top */
+    int ground_px; /* width and height of `ground` and `open` */
     uint64_t used;
 };
 /* Lookups read a texel with its right and lower neighbours. Tiles therefore overlap by one: the last row and column are the next tile's

@@ -97,7 +97,7 @@ export class Accepting {
         this.send('accept', 'accept_places', { ...this.filter, confirm: this.found.hash });
     }
 
-    // Ends a request that applied no list.
+    // Called when a request has ended without changing the list: shows the text and allows the next request.
     end(text) {
         if (this.sent) {
             this.sent = null;

@@ -237,7 +237,7 @@ export class Placing {
             this.dialog.showModal();
     }
 
-    // Ends a save that applied no list.
+    // Called when a save has ended without changing the list: allows the next save.
     stopSaving() {
         if (this.saving)
             setText(this.note, '');

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Drawn over the picture during an import: boxes around candidate equipment of a tag, and a person of 1.8 m.
+// Draws over the picture during an import: boxes around the candidate assets of a tag, and a person of 1.8 m for comparison.
 import { basis, projector } from '../../core/camera.js';
 import { halves } from '../../core/split_view.js';
 import { say } from '../../core/words.js';

@@ -23,7 +23,8 @@ function takeAtOnce(event, element) {
 }
 
 export function listenToInput(element, modules) {
-    let pending = [], drag = { from: Infinity, to: 0 }; // times of the queued drag; it is dropped only if its end is too old
+    // times of the events of the queued drag; the drag is dropped only if its last event is too old
+    let pending = [], drag = { from: Infinity, to: 0 };
 
     function handle(event) {
         takeAtOnce(event, element);

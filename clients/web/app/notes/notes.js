@@ -38,7 +38,7 @@ export class Notes {
         this.point();
     }
 
-    // Whether the user may add and remove notes: not while the past is shown.
+    // Returns whether the user may add and remove notes: not while the past is shown.
     get may() {
         return MAY.includes(this.session.role) && this.session.time.atUs === null;
     }

@@ -94,7 +94,7 @@ export class Arrows {
         Object.assign(stroke, { end: at, to, uncertain: stroke.uncertain || uncertain });
     }
 
-    // Animates white dashes along dark streaks, below all labels, while there are any and the user has not asked for reduced motion.
+    // Animates white dashes along dark streaks, below all labels, while there are streaks and the user has not asked for reduced motion.
     run() {
         const { canvas } = this.overlay, moves = this.strokes.length > 0 && !this.still.matches;
         this.running.hidden = !moves;

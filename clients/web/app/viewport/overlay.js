@@ -38,7 +38,7 @@ export class Overlay {
         this.context = canvas.getContext('2d');
         this.font = getComputedStyle(document.body).fontFamily;
         this.unit = 1;     // size of a unit in CSS pixels; larger on a wall
-        this.calm = document.body.classList.contains('pane'); // in a pane only abnormal readings have a label
+        this.calm = document.body.classList.contains('pane'); // true in a pane of a wall, where only abnormal readings have labels
         // markers { tag, x, y, depth, occluded, reading }, positions in units: of the shown group's tags and of tags with alarms
         this.all = [];
         this.markers = []; // the drawn subset of `all`

@@ -65,7 +65,7 @@ export class Remote {
         return { view, title };
     }
 
-    // The open saved view's title, else the selection, or the quantity.
+    // Returns the title for the pane: the open saved view's title, else the selection's name, else the quantity's name.
     get title() {
         const { session } = this, { params, model, group } = session, opened = this.page.modules.there('namedViews')?.opened;
         const named = session.views.find(({ id, view }) => id === opened && isFrom(viewOf(session, view).camera, session.camera))?.title;
@@ -118,8 +118,8 @@ export class Remote {
         askPick(this.session, this.viewport.pixelOf(pointed.x, pointed.y), 'point');
     }
 
-    // Waits for the answer to the previous pick before the next request: the server only answers the latest, and a user's click takes
-    // precedence.
+    // Returns true while the answer to the previous pick is pending, so that the next request waits: the server only answers the latest
+    // one, and a click of the user takes precedence.
     waitsFor(now) {
         const { pickSeq } = this.session;
         if (pickSeq !== this.seenSeq)
