@@ -699,7 +699,7 @@ test('a guessed unit is a question that reads again; lost elements are counted a
         assert.match(items[1], /^LINE-1001 #904 .*its representation is empty/);
         await settle(sheet);
         await shoot(sheet, 'import-11-report');
-        for (const [language, words] of [['ko', '삼각형이 없는 요소 2개'], ['de', '2 Elemente haben keine Dreiecke']]) {
+        for (const [language, words] of [['ko', '삼각형이 빠진 요소 2개'], ['de', '2 Elementen fehlen Dreiecke']]) {
             await sheet.goto(`${own.url}?lang=${language}`);
             await sheet.getByText(words).waitFor({ state: 'attached' });
         }
