@@ -56,7 +56,7 @@ static int find_chain(struct audit_file *file, char **finding)
     return ftruncate(file->fd, (off_t)file->bytes) == 0 ? 0 : -errno;
 }
 
-/* Returns true if the last line that PATH.head names is the end of a rotated file, and no line was written after it. */
+/* Returns true if the line that PATH.head names is the last line of a rotated file, and PATH has no line after it. */
 static bool is_rotated(const struct audit_file *file, const struct audit_chain *head)
 {
     char *full = mem_printf("%s.%012" PRIu64, file->path, head->seq);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* H.264 with libavcodec: planar frames in, access units out. This is the only code of encoding programs that uses libavcodec, so
-   h264_lazy.c loads it on demand. Thread: one at a time per codec. */
+/* H.264 with libavcodec: planar frames in, access units out. Of all code that encodes, only this module uses libavcodec, so that
+   h264_lazy.c can load both on demand. Thread: one at a time per codec. */
 #ifndef ENCODE_H264_CODEC_H
 #define ENCODE_H264_CODEC_H
 #include <stdbool.h>

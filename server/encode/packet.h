@@ -19,7 +19,7 @@ struct packet {
     struct frame *frame; /* metadata of the frame, without the pixels (frame->bgrx is NULL) */
     enum wire_codec codec;
     bool key;       /* key packet: can be decoded without the previous packet */
-    bool is_signed; /* the bytes are a PNG file with statement and signature (provenance/signed_picture.h) */
+    bool is_signed; /* true: the bytes are a PNG file with statement and signature (provenance/signed_picture.h) */
     uint8_t *bytes;
     size_t count;
     /* SHA-256 of the pixels (red, green, blue, rows from the top), only for PNG packets of frames with a record of their readings

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Loop checks: a tag is judged by the reading that arrives here, not by a value that a user enters. */
+/* Loop checks: the result depends on the reading that arrives at this daemon, not on a value that a user enters. */
 #include "message/loop_check_message.h"
 
 #include <math.h>
@@ -52,9 +52,9 @@ char *loop_check_do(struct loop_checks *loop_checks, const struct plant *plant, 
                             : near                  ? REFUSAL_NONE
                             : good                  ? REFUSAL_TOLERANCE
                                                     : REFUSAL_READING;
-    json_t *answer = json_pack("{s:s,s:I,s:s,s:b,s:b,s:o}", "type", "proved", "seq", (json_int_t)message->seq, "tag",
-                               plant->tags[request->tag].name, "kept", !lost, "passed", check.state == LOOP_CHECK_PASSED && !lost, "value",
-                               number(check.value));
+    json_t *answer =
+        json_pack("{s:s,s:I,s:s,s:b,s:b,s:o}", "type", "proved", "seq", (json_int_t)message->seq, "tag", plant->tags[request->tag].name,
+                  "kept", !lost, "passed", check.state == LOOP_CHECK_PASSED && !lost, "value", number(check.value));
     refusal_add(answer, why);
     return json_text(answer, 9);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tables of the names that messages use for the options of a view. */
+/* Tables of the names with which messages state the options of a view. */
 #include "message/names.h"
 
 #include <stdbool.h>
@@ -11,20 +11,21 @@
 #include "render/view.h"
 #include "scene/framing.h"
 
-const struct name names_interpolation[] = { { "shepard", INTERPOLATION_SHEPARD },
-                                            { "paper", INTERPOLATION_PAPER },
-                                            { "harmonic", INTERPOLATION_HARMONIC },
-                                            { "fin", INTERPOLATION_FIN },
-                                            { "gp", INTERPOLATION_GP },
-                                            { NULL, 0 } };
+const struct name names_interpolation[] = {
+    { "shepard", INTERPOLATION_SHEPARD }, { "paper", INTERPOLATION_PAPER }, { "harmonic", INTERPOLATION_HARMONIC },
+    { "fin", INTERPOLATION_FIN },         { "gp", INTERPOLATION_GP },       { NULL, 0 }
+};
 const struct name names_distance[] = {
     { "geodesic", DISTANCE_GEODESIC }, { "euclidean", DISTANCE_EUCLIDEAN }, { "heat", DISTANCE_HEAT }, { NULL, 0 }
 };
 const struct name names_fill[] = { { "none", FILL_NONE }, { "neighbours", FILL_NEIGHBOURS }, { NULL, 0 } };
-const struct name names_show[] = {
-    { "value", SHOW_VALUE }, { "distance", SHOW_DISTANCE }, { "difference", SHOW_DIFFERENCE }, { "operator", SHOW_OPERATOR },
-    { "uncertainty", SHOW_UNCERTAINTY }, { "blind", SHOW_BLIND }, { NULL, 0 }
-};
+const struct name names_show[] = { { "value", SHOW_VALUE },
+                                   { "distance", SHOW_DISTANCE },
+                                   { "difference", SHOW_DIFFERENCE },
+                                   { "operator", SHOW_OPERATOR },
+                                   { "uncertainty", SHOW_UNCERTAINTY },
+                                   { "blind", SHOW_BLIND },
+                                   { NULL, 0 } };
 const struct name names_scale[] = { { "linear", false }, { "log", true }, { NULL, 0 } };
 const struct name names_look[] = {
     { "default", LOOK_DEFAULT }, { "glossy", LOOK_GLOSSY }, { "flat", LOOK_FLAT }, { "materials", LOOK_MATERIALS }, { NULL, 0 }

@@ -99,7 +99,7 @@ static void save(struct notifier *notifier)
     if (!notifier->unsaved)
         return;
     char *text = json_text(outbox_save(notifier->outbox), 0);
-    publish(notifier, mem_strdup(text)); /* publish for the standby first: writing to disk may take long */
+    publish(notifier, mem_strdup(text)); /* publishes for the standby core first, because writing to disk may take long */
     int error = put_file(notifier->path, text, true);
     mem_free(text);
     if (error)

@@ -44,7 +44,7 @@ void outbox_put(struct outbox *outbox, const struct alarm *alarm, bool restored,
 /* Ends the alarms that were restored and for which outbox_put() was not called since: they returned to normal, or lost their limits, while
    the daemon was down. Call it once all alarms that are not normal have been put. */
 void outbox_end_unseen(struct outbox *outbox, int64_t now_us);
-/* Processes the passing of time: escalation, and dropping of old messages. */
+/* Does what is due at that time: escalates alarms and drops old messages. */
 void outbox_tick(struct outbox *outbox, int64_t now_us);
 
 /* Returns whether a message is due for a recipient, and sets *out, which is valid until the next call for this outbox; its items are

@@ -12,8 +12,9 @@
 enum { RUNS = 5, FINDER_CELLS = 7, GREY = 128 };
 /* tolerance for the lengths of a finder pattern's runs of dark and light pixels, as a fraction of a cell */
 static const double SLACK = 0.6;
-static const double STRANGE = 7;      /* CIELAB distance beyond which a colour is not in the legend */
-static const double INDISTINCT = 1.2; /* CIELAB distance within which two colours cannot be told apart; noise adds to it */
+static const double STRANGE = 7; /* CIELAB distance beyond which a colour is not in the legend */
+/* CIELAB distance within which two colours cannot be told apart; the picture's noise is added to this */
+static const double INDISTINCT = 1.2;
 static const double NOISES = 1.5;
 
 /* --- finding the strip -------------------------------------------------------------------------------------------------------- */

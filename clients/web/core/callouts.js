@@ -6,7 +6,7 @@ import { boxAt, CLEARANCE, hasArea, meets, SLOTS } from './labels.js';
 // units: rings closer than CLOSE share a call-out; those that already do stay together up to STILL_CLOSE
 const CLOSE = 26, STILL_CLOSE = 34;
 const MOST_GROUPS = 24, FARTHER = 1.25;     // maximum number of ring labels; distances grow by FARTHER until the limit is met
-const STEP_X = 24, STEP_Y = 15, STEPS = 60; // units: grid of label positions around the centre of the rings
+const STEP_X = 24, STEP_Y = 15, STEPS = 60; // units: spacing of the grid of label positions around the centre of the rings
 const FARTHEST = 170; // units: largest distance of a label from its rings, unless it is the only label left
 const MOST_GROWTHS = 100;                   // maximum number of growth steps; by then distances exceed any picture
 

@@ -5,7 +5,7 @@ import { AXES } from './section.js';
 import { add, along, cross, dot, finite, length, middle, mix, scale, subtract, unit } from './vector.js';
 
 const LEAST_BOX_M = 0.05, MARGIN = 1e-3; // MARGIN: a plane stays inside the plant's bounds by at least this fraction of their size
-const NEAR_M = 0.02;                     // lines are clipped this many metres in front of the camera
+const NEAR_M = 0.02; // lines are clipped where they are nearer to the camera than this, in metres
 const STEEP = 0.03;                      // minimum squared sine between view and handle direction; below it a drag is undefined
 
 const isSound = ({ direction, at, low, high, corners }) => [at, low, high].every(Number.isFinite) && [direction, ...corners].every(finite);

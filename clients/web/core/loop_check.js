@@ -34,7 +34,8 @@ export class LoopCheckSession {
         this.base = null;
     }
 
-    // Returns { index, by, ratio } of the tag that changed most, or null. spanOf(index): width of the tag's range.
+    // Returns { index (of the tag that changed most), by (its change), ratio (of the change to the tag's noise) }, or null. spanOf(index):
+    // width of the tag's range.
     stirred(spanOf) {
         let most = null;
         for (const [index, from] of this.base ?? []) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Occasional requests to the server; session.js sends the continuous ones.
+// Requests that users cause now and then; session.js sends cameras, parameters and acknowledgements.
 import { cameraMessage } from './camera.js';
 import { asAsked } from './session.js';
 

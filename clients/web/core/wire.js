@@ -28,7 +28,7 @@ function time(view, offset) {
 
 const triple = (view, offset) => [0, 4, 8].map((o) => view.getFloat32(offset + o, true));
 
-// A field of view of 0 means orthographic.
+// A camera with a field of view of 0 is orthographic.
 function lens(view) {
     const fov = view.getFloat32(104, true), height_m = view.getFloat32(108, true);
     if (fov === 0) {

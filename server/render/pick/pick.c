@@ -11,7 +11,7 @@
 #include "scene/raycast.h"
 #include "value/quality.h"
 
-static const double MARKER_PX = 9; /* pixels around a click within which a marker is picked */
+static const double MARKER_PX = 9; /* a marker is picked if it is nearer to the click than this, in pixels */
 /* a pick nearer to a sensor than the larger of these (pixels, metres) shows a measured value, not an interpolated one */
 static const double MEASURED_PX = 3, MEASURED_M = 0.005;
 
