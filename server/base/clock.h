@@ -14,12 +14,12 @@ int64_t clock_utc_ns(void);  /* Returns UTC since 1970, for stored times and for
 /* Returns the plant's UTC: the core's clock on a node that follows a core, else clock_utc_ns(). Readings, alarms, notes and the actions
    of users have times of this clock. */
 int64_t clock_plant_ns(void);
-/* Sets how many nanoseconds the core's clock is ahead of this machine's. 0: this node follows no core. */
+/* Sets the number of nanoseconds by which the core's clock is ahead of this machine's. 0: this node follows no core. */
 void clock_follow(int64_t ahead_ns);
 bool clock_utc_is_set(void);                /* Returns whether NTP or PTP synchronises the clock, according to the kernel. */
 void clock_cond_init(pthread_cond_t *cond); /* Initialises a condition variable whose timed waits use clock_mono_ns(). */
-/* Waits for the condition variable until the given time; INT64_MAX: no limit. Returns false when that time has come. Call it with the
-   lock held. */
+/* Waits for the condition variable until the given time; INT64_MAX: no limit. Returns false if that time was reached; true if the thread
+   was woken. Call it with the lock held. */
 bool clock_cond_wait(pthread_cond_t *cond, pthread_mutex_t *lock, int64_t until_mono_ns);
 int64_t clock_work_ns(void); /* Returns the CPU time of all threads of this process. */
 

@@ -13,14 +13,14 @@ struct thread {
     bool started;
     pthread_mutex_t lock;
     pthread_cond_t wake; /* timed waits use clock_mono_ns() */
-    bool stopping;       /* under the lock: the thread must end */
+    bool stopping;       /* protected by the lock: true once the thread must end */
 };
 
 /* Initialises lock and condition variable. End with thread_finish(). */
 void thread_init(struct thread *thread);
 /* Starts run(arg). Returns false if the thread cannot be created, logged as `NAME: no thread`. */
 bool thread_start(struct thread *thread, struct log *log, const char *name, void *(*run)(void *arg), void *arg);
-/* Sets `stopping`, wakes the thread and waits until it has ended. Only sets the flag if no thread was started. */
+/* Sets `stopping`, wakes the thread and waits until it has ended. If no thread was started, only sets `stopping`. */
 void thread_stop(struct thread *thread);
 void thread_finish(struct thread *thread);
 /* Returns whether the thread must end. Takes the lock. */

@@ -88,7 +88,7 @@ int workers_count(const struct workers *workers)
 
 void workers_submit(struct workers *workers, void (*run)(void *arg), void *arg)
 {
-    if (workers->count == 0) { /* no thread could be started: the caller does the work */
+    if (workers->count == 0) { /* no thread could be started, so the caller runs the job itself */
         run(arg);
         return;
     }
@@ -148,7 +148,7 @@ static void loop_help(void *arg)
     loop_unref(arg);
 }
 
-/* Starts a loop with one helper job for each user other than the caller. */
+/* Starts a parallel loop: queues one helper job for each thread that is to take part besides the caller. */
 static struct loop *loop_begin(struct workers *workers, const struct loop *like)
 {
     struct loop *loop = mem_new(sizeof(*loop));

@@ -10,7 +10,7 @@
 
 #include "base/mem.h"
 
-/* attempts to find a free name for the temporary file: killed programs with the same process id may have left files */
+/* maximum number of attempts to find a free name for the temporary file: killed programs with the same process id may have left files */
 enum { MAX_TRIES = 1000 };
 
 int atomic_file_begin(struct atomic_file *file, const char *path, mode_t mode)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Replaces a file atomically: the new content is written to a temporary file in the same folder, which is renamed once all of it is on
-   disk. Readers see the old file or the new one. Functions that return int return 0 or -errno. Thread: one at a time per file. */
+/* Replaces a file atomically: the new content is written to a temporary file in the same folder, which is renamed once its whole content is
+   on disk. Readers see the old file or the new one. Functions that return int return 0 or -errno. Thread: one at a time per file. */
 #ifndef BASE_FILES_ATOMIC_FILE_H
 #define BASE_FILES_ATOMIC_FILE_H
 #include <stdbool.h>
@@ -11,7 +11,7 @@
 
 struct atomic_file {
     char *path, *beside; /* path of the file, and of the temporary file; NULL: no write is in progress */
-    int fd;              /* open for reading and writing; the caller may set its permissions and owner */
+    int fd; /* descriptor of the temporary file, for reading and writing; the caller may set the file's permissions and owner */
 };
 
 /* Creates PATH.PID.new, or PATH.PID.N.new if that exists: an existing file or link is never opened. `mode` is reduced by the umask. On
@@ -28,7 +28,7 @@ void atomic_file_abandon(struct atomic_file *file); /* Removes the temporary fil
 int atomic_file_put(const char *path, const void *bytes, size_t count);
 /* Does the same as atomic_file_put() durably, for data that the daemon confirms as saved. */
 int atomic_file_keep(const char *path, const void *bytes, size_t count);
-/* Translates the error of a write (-errno) into a refusal for the user whose change was not saved. */
+/* Converts the error of a write (-errno) into the refusal that is sent to the user whose change was not saved. */
 enum refusal_code atomic_file_not_kept(int error);
 struct atomic_file_part {
     const void *bytes;

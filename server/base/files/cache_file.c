@@ -7,7 +7,7 @@
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
-#define XXH_STATIC_LINKING_ONLY /* keeps the hash state on the stack */
+#define XXH_STATIC_LINKING_ONLY /* keeps the state of the hash on the stack, not on the heap */
 #include <xxhash.h>
 
 #include "base/files/atomic_file.h"
@@ -54,7 +54,7 @@ void cache_file_close(struct cache_file *file)
     *file = (struct cache_file){ 0 };
 }
 
-/* Does not join the parts in memory first: they may have tens of megabytes. */
+/* Hashes and writes the parts one by one: joined in memory they could have tens of megabytes. */
 int cache_file_write_parts(const char *path, const char *magic, uint64_t key, const struct atomic_file_part *parts, size_t part_count)
 {
     struct cache_head head = { .key = key };

@@ -61,7 +61,7 @@ static bool is_on_read_only_disk(const struct database *database)
     return access(database->path, W_OK) != 0 && errno == EROFS;
 }
 
-/* Returns the errno behind a general SQLite error such as "unable to open". */
+/* Returns the errno that caused a general SQLite error such as "unable to open". */
 static int cause_of(const struct database *database)
 {
     return is_on_read_only_disk(database) ? EROFS : sqlite3_system_errno(database->handle);
@@ -151,8 +151,8 @@ static bool is_newer(struct database *database, int version)
 {
     int known = database->format->version;
     if (version > known)
-        log_err(database->log, "%s: version %d was written by a newer Plantcast; this program supports version %d", database->path,
-                version, known);
+        log_err(database->log, "%s: version %d was written by a newer Plantcast; this program supports version %d", database->path, version,
+                known);
     return version > known;
 }
 
@@ -237,7 +237,7 @@ int database_open_to_read(struct database *database)
     int code = open_handle(database, database->path, SQLITE_OPEN_READONLY);
     if (code == SQLITE_OK)
         code = read_version(database, &version);
-    /* Only for a read-only disk: on a writable one, another process may be about to write the file. */
+    /* Only for a read-only disk, because on a writable one another process may write the file at the same time. */
     if ((code & 0xff) == SQLITE_CANTOPEN && !has_log(database) && is_on_read_only_disk(database)) {
         code = open_unchanging(database);
         if (code == SQLITE_OK)

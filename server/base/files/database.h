@@ -14,8 +14,8 @@
 struct database_format { /* static description of a file format */
     int application_id, version;
     const char *set_up;            /* pragmas for connections that write */
-    const char *const *schemas;    /* `version` SQL scripts; each converts a file from the version before */
-    const char *const *statements; /* SQL of the prepared statements, statement_count of them */
+    const char *const *schemas;    /* array of `version` SQL scripts; each converts a file from the version before */
+    const char *const *statements; /* array of statement_count SQL texts of prepared statements */
     size_t statement_count;
 };
 
@@ -45,7 +45,7 @@ int database_open_beside(struct database *database);
 bool database_set_aside(struct database *database);
 
 /* Returns a statement of the format, reset and ready to bind and step; owned by the database. Returns NULL if the statement cannot be
-   prepared; NULL may be bound to and stepped. */
+   prepared; the functions that bind and step accept NULL. */
 sqlite3_stmt *database_statement(struct database *database, int index);
 /* Steps a statement once. Returns the SQLite code. */
 int database_step(struct database *database, sqlite3_stmt *statement);

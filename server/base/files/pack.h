@@ -9,10 +9,10 @@
 /* Appends an array with its length. */
 void pack_array(struct text *to, const void *array, size_t count, size_t bytes_each);
 
-struct unpack { /* the bytes not read yet; owned by the caller */
+struct unpack { /* the bytes that are not read yet; the caller owns the memory */
     const char *at;
     size_t left;
-    bool bad; /* reading failed; all further reads fail too */
+    bool bad; /* true: a read has failed, so all further reads fail too */
 };
 /* Reads the next array; free with mem_free(). Returns NULL if it is empty, has elements of another size, or memory is exhausted;
    from->bad distinguishes errors from an empty array. */

@@ -11,13 +11,13 @@ struct settling {
     uint64_t queued, done; /* rows counted since the start; done: written or dropped */
     uint64_t lost;         /* number of the newest dropped row; 0: none */
     uint64_t failures;     /* number of failed write attempts */
-    int error;             /* -errno of the last failed attempt; a later success does not clear it, for tickets of that time */
+    int error;             /* -errno of the last failed attempt; a later success does not clear it, because tickets from before need it */
 };
 
 /* The rows queued between settling_begin() and settling_end(). All zero: no rows. */
 struct settling_ticket {
     uint64_t first, last, failures;
-    int64_t until_ns; /* time after which a row that is not on disk counts as not saved */
+    int64_t until_ns; /* time limit after which a row that is not on disk counts as not saved */
 };
 
 static inline struct settling_ticket settling_begin(const struct settling *settling)
@@ -46,7 +46,8 @@ static inline void settling_wrote(struct settling *settling, uint64_t rows, int 
     settling->error = error ? error : settling->error;
 }
 
-/* Returns 0 if all rows of the ticket are on disk, -EINPROGRESS, or the reason why they count as not saved. */
+/* Returns 0 if all rows of the ticket are on disk, -EINPROGRESS while that is not decided, or the -errno for which they count as not
+   saved. */
 static inline int settling_state(const struct settling *settling, const struct settling_ticket *ticket, int64_t now_ns)
 {
     if (ticket->last > ticket->first && settling->lost > ticket->first)

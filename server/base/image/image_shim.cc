@@ -25,9 +25,10 @@ namespace
 {
 
 constexpr int MAX_SIDE_PX = 1 << 15;
-constexpr int MAX_FILE_CHANNELS = 64; /* maximum number of channels; renderers append channels of their own after the colours */
+constexpr int MAX_FILE_CHANNELS = 64;    /* maximum number of channels; rendering programs append further channels after the colours */
 constexpr uint64_t MAX_PIXELS = 1 << 26; /* maximum image size, 8192 x 8192; a texture is never drawn with more pixels */
-/* plausible decoded values per byte of file (zlib shrinks to a thousandth at best, JPEG to less), and values that any file may have */
+/* maximum plausible number of decoded values per byte of file (zlib shrinks to a thousandth at best, JPEG to less), and values that any
+   file may have */
 constexpr uint64_t VALUES_PER_BYTE = 2000, FREE_VALUES = 1 << 20;
 
 /* Returns the reader's name for the format that the first bytes show, since OpenImageIO chooses its reader by the file name. */
@@ -82,8 +83,8 @@ template <typename T> void shrink(T *rgba, uint32_t *width_px, uint32_t *height_
 }
 
 /* Reads the whole image as four channels, scaled down to max_px. Throws on errors. */
-template <typename T> void read_pixels(OIIO::ImageInput *in, const OIIO::ImageSpec &spec, uint32_t max_px, T **rgba, uint32_t *width_px,
-                                       uint32_t *height_px)
+template <typename T>
+void read_pixels(OIIO::ImageInput *in, const OIIO::ImageSpec &spec, uint32_t max_px, T **rgba, uint32_t *width_px, uint32_t *height_px)
 {
     int channels = std::min(spec.nchannels, 4);
     size_t pixels = static_cast<size_t>(spec.width) * static_cast<size_t>(spec.height);

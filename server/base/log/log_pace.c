@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Counts the occurrences left out between two log lines. */
+/* Counts the log lines that are left out between two that are written. */
 #include "base/log/log_pace.h"
 
 #include <stdio.h>

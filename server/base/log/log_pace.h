@@ -10,13 +10,15 @@ enum { LOG_PACE_BYTES = 64 };
 
 struct log_pace { /* zero-initialise all but first_ns and longest_ns */
     int64_t first_ns, longest_ns;
-    int64_t pause_ns, next_ns; /* current pause, and end of the pause; next_ns 0: no line was written yet */
+    int64_t pause_ns, next_ns; /* length of the current pause, and its end (monotonic); next_ns 0: no line was written yet */
     long unsaid;
 };
 
-/* Counts one occurrence. Returns whether a line is due now; `more` is then the text to append: "" or " (and 5 more in the last 60 s)". */
+/* Counts one occurrence of the state. Returns true if a log line is due now; `more` is then the text to append: "" or " (and 5 more in the
+   last 60 s)". */
 bool log_pace_take(struct log_pace *pace, int64_t now_ns, char more[LOG_PACE_BYTES]);
-/* Returns whether a pause has ended with occurrences left out, and starts the next pause; `more` is then the text with their number. */
+/* Returns true if a pause has ended in which occurrences were left out, and starts the next pause; `more` is then a text with the count of
+   these occurrences. */
 bool log_pace_flush(struct log_pace *pace, int64_t now_ns, char more[LOG_PACE_BYTES]);
 
 #endif

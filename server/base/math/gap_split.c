@@ -9,10 +9,11 @@
 #include "base/math/vec.h"
 
 enum { BINS = 256, MAX_SPLITS = 64 };
-static const double SMALL_SHARE = 0.02; /* maximum fraction of the area that all small stray pieces have together */
+static const double SMALL_SHARE = 0.02; /* maximum fraction of the area of all triangles that small stray pieces may have together */
 /* stray: small pieces beyond a gap of SMALL_GAP main-part sizes, all pieces beyond a gap of LARGE_GAP */
 static const double SMALL_GAP = 1, LARGE_GAP = 100;
-static const double ONE_PLACE = 1e-3; /* corners farther apart than this fraction of the main part's size are at different places */
+/* corners that are farther apart than this fraction of the main part's size count as different places */
+static const double ONE_PLACE = 1e-3;
 
 struct tri_range {
     struct gap_tri *tris;
@@ -79,7 +80,7 @@ static void swap(struct gap_tri *a, struct gap_tri *b)
     *b = copy;
 }
 
-/* Moves the triangles that are entirely on one side of the gap to the front. Returns their number. */
+/* Moves the triangles that are entirely on one side of the gap to the front. Returns the count of these triangles. */
 static size_t gather(struct tri_range *part, int axis, double from_m, double to_m, bool above, double *area_m2)
 {
     size_t count = 0;
@@ -112,7 +113,7 @@ static bool reach_several_places(const struct gap_tri *tris, size_t count, int a
     return extent.low[0] <= extent.high[0] && extent_size(&extent) > within_m;
 }
 
-/* Drops the triangles beyond one gap. Returns whether there was a gap. */
+/* Drops the triangles beyond one gap. Returns false if there is no such gap. */
 static bool split(struct tri_range *part, double all_m2)
 {
     double min_m[3], max_m[3];
@@ -129,8 +130,8 @@ static bool split(struct tri_range *part, double all_m2)
         double size_m = size_of(part->tris, kept), lost_m2 = all_m2 - kept_m2;
         for (size_t t = 0; t < part->count; t++)
             crossing_m2 += part->tris[t].area_m2;
-        if (crossing_m2 > SMALL_SHARE * all_m2 && reach_several_places(part->tris + kept, part->count - kept, axis, from_m, to_m, above,
-                                                                       ONE_PLACE * size_m))
+        if (crossing_m2 > SMALL_SHARE * all_m2 &&
+            reach_several_places(part->tris + kept, part->count - kept, axis, from_m, to_m, above, ONE_PLACE * size_m))
             continue;
         if (kept > 0 && size_m > 0 && gap_m >= (lost_m2 <= SMALL_SHARE * all_m2 ? SMALL_GAP : LARGE_GAP) * size_m) {
             part->count = kept;

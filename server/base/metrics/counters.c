@@ -19,7 +19,7 @@ struct counter_entry {
 
 struct counters {
     pthread_mutex_t lock;
-    /* --- below: under `lock`; entries are only ever added */
+    /* --- below: protected by `lock`; entries are never removed --- */
     struct counter_entry *first, **last;
 };
 

@@ -31,7 +31,7 @@ static bool find_mount(char out[PATH_MAX])
     return found;
 }
 
-/* Finds the folder of this process's cgroup. */
+/* Finds the path of this process's cgroup. */
 static bool find_own(char out[PATH_MAX])
 {
     char line[PATH_MAX] = "", mount[PATH_MAX];

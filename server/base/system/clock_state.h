@@ -12,7 +12,7 @@ struct clock_state {
 };
 
 struct clock_state clock_state_read(void);
-/* Interprets the result of adjtimex(2). `state`: its return value. */
+/* Interprets the result of adjtimex(2). `state`: return value of the call. */
 struct clock_state clock_state_of(const struct timex *timex, int state);
 /* Returns the maximum error rounded up to 1, 10, 100, 1000 ms and so on, so that clients are not notified of small changes; 0 for 0. */
 int clock_state_error_ms(const struct clock_state *state);

@@ -183,7 +183,8 @@ int confine(const struct confine_params *params)
     if (status != 0)
         return status;
     status = confine_calls(params->role, params->notifies);
-    return status == -ENOSYS || status == -EINVAL ? 0 : status; /* the kernel has no seccomp filters: confine_lacks() reports that */
+    /* the kernel has no seccomp filters: confine_lacks() reports that */
+    return status == -ENOSYS || status == -EINVAL ? 0 : status;
 }
 
 bool confine_lacks_with(int abi, bool calls, char out[CONFINE_LACKS_BYTES])
@@ -191,7 +192,8 @@ bool confine_lacks_with(int abi, bool calls, char out[CONFINE_LACKS_BYTES])
     static const struct {
         int abi;
         const char *missing;
-    } parts[] = { /* access left open without that Landlock ABI; seccomp still blocks TCP and devices, and for readers the rest too */
+    } parts[] = {
+        /* access left open without that Landlock ABI; seccomp still blocks TCP and devices, and for readers the rest too */
         { ABI_RENAME, "read and write all files of this user" },
         { ABI_TRUNCATE, "empty all files that this user may write" },
         { ABI_SCOPES, "signal other processes of this user" },
@@ -199,8 +201,9 @@ bool confine_lacks_with(int abi, bool calls, char out[CONFINE_LACKS_BYTES])
     size_t used = 0;
     out[0] = 0;
     if (abi < 1)
-        used = (size_t)snprintf(out, CONFINE_LACKS_BYTES, "no Landlock: programs that read uploaded files can read and write all files of "
-                                                          "this user");
+        used = (size_t)snprintf(out, CONFINE_LACKS_BYTES,
+                                "no Landlock: programs that read uploaded files can read and write all files of "
+                                "this user");
     else if (abi < ABI_SCOPES)
         used = (size_t)snprintf(out, CONFINE_LACKS_BYTES, "only ABI %d of Landlock: commands under `convert` can ", abi);
     for (size_t i = 0, said = 0; i < sizeof(parts) / sizeof(parts[0]) && abi >= 1; i++)

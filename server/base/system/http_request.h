@@ -13,7 +13,7 @@ struct http_request { /* zero-initialise */
     struct curl_slist *headers;
     struct text answer;       /* body of the response; the owner empties it with text_finish() */
     size_t most_bytes;        /* maximum bytes of `answer`; a longer one ends the request with CURLE_WRITE_ERROR */
-    const _Atomic bool *stop; /* flag that ends the request within a second once it is set; NULL: none */
+    const _Atomic bool *stop; /* flag of the caller; the request ends within a second once the flag is true; NULL: no flag */
     char error[CURL_ERROR_SIZE];
 };
 
@@ -23,7 +23,7 @@ bool http_request_make(struct http_request *request, const char *agent, const ch
 /* Replaces all headers by `Authorization: SCHEME CREDENTIALS`; credentials NULL: removes all headers. Overwrites the credentials in
    headers that it frees. */
 void http_request_authorize(struct http_request *request, const char *scheme, const char *credentials);
-/* Returns why a request failed, as libcurl's text; valid until the next request begins. */
+/* Returns the reason why a request failed, as libcurl's text; valid until the next request begins. */
 const char *http_request_why(const struct http_request *request, CURLcode code);
 /* Frees handle, headers and answer; leaves the struct empty. */
 void http_request_finish(struct http_request *request);

@@ -92,7 +92,7 @@ struct service_patience {
     pthread_mutex_t lock;
     pthread_cond_t wake;
     int64_t limit_ns, every_ns;
-    int64_t used_ns; /* CPU time used at the last check; only its thread uses it */
+    int64_t used_ns; /* CPU time used at the last check; used only by the thread of this struct */
     /* --- below: under `lock` */
     char *status;
     int64_t since_ns; /* time when the status was set */
@@ -126,7 +126,7 @@ static bool is_at_work(struct service_patience *patience)
             used_ns += used_by(entry->d_name);
     if (folder)
         closedir(folder);
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &own); /* do not count the CPU time of this check */
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &own); /* the CPU time of this check itself does not count */
     used_ns -= own.tv_sec * NS_PER_S + own.tv_nsec;
     bool works = !folder || used_ns - patience->used_ns >= AT_WORK_NS;
     patience->used_ns = used_ns;
@@ -138,7 +138,7 @@ static bool is_at_work(struct service_patience *patience)
 static void *extend_start(void *arg)
 {
     struct service_patience *patience = arg;
-    bool works = true; /* request an extension at least once, so that a quick start shows its status too */
+    bool works = true; /* requests more time at least once, so that a quick start shows its status too */
     pthread_mutex_lock(&patience->lock);
     do {
         if (works && clock_mono_ns() - patience->since_ns < patience->limit_ns)

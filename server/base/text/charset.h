@@ -9,7 +9,7 @@ enum { CHARSET_NAME_BYTES = 32 };
 
 struct charset_choice {
     char name[CHARSET_NAME_BYTES];  /* name such as "UTF-8", "GB18030" or "Windows-1251" */
-    char other[CHARSET_NAME_BYTES]; /* another encoding that is nearly as likely but gives other letters; "": the choice is certain */
+    char other[CHARSET_NAME_BYTES]; /* another encoding that is nearly as likely but gives other letters; "": no other is likely */
     bool ascii;                     /* all bytes are ASCII: every encoding gives the same text */
 };
 

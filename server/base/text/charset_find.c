@@ -153,7 +153,7 @@ static const struct wide_model wide_models[] = {
 struct narrow_model {
     const char *name, *lower, *upper, *rare; /* letters, the most frequent first; rare letters */
     double prior;
-    bool latin; /* words in this encoding mix its letters with ASCII letters */
+    bool latin; /* words in this encoding mix its own letters with ASCII */
 };
 
 static const char signs[] = "°³²µ«»–—·±№§“”„…’™®½×Ø";

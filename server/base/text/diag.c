@@ -45,8 +45,8 @@ static int by_place(const void *pa, const void *pb)
 }
 
 enum { PLACES_BYTES = 100 };
-/* Number of similar findings that are printed one a line. Of more errors, the first 20 are printed; of more warnings, one line lists all
-   positions. */
+/* Number of similar findings that are printed one on a line. Of more errors, only the first 20 are printed; more warnings become one line
+   with all positions. */
 static const size_t most_alike[] = { [DIAG_ERROR] = 20, [DIAG_WARNING] = 3 };
 
 static bool is_alike(const struct diag_item *a, const struct diag_item *b)

@@ -9,7 +9,7 @@
 
 #define US_PER_S INT64_C(1000000)
 
-/* Reads between `least` and `most` digits. Returns false if there are fewer. */
+/* Reads at least `least` and at most `most` digits. Returns false if there are fewer than `least`. */
 static bool digits(const char **text, int least, int most, int *out)
 {
     int count = 0;
