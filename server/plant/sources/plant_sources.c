@@ -64,10 +64,11 @@ static void read_hosts(struct yaml_reader *reader, yaml_node_t *node, void *reco
 
 static void read_heartbeat(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
-    static const struct yaml_key keys[] = { { "tag", KEY_NAME, true, offsetof(struct plant_source, heartbeat), 0, 0, NULL, NULL },
-                                            { "longest_s", KEY_NUMBER, true, offsetof(struct plant_source, heartbeat_s), 0.1, 86400, NULL,
-                                              NULL },
-                                            { 0 } };
+    static const struct yaml_key keys[] = {
+        { "tag", KEY_NAME, true, offsetof(struct plant_source, heartbeat), 0, 0, NULL, NULL },
+        { "longest_s", KEY_NUMBER, true, offsetof(struct plant_source, heartbeat_s), 0.1, 86400, NULL, NULL },
+        { 0 }
+    };
     struct yaml_map map;
     yaml_map_read(reader, node, "heartbeat", keys, record, &map);
 }
@@ -140,51 +141,18 @@ static void check_keys(struct yaml_reader *reader, const struct yaml_map *map, c
         const char *key;
         int ways;
     } belongs[] = {
-        { "transport", MODBUS },
-        { "host", BY_HOST },
-        { "hosts", BY_HOST },
-        { "port", BY_HOST },
-        { "device", BY_LINE },
-        { "baud", BY_LINE },
-        { "parity", BY_LINE },
-        { "stop_bits", BY_LINE },
-        { "unit", MODBUS },
-        { "timeout_ms", MODBUS },
-        { "pause_ms", MODBUS },
-        { "connect_delay_ms", MODBUS },
-        { "close_between_polls", MODBUS },
-        { "max_registers", MODBUS },
-        { "max_bits", MODBUS },
-        { "max_gap", MODBUS },
-        { "byte_order", MODBUS },
-        { "address_base", MODBUS },
-        { "file", REPLAY },
-        { "speed", REPLAY },
-        { "loop", REPLAY },
-        { "protocol", MQTT },
-        { "client_id", MQTT },
-        { "session", MQTT },
-        { "qos", MQTT },
-        { "keepalive_s", MQTT },
-        { "payload", MQTT },
-        { "topic", MQTT },
-        { "value", MQTT },
-        { "time", MQTT },
-        { "quality", MQTT },
-        { "rebirth", MQTT },
-        { "login", MQTT | OPCUA },
-        { "tls", MQTT },
-        { "will", MQTT },
-        { "path", OPCUA },
-        { "security", OPCUA },
-        { "namespace", OPCUA },
-        { "queue", OPCUA },
-        { "deadband", OPCUA },
+        { "transport", MODBUS }, { "host", BY_HOST }, { "hosts", BY_HOST }, { "port", BY_HOST }, { "device", BY_LINE },
+        { "baud", BY_LINE }, { "parity", BY_LINE }, { "stop_bits", BY_LINE }, { "unit", MODBUS }, { "timeout_ms", MODBUS },
+        { "pause_ms", MODBUS }, { "connect_delay_ms", MODBUS }, { "close_between_polls", MODBUS },
+        { "max_registers", MODBUS }, { "max_bits", MODBUS }, { "max_gap", MODBUS }, { "byte_order", MODBUS },
+        { "address_base", MODBUS }, { "file", REPLAY }, { "speed", REPLAY }, { "loop", REPLAY },
+        { "protocol", MQTT }, { "client_id", MQTT }, { "session", MQTT }, { "qos", MQTT }, { "keepalive_s", MQTT }, { "payload", MQTT },
+        { "topic", MQTT }, { "value", MQTT }, { "time", MQTT }, { "quality", MQTT }, { "rebirth", MQTT }, { "login", MQTT | OPCUA },
+        { "tls", MQTT }, { "will", MQTT },
+        { "path", OPCUA }, { "security", OPCUA }, { "namespace", OPCUA }, { "queue", OPCUA }, { "deadband", OPCUA },
         { "deadband_percent", OPCUA },
     };
-    static const char *const whats[] = { [REPLAY] = "a replay",
-                                         [MQTT] = "an mqtt source",
-                                         [OPCUA] = "an opcua source",
+    static const char *const whats[] = { [REPLAY] = "a replay", [MQTT] = "an mqtt source", [OPCUA] = "an opcua source",
                                          [BY_LINE] = "transport rtu",
                                          [BY_SOCKET] = "a modbus source over TCP" };
     const char *what = whats[way_of(source)];
@@ -245,21 +213,11 @@ static void check_alone(struct yaml_reader *reader, const struct yaml_map *map, 
 static void read_source(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant, struct plant_source *source)
 {
     struct yaml_map map;
-    *source = (struct plant_source){ .port = 502,
-                                     .unit = 1,
-                                     .poll_ms = 1000,
-                                     .timeout_ms = 1000,
-                                     .address_base = 1,
-                                     .baud = 19200,
-                                     .parity = 'E',
-                                     .stop_bits = 1,
-                                     .max_registers = 125,
-                                     .max_bits = 2000,
-                                     .heartbeat_tag = -1,
-                                     .speed = 1,
-                                     .line = yaml_place(node).line,
-                                     .mqtt = { .protocol = 5, .qos = 1, .keepalive_s = 10 },
-                                     .opcua = { .queue = 10 } };
+    *source = (struct plant_source){
+        .port = 502, .unit = 1, .poll_ms = 1000, .timeout_ms = 1000, .address_base = 1, .baud = 19200, .parity = 'E', .stop_bits = 1,
+        .max_registers = 125, .max_bits = 2000, .heartbeat_tag = -1, .speed = 1, .line = yaml_place(node).line,
+        .mqtt = { .protocol = 5, .qos = 1, .keepalive_s = 10 }, .opcua = { .queue = 10 }
+    };
     if (!yaml_map_read(reader, node, "a source", source_keys, source, &map))
         return;
     plant_list_check_id(reader, &map, "source", plant->sources, plant->source_count, sizeof(*source), offsetof(struct plant_source, line));

@@ -11,41 +11,14 @@
 #include "value/quality.h"
 
 enum { MAX_UNPACKED_BYTES = 64 << 20 }; /* memory limit of one unpacked payload */
-enum {
-    TYPE_INT8 = 1,
-    TYPE_INT16,
-    TYPE_INT32,
-    TYPE_INT64,
-    TYPE_UINT8,
-    TYPE_UINT16,
-    TYPE_UINT32,
-    TYPE_UINT64,
-    TYPE_FLOAT,
-    TYPE_DOUBLE,
-    TYPE_BOOLEAN
-};
+enum { TYPE_INT8 = 1, TYPE_INT16, TYPE_INT32, TYPE_INT64, TYPE_UINT8, TYPE_UINT16, TYPE_UINT32, TYPE_UINT64, TYPE_FLOAT, TYPE_DOUBLE,
+       TYPE_BOOLEAN };
 
-static const char *const type_names[] = { [TYPE_INT8] = "Int8",
-                                          [TYPE_INT16] = "Int16",
-                                          [TYPE_INT32] = "Int32",
-                                          [TYPE_INT64] = "Int64",
-                                          [TYPE_UINT8] = "UInt8",
-                                          [TYPE_UINT16] = "UInt16",
-                                          [TYPE_UINT32] = "UInt32",
-                                          [TYPE_UINT64] = "UInt64",
-                                          [TYPE_FLOAT] = "Float",
-                                          [TYPE_DOUBLE] = "Double",
-                                          [TYPE_BOOLEAN] = "Boolean",
-                                          "String",
-                                          "DateTime",
-                                          "Text",
-                                          "UUID",
-                                          "DataSet",
-                                          "Bytes",
-                                          "File",
-                                          "Template",
-                                          "PropertySet",
-                                          "PropertySetList" };
+static const char *const type_names[] = { [TYPE_INT8] = "Int8",     [TYPE_INT16] = "Int16",   [TYPE_INT32] = "Int32",
+                                          [TYPE_INT64] = "Int64",   [TYPE_UINT8] = "UInt8",   [TYPE_UINT16] = "UInt16",
+                                          [TYPE_UINT32] = "UInt32", [TYPE_UINT64] = "UInt64", [TYPE_FLOAT] = "Float",
+                                          [TYPE_DOUBLE] = "Double", [TYPE_BOOLEAN] = "Boolean", "String", "DateTime", "Text", "UUID",
+                                          "DataSet", "Bytes", "File", "Template", "PropertySet", "PropertySetList" };
 
 const char *sparkplug_type_name(uint32_t type)
 {
@@ -87,10 +60,8 @@ static uint32_t quality_of(const Sparkplug__Payload__PropertySet *set)
         uint64_t code = value->value_case == SPARKPLUG__PAYLOAD__PROPERTY_VALUE__VALUE_INT_VALUE    ? value->int_value
                         : value->value_case == SPARKPLUG__PAYLOAD__PROPERTY_VALUE__VALUE_LONG_VALUE ? value->long_value
                                                                                                     : 1;
-        return code == 192   ? QUALITY_GOOD
-               : code == 0   ? QUALITY_BAD
-               : code == 500 ? QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE
-                             : QUALITY_UNCERTAIN;
+        return code == 192 ? QUALITY_GOOD : code == 0 ? QUALITY_BAD : code == 500 ? QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE
+                                                                                  : QUALITY_UNCERTAIN;
     }
     return QUALITY_GOOD;
 }
@@ -98,7 +69,9 @@ static uint32_t quality_of(const Sparkplug__Payload__PropertySet *set)
 static void read_value(const Sparkplug__Payload__Metric *from, struct sparkplug_metric *out)
 {
     switch (from->value_case) {
-    case SPARKPLUG__PAYLOAD__METRIC__VALUE__NOT_SET: out->form = SPARKPLUG_NOTHING; break;
+    case SPARKPLUG__PAYLOAD__METRIC__VALUE__NOT_SET:
+        out->form = SPARKPLUG_NOTHING;
+        break;
     case SPARKPLUG__PAYLOAD__METRIC__VALUE_INT_VALUE:
         out->form = SPARKPLUG_INT;
         out->whole = from->int_value;
@@ -119,7 +92,8 @@ static void read_value(const Sparkplug__Payload__Metric *from, struct sparkplug_
         out->form = SPARKPLUG_BOOLEAN;
         out->whole = from->boolean_value != 0;
         break;
-    default: out->form = SPARKPLUG_OTHER;
+    default:
+        out->form = SPARKPLUG_OTHER;
     }
 }
 
