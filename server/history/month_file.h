@@ -77,7 +77,7 @@ int month_file_forget_gaps(struct month_file *file, int64_t from_us, int64_t to_
    gaps into the outbox, if there is one; otherwise only samples go there, because another daemon records now and continues the lines.
    *ended_us: when the writer ended. */
 int month_file_recover(struct month_file *file, uint32_t gap_quality, bool sends_gaps, int64_t *ended_us);
-/* Deletes the held rows (newest samples) of a month that is over: all of them are recorded. */
+/* Deletes the held rows (newest samples) of a month that is over: they are all recorded. */
 int month_file_clear_held(struct month_file *file);
 /* Deletes points older than a time, but only those that month_file_tidy() has sorted. The freed space stays in the file for new points;
    with `shrink` it is returned to the disk, if the file was created with auto_vacuum (struct month_file_size, shrinks). Points of that age

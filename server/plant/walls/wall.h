@@ -9,19 +9,9 @@
 #include "plant/parse/yaml_reader.h"
 
 enum {
-    NAMED_VIEW_ID_BYTES = 49,
-    NAMED_VIEW_TITLE_BYTES = 121,
-    NAMED_VIEW_ADDRESS_BYTES = 2049, /* sizes include the terminating 0 */
-    NAMED_VIEWS = 256,
-    WALLS = 16,
-    WALL_DISPLAYS = 16,
-    WALL_PANES = 24,
-    WALL_ROWS = 12,
-    PANE_ITEMS = 16,
-    TOURS = 32,
-    TOUR_STOPS = 64,
-    TOUR_TEXT_BYTES = 241,
-    OTHER_PLANTS = 16
+    NAMED_VIEW_ID_BYTES = 49, NAMED_VIEW_TITLE_BYTES = 121, NAMED_VIEW_ADDRESS_BYTES = 2049, /* sizes include the terminating 0 */
+    NAMED_VIEWS = 256, WALLS = 16, WALL_DISPLAYS = 16, WALL_PANES = 24, WALL_ROWS = 12, PANE_ITEMS = 16,
+    TOURS = 32, TOUR_STOPS = 64, TOUR_TEXT_BYTES = 241, OTHER_PLANTS = 16
 };
 
 struct named_view {

@@ -44,20 +44,13 @@ static void on_subscription_silence(UA_Client *library, UA_UInt32 subscription, 
 /* Creates an open62541 client for one channel. Returns NULL with the reason in `why` on failure. */
 static UA_Client *make_library(struct opcua_client *client, const UA_EndpointDescription *endpoint, bool with_session, char why[200])
 {
-    UA_ClientConfig config = { .clientContext = client,
-                               .logging = &client->logger,
-                               .timeout = TIMEOUT_MS,
-                               .secureChannelLifeTime = CHANNEL_MS,
-                               .requestedSessionTimeout = SESSION_MS,
-                               .outStandingPublishRequests = 4,
-                               .noSession = !with_session,
-                               .noNewSession = true,
+    UA_ClientConfig config = { .clientContext = client, .logging = &client->logger, .timeout = TIMEOUT_MS,
+                               .secureChannelLifeTime = CHANNEL_MS, .requestedSessionTimeout = SESSION_MS,
+                               .outStandingPublishRequests = 4, .noSession = !with_session, .noNewSession = true,
                                .subscriptionInactivityCallback = on_subscription_silence,
-                               .inactivityCallback = on_silence,
-                               .securityMode = endpoint->securityMode };
-    config.localConnectionConfig = (UA_ConnectionConfig){
-        .recvBufferSize = BUFFER_BYTES, .sendBufferSize = BUFFER_BYTES, .localMaxMessageSize = MESSAGE_BYTES, .localMaxChunkCount = CHUNKS
-    };
+                               .inactivityCallback = on_silence, .securityMode = endpoint->securityMode };
+    config.localConnectionConfig = (UA_ConnectionConfig){ .recvBufferSize = BUFFER_BYTES, .sendBufferSize = BUFFER_BYTES,
+                                                          .localMaxMessageSize = MESSAGE_BYTES, .localMaxChunkCount = CHUNKS };
     config.eventLoop = UA_EventLoop_new_POSIX(&client->logger);
     UA_ConnectionManager *tcp = UA_ConnectionManager_new_POSIX_TCP(UA_STRING("tcp"));
     config.eventLoop->registerEventSource(config.eventLoop, &tcp->eventSource);
@@ -130,9 +123,9 @@ static enum opcua_policy policy_of(const UA_EndpointDescription *endpoint)
 
 static bool takes_us(const struct opcua_client *client, const UA_EndpointDescription *endpoint)
 {
-    const UA_UserTokenType wanted = client->source->login                          ? UA_USERTOKENTYPE_USERNAME
+    const UA_UserTokenType wanted = client->source->login                             ? UA_USERTOKENTYPE_USERNAME
                                     : client->security.user_certificate.length > 0 ? UA_USERTOKENTYPE_CERTIFICATE
-                                                                                   : UA_USERTOKENTYPE_ANONYMOUS;
+                                                                                    : UA_USERTOKENTYPE_ANONYMOUS;
     for (size_t i = 0; i < endpoint->userIdentityTokensSize; i++)
         if (endpoint->userIdentityTokens[i].tokenType == wanted)
             return true;
@@ -156,10 +149,9 @@ static UA_EndpointDescription *choose(const struct opcua_client *client, UA_Endp
             best = &endpoints[i];
     }
     if (!best && any)
-        snprintf(why, 200, "the server takes no %s",
-                 client->source->login                          ? "user and password"
-                 : client->security.user_certificate.length > 0 ? "user by certificate"
-                                                                : "anonymous users");
+        snprintf(why, 200, "the server takes no %s", client->source->login ? "user and password"
+                                                     : client->security.user_certificate.length > 0 ? "user by certificate"
+                                                                                                     : "anonymous users");
     else if (!best)
         snprintf(why, 200, "none of the server's %zu endpoints has %s", count,
                  wanted == OPCUA_NONE ? "security: none" : "a policy that may be used, with SignAndEncrypt");
@@ -191,8 +183,7 @@ static int discover(struct opcua_client *client, int stop_fd, int64_t deadline_m
 {
     UA_GetEndpointsRequest request = { .endpointUrl = UA_STRING(client->url) };
     UA_GetEndpointsResponse response;
-    UA_EndpointDescription open = { .endpointUrl = UA_STRING(client->url),
-                                    .securityMode = UA_MESSAGESECURITYMODE_NONE,
+    UA_EndpointDescription open = { .endpointUrl = UA_STRING(client->url), .securityMode = UA_MESSAGESECURITYMODE_NONE,
                                     .securityPolicyUri = UA_STRING((char *)(uintptr_t)opcua_policy_uri(OPCUA_NONE)) };
     int status = -EAGAIN;
     for (int i = 0; i < DISCOVERIES && (status == -EAGAIN || status == -EPROTO); i++) {
