@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Provides the field at a fragment: interpolated between vertices, or computed from all sensors (reference.glsl).
-#ifdef PER_FRAGMENT
+#if defined(PER_FRAGMENT) || defined(PIXEL_FIELD)
 #include "reference.glsl"
 FIELD_TYPE field_here(FIELD_TYPE interpolated)
 {
-    vec3 here = reference_field();
-#ifdef RICH
-    return vec4(here, interpolated.w);
-#else
-    here.x = (here.x - frame.scale.x) * frame.scale.y;
+    vec4 here = reference_field();
+#ifndef RICH
+    return vec3((here.x - frame.scale.x) * frame.scale.y, here.yz);
+#elif defined(PIXEL_FIELD)
     return here;
+#else
+    return vec4(here.xyz, interpolated.w);
 #endif
 }
 #else

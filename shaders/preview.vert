@@ -14,8 +14,8 @@ layout(location = 1) out vec3 sun_place;
 #ifdef CLIP
 layout(location = 6) out vec3 place;
 #endif
-#ifdef PER_FRAGMENT
-layout(location = 7) out vec3 file_place;
+#if defined(PER_FRAGMENT) || defined(PIXEL_FIELD)
+layout(location = 7) out vec3 interpolated_place;
 #endif
 #ifdef TEXTURED
 layout(location = 2) in vec2 texcoord;
@@ -25,8 +25,8 @@ layout(location = 2) out vec3 hole; // texture coordinates, alpha
 
 void main()
 {
-#ifdef PER_FRAGMENT
-    file_place = position_m;
+#if defined(PER_FRAGMENT) || defined(PIXEL_FIELD)
+    interpolated_place = position_m;
 #endif
     gl_Position = clip_from_file * vec4(position_m, 1.0);
 #ifdef TEXTURED

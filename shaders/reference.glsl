@@ -1,24 +1,35 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Computes the field at a fragment over all sensors: Algorithm 1 of Kim & Suh, and Shepard, by the rules of field/field.h. Geodesic
-// distances are interpolated over the triangle, straight-line ones computed from the fragment's position.
+// distances are interpolated over the triangle, straight-line ones computed from the fragment's position. PIXEL_FIELD: straight-line
+// distances only (field/pixel_field.h).
 struct Sensor {
     vec4 place_m;  // file coordinates; w: strength
     float decay, value;
-    uint column, state; // bits: 1: configured, 2: usable, 4: uncertain
+    uint column, state; // bits: 1: configured, 2: usable, 4: uncertain, 8: without limits
 };
 layout(std430, binding = 5) readonly buffer Sensors {
     vec4 numbers; // power, radius, reach, MIN of the group's range
-    vec4 more;    // x: MAX - MIN of the range, by which Algorithm 1 scales its sum to a value, or 0; y: vertex count of the asset
-    ivec4 choice; // enums of struct sensors_head: paper, geodesic, fill, show
+    vec4 more;    // x: MAX - MIN of the range, by which Algorithm 1 scales its sum to a value, or 0; y: vertex count of the asset;
+                  // z, w: size of a hot spot and the value at which it is seen, for show 5
+    ivec4 choice; // enums of struct sensors_head: paper, geodesic, fill, show (1: distance, 5: hot spot)
     Sensor sensors[];
 };
+#if defined(PIXEL_FIELD) && defined(REFINED)
+layout(location = 7) centroid in vec3 interpolated_place;
+#else
+layout(location = 7) in vec3 interpolated_place;
+#endif
+#ifndef CENTROID_ONE // what interpolating to the centroid makes of 1
+#define CENTROID_ONE 1.0
+#endif
+
+const float FAR = 1e30;
+
+#ifndef PIXEL_FIELD
 layout(std430, binding = 6) readonly buffer Corners { uint corners[]; };
 layout(std430, binding = 7) readonly buffer Positions { float positions_m[]; };
 layout(binding = 14) uniform samplerBuffer distances; // geodesic distances in metres; four sensors per texel, [sensor / 4][vertex]
 layout(location = 8) uniform int first_triangle;
-layout(location = 7) in vec3 file_place;
-
-const float FAR = 1e30;
 
 vec3 corner_place(uint vertex)
 {
@@ -26,7 +37,7 @@ vec3 corner_place(uint vertex)
 }
 
 // Returns the fragment's barycentric weights in its triangle.
-vec3 parts_of(uvec3 corner)
+vec3 parts_of(uvec3 corner, vec3 file_place)
 {
     vec3 a = corner_place(corner.x), b = corner_place(corner.y) - a, c = corner_place(corner.z) - a, p = file_place - a;
     float bb = dot(b, b), bc = dot(b, c), cc = dot(c, c), pb = dot(p, b), pc = dot(p, c), area = bb * cc - bc * bc;
@@ -44,9 +55,31 @@ float along_surface(uint column, uvec3 corner, vec3 part)
     return max(d.x, max(d.y, d.z)) < FAR ? max(dot(d, part), 0.0) : FAR;
 }
 
-float distance_to(int i, uvec3 corner, vec3 part)
+#endif
+
+struct Spot {
+    vec3 place, part;
+    uvec3 corner;
+};
+
+Spot spot_here()
 {
-    return choice.y != 0 ? along_surface(sensors[i].column, corner, part) : distance(file_place, sensors[i].place_m.xyz);
+    Spot spot = Spot(interpolated_place / CENTROID_ONE, vec3(0.0), uvec3(0));
+#ifndef PIXEL_FIELD
+    int triangle = first_triangle + gl_PrimitiveID;
+    spot.corner = uvec3(corners[3 * triangle], corners[3 * triangle + 1], corners[3 * triangle + 2]);
+    spot.part = parts_of(spot.corner, spot.place);
+#endif
+    return spot;
+}
+
+float distance_to(int i, Spot spot)
+{
+#ifndef PIXEL_FIELD
+    if (choice.y != 0)
+        return along_surface(sensors[i].column, spot.corner, spot.part);
+#endif
+    return distance(spot.place, sensors[i].place_m.xyz);
 }
 
 float nearness(float distance_m)
@@ -61,34 +94,34 @@ float faded(float distance_m, float near_m)
     return left * left;
 }
 
-// Returns x: value; y: no data; z: uncertain.
-vec3 reference_field()
+// Returns x: value; y: no data; z: uncertain; w: without limits.
+vec4 reference_field()
 {
-    int triangle = first_triangle + gl_PrimitiveID;
-    uvec3 corner = uvec3(corners[3 * triangle], corners[3 * triangle + 1], corners[3 * triangle + 2]);
-    vec3 part = parts_of(corner);
-    float near_m = FAR, lost_m = FAR, top = 0.0;
+    Spot spot = spot_here();
+    float near_m = FAR, lost_m = FAR, no_limits_m = FAR, top = 0.0;
     for (int i = 0; i < sensors.length(); i++) {
         if ((sensors[i].state & 1u) == 0u)
             continue;
-        float d = distance_to(i, corner, part);
+        float d = distance_to(i, spot);
         if ((sensors[i].state & 2u) != 0u)
             near_m = min(near_m, d);
+        else if ((sensors[i].state & 8u) != 0u)
+            no_limits_m = min(no_limits_m, d);
         else
             lost_m = min(lost_m, d);
     }
     if (choice.w == 1)
-        return vec3(near_m, near_m < FAR ? 0.0 : 1.0, 0.0);
+        return vec4(near_m, near_m < FAR ? 0.0 : 1.0, 0.0, 0.0);
     bool reached = near_m < FAR && near_m <= numbers.z;
     float limit_m = min(max(near_m, numbers.z), 0.5 * FAR);
     for (int i = 0; i < sensors.length(); i++) { // largest exponent, for scaling
-        float d = distance_to(i, corner, part);
+        float d = distance_to(i, spot);
         if ((sensors[i].state & 2u) != 0u && d <= limit_m)
             top = max(top, nearness(d) * sensors[i].place_m.w);
     }
     float sum = 0.0, weights = 0.0, marked = 0.0;
     for (int i = 0; i < sensors.length(); i++) {
-        float d = distance_to(i, corner, part), strength = sensors[i].place_m.w;
+        float d = distance_to(i, spot), strength = sensors[i].place_m.w;
         if ((sensors[i].state & 2u) == 0u || d > limit_m)
             continue;
         float near = nearness(d);
@@ -99,9 +132,17 @@ vec3 reference_field()
         marked += (sensors[i].state & 4u) != 0u ? weight : 0.0;
     }
     bool lost = lost_m < near_m, filled = reached && lost && choice.z != 0;
+    bool no_limits = no_limits_m < near_m && no_limits_m <= lost_m && no_limits_m <= numbers.z;
+    bool no_data = !no_limits && !(reached && (!lost || filled));
+    bool uncertain = filled || (marked > 0.0 && 2.0 * marked >= weights);
     float value = weights > 0.0 ? sum / weights : 0.0;
     if (choice.x != 0)
         value = value * more.x + (weights > 0.0 ? numbers.w : 0.0);
-    return vec3(weights > 0.0 ? value : numbers.w, reached && (!lost || filled) ? 0.0 : 1.0,
-                filled || (marked > 0.0 && 2.0 * marked >= weights) ? 1.0 : 0.0);
+    value = weights > 0.0 ? value : numbers.w;
+    if (choice.w == 5) {
+        float far = min(near_m, 1e6 * more.z) / more.z;
+        value = min(more.w * exp(min(0.5 * far * far, 80.0)), numbers.w);
+        uncertain = false;
+    }
+    return vec4(value, no_data ? 1.0 : 0.0, uncertain ? 1.0 : 0.0, no_limits ? 1.0 : 0.0);
 }

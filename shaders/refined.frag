@@ -7,13 +7,16 @@
 #include "pbr.glsl"
 #include "shadow.glsl"
 #include "field.glsl"
-#include "field_source.glsl"
 layout(location = 0) centroid in vec3 place;
 layout(location = 1) centroid in vec3 surface_normal;
 layout(location = 2) centroid in vec4 uv; // first and second texture coordinates
 layout(location = 3) centroid in vec4 tint;
 layout(location = 4) centroid in vec3 sky; // x: baked ambient light; y: baked openness; z: the constant 1 as interpolated to the centroid
 layout(location = 5) centroid in FIELD_TYPE field;
+#ifdef PIXEL_FIELD
+#define CENTROID_ONE sky.z
+#endif
+#include "field_source.glsl"
 layout(location = 2) uniform int material;
 // texture maps of the material, as bits 0 to 4: base colour, metallic-roughness, normal, occlusion, emissive; bits 8 to 12: the map uses
 // the second texture coordinates

@@ -15,14 +15,16 @@ layout(location = 2) centroid out vec4 uv; // first and second texture coordinat
 layout(location = 3) centroid out vec4 tint;
 layout(location = 4) centroid out vec3 sky;
 layout(location = 5) centroid out FIELD_TYPE field;
-#ifdef PER_FRAGMENT
-layout(location = 7) out vec3 file_place;
+#ifdef PIXEL_FIELD
+layout(location = 7) centroid out vec3 interpolated_place;
+#elif defined(PER_FRAGMENT)
+layout(location = 7) out vec3 interpolated_place;
 #endif
 
 void main()
 {
-#ifdef PER_FRAGMENT
-    file_place = position_m;
+#if defined(PER_FRAGMENT) || defined(PIXEL_FIELD)
+    interpolated_place = position_m;
 #endif
     gl_Position = clip_from_file * vec4(position_m, 1.0);
 #ifdef CLIP

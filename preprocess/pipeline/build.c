@@ -13,6 +13,7 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "preprocess/cache/build_cache.h"
+#include "plant/exact.h"
 #include "plant/influence.h"
 #include "plant/recipe.h"
 #include "preprocess/influence/influence_file.h"
@@ -28,13 +29,18 @@ static void hash_text(XXH3_state_t *state, const char *text)
     XXH3_64bits_update(state, text ? text : "", text ? strlen(text) + 1 : 1);
 }
 
+/* Counts the sensors of a sensor's group, without those whose place is assumed. */
+static size_t count_of_group(const struct plant *plant, const struct plant_sensor *sensors, size_t count, size_t sensor)
+{
+    size_t found = 0;
+    for (size_t i = 0; i < count; i++)
+        found += plant->tags[sensors[i].tag].group == plant->tags[sensors[sensor].tag].group && !plant->tags[sensors[i].tag].place_assumed;
+    return found;
+}
+
 static bool is_alone(const struct plant *plant, const struct plant_sensor *sensors, size_t count, size_t sensor)
 {
-    for (size_t i = 0; i < count; i++)
-        if (i != sensor && plant->tags[sensors[i].tag].group == plant->tags[sensors[sensor].tag].group &&
-            !plant->tags[sensors[i].tag].place_assumed)
-            return false;
-    return true;
+    return count_of_group(plant, sensors, count, sensor) == !plant->tags[sensors[sensor].tag].place_assumed;
 }
 
 /* Returns whether the field is constant, so that distances do not matter: each group has a single sensor, Shepard interpolation and no
@@ -87,6 +93,8 @@ static void hash_field(XXH3_state_t *state, const struct plant *plant, const str
         XXH3_64bits_update(state, "d", 1);
     if (is_alone(plant, sensors, count, sensor) && !straight_looks_at_paper(group, 1))
         XXH3_64bits_update(state, "s", 1);
+    if (plant_group_is_exact(group, count_of_group(plant, sensors, count, sensor)))
+        XXH3_64bits_update(state, "x", 1);
     if (tag->place_assumed)
         XXH3_64bits_update(state, "e", 1);
 }

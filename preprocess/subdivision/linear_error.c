@@ -7,6 +7,7 @@
 
 #include "base/math/vec.h"
 #include "base/mem.h"
+#include "plant/exact.h"
 #include "plant/singles.h"
 
 #define MAX_SLACK (1 / 255.0) /* share of the range */
@@ -32,7 +33,7 @@ static void add_group(struct linear_error *linear, const struct plant *plant, in
     for (uint32_t i = 0; i < linear->sensor_count; i++)
         if (plant->tags[sensors[i].tag].group == group && !plant->tags[sensors[i].tag].place_assumed)
             to->columns[to->count++] = i;
-    if (to->count == 0) {
+    if (to->count == 0 || plant_group_is_exact(from, to->count)) {
         mem_free(to->columns);
         return;
     }

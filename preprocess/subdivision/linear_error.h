@@ -4,6 +4,7 @@
  * the range, is a sum over sensors: of the amounts by which weights exceed their linear interpolation, or of those by which weights fall
  * below it, the larger sum. The maximum is taken over all groups with sensors on the asset, both interpolations and both kinds of distance,
  * with the plant file's parameters. Sensors with an assumed position are ignored: they show nothing, or colour the whole asset evenly.
+ * Groups whose field each pixel evaluates (plant/exact.h) are ignored too.
  * Where no sensor of a group reaches, there is no data, and the nearest sensor's value is continued. Thread: any, once initialised. */
 #ifndef PREPROCESS_SUBDIVISION_LINEAR_ERROR_H
 #define PREPROCESS_SUBDIVISION_LINEAR_ERROR_H

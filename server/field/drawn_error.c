@@ -7,6 +7,7 @@
 
 #include "base/math/vec.h"
 #include "base/mem.h"
+#include "plant/exact.h"
 #include "plant/singles.h"
 
 /* GROUP: triangles processed together; GRAIN: triangles per job; PIECES_MOST: pieces per triangle. */
@@ -342,6 +343,8 @@ static bool is_as_prepared(const struct weights *weights, const struct field_par
     const struct plant_group *group = layout->group;
     if (layout->trial || params->override_count > 0 || params->distance == DISTANCE_HEAT || params->reach_m != group->reach_m)
         return false;
+    if (plant_group_is_exact(group, layout->sensor_count)) /* no triangle was cut for the group */
+        return false;
     for (size_t i = 0; i < layout->sensor_count; i++)
         if (weights->configured[i] && !weights->takes_part[i])
             return false;
@@ -360,6 +363,8 @@ void drawn_error_measure(struct weights *weights, const struct field_params *par
     while (number + 1 < file->header->level_count && file->levels[number + 1].vertex_count >= vertices)
         number++;
     uint64_t bit = (uint64_t)1 << (number < 63 ? number : 63);
+    if (layout_is_exact(layout, weights->interpolation, weights->distance)) /* pictures do not interpolate it */
+        return;
     if (weights->measured_levels & bit || weights->prepared || layout->assumed || weights->member_count == 0 ||
         (weights->member_count == 1 && weights->interpolation == INTERPOLATION_SHEPARD))
         return;

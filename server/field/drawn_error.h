@@ -10,8 +10,8 @@
 /* Measures the error in the triangles of the level of detail that uses the first `vertices` vertices, unless it is known, and merges the
    error into weights->errors: for each vertex the largest error of the adjacent triangles. The unit is the spread of the readings for
    shepard, and the largest reading for paper. params and usable are those of weights_create(). in_range: the readings differ by no more
-   than preparation assumed. Does nothing if preparation left no error for these parameters and all sensors are used, if the weights are
-   prepared (linear within triangles by definition), or when out of memory. */
+   than preparation assumed. Does nothing if each pixel evaluates the field (plant/exact.h), if preparation left no error for these
+   parameters and all sensors are used, if the weights are prepared (linear within triangles by definition), or when out of memory. */
 void drawn_error_measure(struct weights *weights, const struct field_params *params, const uint8_t *usable, size_t vertices, bool in_range,
                          struct workers *workers);
 

@@ -28,6 +28,7 @@
 #define FIELD_FIELD_H
 #include "base/workers.h"
 #include "field/params.h"
+#include "field/pixel_field.h"
 #include "field/trials.h"
 #include "field/scalars.h"
 #include "plant/plant.h"
@@ -122,5 +123,8 @@ struct field_sensor {
 /* Lists the inputs of the field on an asset, as the last field_scalars() with these parameters used them. *radius_m receives R of Algorithm
    1. Returns their number; the caller frees *out (mem_free). 0: no sensor contributes. */
 size_t field_sensors(struct field *field, int asset, const struct field_params *params, struct field_sensor **out, float *radius_m);
+/* Fills in what renderers need to evaluate the field at pixels, of the readings that the last field_scalars() with these parameters took.
+   out->count is 0 where the field is interpolated between vertices, and where it is the same everywhere. */
+void field_pixels(struct field *field, int asset, const struct field_params *params, struct pixel_field *out);
 
 #endif

@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Lists the sensors and values that enter the sums of the field. */
+#include <math.h>
 #include <string.h>
 
 #include "base/mem.h"
 #include "field/field_impl.h"
+#include "field/update.h"
 
 size_t field_sensors(struct field *field, int asset, const struct field_params *params, struct field_sensor **out, float *radius_m)
 {
@@ -36,4 +38,80 @@ size_t field_sensors(struct field *field, int asset, const struct field_params *
     *out = sensors;
     *radius_m = weights ? weights->radius_m : 1;
     return layout->sensor_count;
+}
+
+/* --- few sensors, for pixels ------------------------------------------------------------------------------------------------- */
+
+static void add_pixel_sensor(const struct field_state *state, size_t sensor, uint32_t bits, struct pixel_field *out)
+{
+    const struct layout_sensor *from = &state->layout->sensors[sensor];
+    const struct weights *weights = state->weights;
+    struct pixel_sensor *to = &out->sensors[out->count++];
+    *to = (struct pixel_sensor){ .value = (float)state->shown[sensor].value,
+                                 .strength = weights ? weights->strength[sensor] : 1,
+                                 .decay = weights ? weights->decay[sensor] : 1,
+                                 .state = bits };
+    memcpy(to->place_m, from->surface_m, sizeof(to->place_m));
+}
+
+/* The distance from one sensor. */
+static void fill_distance(const struct field_state *state, struct pixel_field *out)
+{
+    out->show = PIXEL_DISTANCE;
+    out->reach_m = INFINITY;
+    for (size_t i = 0; i < state->layout->sensor_count && out->count == 0; i++)
+        if (state->layout->sensors[i].tag == state->params.sensor)
+            add_pixel_sensor(state, i, PIXEL_CONFIGURED | PIXEL_USABLE, out);
+}
+
+static void fill_rule(const struct field_state *state, struct pixel_field *out)
+{
+    const struct plant_group *group = state->layout->group;
+    const struct weights *weights = state->weights;
+    struct kernel_value rule;
+    update_rule(state, state->shown, &rule);
+    out->paper = weights->interpolation == INTERPOLATION_PAPER;
+    out->show = state->params.show == SHOW_BLIND ? PIXEL_BLIND : PIXEL_SUM;
+    out->fill = out->show == PIXEL_BLIND || state->params.fill == FILL_NEIGHBOURS;
+    out->power = weights->power;
+    out->reach_m = weights->reach_m;
+    out->radius_m = weights->radius_m;
+    out->scale = rule.scale;
+    out->offset = rule.offset;
+    out->low = rule.low;
+    out->high = rule.high;
+    out->empty = rule.empty;
+    out->hot_spot_m = (float)group->hot_spot_m;
+    out->seen = update_blind(group, 0);
+    out->most = update_blind(group, INFINITY);
+}
+
+static void fill_sum(const struct field_state *state, struct pixel_field *out)
+{
+    const struct weights *weights = state->weights;
+    fill_rule(state, out);
+    for (size_t i = 0; i < state->layout->sensor_count; i++) {
+        uint32_t bits = PIXEL_CONFIGURED | (weights->takes_part[i] ? PIXEL_USABLE : 0);
+        bits |= weights->configured[i] == SENSOR_NO_LIMITS ? PIXEL_NO_LIMITS : 0;
+        bits |= state->shown[i].uncertain ? PIXEL_UNCERTAIN : 0;
+        if (weights->configured[i])
+            add_pixel_sensor(state, i, bits, out);
+    }
+    bool is_even = out->count == 1 && !out->paper && out->show == PIXEL_SUM && out->reach_m == INFINITY;
+    out->count = is_even ? 0 : out->count;
+}
+
+void field_pixels(struct field *field, int asset, const struct field_params *params, struct pixel_field *out)
+{
+    struct field_params room;
+    memset(out, 0, sizeof(*out));
+    params = field_params_of(field, asset, params, &room);
+    const struct field_layout *layout = field_layout(field, asset, params);
+    if (!layout || layout->assumed)
+        return;
+    const struct field_state *state = field_state(field, asset, params);
+    if (state && params->show == SHOW_DISTANCE && params->distance == DISTANCE_EUCLIDEAN)
+        fill_distance(state, out);
+    else if (state && state->weights && layout_is_exact(layout, params->interpolation, params->distance))
+        fill_sum(state, out);
 }

@@ -10,6 +10,7 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 #include "field/kernels.h"
+#include "plant/exact.h"
 #include "protocol/asset_distance.h"
 
 _Static_assert(KERNEL_BLOCK == ASSET_DISTANCE_BLOCK, "a block of the file is done at a time");
@@ -122,6 +123,11 @@ void layout_destroy(struct field_layout **layout_ptr)
 const float *layout_along(const struct layout_sensor *sensor, enum distance_mode mode)
 {
     return mode == DISTANCE_EUCLIDEAN ? NULL : mode == DISTANCE_HEAT && sensor->heat_m ? sensor->heat_m : sensor->tried_m;
+}
+
+bool layout_is_exact(const struct field_layout *layout, enum interpolation interpolation, enum distance_mode mode)
+{
+    return !layout->assumed && plant_is_exact(interpolation, mode, layout->sensor_count);
 }
 
 bool layout_is_in_file(const struct layout_sensor *sensor, enum distance_mode mode)

@@ -53,6 +53,8 @@ void layout_destroy(struct field_layout **layout);
 /* Returns a sensor's geodesic distances of each vertex by this mode; if that mode's were not prepared (trial sensors), returns those of the
    other geodesic mode. NULL: the mode is straight-line, or the distances are in the asset file or not known yet. */
 const float *layout_along(const struct layout_sensor *sensor, enum distance_mode mode);
+/* Returns whether each pixel evaluates the sensors' sum (plant/exact.h). */
+bool layout_is_exact(const struct field_layout *layout, enum interpolation interpolation, enum distance_mode mode);
 /* Returns whether the sensor's distances by this mode are in its column of the asset file. */
 bool layout_is_in_file(const struct layout_sensor *sensor, enum distance_mode mode);
 /* Returns the distances of `count` vertices from `begin` on from one sensor: a pointer to them, or to `scratch`, which receives them. They

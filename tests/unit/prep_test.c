@@ -202,6 +202,22 @@ static void group_says(struct prep_case *s, const char *more)
     mem_free(text);
 }
 
+/* Triangles in the finest level of the first asset. */
+static size_t triangles_of_first(struct prep_case *s)
+{
+    struct folder_file file;
+    char why[200], *name = file_of(s, 0), *folder = temp_path(s->folder, "plant.prepared");
+    assert_int_equal(folder_open(&file, folder, strtoull(strrchr(name, '/') + 1, NULL, 16), why), 1);
+    const struct asset_view *v = &file.view;
+    size_t indices = 0;
+    for (uint32_t p = 0; p < v->levels[0].primitive_count; p++)
+        indices += v->primitives[v->levels[0].first_primitive + p].index_count;
+    folder_close(&file);
+    mem_free(name);
+    mem_free(folder);
+    return indices / 3;
+}
+
 /* Subdivision depends on the field, and so on a change of the reach; a change of a limit does not affect the field. */
 CASE(another_reach_is_another_file)
 {
@@ -213,6 +229,21 @@ CASE(another_reach_is_another_file)
     group_says(s, ", reach_m: 1.25");
     assert_states(s, "built", "shared", "built");
     assert_states(s, "unchanged", "shared", "unchanged");
+}
+
+/* Each pixel evaluates the field of few sensors by straight-line distance: no triangle is cut for it. */
+CASE(straight_distances_of_few_sensors_cut_nothing)
+{
+    size_t cut, whole;
+    assert_states(s, "built", "shared", "built");
+    cut = triangles_of_first(s);
+    group_says(s, ", distance: euclidean");
+    assert_states(s, "built", "shared", "built");
+    whole = triangles_of_first(s);
+    assert_true(whole < cut);
+    group_says(s, ", distance: euclidean, prepare: [harmonic]");
+    assert_states(s, "built", "shared", "built");
+    assert_true(triangles_of_first(s) > whole);
 }
 
 CASE(two_at_a_time_take_turns)

@@ -30,13 +30,13 @@ static bool is_used(int tier, int variant)
 static GLuint make_program(struct log *log, enum surface_program_kind kind, int tier, int variant)
 {
     static const char *const stages[2][2] = { { "preview.vert", "preview.frag" }, { "refined.vert", "refined.frag" } };
-    bool reference = kind == SURFACE_PER_FRAGMENT || kind == SURFACE_MEASURE_PER_FRAGMENT;
-    bool measure = kind == SURFACE_MEASURE || kind == SURFACE_MEASURE_PER_FRAGMENT;
+    static const char *const sources[] = { "", "#define PIXEL_FIELD\n", "#define PER_FRAGMENT\n" };
+    bool measure = kind >= SURFACE_MEASURE;
     struct text defines = { 0 };
     text_add(&defines, "%s%s%s%s%s%s%s", tier == TIER_REFINED ? "#define REFINED\n" : "", variant & SURFACE_FIELD ? "#define FIELD\n" : "",
              variant & SURFACE_CLIP ? "#define CLIP\n" : "", variant & SURFACE_RICH ? "#define RICH\n" : "",
              variant & SURFACE_GLOSSY ? "#define GLOSSY\n" : "", variant & SURFACE_TEXTURED ? "#define TEXTURED\n" : "",
-             reference && variant & SURFACE_FIELD ? "#define PER_FRAGMENT\n" : "");
+             variant & SURFACE_FIELD ? sources[kind % SURFACE_MEASURE] : "");
     GLuint program = program_create(log, program_params(.vertex = stages[tier][0], .fragment = measure ? "measure.frag" : stages[tier][1],
                                                         .defines = defines.at));
     text_finish(&defines);
@@ -70,12 +70,18 @@ static bool is_per_fragment(const struct frame_context *context, const struct fi
     return context->reference && field && field->sensors;
 }
 
+/* Each pixel evaluates the field from few sensors. */
+static bool has_pixel_field(const struct frame_context *context, const struct fields_entry *field)
+{
+    return !context->reference && field && field->pixels.count > 0 && field->sensors;
+}
+
 static enum surface_program_kind kind_of(const struct frame_context *context, const struct fields_entry *field)
 {
-    bool reference = is_per_fragment(context, field);
-    if (context->measured)
-        return reference ? SURFACE_MEASURE_PER_FRAGMENT : SURFACE_MEASURE;
-    return reference ? SURFACE_PER_FRAGMENT : SURFACE_PICTURE;
+    enum surface_program_kind picture = is_per_fragment(context, field)   ? SURFACE_PER_FRAGMENT
+                                        : has_pixel_field(context, field) ? SURFACE_PIXEL_FIELD
+                                                                          : SURFACE_PICTURE;
+    return context->measured ? picture + SURFACE_MEASURE : picture;
 }
 
 /* cut: a section plane cuts the asset. */
@@ -159,8 +165,9 @@ static void gather(struct surface_pass *pass, struct draw_batches *batches, cons
     const struct model_level *level = frame_level(context, index);
     const struct fields_entry *field = context->fields[index];
     const struct scene_asset *asset = &gpu_scene->scene->assets[index];
-    bool blend = batches == &pass->blended, alone = is_per_fragment(context, field);
-    bool all = alone || pass->least_hiding != INT_MAX || context->measured, placed = false;
+    bool blend = batches == &pass->blended, per_fragment = is_per_fragment(context, field);
+    bool alone = per_fragment || has_pixel_field(context, field), placed = false;
+    bool all = per_fragment || pass->least_hiding != INT_MAX || context->measured;
     struct draw_batch_state state = { .model = model,
                                       .light = context->light->baked[index]->page,
                                       .field = field && field->slice ? field->slice->page : NULL,
@@ -249,7 +256,9 @@ static void draw_batch_range(const struct draw_batches *batches, const struct fr
             continue;
         set_state(batches, context, is, was);
         was = is;
-        if (is->alone < 0)
+        if (is->alone >= 0 && !context->reference)
+            reference_bind_pixel_sensors(context->fields[is->alone]->sensors);
+        if (is->alone < 0 || !context->reference)
             draw_batches_draw(batches, batch);
         else if (reference_bind(context->reference, is->alone, context->fields[is->alone]->sensors))
             reference_draw(&batches->sorted[batch->first], batch->count);

@@ -18,7 +18,15 @@ enum surface_variant {
 };
 
 /* Output of a program. All kinds but SURFACE_PICTURE are compiled when first needed. */
-enum surface_program_kind { SURFACE_PICTURE, SURFACE_PER_FRAGMENT, SURFACE_MEASURE, SURFACE_MEASURE_PER_FRAGMENT, SURFACE_KINDS };
+enum surface_program_kind {
+    SURFACE_PICTURE,
+    SURFACE_PIXEL_FIELD,
+    SURFACE_PER_FRAGMENT,
+    SURFACE_MEASURE,
+    SURFACE_MEASURE_PIXEL_FIELD,
+    SURFACE_MEASURE_PER_FRAGMENT,
+    SURFACE_KINDS
+};
 
 struct surface_pass {
     struct log *log;

@@ -131,14 +131,25 @@ void arrows_update(struct arrow_set *set, const struct scene *scene, int asset, 
     directions_find(scene, asset, &field->params, field->directions, field->direction_count, set->places, set->count, set->found);
 }
 
-double arrows_value(const struct arrow_set *set, size_t place, const struct fields_entry *field)
+double arrows_value(const struct arrow_set *set, size_t place, const struct asset_view *file, const struct fields_entry *field)
 {
-    return arrows_value_at(&set->places[place], field);
+    return arrows_value_at(&set->places[place], file, field);
 }
 
-double arrows_value_at(const struct direction_place *at, const struct fields_entry *field)
+static double evaluated_at(const struct direction_place *at, const struct asset_view *file, const struct pixel_field *pixels)
+{
+    double place_m[3];
+    struct pixel_value value;
+    point_of(file, at, place_m);
+    pixel_field_at(pixels, (const float[3]){ (float)place_m[0], (float)place_m[1], (float)place_m[2] }, &value);
+    return value.no_data ? (double)NAN : (double)value.value;
+}
+
+double arrows_value_at(const struct direction_place *at, const struct asset_view *file, const struct fields_entry *field)
 {
     double value = 0;
+    if (field->pixels.count > 0)
+        return evaluated_at(at, file, &field->pixels);
     for (int i = 0; i < 3; i++) {
         const struct scalar *scalar = &field->shown[at->corners[i]];
         if (scalar->no_data)

@@ -21,9 +21,9 @@ size_t arrows_vertex_count(const struct scene_asset *asset);
 /* Updates the directions from the field entry. */
 void arrows_update(struct arrow_set *set, const struct scene *scene, int asset, const struct fields_entry *field);
 /* Returns the field's value at a position, in the field's unit; NaN where there is no data. */
-double arrows_value(const struct arrow_set *set, size_t place, const struct fields_entry *field);
+double arrows_value(const struct arrow_set *set, size_t place, const struct asset_view *file, const struct fields_entry *field);
 /* Returns the field's value at any surface position, given as triangle and corner weights; NaN where there is no data. */
-double arrows_value_at(const struct direction_place *at, const struct fields_entry *field);
+double arrows_value_at(const struct direction_place *at, const struct asset_view *file, const struct fields_entry *field);
 /* Writes a position and the arrow's direction there, in the plant frame. */
 void arrows_place(const struct arrow_set *set, size_t place, const struct scene_asset *asset, double place_m[3], double along[3]);
 /* Transforms any position and direction of the asset's file to the plant frame. */

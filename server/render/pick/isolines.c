@@ -12,6 +12,8 @@
 #include "render/pick/markers.h"
 
 enum { POINTS_PER_LINE = 16, MAX_POINTS = 2048, MAX_LABELS = 128, MAX_ARROWS = 192, MAX_STROKES = 48 };
+/* Bisection steps on a piece of an edge; largest number of pieces of an edge. */
+enum { MAX_BISECTIONS = 24, MAX_PIECES = 16 };
 static const double SPACING = 0.1;        /* minimum distance between points on isolines, relative to the asset's size */
 static const double SAME_LINE_FACTOR = 4; /* labels of one line keep this multiple of the distance between labels of different lines */
 
@@ -61,17 +63,43 @@ static bool is_apart(const struct isoline_search *search, double value, const do
     return true;
 }
 
-static void add_point(struct isoline_search *search, int line, uint32_t a, uint32_t b)
+/* A piece of an edge. */
+struct edge_piece {
+    float ends_m[2][3]; /* as the asset file's positions */
+    double values[2];
+};
+
+static void between_ends(const struct edge_piece *piece, double part, float out_m[3])
 {
-    const struct asset_view *view = &search->asset->file->view;
-    const struct scalar *values = search->field->shown;
-    double value = search->set->lines[line], span = (double)values[b].value - (double)values[a].value, file_m[3], place_m[3];
-    double part = (value - (double)values[a].value) / span;
+    for (int c = 0; c < 3; c++)
+        out_m[c] = (float)((double)piece->ends_m[0][c] + part * ((double)piece->ends_m[1][c] - (double)piece->ends_m[0][c]));
+}
+
+/* Where a value is on a piece whose ends have a lower and a higher one: a field that is evaluated at pixels bends in between. */
+static double part_of_value(const struct isoline_search *search, const struct edge_piece *piece, double value)
+{
+    double low = 0, high = 1;
+    bool rises = piece->values[1] > piece->values[0];
+    if (search->field->pixels.count == 0)
+        return (value - piece->values[0]) / (piece->values[1] - piece->values[0]);
+    for (int i = 0; i < MAX_BISECTIONS; i++) {
+        float at_m[3];
+        struct pixel_value here;
+        between_ends(piece, 0.5 * (low + high), at_m);
+        pixel_field_at(&search->field->pixels, at_m, &here);
+        *(((double)here.value < value) == rises ? &low : &high) = 0.5 * (low + high);
+    }
+    return 0.5 * (low + high);
+}
+
+static void add_point(struct isoline_search *search, int line, const struct edge_piece *piece)
+{
+    double value = search->set->lines[line], place_m[3];
     const double *m = search->asset->placement;
+    float file_m[3];
+    between_ends(piece, part_of_value(search, piece, value), file_m);
     for (int c = 0; c < 3; c++)
-        file_m[c] = (double)view->positions_m[a][c] + part * (double)(view->positions_m[b][c] - view->positions_m[a][c]);
-    for (int c = 0; c < 3; c++)
-        place_m[c] = m[c] * file_m[0] + m[4 + c] * file_m[1] + m[8 + c] * file_m[2] + m[12 + c];
+        place_m[c] = m[c] * (double)file_m[0] + m[4 + c] * (double)file_m[1] + m[8 + c] * (double)file_m[2] + m[12 + c];
     if (!is_apart(search, value, place_m))
         return;
     struct isoline_set *set = search->set;
@@ -81,15 +109,45 @@ static void add_point(struct isoline_search *search, int line, uint32_t a, uint3
     search->counts[line]++;
 }
 
-static void search_edge(struct isoline_search *search, uint32_t a, uint32_t b)
+static void search_piece(struct isoline_search *search, const struct edge_piece *piece)
 {
-    const struct scalar *values = search->field->shown;
-    double low = fminf(values[a].value, values[b].value), high = fmaxf(values[a].value, values[b].value);
-    if (values[a].no_data || values[b].no_data || !(high > low))
-        return;
+    double low = fmin(piece->values[0], piece->values[1]), high = fmax(piece->values[0], piece->values[1]);
     for (int i = 0; i < search->set->line_count; i++)
         if (search->set->lines[i] > low && search->set->lines[i] <= high && search->counts[i] < POINTS_PER_LINE)
-            add_point(search, i, a, b);
+            add_point(search, i, piece);
+}
+
+/* Of a field that is evaluated at pixels: piece by piece, since lines cross long edges more than once. */
+static void search_evaluated(struct isoline_search *search, const struct edge_piece *edge)
+{
+    double length_m = (double)vecf_distance(edge->ends_m[0], edge->ends_m[1]);
+    int pieces = (int)fmin(1 + length_m / (SPACING * search->size_m), MAX_PIECES);
+    struct pixel_value before = { .no_data = true };
+    struct edge_piece piece;
+    for (int i = 0; i <= pieces; i++) {
+        struct pixel_value here;
+        between_ends(edge, (double)i / pieces, piece.ends_m[1]);
+        pixel_field_at(&search->field->pixels, piece.ends_m[1], &here);
+        piece.values[0] = (double)before.value;
+        piece.values[1] = (double)here.value;
+        if (!before.no_data && !here.no_data)
+            search_piece(search, &piece);
+        memcpy(piece.ends_m[0], piece.ends_m[1], sizeof(piece.ends_m[0]));
+        before = here;
+    }
+}
+
+static void search_edge(struct isoline_search *search, uint32_t a, uint32_t b)
+{
+    const float(*at)[3] = search->asset->file->view.positions_m;
+    const struct scalar *values = search->field->shown;
+    struct edge_piece edge = { .values = { (double)values[a].value, (double)values[b].value } };
+    memcpy(edge.ends_m[0], at[a], sizeof(edge.ends_m[0]));
+    memcpy(edge.ends_m[1], at[b], sizeof(edge.ends_m[1]));
+    if (search->field->pixels.count > 0)
+        search_evaluated(search, &edge);
+    else if (!values[a].no_data && !values[b].no_data)
+        search_piece(search, &edge);
 }
 
 size_t isolines_vertex_count(const struct scene_asset *asset)
@@ -157,7 +215,7 @@ static bool has_directions(const struct fields_entry *field)
 static void add_arrow(const struct arrow_set *set, size_t place, const struct frame_context *context, int asset, struct isoline_points *out)
 {
     const struct scene_asset *of = &context->gpu_scene->scene->assets[asset];
-    struct isoline_point point = { .value = arrows_value(set, place, context->fields[asset]),
+    struct isoline_point point = { .value = arrows_value(set, place, &of->file->view, context->fields[asset]),
                                    .arrow = true,
                                    .uncertain = set->found[place].uncertain,
                                    .slack_m = (float)fmax(1.5 * (double)set->error_m, 0.01 * coarse_size_m(of)) };
@@ -184,7 +242,7 @@ static void add_stroke(const struct isolines *isolines, size_t place, const stru
     mem_grow(&out->at, &out->capacity, out->count + STROKE_POINTS, sizeof(*out->at));
     for (int n = 0; n < set->lengths[place]; n++) {
         const struct stroke_point *at = &set->points[place][n];
-        struct isoline_point point = { .value = arrows_value_at(&at->place, context->fields[asset]),
+        struct isoline_point point = { .value = arrows_value_at(&at->place, &of->file->view, context->fields[asset]),
                                        .arrow = true,
                                        .uncertain = at->to.uncertain,
                                        .stroke = number,

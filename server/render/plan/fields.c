@@ -105,9 +105,11 @@ static double error_of(const struct fields_entry *entry, const struct scalars *n
 
 /* Returns whether the change is at least half a colour step. The field's bound on its change usually decides; if not, compares every
    vertex. */
-static bool can_be_seen(struct fields_entry *entry, const struct scalars *now)
+static bool can_be_seen(struct fields_entry *entry, const struct scalars *now, const struct pixel_field *pixels)
 {
     double half = 0.5 * entry->step;
+    if (pixels->count > 0 || entry->pixels.count > 0)
+        return (double)pixel_field_change(pixels, &entry->pixels) >= half;
     if (now->flags_version != entry->flags_version)
         return true;
     if (now->travel - entry->travel < half)
@@ -131,7 +133,8 @@ static void show(struct fields_entry *entry)
         entry->behind = NULL;
     }
     if (entry->hashed != entry->wanted) {
-        entry->content = XXH3_64bits(entry->shown, entry->wanted * sizeof(*entry->shown));
+        entry->content = entry->pixels.count > 0 ? XXH3_64bits(&entry->pixels, sizeof(entry->pixels))
+                                                 : XXH3_64bits(entry->shown, entry->wanted * sizeof(*entry->shown));
         entry->hashed = entry->wanted;
     }
 }
@@ -149,6 +152,10 @@ static bool upload(struct fields *fields, struct fields_entry *entry)
         return false;
     glNamedBufferSubData(entry->slice->page->buffer, (GLintptr)pool_offset(entry->slice),
                          (GLsizeiptr)(entry->ready * sizeof(*entry->shown)), entry->shown);
+    if (entry->pixels.count > 0 && !entry->sensors)
+        entry->sensors = reference_pixel_sensors(fields->log, &entry->pixels);
+    if (entry->pixels.count > 0 && !entry->sensors)
+        return false;
     return entry->uploaded = true;
 }
 
@@ -180,14 +187,17 @@ static struct fields_entry *look(struct fields *fields, const struct fields_ask 
         log_err(fields->log, "field of asset %d: out of memory; shown as no data", asset);
         return &fields->lost;
     }
+    struct pixel_field pixels;
+    field_pixels(fields->field, asset, params, &pixels);
     struct fields_entry *entry = entry_find(fields, asset, params, ask->step);
     bool fresh = !entry;
     if (fresh)
         entry = entry_create(fields, asset, params, ask->step, scalars->count);
     if (!entry)
         return &fields->lost;
-    if (fresh || entry->ready < count || can_be_seen(entry, scalars)) {
+    if (fresh || entry->ready < count || can_be_seen(entry, scalars, &pixels)) {
         entry->behind = scalars;
+        entry->pixels = pixels;
         if (entry->sensors)
             glDeleteBuffers(1, &entry->sensors);
         entry->sensors = 0;

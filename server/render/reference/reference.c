@@ -9,11 +9,11 @@
 #include "protocol/asset_distance.h"
 
 enum { BIND_SENSORS = 5, BIND_CORNERS = 6, BIND_POSITIONS = 7, UNIT_DISTANCES = 14, FIRST_TRIANGLE = 8 };
-enum { SENSORS_PER_TEXEL = 4, CONFIGURED = 1, USABLE = 2, UNCERTAIN = 4 };
+enum { SENSORS_PER_TEXEL = 4 };
 
 struct sensors_head { /* std430 layout; must match the shader */
     float power, radius_m, reach_m, empty;
-    float range, vertices, unused[2];
+    float range, vertices, hot_spot_m, seen;
     int32_t paper, geodesic, fill, show;
 };
 struct sensor_block {
@@ -80,13 +80,43 @@ GLuint reference_sensors(const struct reference *reference, int asset, const str
         memcpy(blocks[i].place_m, from->surface_m, sizeof(from->surface_m));
         /* The asset file has no distances for a sensor that a trial moved to the asset, so this code ignores such sensors. */
         bool has_column = from->column < reference->gpu_scene->scene->assets[asset].file->view.header->sensor_count;
-        blocks[i].state = (from->configured ? CONFIGURED : 0) | (from->usable ? USABLE : 0) | (from->uncertain ? UNCERTAIN : 0);
-        blocks[i].state = has_column ? blocks[i].state : 0;
+        blocks[i].state = (from->configured ? PIXEL_CONFIGURED : 0) | (from->usable ? PIXEL_USABLE : 0);
+        blocks[i].state = has_column ? blocks[i].state | (from->uncertain ? PIXEL_UNCERTAIN : 0) : 0;
     }
     GLuint buffer = count ? mesh_buffer(reference->gpu_scene->gl->log, "sensors", bytes, head, 0) : 0;
     mem_free(head);
     mem_free(sensors);
     return buffer;
+}
+
+GLuint reference_pixel_sensors(struct log *log, const struct pixel_field *field)
+{
+    static const int32_t shows[] = { [PIXEL_SUM] = SHOW_VALUE, [PIXEL_DISTANCE] = SHOW_DISTANCE, [PIXEL_BLIND] = SHOW_BLIND };
+    struct {
+        struct sensors_head head;
+        struct sensor_block blocks[EXACT_SENSORS];
+    } all = { .head = { .power = field->power,
+                        .radius_m = field->radius_m,
+                        .reach_m = field->reach_m,
+                        .empty = field->paper ? field->offset : field->empty,
+                        .range = field->scale,
+                        .hot_spot_m = field->hot_spot_m,
+                        .seen = field->seen,
+                        .paper = field->paper,
+                        .fill = field->fill,
+                        .show = shows[field->show] } };
+    for (int i = 0; i < field->count; i++) {
+        const struct pixel_sensor *from = &field->sensors[i];
+        struct sensor_block *to = &all.blocks[i];
+        *to = (struct sensor_block){ .strength = from->strength, .decay = from->decay, .value = from->value, .state = from->state };
+        memcpy(to->place_m, from->place_m, sizeof(from->place_m));
+    }
+    return mesh_buffer(log, "sensors of pixels", sizeof(all.head) + (size_t)field->count * sizeof(*all.blocks), &all, 0);
+}
+
+void reference_bind_pixel_sensors(GLuint sensors)
+{
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, BIND_SENSORS, sensors);
 }
 
 /* --- distances ------------------------------------------------------------------------------------------------------------- */

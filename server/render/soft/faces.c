@@ -11,7 +11,7 @@
 /* Prefetches field values and light of eight vertices; they are needed after projecting the vertices and finding faces. */
 SOFT_INLINE void fetch_carried(const struct soft_mesh *mesh, const uint32_t vertices[LANES])
 {
-    for (int l = 0; l < LANES && mesh->scalars; l++)
+    for (int l = 0; l < LANES && mesh->scalars && mesh->pixels < 0; l++)
         __builtin_prefetch(&mesh->scalars[vertices[l]]);
     for (int l = 0; l < LANES; l++)
         __builtin_prefetch(mesh->baked[vertices[l]]);
@@ -95,6 +95,21 @@ SOFT_INLINE void carry_nothing(const struct raster *raster, const struct soft_me
     corners->all_flags = SOFT_NO_DATA;
 }
 
+/* So that the mark is that of MARK_PIXELS, which is made as one of context. */
+SOFT_INLINE void carry_pixels(const struct raster *raster, const struct soft_mesh *mesh, const uint32_t *vertices, const uint8_t *numbers,
+                              int count, struct soft_corners *corners)
+{
+    const float bias = (float)raster->row_bias - 0.5f, most = 254.4f;
+    for (int i = 0; i < count; i++) {
+        int n = numbers[i];
+        float row = (float)mesh->baked[vertices[n]][0] * (1 / 255.0f) * raster->block.shade[0] + raster->block.shade[1] + bias;
+        corners->a[n] = (float)(mesh->pixels & 0xff);
+        corners->b[n] = row < most ? row : most;
+        corners->flags[n] = 0;
+    }
+    corners->all_flags = 0;
+}
+
 SOFT_INLINE void carry_context(const struct soft_mesh *mesh, const uint32_t *vertices, const uint8_t *numbers, int count,
                                struct soft_corners *corners)
 {
@@ -136,7 +151,9 @@ void soft_carry_part(struct soft_tile *tile, const struct soft_mesh *mesh, const
     const uint32_t *vertices = parts->vertices + part->first_vertex;
     uint8_t numbers[PART_VERTICES + LANES];
     int count = tile->corners.cut ? list_all(part, numbers) : list_used(tile, numbers);
-    if (mesh->scalars)
+    if (mesh->pixels >= 0)
+        carry_pixels(tile->raster, mesh, vertices, numbers, count, &tile->corners);
+    else if (mesh->scalars)
         carry_field(tile->raster, mesh, vertices, numbers, count, &tile->corners);
     else if (mesh->has_field)
         carry_nothing(tile->raster, mesh, vertices, numbers, count, &tile->corners);

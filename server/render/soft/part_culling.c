@@ -126,6 +126,36 @@ static void find_eye(const struct raster *raster, double eye_m[3])
                        : constants->eye_m[c];
 }
 
+/* Adds what evaluates the mesh's field at pixels. Its frame begins in the mesh's middle, where floats are finest. clip: from file. */
+static void add_pixels(struct raster *raster, struct soft_mesh *mesh, const struct pixel_field *field, const double clip[16])
+{
+    const struct asset_header *header = mesh->file->header;
+    double from_pixel[16], pixel[16], middle[3];
+    if (raster->pixels_count == 0) {
+        float least = -raster->block.shade[1];
+        raster->row_bias = least > 0 ? (int)least + 1 : 0;
+    }
+    mem_grow(&raster->pixels, &raster->pixels_capacity, raster->pixels_count + 1, sizeof(*raster->pixels));
+    struct soft_pixels *to = &raster->pixels[raster->pixels_count];
+    mesh->pixels = (int32_t)raster->pixels_count++;
+    to->field = *field;
+    for (int c = 0; c < 3; c++)
+        middle[c] = 0.5 * ((double)header->bounds_min_m[c] + (double)header->bounds_max_m[c]);
+    for (int i = 0; i < field->count; i++)
+        for (int c = 0; c < 3; c++)
+            to->field.sensors[i].place_m[c] = (float)((double)field->sensors[i].place_m[c] - middle[c]);
+    matrix_translation(middle, pixel);
+    matrix_multiply(clip, pixel, pixel);
+    for (int c = 0; c < 4; c++) {
+        double *column = &pixel[4 * c];
+        column[0] = 0.5 * raster->width_px * (column[3] + column[0]);
+        column[1] = 0.5 * raster->height_px * (column[3] - column[1]);
+    }
+    matrix_invert(pixel, from_pixel);
+    for (int c = 0; c < 16; c++)
+        to->place_from_pixel[c / 4][c % 4] = (float)from_pixel[c];
+}
+
 /* Fills in the mesh of an asset and adds the number of its vertices to raster->vertex_count. */
 static void fill_mesh(struct raster *raster, struct soft_mesh *mesh, int index, const struct model_level *level)
 {
@@ -137,6 +167,7 @@ static void fill_mesh(struct raster *raster, struct soft_mesh *mesh, int index, 
         .file = &asset->file->view,
         .has_field = context->fields[index] != NULL,
         .scalars = context->fields[index] ? context->fields[index]->shown : NULL,
+        .pixels = -1,
         .baked = (const uint8_t(*)[4])raster->light->baked[index],
         .first_vertex = (uint32_t)raster->vertex_count,
         .vertex_count = level->vertex_count,
@@ -154,6 +185,8 @@ static void fill_mesh(struct raster *raster, struct soft_mesh *mesh, int index, 
         mesh->place[c][3] = (float)clip[4 * c + 3];
     }
     raster->vertex_count += level->vertex_count;
+    if (context->fields[index] && context->fields[index]->pixels.count > 0)
+        add_pixels(raster, mesh, &context->fields[index]->pixels, clip);
 }
 
 static bool add_asset(struct raster *raster, int asset, const struct model_level *level, bool both_sides)
@@ -182,7 +215,7 @@ static bool add_asset(struct raster *raster, int asset, const struct model_level
 
 static void start(struct raster *raster, bool counts_bodies)
 {
-    raster->mesh_count = raster->vertex_count = 0;
+    raster->mesh_count = raster->vertex_count = raster->pixels_count = 0;
     raster->blends = false;
     raster->counts_bodies = counts_bodies;
 }

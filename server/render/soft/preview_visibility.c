@@ -111,6 +111,7 @@ struct visibility_buffer *raster_keep(struct raster *raster)
         const struct soft_mesh *mesh = &raster->meshes[m];
         if (mesh->has_field)
             visibility_buffer_add_mesh(buffer, &(struct visibility_mesh){ .asset = mesh->asset,
+                                                                          .file = mesh->file,
                                                                           .first_vertex = mesh->first_vertex,
                                                                           .vertex_count = mesh->vertex_count });
     }

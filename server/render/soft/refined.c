@@ -127,6 +127,7 @@ static void note_meshes(struct refined *refined)
         if (mesh->has_field)
             visibility_buffer_add_mesh(refined->buffer, &(struct visibility_mesh){
                                                             .asset = mesh->asset,
+                                                            .file = mesh->file,
                                                             .first_vertex = mesh->first_vertex,
                                                             .vertex_count = mesh->vertex_count,
                                                         });

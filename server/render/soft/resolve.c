@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "render/soft/resolve_pixels.h"
 #include "render/soft/tones.h"
 #include "render/soft/visibility_buffer_impl.h"
 
@@ -53,17 +54,23 @@ static float rule(float y, float pattern_px)
 
 static const float MIN_SLOPE = 1e-7f, MAX_LINE_COVERAGE = (float)ISOLINE_MOST;
 
-/* Returns how much the position on the scale changes per pixel. carried: values at the triangle's corners; here: value at the pixel. */
-static float slope_at(const struct coloring *coloring, const struct visibility_slopes *slopes, const float carried[3], float w1, float w2,
-                      float here, float x, float y)
+/* Returns how much the position on the scale changes per pixel. by_x, by_y: change of the carried value; here: the carried value. */
+static float slope_of(const struct coloring *coloring, float by_x, float by_y, float here)
 {
-    float over = 1 / (slopes->sum_x * x + slopes->sum_y * y + slopes->sum), d1 = carried[1] - carried[0], d2 = carried[2] - carried[0];
-    float by_x = d1 * (slopes->w1_x - w1 * slopes->sum_x) + d2 * (slopes->w2_x - w2 * slopes->sum_x);
-    float by_y = d1 * (slopes->w1_y - w1 * slopes->sum_y) + d2 * (slopes->w2_y - w2 * slopes->sum_y);
-    float slope = hypotf(by_x, by_y) * fabsf(over);
+    float slope = hypotf(by_x, by_y);
     if (coloring->log)
         return here > 1e-30f ? slope * coloring->scale[1] * 1.44269504f / here : 0;
     return slope * (1 / COLUMNS_OF_RANGE);
+}
+
+/* Writes how much the weights of the second and third corner change per pixel, in x and y. */
+static void weight_steps(const struct visibility_slopes *slopes, float w1, float w2, float x, float y, float steps[2][2])
+{
+    float over = 1 / (slopes->sum_x * x + slopes->sum_y * y + slopes->sum);
+    steps[0][0] = (slopes->w1_x - w1 * slopes->sum_x) * over;
+    steps[0][1] = (slopes->w1_y - w1 * slopes->sum_y) * over;
+    steps[1][0] = (slopes->w2_x - w2 * slopes->sum_x) * over;
+    steps[1][1] = (slopes->w2_y - w2 * slopes->sum_y) * over;
 }
 
 /* Returns a pixel's coverage by an isoline, 0..1. column: position on the scale as a colour map column, with fraction. */
@@ -92,52 +99,79 @@ static inline float column_of_carried(const struct coloring *coloring, float car
     return coloring->log ? column_of(lanes_log2((lanes){ 0 } + carried)[0], coloring->scale) : carried;
 }
 
-struct pixel_place { /* corners of the triangle that a pixel shows, and their weights */
-    float carried[3], weights[3];
-    uint32_t flags[3];
-    const struct visibility_slopes *slopes;
+struct shown_place { /* what a pixel shows of the field */
+    float carried, slope;
+    bool no_data, uncertain, no_limits;
     uint8_t row;
     float x, y;
 };
 
-static uint32_t color_of_place(const struct coloring *coloring, const struct pixel_place *place)
+static uint32_t color_of_place(const struct coloring *coloring, const struct shown_place *place)
 {
     const uint32_t *colors = coloring->colormap + place->row * COLORMAP_COLUMNS;
-    const float *w = place->weights;
-    float carried = 0, none = 0, little = 0, free = 0, x = place->x, y = place->y;
-    for (int i = 0; i < 3; i++) {
-        carried += w[i] * place->carried[i];
-        none += w[i] * soft_lacking(place->flags[i]);
-        little += w[i] * soft_uncertain(place->flags[i]);
-        free += w[i] * soft_no_limits(place->flags[i]);
-    }
-    if (none > 0.5f)
+    float x = place->x, y = place->y;
+    if (place->no_data)
         return mix(colors[COLORMAP_PATTERNS + PATTERN_HATCH_LIGHT], colors[COLORMAP_PATTERNS + PATTERN_HATCH_DARK],
                    clamped(hatch(x, y, coloring->pattern_px), 0, 1));
-    if (coloring->rich && free > 0.5f)
+    if (coloring->rich && place->no_limits)
         return mix(colors[COLORMAP_PATTERNS + PATTERN_PLAIN_LIGHT], colors[COLORMAP_PATTERNS + PATTERN_PLAIN_DARK],
                    clamped(rule(y, coloring->pattern_px), 0, 1));
-    float column = column_of_carried(coloring, carried);
+    float column = column_of_carried(coloring, place->carried);
     uint32_t color = colors[(int)clamped(column, 0, COLORMAP_PLACES + 1)];
-    if (little > 0.5f)
+    if (place->uncertain)
         color = mix(color, colors[COLORMAP_PATTERNS + PATTERN_STIPPLE], clamped(stipple(x, y, coloring->pattern_px), 0, 1));
-    if (!(coloring->lines.line_px > 0))
-        return color;
-    return lined(color, line_part(coloring, column, slope_at(coloring, place->slopes, place->carried, w[1], w[2], carried, x, y)));
+    return coloring->lines.line_px > 0 ? lined(color, line_part(coloring, column, place->slope)) : color;
+}
+
+/* From the corners. steps: of weights; looked at where there are lines. */
+static void interpolate_place(const struct coloring *coloring, const uint32_t vertices[3], const float w[3], float steps[2][2],
+                              struct shown_place *out)
+{
+    const float *plain = coloring->buffer->plain;
+    float none = 0, little = 0, free = 0, d1 = plain[vertices[1]] - plain[vertices[0]], d2 = plain[vertices[2]] - plain[vertices[0]];
+    for (int i = 0; i < 3; i++) {
+        uint32_t flags = coloring->buffer->flags[vertices[i]];
+        out->carried += w[i] * plain[vertices[i]];
+        none += w[i] * soft_lacking(flags);
+        little += w[i] * soft_uncertain(flags);
+        free += w[i] * soft_no_limits(flags);
+    }
+    out->no_data = none > 0.5f;
+    out->uncertain = little > 0.5f;
+    out->no_limits = free > 0.5f;
+    out->slope = slope_of(coloring, d1 * steps[0][0] + d2 * steps[1][0], d1 * steps[0][1] + d2 * steps[1][1], out->carried);
+}
+
+/* Evaluates at the pixel in one lane, and at the next ones in x and in y in two others. */
+static void evaluate_place(const struct coloring *coloring, const struct visibility_band *band, uint32_t triangle, const float w[3],
+                           float steps[2][2], struct shown_place *out)
+{
+    struct eight_places places;
+    struct eight_values values;
+    const lanes w1 = { w[1], w[1] + steps[0][0], w[1] + steps[0][1] }, w2 = { w[2], w[2] + steps[1][0], w[2] + steps[1][1] };
+    places_of(band, (lanes_int){ 0 } + (int32_t)triangle, w1, w2, &places);
+    evaluate_places(coloring->buffer, &places, places.at, &values);
+    lanes carried = carried_of_values(coloring->scale, values.value);
+    out->carried = carried[0];
+    out->no_data = values.no_data[0];
+    out->uncertain = values.uncertain[0];
+    out->no_limits = values.no_limits[0];
+    out->slope = slope_of(coloring, carried[1] - carried[0], carried[2] - carried[0], carried[0]);
 }
 
 /* Colours one pixel slowly: a corner has flags, or an isoline may cross. */
 static uint32_t flagged_color(const struct coloring *coloring, const struct visibility_band *band, uint32_t triangle, uint32_t weights,
                               uint8_t row, float x, float y)
 {
-    float w1 = (float)(weights & 0xffff) * WEIGHT, w2 = (float)(weights >> 16) * WEIGHT;
-    struct pixel_place place = { .weights = { 1 - w1 - w2, w1, w2 }, .row = row, .x = x, .y = y };
-    for (int i = 0; i < 3; i++) {
-        place.carried[i] = coloring->buffer->plain[band->triangles[triangle][i]];
-        place.flags[i] = coloring->buffer->flags[band->triangles[triangle][i]];
-    }
+    float w1 = (float)(weights & 0xffff) * WEIGHT, w2 = (float)(weights >> 16) * WEIGHT, w[3] = { 1 - w1 - w2, w1, w2 };
+    float steps[2][2] = { { 0 } };
+    struct shown_place place = { .row = row, .x = x, .y = y };
     if (coloring->lines.line_px > 0)
-        place.slopes = &band->slopes[triangle];
+        weight_steps(&band->slopes[triangle], w1, w2, x, y, steps);
+    if (band->corners[triangle][3] > 0)
+        evaluate_place(coloring, band, triangle, w, steps, &place);
+    else
+        interpolate_place(coloring, band->triangles[triangle], w, steps, &place);
     return color_of_place(coloring, &place);
 }
 
@@ -151,8 +185,15 @@ SOFT_INLINE void transpose(const quad rows[4], quad columns[3])
     columns[2] = __builtin_shufflevector(low, high, 0, 1, 4, 5);
 }
 
-/* Interpolates the carried values of eight pixels, as field_color() in shaders/field.glsl does. */
-SOFT_INLINE lanes carried_by(const struct visibility_band *band, lanes_int triangles, lanes_int weights)
+struct eight_shown { /* of pixels of the field */
+    lanes w1, w2, carried;
+    lanes_int known; /* 0: a corner or the pixel has flags */
+    struct eight_places places; /* where the buffer evaluates fields at pixels */
+};
+
+/* Computes the carried values of eight pixels, as field_color() in shaders/field.glsl does. */
+SOFT_INLINE void carry(const struct coloring *coloring, const struct visibility_band *band, lanes_int triangles, lanes_int weights,
+                       struct eight_shown *out)
 {
     quad columns[2][3];
     for (int half = 0; half < 2; half++) {
@@ -164,9 +205,20 @@ SOFT_INLINE lanes carried_by(const struct visibility_band *band, lanes_int trian
     lanes of[3];
     for (int i = 0; i < 3; i++)
         of[i] = __builtin_shufflevector(columns[0][i], columns[1][i], 0, 1, 2, 3, 4, 5, 6, 7);
-    lanes w1 = __builtin_convertvector(weights & 0xffff, lanes) * WEIGHT;
-    lanes w2 = __builtin_convertvector((lanes_int)((lanes_uint)weights >> 16), lanes) * WEIGHT;
-    return of[0] + w1 * of[1] + w2 * of[2];
+    out->w1 = __builtin_convertvector(weights & 0xffff, lanes) * WEIGHT;
+    out->w2 = __builtin_convertvector((lanes_int)((lanes_uint)weights >> 16), lanes) * WEIGHT;
+    out->carried = of[0] + out->w1 * of[1] + out->w2 * of[2];
+    out->known = out->carried == out->carried;
+    if (!coloring->buffer->evaluates)
+        return;
+    places_of(band, triangles, out->w1, out->w2, &out->places);
+    lanes_int evaluated = out->places.meshes >= 0;
+    struct eight_values values;
+    if (!lanes_any(evaluated))
+        return;
+    evaluate_places(coloring->buffer, &out->places, out->places.at, &values);
+    out->carried = lanes_choose(evaluated, carried_of_values(coloring->scale, values.value), out->carried);
+    out->known &= ~(values.no_data | values.uncertain | values.no_limits);
 }
 
 /* Converts eight values on a logarithmic scale to colour map columns, as column_of() does for one. */
@@ -177,10 +229,10 @@ SOFT_INLINE lanes columns_of_logs(lanes values, const float *scale)
 
 /* Returns which of eight pixels an isoline may touch, judged by the field's slope there. */
 SOFT_INLINE lanes_int may_be_lined(const struct coloring *coloring, const struct visibility_band *band, lanes_int triangles,
-                                   lanes_int weights, int x, int y)
+                                   const struct eight_shown *shown, int x, int y)
 {
     float by[7][LANES], d1[LANES], d2[LANES];
-    lanes carried = carried_by(band, triangles, weights), none = { 0 };
+    lanes carried = shown->carried, none = { 0 };
     for (int i = 0; i < LANES; i++) {
         const struct visibility_slopes *slopes = &band->slopes[triangles[i]];
         const float all[7] = { slopes->w1_x, slopes->w1_y, slopes->w2_x, slopes->w2_y, slopes->sum_x, slopes->sum_y, slopes->sum };
@@ -190,13 +242,18 @@ SOFT_INLINE lanes_int may_be_lined(const struct coloring *coloring, const struct
         d2[i] = band->corners[triangles[i]][2];
     }
 #define BY(k) (*(const lanes *)by[k])
-    lanes w1 = __builtin_convertvector(weights & 0xffff, lanes) * WEIGHT;
-    lanes w2 = __builtin_convertvector((lanes_int)((lanes_uint)weights >> 16), lanes) * WEIGHT;
     lanes over = 1.0f / (BY(4) * (LANES_IOTA + ((float)x + 0.5f)) + BY(5) * ((float)y + 0.5f) + BY(6));
-    lanes by_x = *(const lanes *)d1 * (BY(0) - w1 * BY(4)) + *(const lanes *)d2 * (BY(2) - w2 * BY(4));
-    lanes by_y = *(const lanes *)d1 * (BY(1) - w1 * BY(5)) + *(const lanes *)d2 * (BY(3) - w2 * BY(5));
+    lanes w1_x = BY(0) - shown->w1 * BY(4), w1_y = BY(1) - shown->w1 * BY(5);
+    lanes w2_x = BY(2) - shown->w2 * BY(4), w2_y = BY(3) - shown->w2 * BY(5);
 #undef BY
-    lanes slope = lanes_root((by_x * by_x + by_y * by_y) * over * over), column = carried;
+    lanes by_x = (*(const lanes *)d1 * w1_x + *(const lanes *)d2 * w2_x) * over;
+    lanes by_y = (*(const lanes *)d1 * w1_y + *(const lanes *)d2 * w2_y) * over;
+    if (coloring->buffer->evaluates && lanes_any(shown->places.meshes >= 0)) {
+        lanes_int evaluated = shown->places.meshes >= 0;
+        by_x = lanes_choose(evaluated, carried_change(coloring->buffer, &shown->places, w1_x * over, w2_x * over, carried), by_x);
+        by_y = lanes_choose(evaluated, carried_change(coloring->buffer, &shown->places, w1_y * over, w2_y * over, carried), by_y);
+    }
+    lanes slope = lanes_root(by_x * by_x + by_y * by_y), column = carried;
     if (coloring->log) {
         lanes_int counts = carried > 1e-30f;
         slope *= coloring->scale[1] * 1.44269504f;
@@ -212,14 +269,11 @@ SOFT_INLINE lanes_int may_be_lined(const struct coloring *coloring, const struct
     return ~(away > slope * (0.5f * coloring->lines.line_px + 0.51f));
 }
 
-/* Returns the colours of eight pixels of the field. *known: false where a corner has flags; the colour is not valid there. */
-SOFT_INLINE lanes_int field_colors(const struct coloring *coloring, const struct visibility_band *band, lanes_int triangles,
-                                   lanes_int weights, uint64_t rows, lanes_int *known)
+/* Returns the colours of eight pixels of the field; arbitrary where shown->known is 0. */
+SOFT_INLINE lanes_int field_colors(const struct coloring *coloring, const struct eight_shown *shown, uint64_t rows)
 {
     lanes_int colors;
-    lanes carried = carried_by(band, triangles, weights);
-    *known = carried == carried;
-    carried = lanes_choose(*known, carried, (lanes){ 0 });
+    lanes carried = lanes_choose(shown->known, shown->carried, (lanes){ 0 });
     if (coloring->log)
         carried = columns_of_logs(carried, coloring->scale);
     lanes_int columns = lanes_whole(lanes_clamp(carried, 0, COLORMAP_PLACES + 1));
@@ -255,7 +309,8 @@ SOFT_INLINE void color_parts(const struct coloring *coloring, const struct visib
         uint32_t triangles[LANES], weights[LANES], shares[LANES], colors[LANES];
         uint8_t rows[LANES];
         uint64_t all_rows;
-        lanes_int known, of[2];
+        struct eight_shown shown;
+        lanes_int of[2];
         for (size_t i = 0; i < LANES; i++) {
             const struct visibility_part *part = &band->parts[p + i < count ? first + p + i : first];
             triangles[i] = part->triangle;
@@ -266,10 +321,11 @@ SOFT_INLINE void color_parts(const struct coloring *coloring, const struct visib
         memcpy(&all_rows, rows, sizeof(all_rows));
         memcpy(&of[0], triangles, sizeof(of[0]));
         memcpy(&of[1], weights, sizeof(of[1]));
-        of[0] = field_colors(coloring, band, of[0], of[1], all_rows, &known);
+        carry(coloring, band, of[0], of[1], &shown);
+        of[0] = field_colors(coloring, &shown, all_rows);
         memcpy(colors, &of[0], sizeof(colors));
-        memcpy(ahead->known + p, &known, sizeof(known));
-        all_known &= known;
+        memcpy(ahead->known + p, &shown.known, sizeof(shown.known));
+        all_known &= shown.known;
         if (coloring->buffer->gloss) {
             struct visibility_gloss gloss[LANES];
             for (size_t i = 0; i < LANES; i++)
@@ -346,7 +402,8 @@ SOFT_INLINE uint32_t bits_of_bytes(uint64_t x)
 SOFT_INLINE lanes_int color_lanes(const struct coloring *coloring, const struct visibility_band *band, size_t at, int x, int y)
 {
     const struct visibility_buffer *buffer = coloring->buffer;
-    lanes_int surfaces = *(const lanes_int *)(buffer->surfaces + at), field = (surfaces >> 30) == 0, known;
+    lanes_int surfaces = *(const lanes_int *)(buffer->surfaces + at), field = (surfaces >> 30) == 0;
+    struct eight_shown shown;
     if (!lanes_any(field))
         return surfaces;
     uint64_t inks, rows;
@@ -357,10 +414,11 @@ SOFT_INLINE lanes_int color_lanes(const struct coloring *coloring, const struct 
         inks |= veils;
     }
     memcpy(&rows, buffer->rows + at, sizeof(rows));
-    lanes_int colors = field_colors(coloring, band, surfaces & field, *(const lanes_int *)(buffer->weights + at), rows, &known);
+    carry(coloring, band, surfaces & field, *(const lanes_int *)(buffer->weights + at), &shown);
+    lanes_int colors = field_colors(coloring, &shown, rows);
     if (coloring->lines.line_px > 0)
-        known &= ~may_be_lined(coloring, band, surfaces & field, *(const lanes_int *)(buffer->weights + at), x, y);
-    for (uint32_t left = lanes_bits(field & ~known); left; left &= left - 1) {
+        shown.known &= ~may_be_lined(coloring, band, surfaces & field, &shown, x, y);
+    for (uint32_t left = lanes_bits(field & ~shown.known); left; left &= left - 1) {
         size_t i = (size_t)__builtin_ctz(left), pixel = at + i;
         colors[i] = (int32_t)flagged_color(coloring, band, buffer->surfaces[pixel], buffer->weights[pixel], buffer->rows[pixel],
                                            (float)(x + (int)i) + 0.5f, (float)y + 0.5f);

@@ -4,6 +4,8 @@
 
 #include "render/soft/kernels.h"
 #include "render/soft/lookups.h"
+#include "render/soft/pixel_lanes.h"
+#include "render/soft/pixel_marks.h"
 #include "render/soft/section_colors.h"
 
 /* Prefetch distances in pixels: first the shadow bounds, then the texels that the bounds leave undecided; both are scattered in memory.
@@ -169,6 +171,101 @@ SOFT_INLINE lanes_int color_at(const struct raster *raster, const struct heights
     return color;
 }
 
+/* --- fields that are evaluated at the pixel ----------------------------------------------------------------------------------- */
+
+struct pixel_row { /* eight pixels of one field */
+    const struct raster *raster;
+    const struct soft_pixels *pixels;
+    const struct mark_ink *ink;
+};
+
+SOFT_INLINE void values_at(const struct pixel_row *row, lanes x, lanes y, lanes depth, struct eight_values *out)
+{
+    const float(*m)[4] = row->pixels->place_from_pixel;
+    lanes at[4];
+    for (int r = 0; r < 4; r++)
+        at[r] = x * m[0][r] + (y * m[1][r] + m[3][r]) + depth * m[2][r];
+    lanes over = 1.0f / at[3];
+    for (int r = 0; r < 3; r++)
+        at[r] *= over;
+    pixel_lanes_at(&row->pixels->field, at, out);
+}
+
+/* As carry_field in faces.c. */
+SOFT_INLINE lanes carried_of(const struct pixel_row *row, lanes value)
+{
+    const float slack = 1e-5f, columns = COLORMAP_PLACES / (1 + 2 * slack), farthest = 1e6f, *scale = row->raster->block.scale;
+    return row->ink->log ? value : lanes_clamp((value - scale[0]) * scale[1] * columns + (1 + slack * columns), -farthest, farthest);
+}
+
+/* How much deeper the surface is one pixel on, by the neighbour whose depth is more alike: the other one may show another surface. */
+static float depth_step(const float *at, ptrdiff_t step, bool before, bool after)
+{
+    float ahead = after ? at[step] - at[0] : 1, behind = before ? at[0] - at[-step] : 1;
+    return fabsf(ahead) < fabsf(behind) ? ahead : behind;
+}
+
+/* By how much what pixels carry changes from pixel to pixel. rect: that no other thread writes. */
+SOFT_INLINE void carried_steps(const struct pixel_row *pixels, const struct soft_rect *rect, int column, int row, lanes carried,
+                               lanes *by_x, lanes *by_y)
+{
+    const struct raster *raster = pixels->raster;
+    const float *depth = raster->depth + (size_t)row * (size_t)raster->pitch_px + (size_t)column;
+    lanes x = LANES_IOTA + ((float)column + 0.5f), y = (lanes){ 0 } + ((float)row + 0.5f), here = *(const lanes *)depth;
+    lanes right = { 0 }, below = { 0 };
+    struct eight_values values;
+    for (int i = 0; i < LANES; i++) {
+        right[i] = depth_step(depth + i, 1, column + i > rect->left, column + i < rect->right);
+        below[i] = depth_step(depth + i, raster->pitch_px, row > rect->top, row < rect->bottom);
+    }
+    values_at(pixels, x + 1.0f, y, here + right, &values);
+    *by_x = carried_of(pixels, values.value) - carried;
+    values_at(pixels, x, y + 1.0f, here + below, &values);
+    *by_y = carried_of(pixels, values.value) - carried;
+}
+
+/* The marks of eight pixels, as if all were of that field. */
+SOFT_INLINE lanes_int marks_of_field(const struct pixel_row *pixels, const struct soft_rect *rect, lanes_int marks, int column, int row)
+{
+    const struct raster *raster = pixels->raster;
+    const struct mark_ink *ink = pixels->ink;
+    lanes x = LANES_IOTA + ((float)column + 0.5f), y = (lanes){ 0 } + ((float)row + 0.5f), by_x = { 0 }, by_y = { 0 };
+    lanes light = __builtin_convertvector((marks & 0xff) - raster->row_bias, lanes);
+    struct eight_values values;
+    values_at(pixels, x, y, *(const lanes *)(raster->depth + (size_t)row * (size_t)raster->pitch_px + (size_t)column), &values);
+    lanes carried = carried_of(pixels, values.value);
+    if (ink->line_px > 0)
+        carried_steps(pixels, rect, column, row, carried, &by_x, &by_y);
+    marks = ink->rich ? rich_mark(carried, by_x, by_y, light, ink) : field_mark(carried, light, ink->last_row);
+    lanes_int no_limits = values.no_limits & -(int32_t)ink->rich;
+    if (!lanes_any(values.no_data | values.uncertain | no_limits))
+        return marks;
+    return pattern_marks(marks, values.no_data, values.uncertain, no_limits, light, x, (float)row + 0.5f, ink);
+}
+
+/* Makes marks of all such pixels in eight MARK_FIELD. */
+SOFT_INLINE void evaluate_eight(const struct raster *raster, const struct soft_rect *rect, const struct mark_ink *ink, int column, int row)
+{
+    lanes_int *at = (lanes_int *)(raster->marks + (size_t)row * (size_t)raster->pitch_px + (size_t)column), marks = *at, out = marks;
+    uint32_t waiting = lanes_bits(((marks & (int32_t)MARK_KIND) == 0) & (marks != 0));
+    while (waiting) {
+        uint32_t first = (uint32_t)marks[__builtin_ctz(waiting)];
+        struct pixel_row pixels = { raster, &raster->pixels[(first & ~MARK_PIXELS) >> 16 << 8 | (first >> 8 & 0xff)], ink };
+        lanes_int same = (marks & ~0xff) == (int32_t)(first & ~0xffu);
+        out = lanes_choose_int(same, marks_of_field(&pixels, rect, marks, column, row), out);
+        waiting &= ~lanes_bits(same);
+    }
+    *at = out;
+}
+
+SOFT_INLINE void evaluate_fields(const struct raster *raster, const struct soft_rect *rect)
+{
+    struct mark_ink ink = ink_of(raster);
+    for (int row = rect->top; row <= rect->bottom && raster->pixels_count > 0; row++)
+        for (int column = rect->left; column <= rect->right; column += LANES)
+            evaluate_eight(raster, rect, &ink, column, row);
+}
+
 /* out: beginning of the row. */
 SOFT_INLINE void color_row(const struct raster *raster, int left, int right, int row, uint8_t *out)
 {
@@ -192,6 +289,7 @@ SOFT_INLINE void color_row(const struct raster *raster, int left, int right, int
 
 void raster_color(const struct raster *raster, const struct soft_rect *rect)
 {
+    evaluate_fields(raster, rect);
     for (int row = rect->top; row <= rect->bottom; row++)
         color_row(raster, rect->left, rect->right, row, raster->out + (size_t)row * raster->out_stride_bytes);
 }

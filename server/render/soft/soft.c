@@ -117,7 +117,8 @@ static size_t parts_bytes(const struct soft_parts *parts)
 size_t raster_bytes(const struct raster *raster)
 {
     size_t bytes = raster->pixel_capacity * (sizeof(*raster->depth) + sizeof(*raster->marks)) +
-                   raster->mesh_capacity * sizeof(*raster->meshes) + raster->found_capacity * sizeof(*raster->found);
+                   raster->mesh_capacity * sizeof(*raster->meshes) + raster->pixels_capacity * sizeof(*raster->pixels) +
+                   raster->found_capacity * sizeof(*raster->found);
     for (size_t i = 0; i < raster->found_capacity; i++)
         bytes += raster->found[i].capacity * sizeof(*raster->found[i].items);
     return bytes;
@@ -153,6 +154,7 @@ void raster_finish(struct raster *raster)
         mem_free(raster->found[i].items);
     mem_free(raster->found);
     mem_free(raster->meshes);
+    mem_free(raster->pixels);
     mem_free(raster->depth);
     mem_free(raster->marks);
     *raster = (struct raster){ .soft = soft };

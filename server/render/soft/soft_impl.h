@@ -24,6 +24,9 @@ enum { MARK_LINE = 17, MARK_LINE_WHOLE = 255 };
 #define MARK_CAP 0xe0000000u
 #define MARK_KIND 0xc0000000u
 enum { MOST_RAMPS = 1 << 14 };
+/* A field that is evaluated at the pixel: | bits 8 to 20 of its number in raster->pixels << 16 | the lower ones << 8 | row of the
+   colormap + raster->row_bias. raster_color replaces it by MARK_FIELD. */
+#define MARK_PIXELS 0x20000000u
 
 struct soft_vertex {
     float x, y, depth; /* pixels from the top left; depth 1 near, 0 far */
@@ -40,12 +43,18 @@ struct soft_mesh { /* one asset in this frame */
     bool has_field;
     /* field at the vertices; NULL: an asset without a field, or a field that could not be computed (no data) */
     const struct scalar *scalars;
+    int32_t pixels; /* index in raster->pixels; -1: the field is interpolated between vertices */
     const uint8_t (*baked)[4];
     float place[4][4]; /* matrix, as columns, from the file to x w and y w in pixels, and z and w of clip space */
     uint32_t first_vertex, vertex_count;
     bool mirrored;
     bool cut;      /* section planes cut something off, so the inner side of the rest is drawn */
     float turn[9]; /* rotation of normals from file to plant, columns; for cut meshes only */
+};
+
+struct soft_pixels { /* field of a mesh that is evaluated at pixels, in a frame that begins in the mesh's middle */
+    struct pixel_field field;
+    float place_from_pixel[4][4]; /* columns */
 };
 
 struct soft_rect { /* rectangle in pixels; right and bottom are included */
@@ -120,6 +129,9 @@ struct raster { /* source and target of one frame's rasterization; its memory is
     size_t found_capacity;
     size_t mesh_count, vertex_count;
     size_t mesh_capacity;
+    struct soft_pixels *pixels;
+    size_t pixels_count, pixels_capacity;
+    int row_bias; /* added to rows of the colour map in MARK_PIXELS, so that they are not negative */
     int width_px, height_px, pitch_px; /* pitch_px: row length, a multiple of LANES */
     /* largest distance of a sample from the pixel's centre along x or y, by which rectangles of parts are enlarged; previews: 0 */
     float reach_px;

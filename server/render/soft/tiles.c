@@ -136,8 +136,12 @@ static void draw_part(struct soft_tile *tile, const struct soft_found *found, co
     if (tile->face_count == 0)
         return;
     tile->first_id = found->first_id + (uint32_t)(item - found->items) * PART_TRIANGLES;
-    uint32_t ramp = tile->raster->soft->ramp_of_material[found->material + part->material];
-    kernels->raster_faces(tile, mesh->has_field ? MARK_FIELD : MARK_CONTEXT | ramp << 16);
+    uint32_t mark = MARK_FIELD;
+    if (mesh->pixels >= 0)
+        mark = MARK_PIXELS | (uint32_t)mesh->pixels >> 8 << 16;
+    else if (!mesh->has_field)
+        mark = MARK_CONTEXT | tile->raster->soft->ramp_of_material[found->material + part->material] << 16;
+    kernels->raster_faces(tile, mark);
     struct soft_rect rect = faces_rect(tile), blocks = blocks_of(tile, &rect);
     kernels->look_again(tile, &blocks);
 }

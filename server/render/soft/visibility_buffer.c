@@ -34,6 +34,7 @@ void visibility_buffer_destroy(struct visibility_buffer **buffer_ptr)
     for (int i = 0; i < buffer->band_count; i++) {
         mem_free(buffer->bands[i].triangles);
         mem_free(buffer->bands[i].corners);
+        mem_free(buffer->bands[i].places);
         mem_free(buffer->bands[i].slopes);
         mem_free(buffer->bands[i].parts);
         mem_free(buffer->bands[i].gloss);
@@ -73,7 +74,8 @@ size_t visibility_buffer_bytes(const struct visibility_buffer *buffer)
         buffer->vertex_count * (sizeof(*buffer->vertices) + sizeof(*buffer->carried) + sizeof(*buffer->plain) + sizeof(*buffer->flags));
     for (int i = 0; i < buffer->band_count; i++) {
         const struct visibility_band *band = &buffer->bands[i];
-        bytes += band->slope_capacity * sizeof(*band->slopes) + band->gloss_capacity * sizeof(*band->gloss);
+        bytes += band->place_capacity * sizeof(*band->places) + band->slope_capacity * sizeof(*band->slopes) +
+                 band->gloss_capacity * sizeof(*band->gloss);
         bytes += band->triangle_capacity * (sizeof(*band->triangles) + sizeof(*band->corners)) +
                  band->part_capacity * sizeof(*band->parts) + band->mixed_capacity * sizeof(*band->mixed);
     }
@@ -234,6 +236,55 @@ static void read_vertices(void *arg, size_t begin, size_t end)
     }
 }
 
+/* likely: looked at first. */
+static size_t mesh_of_vertex(const struct visibility_buffer *buffer, uint32_t vertex, size_t likely)
+{
+    const struct visibility_mesh *meshes = buffer->meshes;
+    size_t low = 0, high = buffer->mesh_count;
+    if (vertex >= meshes[likely].first_vertex && vertex - meshes[likely].first_vertex < meshes[likely].vertex_count)
+        return likely;
+    while (high - low > 1) { /* those without vertices begin where the next one does */
+        size_t middle = (low + high) / 2;
+        if (meshes[middle].first_vertex <= vertex)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+static void place_triangle(const struct visibility_buffer *buffer, const struct asset_view *file, const uint32_t vertices[3],
+                           struct visibility_place *out)
+{
+    const float *at[3];
+    for (int i = 0; i < 3; i++)
+        at[i] = file->positions_m[buffer->vertices[vertices[i]]];
+    for (int c = 0; c < 3; c++) {
+        out->first[c] = at[0][c];
+        out->second[c] = at[1][c] - at[0][c];
+        out->third[c] = at[2][c] - at[0][c];
+    }
+}
+
+static void place_triangles(const struct visibility_buffer *buffer, struct visibility_band *band)
+{
+    mem_grow(&band->places, &band->place_capacity, band->triangle_count, sizeof(*band->places));
+    for (size_t t = band->place_count, mesh = 0; t < band->triangle_count; t++) {
+        mesh = mesh_of_vertex(buffer, band->triangles[t][0], mesh);
+        place_triangle(buffer, buffer->meshes[mesh].file, band->triangles[t], &band->places[t]);
+    }
+    band->place_count = band->triangle_count;
+}
+
+static void mark_evaluated(const struct visibility_buffer *buffer, struct visibility_band *band)
+{
+    for (size_t t = 0, mesh = 0; t < band->triangle_count; t++) {
+        mesh = mesh_of_vertex(buffer, band->triangles[t][0], mesh);
+        if (buffer->meshes[mesh].pixels.count > 0)
+            memcpy(band->corners[t], (float[4]){ 0, 0, 0, (float)(mesh + 1) }, sizeof(*band->corners));
+    }
+}
+
 static void read_corners(void *arg, size_t begin, size_t end)
 {
     struct visibility_buffer *buffer = arg;
@@ -246,6 +297,10 @@ static void read_corners(void *arg, size_t begin, size_t end)
             memcpy(band->corners[t], (float[4]){ first, buffer->carried[v[1]] - first, buffer->carried[v[2]] - first, 0 },
                    sizeof(*band->corners));
         }
+        if (!buffer->evaluates)
+            continue;
+        place_triangles(buffer, band);
+        mark_evaluated(buffer, band);
     }
 }
 
@@ -261,11 +316,16 @@ void resolve_read(struct visibility_buffer *buffer, const struct frame_context *
         struct reading_job job = { buffer, field->shown, block.scale, mesh->first_vertex };
         if (mesh->read && same_scale && mesh->content == field->content && field->shown)
             continue;
-        workers_for(workers, mesh->vertex_count, VERTICES_AT_ONCE, read_vertices, &job);
+        mesh->pixels = field->pixels;
+        if (field->pixels.count == 0)
+            workers_for(workers, mesh->vertex_count, VERTICES_AT_ONCE, read_vertices, &job);
         mesh->read = true;
         mesh->content = field->content;
         changed = true;
     }
+    buffer->evaluates = false;
+    for (size_t m = 0; m < buffer->mesh_count; m++)
+        buffer->evaluates |= buffer->meshes[m].pixels.count > 0;
     if (changed)
         workers_for(workers, (size_t)buffer->band_count, 4, read_corners, buffer);
 }

@@ -5,6 +5,7 @@
 #ifndef RENDER_SOFT_VISIBILITY_BUFFER_H
 #define RENDER_SOFT_VISIBILITY_BUFFER_H
 #include "base/workers.h"
+#include "field/pixel_field.h"
 #include "render/frame.h"
 #include "render/frame_context.h"
 
@@ -44,25 +45,34 @@ struct visibility_slopes {
     float w1_x, w1_y, w2_x, w2_y, sum_x, sum_y, sum;
 };
 
+struct visibility_place { /* a triangle: first corner, and vectors from it to the others; metres, in the asset file's frame */
+    float first[3], second[3], third[3];
+};
+
 struct visibility_band { /* a band of rows; written by one worker */
     /* indices of vertices: among all of the frame, and after visibility_buffer_settle() among the kept (visible) ones */
     uint32_t (*triangles)[3];
-    /* present values of each triangle: that of the first corner, and the differences of the second and third corner from it */
+    /* present values of each triangle: that of the first corner, and the differences of the second and third corner from it;
+       fourth: 0, or 1 + the index of the mesh if its field is evaluated at pixels */
     float (*corners)[4];
+    struct visibility_place *places; /* by triangle; only filled in where some field is evaluated at pixels */
     struct visibility_slopes *slopes; /* slopes of each triangle; only filled in where there are isolines */
     struct visibility_part *parts;
     struct visibility_gloss *gloss; /* per part, for glossy frames */
     struct visibility_mixed *mixed;
     size_t triangle_count, part_count, mixed_count;
-    size_t triangle_capacity, corner_capacity, slope_capacity, part_capacity, gloss_capacity, mixed_capacity;
+    size_t place_count; /* triangles that have their place */
+    size_t triangle_capacity, corner_capacity, place_capacity, slope_capacity, part_capacity, gloss_capacity, mixed_capacity;
 };
 
 struct visibility_mesh { /* an asset with a field */
     int asset;
+    const struct asset_view *file;
     /* range of vertices: among all of the frame, and after visibility_buffer_settle() among the kept (visible) ones */
     uint32_t first_vertex, vertex_count;
     bool read;        /* true if `carried` has the values of the field version `content` */
     uint64_t content; /* hash from struct fields_entry */
+    struct pixel_field pixels; /* from struct fields_entry */
 };
 
 struct visibility_buffer {
@@ -80,6 +90,7 @@ struct visibility_buffer {
     struct visibility_band *bands;
     struct visibility_mesh *meshes;
     size_t mesh_count, mesh_capacity, vertex_count;
+    bool evaluates;     /* some mesh's field is evaluated at pixels */
     float scale[4];     /* scale in struct frame_uniforms when the vertices were read */
     uint32_t *vertices; /* kept vertices, mesh by mesh: index in the asset's file */
     /* carried value of each kept vertex: column of the colour map (logarithmic scale: the value); NAN: it has a pattern's flag */

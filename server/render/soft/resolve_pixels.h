@@ -1,0 +1,68 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Fields that are evaluated at pixels, in a picture whose triangles are kept. Private to soft/. */
+#ifndef RENDER_SOFT_RESOLVE_PIXELS_H
+#define RENDER_SOFT_RESOLVE_PIXELS_H
+#include "render/soft/pixel_lanes.h"
+#include "render/soft/visibility_buffer_impl.h"
+
+struct eight_places { /* on triangles: the place, and by how much it changes from the first corner to the others */
+    lanes at[3], second[3], third[3];
+    lanes_int meshes; /* in the buffer; -1: that pixel's field is interpolated */
+};
+
+SOFT_INLINE void places_of(const struct visibility_band *band, lanes_int triangles, lanes w1, lanes w2, struct eight_places *out)
+{
+    for (int i = 0; i < LANES; i++) {
+        const struct visibility_place *place = &band->places[triangles[i]];
+        for (int c = 0; c < 3; c++) {
+            out->at[c][i] = place->first[c];
+            out->second[c][i] = place->second[c];
+            out->third[c][i] = place->third[c];
+        }
+        out->meshes[i] = (int32_t)band->corners[triangles[i]][3] - 1;
+    }
+    for (int c = 0; c < 3; c++)
+        out->at[c] += w1 * out->second[c] + w2 * out->third[c];
+}
+
+/* Evaluates those whose mesh is not -1, each by its mesh. */
+SOFT_INLINE void evaluate_places(const struct visibility_buffer *buffer, const struct eight_places *places, const lanes at[3],
+                                 struct eight_values *out)
+{
+    *out = (struct eight_values){ { 0 }, { 0 }, { 0 }, { 0 } };
+    uint32_t waiting = lanes_bits(places->meshes >= 0);
+    while (waiting) {
+        int32_t mesh = places->meshes[__builtin_ctz(waiting)];
+        struct eight_values values;
+        lanes_int same = places->meshes == mesh;
+        pixel_lanes_at(&buffer->meshes[mesh].pixels, at, &values);
+        out->value = lanes_choose(same, values.value, out->value);
+        out->no_data |= values.no_data & same;
+        out->uncertain |= values.uncertain & same;
+        out->no_limits |= values.no_limits & same;
+        waiting &= ~lanes_bits(same);
+    }
+}
+
+/* What pixels carry that have these values: as carried_of in visibility_buffer.c. */
+SOFT_INLINE lanes carried_of_values(const float *scale, lanes values)
+{
+    const float farthest = 1e6f;
+    if (is_log(scale))
+        return values;
+    return lanes_clamp((values - scale[0]) * scale[1] * COLUMNS_OF_RANGE + (1 + SLACK * COLUMNS_OF_RANGE), -farthest, farthest);
+}
+
+/* By how much what is carried changes where the second and third corner's weights change by w1 and w2. */
+SOFT_INLINE lanes carried_change(const struct visibility_buffer *buffer, const struct eight_places *places, lanes w1, lanes w2,
+                                 lanes carried)
+{
+    lanes at[3];
+    struct eight_values values;
+    for (int c = 0; c < 3; c++)
+        at[c] = places->at[c] + w1 * places->second[c] + w2 * places->third[c];
+    evaluate_places(buffer, places, at, &values);
+    return carried_of_values(buffer->scale, values.value) - carried;
+}
+
+#endif
