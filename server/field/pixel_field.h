@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Few sensors by straight-line distance: shepard and paper (field.h) are functions of those distances alone, so renderers evaluate them at
-   each pixel's place on the surface. Such a field is exact there, on triangles of any size and on every level of detail. Thread: any. */
+/* Few sensors by straight-line distance: shepard and paper (field.h) depend on these distances alone, so renderers evaluate them at
+   the surface point of each pixel. Such a field is exact, on triangles of any size and on every level of detail. Thread: any. */
 #ifndef FIELD_PIXEL_FIELD_H
 #define FIELD_PIXEL_FIELD_H
 #include <stdbool.h>
@@ -12,18 +12,18 @@ enum pixel_show { PIXEL_SUM, PIXEL_DISTANCE, PIXEL_BLIND }; /* BLIND: the smalle
 enum { PIXEL_CONFIGURED = 1, PIXEL_USABLE = 2, PIXEL_UNCERTAIN = 4, PIXEL_NO_LIMITS = 8 };
 
 struct pixel_sensor {
-    float place_m[3]; /* as the asset file's positions */
-    float value;      /* as it is summed */
+    float place_m[3]; /* in the frame of the asset file */
+    float value;      /* value that enters the sum */
     float strength, decay;
-    uint32_t state; /* bits; neither usable nor without limits: lost */
+    uint32_t state; /* PIXEL_* bits; neither USABLE nor NO_LIMITS: the sensor is lost */
 };
 
 struct pixel_field { /* zeroed before it is filled, so that equal ones have equal bytes */
-    int32_t count;   /* of the sensors that are configured; 0: the field is interpolated between vertices */
+    int32_t count;   /* number of configured sensors; 0: the field is interpolated between vertices */
     int32_t paper, fill;
     enum pixel_show show;
-    float power, reach_m, radius_m;        /* reach: INFINITY: no limit */
-    float scale, offset, low, high, empty; /* from a sum to a value, as struct kernel_value */
+    float power, reach_m, radius_m;        /* metres; reach_m INFINITY: no limit */
+    float scale, offset, low, high, empty; /* converts a sum to a value, like struct kernel_value */
     float hot_spot_m, seen, most;          /* PIXEL_BLIND */
     struct pixel_sensor sensors[EXACT_SENSORS];
 };
@@ -34,7 +34,7 @@ struct pixel_value {
 };
 /* Evaluates the field at a point in the asset file's frame. */
 void pixel_field_at(const struct pixel_field *field, const float point_m[3], struct pixel_value *out);
-/* Returns by how much any value of the field may have changed since `before`; INFINITY where more changed than readings. */
+/* Returns the largest change of any value of the field since `before`; INFINITY if more than readings changed. */
 float pixel_field_change(const struct pixel_field *field, const struct pixel_field *before);
 
 #endif

@@ -6,15 +6,15 @@
 #include "plant/influence.h"
 #include "plant/plant.h"
 
-enum { EXACT_SENSORS = 8 }; /* of a group on an asset, at most: all of them are summed at each pixel */
+enum { EXACT_SENSORS = 8 }; /* most sensors of a group on an asset that each pixel sums */
 
-/* Returns whether an interpolation of so many sensors by this kind of distance is evaluated at each pixel. */
+/* Returns whether an interpolation of that many sensors by this kind of distance is evaluated at each pixel. */
 static inline bool plant_is_exact(enum interpolation interpolation, enum distance_mode distance, size_t sensor_count)
 {
     bool by_distance = interpolation == INTERPOLATION_SHEPARD || interpolation == INTERPOLATION_PAPER;
     return by_distance && distance == DISTANCE_EUCLIDEAN && sensor_count <= EXACT_SENSORS;
 }
-/* Returns whether a group needs no cut triangles on an asset with so many of its sensors, as the plant file has the group. */
+/* Returns whether a group, with the settings of the plant file, needs no cut triangles on an asset with that many of its sensors. */
 static inline bool plant_group_is_exact(const struct plant_group *group, size_t sensor_count)
 {
     return plant_is_exact(group->interpolation, group->distance, sensor_count) && !plant_prepares_any(group);

@@ -117,7 +117,7 @@ static void search_piece(struct isoline_search *search, const struct edge_piece 
             add_point(search, i, piece);
 }
 
-/* Of a field that is evaluated at pixels: piece by piece, since lines cross long edges more than once. */
+/* Searches the edges of a field that is evaluated at pixels piece by piece, because lines cross long edges more than once. */
 static void search_evaluated(struct isoline_search *search, const struct edge_piece *edge)
 {
     double length_m = (double)vecf_distance(edge->ends_m[0], edge->ends_m[1]);

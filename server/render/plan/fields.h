@@ -19,7 +19,7 @@ struct fields_entry { /* field of one asset. An entry without a slice could not 
     double travel;    /* scalars->travel at the shown values, less their known error: `scalars->travel - travel` bounds the change since */
     uint64_t content; /* hash of the first `hashed` shown scalars, as many as the last request needed */
     size_t hashed;
-    struct pixel_field pixels; /* of the readings that are shown; count 0: `shown` is interpolated between vertices */
+    struct pixel_field pixels; /* field of the shown readings; count 0: `shown` is interpolated between vertices */
     struct scalar *shown;
     size_t count, ready; /* count: vertices of the file; ready: the first `ready` values are shown */
     struct pool_slice *slice;

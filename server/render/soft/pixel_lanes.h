@@ -70,7 +70,7 @@ SOFT_INLINE lanes pixel_part(const struct pixel_field *field, lanes square, lane
     return lanes_choose(nearest, one, part);
 }
 
-/* What is left of the reach, squared, in parts of what the nearest sensor has left; 0 beyond the reach. */
+/* Returns the squared rest of the reach at this sensor, as a fraction of the rest at the nearest sensor; 0 beyond the reach. */
 SOFT_INLINE lanes pixel_fade(const struct pixel_field *field, lanes square, lanes near2)
 {
     lanes none = { 0 }, one = none + 1.0f, distance = lanes_root(square);
@@ -143,7 +143,7 @@ SOFT_INLINE void pixel_lanes_at(const struct pixel_field *field, const lanes at[
     lanes value = sums.values / lanes_choose(any, sums.total, none + 1.0f) * field->scale + field->offset;
     out->value = lanes_choose(any, lanes_clamp(value, field->low, field->high), none + field->empty);
     out->uncertain = (sums.marked > 0.0f) & (2.0f * sums.marked >= sums.total);
-    if (field->show == PIXEL_BLIND) { /* by -log2(e)/2 (near/s)^2, no less than what gives `most` */
+    if (field->show == PIXEL_BLIND) { /* exponent -log2(e)/2 (near/s)^2, limited so that the result is at most `most` */
         lanes down = nearest.used * (-0.72134752f / (field->hot_spot_m * field->hot_spot_m));
         out->value = lanes_least(field->seen / lanes_exp2_down(lanes_most(down, none - 100.0f)), none + field->most);
     }

@@ -99,7 +99,7 @@ static inline float column_of_carried(const struct coloring *coloring, float car
     return coloring->log ? column_of(lanes_log2((lanes){ 0 } + carried)[0], coloring->scale) : carried;
 }
 
-struct shown_place { /* what a pixel shows of the field */
+struct shown_place { /* the field at one pixel */
     float carried, slope;
     bool no_data, uncertain, no_limits;
     uint8_t row;

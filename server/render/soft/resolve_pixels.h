@@ -44,7 +44,7 @@ SOFT_INLINE void evaluate_places(const struct visibility_buffer *buffer, const s
     }
 }
 
-/* What pixels carry that have these values: as carried_of in visibility_buffer.c. */
+/* Converts values to the scalars that pixels carry, like carried_of() in visibility_buffer.c. */
 SOFT_INLINE lanes carried_of_values(const float *scale, lanes values)
 {
     const float farthest = 1e6f;
