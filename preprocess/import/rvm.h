@@ -10,7 +10,7 @@
 struct rvm_counts {
     size_t primitives;
     size_t covered_faces;                 /* faces left out because they lie on a neighbour's face */
-    double covered_m2;                    /* total area of the covered faces, square metres */
+    double covered_m2;                    /* total area of covered_faces, square metres */
     size_t empty;                         /* primitives left out because they have no extent or contain non-finite numbers */
     size_t unknown_chunks, unknown_kinds; /* count of unknown chunks and primitives of unknown kinds, all skipped */
     char unknown_chunk[40];               /* the first unknown chunk, as "ABCD at byte 120" */

@@ -61,7 +61,7 @@ struct bend_report { /* all zero: no bend was measured */
     /* measured: count of (group, interpolation) pairs whose bend was measured; unmeasured: count of pairs with too many places to
      * measure */
     size_t measured, unmeasured;
-    double steps;         /* bound of the bend anywhere, in steps of (MAX - MIN) / 255, for any good readings between MIN and MAX */
+    double steps;         /* bound of the deviation from linear interpolation, in steps of (MAX - MIN) / 255, for any good readings */
     double over_share;    /* share of the area covered by triangles in which the bend may exceed one step */
     double hidden_share;  /* share of the area inside or against another part, where nothing is solved */
     double unknown_share; /* share of the area that is not on the solved surface; `steps` and `over_share` exclude it and the hidden area */

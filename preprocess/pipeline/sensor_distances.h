@@ -26,7 +26,8 @@ bool sensor_distances_matter(const struct plant *plant, const struct plant_senso
  * geometry, even if other parts hide it. */
 void sensor_distances_assume(struct sensor_distances *measured, struct workers *workers, const struct build_input *input,
                              const struct geometry *geometry);
-/* Makes distances for sensors with assumed positions: 0 at every vertex. The caller frees them. */
+/* Makes distances for sensors with assumed positions: 0 at every vertex, so that each colours its whole asset evenly. The caller frees
+   them. */
 void sensor_distances_even(struct distance_rows *distances, size_t sensor_count, uint32_t vertex_count);
 /* Frees surface, distances and sensors. */
 void sensor_distances_finish(struct sensor_distances *measured);

@@ -348,7 +348,7 @@ static struct subdiv_finding *list_errors(const struct subdiv *subdiv, double li
 {
     const struct subdiv_mesh *mesh = &subdiv->mesh;
     struct subdiv_list corners = { 0 };
-    bool all = mesh->made.count == mesh->tri_count; /* all triangles are new, so their corners can be visited directly in order */
+    bool all = mesh->made.count == mesh->tri_count; /* true in the first round: every triangle is new, and no list of new ones is needed */
     for (size_t t = 0; t < mesh->tri_count && all; t++)
         for (uint32_t i = 0; i < 3; i++)
             if ((double)mesh->cuts[mesh->tris[t].e[i]].error > limit)

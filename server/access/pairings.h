@@ -63,7 +63,7 @@ uint64_t pairings_number(const struct pairings *pairings);
 json_t *pairings_told(const struct pairings *pairings, int64_t now_ns);
 /* Replaces the devices on a renderer or a standby core by those of the core. Returns false if the JSON is invalid. */
 bool pairings_mirror(struct pairings *pairings, const json_t *told, int64_t now_ns);
-/* Like pairings_ask(), with the devices that the core sent; digits "" until the core has sent some. */
+/* Like pairings_ask(), on a renderer, with the list of devices that the core sent; digits "" until the core has sent that list. */
 enum pairing pairings_look(const struct pairings *pairings, const struct pairing_request *request, int64_t now_ns,
                            char digits[PAIRING_DIGITS + 1], int *left_s);
 /* pairings_request_text() returns the request that a renderer sends its core for a device: JSON without the secret; the caller frees it

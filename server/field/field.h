@@ -100,7 +100,7 @@ struct field_place {
 struct field_point {
     double value; /* value in the unit of the shown quantity */
     bool no_data, uncertain;
-    double drawn_error; /* error bound of the values that frames show around this point; 0: less than 1/255 of the range */
+    double drawn_error; /* error bound of the drawn values on this triangle, in the unit of `value`; 0: less than 1/255 of the range */
 };
 /* Computes the field at a point from the readings: exactly for straight-line distances; geodesic ones follow from the distances at the
    triangle's corners. harmonic, fin and gp exist only as solutions on a mesh: they are interpolated between the vertices of the finest

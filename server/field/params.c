@@ -96,7 +96,7 @@ static float largest_distance(const struct asset_view *view, size_t column, enum
     float most_m = 0, scratch[KERNEL_BLOCK];
     for (size_t at = 0; at < count; at += KERNEL_BLOCK) {
         size_t number = count - at < KERNEL_BLOCK ? count - at : KERNEL_BLOCK;
-        if (mode != DISTANCE_EUCLIDEAN) /* both geodesic modes use the same range, so that colours can be compared */
+        if (mode != DISTANCE_EUCLIDEAN) /* geodesic and heat distances get one colour range, so that their pictures can be compared */
             kernel_distances(asset_distance_codes(view, column, at), number, scratch);
         else
             kernel_euclidean(view->positions_m + at, number, view->sensors[column].surface_m, scratch);

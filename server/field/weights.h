@@ -34,7 +34,7 @@ struct weights_key { /* everything that G depends on, as bytes */
     uint64_t hash;
 };
 
-enum { WEIGHTS_ERRING = 9 }; /* number of error classes, in powers of 1/2 down to 2^-8, which is a step of colour */
+enum { WEIGHTS_ERRING = 9 }; /* number of classes of vertices by error: powers of 1/2 of the range, down to 2^-8, a step of colour */
 
 struct weights {
     struct weights_key key;

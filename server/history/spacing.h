@@ -11,7 +11,7 @@ struct spacing { /* zero-initialise */
     int64_t last_us;
     int64_t *at; /* every stride-th spacing */
     size_t count, capacity, stride, passed;
-    size_t between; /* number of times between two samples, whether or not the samples are usable */
+    size_t between; /* count of intervals between neighbouring samples, including unusable samples */
 };
 
 /* Adds the next sample in order of time. Only times between two usable samples count. */

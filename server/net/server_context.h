@@ -187,7 +187,7 @@ void http_on_historical_snapshot(struct server_context *server, const struct his
 void http_on_history_answer(struct server_context *server, struct history_answer *piece);
 /* Answers browsers that returned from the identity provider. */
 void http_on_sign_ins(struct server_context *server);
-/* Answers the requests for a reload. */
+/* Answers the HTTP requests that asked for a reload, once it is done. good: the new plant is loaded; text: the result as JSON. */
 void http_on_reloaded(struct server_context *server, bool good, const char *text);
 /* Answers all requests that wait for the plant that is about to be replaced. */
 void http_release_plant(struct server_context *server);

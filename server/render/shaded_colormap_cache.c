@@ -30,7 +30,7 @@ static const struct colormap_shades *shades_of(struct shaded_colormap_cache *col
     return colormaps->shades[number];
 }
 
-/* Returns a free entry, or the least recently used one after finishing its colour map. */
+/* Returns a free entry, or the least recently used one, whose colour map it frees. */
 static struct shaded_colormap_cache_entry *make_room(struct shaded_colormap_cache *colormaps)
 {
     if (colormaps->count < SHADED_COLORMAPS)

@@ -30,7 +30,7 @@ struct surface;
 
 struct surface_params { /* zero: chosen from the model */
     double tolerance_m; /* largest gap that is closed; a tolerance chosen by the program is smaller at thin parts (parts.h) */
-    double spacing_m;   /* longest edge of the sampled surface */
+    double spacing_m;   /* longest edge that sampling may make, metres */
     char *why;          /* buffer of SURFACE_WHY_BYTES that receives the reason if no surface can be built; NULL: the reason is logged */
 };
 #define SURFACE_WHY_BYTES 160

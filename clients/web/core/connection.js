@@ -129,7 +129,7 @@ export class Connection {
         this.nextPing = this.lastHeard + PING_MS;
         this.watch();
         this.state = 'open';
-        // Called before onState, because statements of the previous server are no longer valid.
+        // onOpen discards the state of the previous connection, so it runs before onState reports "open".
         this.onOpen();
         this.become('open');
     }

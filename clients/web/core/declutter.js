@@ -4,7 +4,8 @@
 // MOST: maximum number of markers within NEAR units; HELD: weight of a marker drawn in the previous picture
 const MOST = 6, NEAR = 30, HELD = 0.8;
 
-// items: { x, y, depth, occluded, kept (always drawn), held (drawn in the previous picture) }. Returns the items to draw, in order.
+// items: { x, y, depth, occluded, kept (always drawn), held (drawn in the previous picture) }. Returns the items to draw, in the same
+// order.
 export function thinOut(items, unit = 1) {
     const cell = NEAR * unit, cells = new Map(), drawn = new Set(items.filter(({ kept }) => kept));
     const key = ({ x, y }) => Math.floor(x / cell) * 65536 + Math.floor(y / cell);

@@ -13,7 +13,8 @@ export function SnapshotPane(pane, { session, title, body, timeOf }) {
     const [id] = pane.items, image = make('img', { alt: '', hidden: '' }), card = make('div', { class: 'gone' });
     const about = make('span', { class: 'about' }), name = make('span', { class: 'said' });
     let state = null, asks = false, askedAt = -Infinity;
-    let shown = null, changedAt = 0; // shown: { picture, ageMs, at }; changedAt: time at which the server last announced another picture
+    // shown: { picture (its number), ageMs (its age at the time `at`), at }; changedAt: time at which a new number came
+    let shown = null, changedAt = 0;
     title.replaceChildren(name, about);
     body.append(image, card);
 

@@ -99,7 +99,8 @@ struct service_patience {
     bool ending;
 };
 
-/* Returns the CPU time of a process and its waited-for children; 0: it belongs to another session. id: name of its entry in /proc. */
+/* Returns the CPU time in nanoseconds of a process and its reaped children; 0: the process is gone, or in another POSIX session.
+   id: its entry in /proc. */
 static int64_t used_by(const char *id)
 {
     char path[32], line[1024];

@@ -19,7 +19,7 @@ struct draw_instance { /* as in shaders/instance.glsl */
 struct draw_batch_state {
     GLuint program;
     const struct gl_model *model;
-    /* GPU memory pages with light and with field values; field NULL: the asset has no data or no field */
+    /* buffers (pool.h) with baked light and with field values per vertex; field NULL: the asset has no group of sensors or no reading */
     const struct pool_page *light, *field;
     int front;    /* as scene_asset.front */
     int material; /* index of the material in the model; -1: the program uses no material */

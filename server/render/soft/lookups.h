@@ -135,7 +135,7 @@ static float height_at(const struct raster *raster, float x, float y)
     return up / sqrtf(square) * 1023.5f + 1024.0f;
 }
 
-/* Returns the elevations for the stretch (stretch_px pixels of a row) that begins at this pixel. */
+/* Returns the elevations over the horizon of the stretch (stretch_px pixels of a row) that begins at this pixel. */
 static inline struct heights heights_from(const struct raster *raster, int column, int row)
 {
     float y = (float)row + 0.5f, x = (float)column + 0.5f, first = height_at(raster, x, y);

@@ -6,7 +6,7 @@
 #include "render/soft/lanes.h"
 
 struct mark_ink {
-    int32_t last_row; /* last row of the colour map */
+    int32_t last_row; /* index of the last row (colour) of the colour map */
     float pattern_px;
     bool rich; /* there are isolines, or the scale is logarithmic */
     bool log;

@@ -90,7 +90,7 @@ struct soft_cutout {
     double weights[3][3];
 };
 void soft_cutout_init(struct soft_cutout *cutout, const struct soft_tile *tile, const struct soft_face *face);
-bool soft_is_hole(const struct soft_cutout *cutout, float x, float y); /* x, y: point of the frame */
+bool soft_is_hole(const struct soft_cutout *cutout, float x, float y); /* x, y: pixels from the upper left corner of the frame */
 /* Appends a fragment to tile->fragments. column, row: pixel of the frame. */
 void soft_add_fragment(const struct soft_tile *tile, int sample, const struct soft_face *face, int column, int row, float depth);
 

@@ -63,7 +63,7 @@ export class ClipGizmo {
 
     place(grips, view, half) {
         const taken = [], covers = this.covers(), path = outline(grips, view);
-        const { left: x, width } = view, { height } = this.viewport; // a handle must not reach into the other half
+        const { left: x, width } = view, { height } = this.viewport; // a handle must stay in its half of a split view
         this.lines.append(makeSvg('svg', { x, width, height, viewBox: `${x} 0 ${width} ${height}` },
             makeSvg('path', { class: 'under', d: path }), makeSvg('path', { d: path })));
         for (const grip of grips) {
