@@ -60,7 +60,7 @@ test('units and axis are guessed and said, or given', { skip }, () => inFolder((
     writeFileSync(join(folder, 'a.stl'), stl(1000));
     const said = plantcast('import', join(folder, 'a.stl'), '-o', join(folder, 'plant'));
     assert.match(said.stdout,
-        /does not say its units: mm is taken, because it is 2000 long, which is then 2 m\. Is that right\?.*--units says/);
+        /does not say its units: mm is taken, because it is 2000 long, which is then 2 m\. Is that right\?.*--units sets/);
     assert.match(said.stdout, /does not say which axis is up: z is taken/);
     const given = boxed(folder, 'b.stl', stl(10), '--units', 'ft', '--up', 'y');
     assert.ok(near(given.size, [6.096, 1.524, 3.048]), JSON.stringify(given.size));

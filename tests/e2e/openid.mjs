@@ -255,7 +255,7 @@ test('a provider that is away: who is in stays, nobody new comes, and a token op
     const { port: its } = provider;
     const waiting = await browser.begin();
     await provider.close();
-    await plant.daemon.line(/openid: http.*nobody can sign in, and who is signed in stays so/);
+    await plant.daemon.line(/openid: http.*nobody can sign in; signed-in users stay signed in/);
     await sleep(2500);
     assert.equal(client.closed, null);
     assert.equal((await browser.me()).role, 'operator');
@@ -429,7 +429,7 @@ test('keys that cannot be had end nobody; signing out during a check leaves no r
     await sleep(10500); // waits long enough that keys may be requested again
     provider.keysStatus = 503;
     provider.rotate();
-    await plant.daemon.line(/openid: http.*keys.*stays so/);
+    await plant.daemon.line(/openid: http.*keys.*stay signed in/);
     await sleep(3000);
     assert.equal((await browser.me()).role, 'operator');
     provider.keysStatus = 200;
