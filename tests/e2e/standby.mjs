@@ -7,6 +7,7 @@ import { linkSync, renameSync, writeFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
 import { PlainClient } from './support/plain_client.mjs';
 import { PostgresServer } from './support/postgres_server.mjs';
+import { long } from './support/promise.mjs';
 import { HookServer } from './support/receivers.mjs';
 import { runProgram } from './support/tiny_plant.mjs';
 import { kill, missingTwoCores, sleep, TAKE_OVER_MS, terms, TwoCores, until } from './support/two_cores.mjs';
@@ -139,7 +140,9 @@ function isOfRest(points, us, value, quality) {
 
 const FEW = 50; // points that may wait to be sent: there are always new ones
 
-test('history is whole: what the database has is what the API has, and the gaps are the take-overs', options, async () => {
+// In make test-long: on a busy machine the device answers one core late, whose Bad sample the other core lacks.
+const inLong = { ...options, skip: skip || long };
+test('history is whole: what the database has is what the API has, and the gaps are the take-overs', inLong, async () => {
     await sleep(5000);
     await feeding();
     await sleep(3000);
