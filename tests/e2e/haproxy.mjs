@@ -40,6 +40,9 @@ async function start(name, i) {
     return Object.assign(node, { agentPort, name });
 }
 
+// Returns the eye in a view token: MAC.PAYLOAD, with the payload as JSON in base64url.
+const eyeOf = (token) => JSON.parse(Buffer.from(token.split('.')[1], 'base64url')).c.eye;
+
 // A page without a screen: it reconnects like pages do, and restores its view only with the view token.
 class Viewer {
     constructor(number) {
@@ -77,9 +80,8 @@ class Viewer {
     async look() {
         this.client.say({ type: 'camera', seq: 1, eye: this.eye, target: [0, 0, 0] });
         await this.shows();
-        await this.client.until('a token', ({ texts }) => texts.some(({ type }) => type === 'resume'));
-        await sleep(1200); // waits for the newest token
-        this.resume = this.client.texts.findLast(({ type }) => type === 'resume').resume;
+        const isOfView = ({ type, resume }) => type === 'resume' && Math.abs(eyeOf(resume)[0] - this.eye[0]) < 1e-5;
+        this.resume = (await this.client.until('a token of the view', ({ texts }) => texts.find(isOfView))).resume;
     }
 
     shows() {
