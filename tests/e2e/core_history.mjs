@@ -108,7 +108,7 @@ test('the page of a renderer has trends and the past', options, async () => {
     await waitForPicture(page);
     await waitForHealth(page, 'live');
     await page.evaluate(() => globalThis.plantcast.selectTag(globalThis.plantcast.session.model.tag('TI-1')));
-    // By script: where the card is rebuilt between press and release of the mouse, the browser makes no click of them.
+    // A click by script: a card that moves between press and release of the mouse gets no click.
     await page.locator('#card .trend').evaluate((button) => button.click());
     await page.locator('#trend-chart canvas').waitFor();
     assert.match(await page.locator('#trend-tags').textContent(), /TI-1.*°C/);
