@@ -19,7 +19,7 @@ layout(location = 7) centroid in vec3 interpolated_place;
 #else
 layout(location = 7) in vec3 interpolated_place;
 #endif
-#ifndef CENTROID_ONE // what interpolating to the centroid makes of 1
+#ifndef CENTROID_ONE // value of a constant 1 after interpolation to the centroid of the covered samples
 #define CENTROID_ONE 1.0
 #endif
 

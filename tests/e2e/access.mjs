@@ -147,7 +147,7 @@ walls:
         assert.deepEqual(all.map(({ panes }) => panes.length), [6, 1]);
         await streamsOnlyItsViews(lobby, whole);
         assert.match(readFileSync(path('views.log'), 'utf8'), /"who":"lobby"[^\n]*view=rest: this token is for the views/);
-        // A named view shows the same as the same query, but without readings, whoever asks for it.
+        // A named view shows the same as the same query, but without readings, for every role.
         const query = 'group=temperature&hidden=P-101A&camera=0,-4,2,0,0,0,40&width=320&height=200';
         const [named, asked] = [await picture('view=left&width=320&height=200', whole), await picture(query, whole)];
         assert.equal(named.status, 200);

@@ -276,7 +276,7 @@ TEST(test_a_moving_session_does_not_wait)
     frame_unref(&exact);
 }
 
-/* A preview is drawn before its light is baked; baking goes on while no frame is requested. */
+/* A preview is drawn before its light is baked; baking continues while no frame is requested. */
 TEST(test_the_first_light_is_rough)
 {
     struct stand fresh;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What accompanies a frame (content hash, markers, ages); culling; lights; difficult views. */
+/* Data that accompany a frame (content hash, markers, ages); culling; lights; difficult views. */
 #include "tests/support/test.h"
 #include <math.h>
 

@@ -368,7 +368,7 @@ TEST(what_is_there_stands_before_what_has_gone)
     hear(&s, 4, 0, 50, QUALITY_GOOD);
     assert_int_equal(s.told[0], ALARM_LL);
     const struct alarm_grade high = { 4, ALARM_H, ALARM_UNACKNOWLEDGED }, highest = { 4, ALARM_HH, ALARM_ACKNOWLEDGED };
-    /* of two alarms with equal priority the outer limit is graver */
+    /* with equal priority, the outer limit is graver */
     assert_true(alarm_graver(&highest, &high) && !alarm_graver(&high, &highest));
     end(&s);
 }

@@ -161,7 +161,7 @@ TEST(linear_scaling)
     check_scaled(&tag, 6000, 0, QUALITY_GOOD); /* exactly 0 is a reading */
     check_scaled(&tag, 12000, 150, QUALITY_GOOD);
     check_scaled(&tag, 20000, 350, QUALITY_GOOD);
-    check_scaled(&tag, 20800, 370, QUALITY_UNCERTAIN_UNITS_EXCEEDED); /* goes on beyond its range */
+    check_scaled(&tag, 20800, 370, QUALITY_UNCERTAIN_UNITS_EXCEEDED); /* extrapolates beyond the range */
     check_scaled(&tag, 3600, -60, QUALITY_UNCERTAIN_UNITS_EXCEEDED);
     tag.negate = true;
     check_scaled(&tag, 12000, -150, QUALITY_GOOD);

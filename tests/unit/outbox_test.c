@@ -191,7 +191,7 @@ CASE(it_escalates_until_acknowledged)
     assert_int_equal(deliver(f, OPS, T0 + 60 * MIN), 0);
     assert_int_equal(deliver(f, BOSS, T0 + 60 * MIN), 1); /* alarm of the second escalation, which was waiting */
     assert_int_equal(deliver(f, BOSS, T0 + 90 * MIN), 0);
-    put(f, 0, LOCAL, true, true, T0 + 91 * MIN, T0 + 91 * MIN); /* anew */
+    put(f, 0, LOCAL, true, true, T0 + 91 * MIN, T0 + 91 * MIN); /* raised again */
     assert_int_equal(deliver(f, OPS, T0 + 91 * MIN + 3 * S), 1);
 }
 

@@ -25,7 +25,7 @@
 #define SEEN 1e-5 /* metres; distance of a vertex from the visible surface */
 #define NEAR 0.05 /* metres; the same for vertices that only coarser levels have */
 
-struct result_box { /* where a result comes to */
+struct result_box { /* receives a result */
     pthread_mutex_t lock;
     pthread_cond_t came;
     struct relocation_result result;

@@ -210,7 +210,7 @@ static void sweep(bool killed)
             if (undoing)
                 assert_int_equal(apply(folder), 0);
             ended = run_until(folder, undoing, step, killed);
-            int lock = take(folder, NULL); /* whoever comes next */
+            int lock = take(folder, NULL); /* the next program gets the lock */
             assert_true(lock >= 0);
             close(lock);
             bool new = all(folder, true);

@@ -51,7 +51,7 @@ static double share_of(bool (*f)(const double nearest[2], double limit_m), doubl
             double triangles = inside ? 3 * inside : 1.5; /* a corner vertex has one or two triangles, 1.5 on average */
             for (int s = 0; s < SENSORS; s++) {
                 double m = hypot(x - sensors[s][0], y - sensors[s][1]);
-                if (m <= nearest[0]) { /* of two equally near sensors the one with a good reading counts */
+                if (m <= nearest[0]) { /* a sensor with a good reading counts before an equally near one without */
                     nearest[0] = m;
                     nearest[1] = s;
                 }

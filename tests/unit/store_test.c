@@ -393,7 +393,7 @@ CASE(other_tags_vouch)
     store_listen(s->store, on_sample_event, heard);
     write_one(s, 0, 20, QUALITY_GOOD, 0);
     write_one(s, 2, 30, QUALITY_GOOD, 0);
-    assert_quality(look(s, 0, 0)->quality, QUALITY_UNCERTAIN); /* nothing is known of it */
+    assert_quality(look(s, 0, 0)->quality, QUALITY_UNCERTAIN); /* no quality is known */
     const struct {
         double word;
         uint32_t pattern, any;

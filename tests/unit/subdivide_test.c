@@ -393,7 +393,7 @@ static void random_camera(struct outline_camera *camera, double pixel_m, double 
     camera->back_m = 4 * size_m;
 }
 
-struct sighted { /* what side * side rays within a pixel see of the finest level */
+struct sighted { /* view of the finest level by side * side rays within a pixel */
     double low, high, nearest, farthest;
     bool missed;
 };

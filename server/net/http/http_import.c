@@ -123,14 +123,14 @@ static bool take_argument(const struct args *args, const char *name, char *out, 
     return true;
 }
 
-/* Orders an import. The argument `what` says what is kept of the previous plant: the value `tags` keeps the models, the other value keeps
-   nothing. */
+/* Orders an import. Argument `what`: `tags` matches the tag list and keeps the models; `anew` replaces the plant; absent: updates the
+   models. */
 static int order_all(struct server_context *server, struct http_exchange *request, const struct args *args)
 {
     struct import_order wanted = { 0 };
     char what[8];
     if (!take_argument(args, "what", what, sizeof(what)) || (*what && strcmp(what, "tags") != 0 && strcmp(what, "anew") != 0))
-        return refuse_with(request, HTTP_STATUS_BAD_REQUEST, "what must be tags, anew or absent\n");
+        return refuse_with(request, HTTP_STATUS_BAD_REQUEST, "argument `what` must be tags, anew or absent\n");
     wanted.anew = !strcmp(what, "anew");
     wanted.models = wanted.anew || !*what;
     if (!take_argument(args, "units", wanted.units, sizeof(wanted.units)) || !take_argument(args, "up", wanted.up, sizeof(wanted.up)) ||

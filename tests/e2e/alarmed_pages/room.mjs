@@ -56,7 +56,7 @@ const amiss = (page) => page.evaluate(() => {
     return found;
 });
 
-// Returns what is wrong with a tag's marker: it must be in the picture with nothing in front of it.
+// Returns the faults of a tag's marker, which must be in the picture with nothing in front.
 const inSight = (page, name) => page.evaluate((tag) => {
     const { overlay, session } = globalThis.plantcast, marker = overlay.marker(session.model.tag(tag));
     if (!marker)
@@ -100,7 +100,7 @@ for (const name of WALKED) {
             await press('#engineer-toggle');
             await page.locator('#engineer').waitFor();
             assert.equal(await page.locator('#alarms').isVisible(), false, 'one of both');
-            if (listed) { // it must also be possible to switch between alarms and the engineer's panel and back
+            if (listed) { // switching between alarms and the engineer's panel and back must also work
                 await press('#alarm-strip');
                 await page.locator('#engineer').waitFor({ state: 'hidden' });
                 await press('#engineer-toggle');

@@ -107,7 +107,7 @@ test('a part that cannot be loaded says so, and comes by itself once it can be',
                 await press(page, key); // pressing the key again does not close the part
                 await page.unroute(`**/${file}*`);
                 await page.locator(opened).waitFor();
-                await page.waitForFunction(() => globalThis.plantcast.session.picture); // the page goes on working
+                await page.waitForFunction(() => globalThis.plantcast.session.picture); // the page still works
             }
         }, (page) => all === words && away(page, all[0][1])); // blocked early: an alarm ring would fetch the words
 });

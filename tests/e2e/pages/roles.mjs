@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What each role may do with an alarm in each alarm mode: shown by the page and enforced by the server; over plain http with a host name.
+// Actions on alarms by role and alarm mode: shown by the page and enforced by the server; over plain http with a host name.
 import assert from 'node:assert/strict';
 import { appendFileSync, chmodSync, existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';

@@ -148,7 +148,7 @@ ${more}`);
         await core.program.ended;
         await this.start(core.name);
     }
-    // Asserts that for this long the leader goes on and the other core does not begin.
+    // Asserts that during this time the leader polls and the other core does not.
     async goesOn(t, core, seconds) {
         const since = this.network.now(), other = this.other(core), before = terms(other);
         await sleep(seconds * 1000);
