@@ -15,6 +15,7 @@ export class Card {
     constructor({ session, selection, overlay, viewport, modules, selectTag, showTrend, addTrend }) {
         Object.assign(this, { session, selection, overlay, viewport, modules, selectTag, showTrend, addTrend });
         this.element = byId('card');
+        new ResizeObserver(() => this.show()).observe(this.element); // drift and neighbours arrive later and make the card taller
         this.show();
     }
 

@@ -16,6 +16,7 @@ export class Place {
     constructor({ session, viewport, showAsset }) {
         Object.assign(this, { session, viewport, showAsset });
         this.element = byId('place');
+        new ResizeObserver(() => this.show()).observe(this.element);
         this.picked = null;
         this.asked = null; // kind of the pending pick request: 'new' or 'again'; null: none
         session.on('picked', (picked) => this.hear(picked));
