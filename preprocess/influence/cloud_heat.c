@@ -17,7 +17,8 @@
 /* largest extent of a connected component in units of sqrt(t): heat falls by the factor e per unit and underflows (DBL_MIN) at 708 units */
 #define LONGEST 400.0
 #define REGULARISATION 1e-9 /* added to the matrix's diagonal, relative to the diagonal entry */
-/* PITCHES: candidate sample points per spacing; PLACES: nearest sample points used to interpolate at a position */
+/* PITCHES: candidate points per spacing, in each direction of the lattice on a triangle; PLACES: number of sample points that the value at
+ * a position is interpolated from */
 enum { PITCHES = 3, PLACES = 4 };
 
 struct heat_link {
@@ -29,7 +30,7 @@ struct cloud_heat {
     struct log *log;
     double spacing_m, time_m2;
     size_t count, capacity;
-    double (*points)[3], (*across)[2][3]; /* across: the two axes of each point's tangent plane */
+    double (*points)[3], (*across)[2][3]; /* points: positions; across: two unit vectors that span the tangent plane at each point */
     uint32_t *piece;                      /* connected component of each point */
     struct heat_link *links;
     size_t link_count, link_capacity;
@@ -37,7 +38,7 @@ struct cloud_heat {
     int k;
     cholmod_factor *diffusion, *poisson;
     cholmod_common common;
-    /* Hash grid with cells one spacing wide, to find the sample points near a position: */
+    /* Hash grid of the sample points, with cells one spacing wide; finds the points near a position. */
     uint32_t *cells, *next;
     size_t cell_count, next_capacity;
 };
@@ -82,7 +83,8 @@ static double area_of(const struct surface_debug_mesh *mesh, size_t t)
     return vec_length(n) / 2;
 }
 
-/* Generates candidate points on a lattice in each triangle, triangle corners first so that narrow parts keep their ends. */
+/* Generates candidates for sample points. The triangle corners come first, so that narrow parts keep their ends; then a lattice in each
+ * triangle. */
 static void sample(struct cloud_heat *cloud, const struct surface_debug_mesh *mesh)
 {
     for (size_t t = 0; t < mesh->visible_count; t++)
@@ -348,7 +350,8 @@ double cloud_heat_spacing_m(const struct cloud_heat *cloud)
 
 /* --- distances -------------------------------------------------------------------------------------------------------------- */
 
-/* Computes the gradient of values at a point, in its tangent plane, by weighted least squares. */
+/* Computes the gradient of a function, given by its values at the sample points, at one of the points, in its tangent plane, by weighted
+ * least squares. */
 static void slope_at(const struct cloud_heat *cloud, size_t point, const double *values, double slope[3])
 {
     double xx = 0, xy = 0, yy = 0, bx = 0, by = 0;
@@ -429,8 +432,8 @@ static cholmod_dense *solve(const struct cloud_heat *cloud, cholmod_factor *fact
     return x;
 }
 
-/* Converts heat u to unit vectors in the tangent planes that point away from the source, and writes the right-hand side of the distance
- * system to b. */
+/* Converts the heat u into the unit vectors X (cloud_heat.h): tangent vectors that point away from the source. Writes to b the right-hand
+ * side of the linear system for the distances. */
 static void flow(const struct cloud_heat *cloud, double *u, double (*slopes)[3], double *b)
 {
     for (size_t i = 0; i < cloud->count; i++)

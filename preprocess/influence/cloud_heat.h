@@ -4,9 +4,10 @@
  * Therefore these distances cut through thin walls and across gaps narrower than CLOUD_REACH spacings. This error of the method is kept on
  * purpose, because the comparison should show it. Points: about CLOUD_POINTS Poisson-disc samples, at least one spacing apart. Neighbours:
  * all points within CLOUD_REACH spacings, found with FLANN. Tangent plane: least-squares plane through a point's neighbours. Laplacian:
- * Belkin, Sun & Wang (2009), made symmetric: w_ij = A_i A_j exp(-|p_i - p_j|^2 / 4 tau) / (4 pi tau^2), A_i = pi r^2 / (neighbours + 1).
- * Heat u solves (A + t L) u = source. X is the unit direction of the heat flow in each tangent plane, by weighted least squares. Distances
- * d minimise sum w_ij (d_j - d_i - (X_i + X_j) (p_j - p_i) / 2)^2. */
+ * Belkin, Sun & Wang (2009), made symmetric: w_ij = A_i A_j exp(-|p_i - p_j|^2 / 4 tau) / (4 pi tau^2). w_ij: weight of points i and j at
+ * positions p_i and p_j; tau: diffusion time; A_i = pi r^2 / (neighbours + 1): area of a point; r: reach of the neighbours, in metres. Heat
+ * u solves (A + t L) u = source (L: Laplacian, t: time, A: areas on the diagonal). X is the unit direction of the heat flow in each tangent
+ * plane, by weighted least squares. Distances d minimise sum w_ij (d_j - d_i - (X_i + X_j) (p_j - p_i) / 2)^2. */
 #ifndef PREPROCESS_INFLUENCE_CLOUD_HEAT_H
 #define PREPROCESS_INFLUENCE_CLOUD_HEAT_H
 #include "base/log/log.h"
@@ -21,7 +22,7 @@ struct cloud_heat;
 struct cloud_heat *cloud_heat_create(struct log *log, const struct surface *surface);
 /* Frees the point cloud and sets *cloud to NULL. *cloud may be NULL. */
 void cloud_heat_destroy(struct cloud_heat **cloud);
-/* Return the number of points, the largest neighbour count requested from FLANN, and the point spacing. */
+/* Return, in this order: the number of sample points, the largest neighbour count requested from FLANN, and the point spacing in metres. */
 size_t cloud_heat_count(const struct cloud_heat *cloud);
 int cloud_heat_k(const struct cloud_heat *cloud);
 double cloud_heat_spacing_m(const struct cloud_heat *cloud);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Solves the Gaussian process with one sparse factorisation of k^2 C + G, two solves for each sensor and one for each random sample. All
- * else is dense algebra. */
+/* Solves the Gaussian process (letters: gaussian.h) with one sparse factorisation of k^2 C + G, two solves for each sensor and one for each
+ * random sample. All else is dense algebra. */
 #include "preprocess/influence/gaussian.h"
 
 #include <cblas.h>
@@ -18,7 +18,8 @@
 #define BLOCK 32 /* number of right-hand sides per solve; fixed, so that random samples do not depend on the thread count */
 #define TILE 256 /* number of mesh points that one thread processes at a time */
 #define STRIP 64 /* number of vertices that one thread processes at a time */
-/* fixed-point scale of sums of squared errors (in squared deviations): integer sums do not depend on the order of addition */
+/* fixed-point scale of sums of squared errors, in units of the squared standard deviation; integer sums do not depend on the order of
+ * addition */
 #define FIXED 1e9
 #define FIXED_MAX 1e7
 
@@ -32,13 +33,14 @@ struct solving {
     cholmod_factor *factor;
     struct gaussian_bodies bodies;
     double *covariance;  /* [sensor][sensor]; unscaled */
-    double *root_mass_m; /* by row of the sparse system: square root of the point's area */
-    double *root_scale;  /* by component: square root of `scale` */
-    /* by component: factor from the variance that the sparse system gives to the stated one; 0: the component has no sensor */
+    double *root_mass_m; /* by row of the sparse system: square root of the area of its mesh point */
+    double *root_scale;  /* by connected component: square root of `scale` */
+    /* by connected component: factor from the variance in the sparse system to the variance that the plant file states; 0: the component
+     * has no sensor */
     double *scale;
     double *means;             /* by sensor: its weight in the estimated mean of its body */
-    double *levels;            /* by sensor: the smallest variance of a weighted mean of its body's readings (mean_variance()) */
-    float *at_points;          /* [mesh point][sensor]: kernels, later H */
+    double *levels;            /* by sensor: the smallest variance that a weighted mean of its body's readings can have (mean_variance()) */
+    float *at_points;          /* [mesh point][sensor]: covariances ("kernels"), later the weights H */
     float *taken;              /* by vertex: part of the prior variance that the sensors' readings remove */
     _Atomic uint64_t *squares; /* by vertex: sum of squared sample errors, fixed point */
     atomic_bool failed;
@@ -107,7 +109,8 @@ static uint32_t body_of_vertex(const struct solving *solving, size_t vertex)
 
 /* --- kernels ----------------------------------------------------------------------------------------------------------------- */
 
-/* Returns the constant part of a body's covariance. Subtracted from solutions first, because subtracting it later would cancel digits. */
+/* Returns the constant part of a body's prior covariance. Callers subtract it from each solution immediately: subtracting it from later
+ * results would lose digits to cancellation. */
 static double constant_of(const struct solving *solving, uint32_t body)
 {
     const double k2 = 8 / (solving->params.range_m * solving->params.range_m);
@@ -123,8 +126,8 @@ static void take_covariance(const struct solving *solving, size_t sensor, const 
         solving->covariance[sensor * count + other] = solving->bodies.of_sensor[other] == body ? on_disc(solving, other, u) - constant : 0;
 }
 
-/* Converts solutions u (one column per sensor) to kernels at all mesh points, for `width` sensors from `first` on. Subtracts the constant
- * part. */
+/* Converts solutions u, one column for each of the `width` sensors from index `first` on, to kernels: covariances between each mesh point
+ * and the sensor's reading. Subtracts the constant part. */
 static void take_kernels(const struct solving *solving, size_t first, size_t width, const double *u)
 {
     const size_t count = solving->mesh->source_count, rows = solving->laplacian.row_count;
@@ -176,15 +179,15 @@ static void over(struct workers *workers, size_t count, size_t grain, void (*bod
         body(arg, 0, count);
 }
 
-/* --- influence H at mesh points, from covariance kernels ----------------------------------------------------------------------- */
+/* --- influence H (weights of sensors) at mesh points, from kernels --------------------------------------------------------------- */
 
 static double variance_of(const struct solving *solving, size_t sensor)
 {
     return solving->params.deviation * solving->params.deviation * solving->scale[solving->bodies.of_sensor[sensor]];
 }
 
-/* Returns S m of a sensor (S: covariance of the readings, m: mean weights): the smallest variance of a weighted mean of the readings of its
- * body. Equal for all sensors of a body. */
+/* Returns the smallest variance of a weighted mean of the readings of this sensor's body. That is the sensor's element of the product S m
+ * (S: covariance of the readings, m: weights of the mean), which is equal for all sensors of a body. */
 static double mean_variance(const struct solving *solving, size_t sensor)
 {
     const size_t n = solving->influence->count;
@@ -195,7 +198,8 @@ static double mean_variance(const struct solving *solving, size_t sensor)
     return sum;
 }
 
-/* Replaces kernels k (covariances with the readings) by the influence H = P k + mean weights, for tiles [begin, end) of mesh points. */
+/* Replaces the kernels k (covariances of mesh points with readings) by the influence H = P k + m (P: precision matrix, m: weights of the
+ * estimated mean), for mesh points [begin * TILE, end * TILE). */
 static void weigh_tiles(void *arg, size_t begin, size_t end)
 {
     struct solving *solving = arg;
@@ -227,7 +231,7 @@ static void add_bends(void *arg, size_t begin, size_t end)
         influence_bend_add(solving->bend, solving->at_points + first, n, end - first < BEND_WIDTH ? end - first : BEND_WIDTH);
 }
 
-/* --- influence and standard deviation at vertices, from mesh points ------------------------------------------------------------ */
+/* --- influence H and standard deviation at vertices, from those at mesh points --------------------------------------------------- */
 
 static void at_vertex(const struct solving *solving, size_t vertex, float *out)
 {
@@ -247,7 +251,7 @@ static void turn_to_shares(const struct solving *solving, size_t first, size_t w
             solving->influence->shares[i * vertices + first + v] = strip[v * n + i];
 }
 
-/* Writes the kernels at the vertices of strips [begin, end) to `shares`, which later receives H. */
+/* Writes the kernels at vertices [begin * STRIP, end * STRIP) to `shares`, where weigh_strips() replaces them by H. */
 static void keep_kernels(void *arg, size_t begin, size_t end)
 {
     struct solving *solving = arg;
@@ -262,7 +266,8 @@ static void keep_kernels(void *arg, size_t begin, size_t end)
     mem_free(strip_h);
 }
 
-/* Replaces the kernels of vertex strips [begin, end) by H and computes the variance removed by the sensors: k' P k + 2 m' k - m' S m. */
+/* Replaces the kernels k at vertices [begin * STRIP, end * STRIP) by H, and computes the variance removed by the sensors: k' P k + 2 m' k -
+ * m' S m (P: precision matrix, m: weights of the estimated mean, S: covariance of the readings). */
 static void weigh_strips(void *arg, size_t begin, size_t end)
 {
     struct solving *solving = arg;
@@ -304,8 +309,8 @@ static bool find_precision(struct solving *solving)
 
 /* --- standard error ---------------------------------------------------------------------------------------------------------- */
 
-/* SplitMix64 (Steele, Lea & Flood, 2014), used as a source of random signs. Random signs in place of normal numbers give the same variance,
- * with an estimation error no larger (Hutchinson, 1990). */
+/* SplitMix64 (Steele, Lea & Flood, 2014), used as a source of random signs, of which the samples of the prior are made. Random signs in
+ * place of normal numbers give the same variance, with an estimation error no larger (Hutchinson, 1990). */
 struct signs {
     uint64_t state, bits;
     int left;
@@ -326,8 +331,9 @@ static double next_sign(struct signs *signs)
     return sign;
 }
 
-/* Computes the negative readings of all sensors for a field u drawn from the prior (in units of the deviation). A constant per body is
- * irrelevant, so the value at the body's first sensor is subtracted, which avoids cancellation later; levels[component] receives it. */
+/* Computes the readings that all sensors would have in a field u drawn from the prior, in units of the standard deviation, and negates
+ * them, because they serve to subtract the prediction from the field. First subtracts the value at the body's first sensor, which
+ * levels[component] receives: a constant per body does not change the error, and would cost digits. */
 static void take_readings(const struct solving *solving, const double *u, struct signs *signs, double *levels, float *readings)
 {
     const size_t n = solving->mesh->source_count;
@@ -369,7 +375,7 @@ static bool take_samples(const struct solving *solving, struct gaussian_samples 
     return u != NULL;
 }
 
-/* Adds the squared errors of the samples at each vertex. */
+/* Adds the squared errors of the samples to the sums at each vertex. */
 static void add_squares(const struct solving *solving, const float *missed)
 {
     for (size_t v = 0; v < solving->influence->vertex_count; v++) {
@@ -384,7 +390,7 @@ static void add_squares(const struct solving *solving, const float *missed)
     }
 }
 
-/* Processes the blocks [begin, end) of BLOCK random samples each. */
+/* Processes the blocks with indices [begin, end), each of BLOCK random samples. */
 static void sample_blocks(void *arg, size_t begin, size_t end)
 {
     struct solving *solving = arg;

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Gaussian process regression on a surface with a Matern kernel of smoothness 1, by finite elements (Lindgren, Rue & Lindstroem, An
  * explicit link between Gaussian fields and Gaussian Markov random fields, 2011; alpha = 2). The precision matrix of the prior is Q = t^2
- * (k^2 C + G) C^-1 (k^2 C + G), with lumped areas C, stiffness G and k = sqrt(8) / range: at a distance of one range the correlation is
- * about 0.14. Each connected body has an independent field around a mean of its own, which is unknown and estimated by generalised least
- * squares. The prior therefore excludes the constant part of the field, and t is chosen so that the remainder has the stated deviation, as
- * a root mean square over the body's sensors. A reading is the mean over the sensor's disc plus noise. The most probable field is H v for
- * readings v; the rows of H sum to 1 on bodies with a sensor. With the precision matrix P of the readings' contrasts, lost sensors L get
- * the values that solve (P v)_L = 0; the other sensors predict v_i - (P v)_i / P_ii for sensor i, with standard error 1 / sqrt(P_ii).
- * Losing the sensors L increases the variance by H_L (P_LL)^-1 H_L'. */
+ * (k^2 C + G) C^-1 (k^2 C + G). C: diagonal matrix of areas; G: stiffness matrix; t: scale; k = sqrt(8) / range: at a distance of one range
+ * the correlation is about 0.14. Each connected body has an independent field around a mean of its own, which is unknown and estimated by
+ * generalised least squares. The prior therefore excludes the constant part of the field, and t is chosen so that the remainder has the
+ * stated deviation, as a root mean square over the body's sensors. A reading is the mean over the sensor's disc plus noise. The most
+ * probable field is H v for readings v; the rows of H sum to 1 on bodies with a sensor. With the precision matrix P of the readings'
+ * contrasts, lost sensors L get the values that solve (P v)_L = 0; the other sensors predict v_i - (P v)_i / P_ii for sensor i, with
+ * standard error 1 / sqrt(P_ii). Losing the sensors L increases the variance by H_L (P_LL)^-1 H_L' (H_L: columns of H for L). */
 #ifndef PREPROCESS_INFLUENCE_GAUSSIAN_H
 #define PREPROCESS_INFLUENCE_GAUSSIAN_H
 #include "preprocess/influence/influence.h"
@@ -21,10 +21,10 @@ struct gaussian_params {
     double range_m, noise, deviation; /* range in metres; noise and deviation (standard deviations) in the unit of the readings */
 };
 
-/* Computes H, P and the standard deviation at each vertex, the latter from random samples with a fixed seed. anchors: positions on the mesh
- * of the vertex_count vertices. bend: receives the weights of all sensors at mesh points, to measure the interpolation error inside drawn
- * triangles; may be NULL. workers may be NULL. Returns false after logging if out of memory or if the system is singular. Call
- * influence_finish() in both cases. */
+/* Computes H, P and the standard deviation at each vertex, the latter from random samples with a fixed seed. anchors: for each of the
+ * vertex_count vertices, its position on the mesh. bend: receives the weights of all sensors at mesh points, to measure the interpolation
+ * error inside drawn triangles; may be NULL. workers may be NULL. Returns false after logging if out of memory or if the system is
+ * singular. Call influence_finish() in both cases. */
 bool gaussian_solve(struct influence *influence, struct log *log, struct workers *workers, const struct influence_mesh *mesh,
                     const struct gaussian_params *params, const struct influence_anchor *anchors, size_t vertex_count,
                     struct influence_bend *bend);

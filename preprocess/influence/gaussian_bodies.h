@@ -16,8 +16,8 @@ void gaussian_bodies_init(struct gaussian_bodies *bodies, const struct influence
 /* Frees the arrays. */
 void gaussian_bodies_finish(struct gaussian_bodies *bodies);
 
-/* Returns the covariance that the constant part of the field adds between any two points of a body, for k^2 = 1. It is subtracted, since
- * the estimated mean covers it. */
+/* Returns the covariance that the constant part of the field adds between any two points of a body, for k^2 = 1 (k: gaussian.h). Callers
+ * subtract it, because the mean of each body is estimated separately. */
 static inline double gaussian_bodies_constant(const struct gaussian_bodies *bodies, uint32_t component)
 {
     return bodies->area_m2[component] > 0 ? 1 / bodies->area_m2[component] : 0;

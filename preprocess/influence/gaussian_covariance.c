@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes the derivative with respect to k^2 as a central difference, from values one STEP below and above log k^2. */
+/* Computes the derivative with respect to k^2 as a central difference, from values at log k^2 - STEP and log k^2 + STEP. */
 #include "preprocess/influence/gaussian_covariance.h"
 
 #include <math.h>
@@ -14,7 +14,7 @@
 
 /* --- preparation that does not depend on the range ----------------------------------------------------------------------------- */
 
-/* Lists for each mesh point the sensors that touch it, sorted. */
+/* Lists for each mesh point the sensors whose disc contains it, sorted. */
 static void list_sensors(const struct influence_mesh *mesh, const struct laplacian *laplacian, size_t *first, uint32_t *sensors,
                          double *shares)
 {
@@ -35,7 +35,8 @@ static void list_sensors(const struct influence_mesh *mesh, const struct laplaci
     mem_free(at);
 }
 
-/* Returns an upper bound of k^2 |D' A^-1 D|, which is at most |D' C^-1 D|, computed from the weights of sensors that share a point. */
+/* Returns an upper bound of the norm k^2 |D' A^-1 D| (letters: gaussian_covariance.h): |D' C^-1 D|, estimated from the weights of sensors
+ * that share a mesh point. */
 static double find_bound(size_t rows, const size_t *first, const uint32_t *sensors, const double *shares, const double *mass_m2,
                          size_t count)
 {
@@ -53,7 +54,8 @@ static double find_bound(size_t rows, const size_t *first, const uint32_t *senso
     return bound;
 }
 
-/* Builds the bordered matrix: G, the sensors' rows D' below it, and the sensors' columns, of which only the diagonal is stored. */
+/* Builds the bordered matrix: G, below it one row of D' per sensor, and one column per sensor, of which only the diagonal element is stored
+ * (letters: gaussian_covariance.h). */
 static cholmod_sparse *add_border(const cholmod_sparse *inner, size_t count, const size_t *first, const uint32_t *sensors,
                                   const double *shares, cholmod_common *common)
 {
@@ -85,7 +87,7 @@ static cholmod_sparse *add_border(const cholmod_sparse *inner, size_t count, con
     return matrix;
 }
 
-/* Computes a fill-reducing elimination order of the points, with the sensors last. */
+/* Computes an elimination order of the matrix rows that keeps the factor sparse: mesh points first, sensors last. */
 static cholmod_factor *analyze(cholmod_sparse *inner, cholmod_sparse *bordered, cholmod_common *common)
 {
     cholmod_factor *points = cholmod_analyze(inner, common);
@@ -164,8 +166,9 @@ void gaussian_covariance_finish(struct gaussian_covariance *covariance)
 struct slope {
     const struct gaussian_covariance *covariance;
     double k2[2];
-    double *between[2]; /* [sensor][sensor], lower triangle: D' A^-1 D minus its constant part, for the lower and the upper k2 */
-    atomic_int status;  /* first CHOLMOD status other than CHOLMOD_OK */
+    /* [sensor][sensor], lower triangle: D' A^-1 D minus its constant part, for the lower and the upper k2 of the central difference */
+    double *between[2];
+    atomic_int status; /* first status other than CHOLMOD_OK that any thread got */
 };
 
 static size_t sensor_of(const struct gaussian_covariance *covariance, const cholmod_factor *factor, int row)
@@ -204,7 +207,7 @@ static void fill_diagonal(const struct gaussian_covariance *covariance, double k
             values[first[c]] = border;
 }
 
-/* Computes D' A^-1 D = border - F F', where F is the sensors' block of the factor. */
+/* Computes D' A^-1 D = border - F F', where `border` is the border's diagonal and F the sensors' block of the factor. */
 static void find_side(const struct gaussian_covariance *covariance, double k2, double *between, cholmod_common *common)
 {
     const size_t count = covariance->count;

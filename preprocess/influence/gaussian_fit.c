@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Searches a grid of ranges with a subset of the sensors, then refines the best range by parabolas with all sensors. For each range,
- * searches a grid of noise shares and a finer one around the best. The deviation follows from range and noise. */
+ * searches a grid of noise shares (noise / deviation) and a finer grid around the best. The deviation follows from range and noise. */
 #include "preprocess/influence/gaussian_fit.h"
 
 #include <math.h>
@@ -17,7 +17,7 @@
 #define RANGES 9  /* number of ranges in the search grid, evenly spaced in logarithms */
 #define FEW 96    /* maximum number of sensors in the grid search */
 #define CLOSER 3  /* number of parabola steps */
-#define SHARES 13 /* number of noise shares in the search grid, from GAUSSIAN_LEAST_NOISE to MAX_SHARE of the deviation */
+#define SHARES 13 /* number of noise shares (noise / deviation) in the search grid, from GAUSSIAN_LEAST_NOISE to MAX_SHARE */
 #define MAX_SHARE 3.0
 #define SAME 0.02      /* ranges whose logarithms differ by less than this count as equal, because readings cannot distinguish them */
 #define MIN_INSTANTS 8 /* minimum number of instants (lines of readings); fewer cannot determine three parameters */
@@ -137,7 +137,8 @@ static size_t count_bodies(const uint32_t *body, size_t count)
     return bodies;
 }
 
-/* Evaluates the likelihood for the covariance s^2 (K + share^2 1), with s as stated or the best value, and keeps the best parameters. */
+/* Evaluates the likelihood for the covariance s^2 (K + share^2 I), and keeps the best parameters. K: covariance for deviation 1 and no
+ * noise; s: deviation, as stated in the plant file or else the most likely value; I: identity matrix. */
 static void try_share(struct gaussian_fit *fit, double range_m, double share, double deviation)
 {
     const size_t n = fit->table->count;
@@ -264,7 +265,7 @@ static bool look_around(const struct gaussian_params *stated, struct log *log, s
     return good;
 }
 
-/* Returns the maximum of the parabola through three points, or NAN if it is not between them. */
+/* Returns the x coordinate of the maximum of the parabola through three points, or NAN if it is not between them. */
 static double summit(const struct range_trial at[3])
 {
     double a = at[1].log_range - at[0].log_range, b = at[1].log_range - at[2].log_range;
@@ -273,7 +274,8 @@ static double summit(const struct range_trial at[3])
     return over != 0 && isfinite(up / over) ? at[1].log_range - up / over / 2 : NAN;
 }
 
-/* Refines the best range: three ranges one step apart, then with smaller steps around the parabola's maximum. */
+/* Refines the best range: evaluates three ranges one step apart, then three with a smaller step around the maximum of their parabola, and
+ * so on. */
 static bool close_in(struct gaussian_fit *fit, double start, double step, double first, double last)
 {
     struct range_trial at[3];

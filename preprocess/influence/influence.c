@@ -14,7 +14,7 @@
 /* contact conductance between a disc and the surface, relative to the surface's conductance; at this value, the field deviates from a
  * reading by about 1e-5 of the difference between neighbouring readings */
 #define CONTACT 1e5
-/* share of a body's area added to the diagonal, of the matrix, so that rounding does not make the matrix singular */
+/* share of a body's area that is added to the diagonal of the matrix, so that rounding does not make the matrix singular */
 #define REGULARISATION 1e-9
 /* minimum number of right-hand sides per solve; with more per solve, the sparse factor is read from memory less often */
 #define MIN_BLOCK 8
@@ -32,7 +32,7 @@ struct conduct {
     atomic_bool failed;
 };
 
-/* Returns the diagonal of the system: heat loss of the wall plus contacts. */
+/* Returns the diagonal of the system: heat loss of the wall, plus the conductance of the contacts with the sensors' discs. */
 static double *diagonal_of(const struct conduct *conduct, double decay_m)
 {
     const struct laplacian *laplacian = &conduct->laplacian;

@@ -4,7 +4,8 @@
  * of a thin wall obeys -div(k t grad T) + h (T - T_ref) = 0. With u = T - T_ref and the decay length d = sqrt(k t / h) this is -lap u + u /
  * d^2 = 0; harmonic means d = infinity. Each sensor is a disc at the temperature of its reading, tied to the points it covers by a contact
  * that conducts CONTACT times as well as the surface, so that two sensors at one position share it. The solution minimises E = u' (L + M /
- * d^2) u / 2 + CONTACT / 2 sum_i sum_p s_ip (u_p - v_i)^2. It is linear, u = H v, and the precision matrix P = d^2 E / dv dv is the
+ * d^2) u / 2 + CONTACT / 2 sum_i sum_p s_ip (u_p - v_i)^2. L: stiffness matrix; M: areas of the mesh points; s_ip: share of point p in the
+ * disc of sensor i; v_i: reading of sensor i. The solution is linear, u = H v, and the precision matrix P = d^2 E / dv dv is the
  * conductance between the discs. A lost sensor is a disc without flux: (P v)_L = 0 gives its value v_L, and u follows with the same H. */
 #ifndef PREPROCESS_INFLUENCE_INFLUENCE_H
 #define PREPROCESS_INFLUENCE_INFLUENCE_H
@@ -23,9 +24,9 @@ struct influence {
     float *errors; /* by vertex: largest error of linear interpolation in drawn triangles (influence_bend_measure()); NULL: not requested */
 };
 
-/* Computes the influence by conduction. decay_m: decay length, INFINITY for harmonic. anchors: positions on the mesh of the vertex_count
- * vertices. bend: receives the weights of all sensors at mesh points, to measure the interpolation error inside drawn triangles; may be
- * NULL. workers may be NULL. Returns false after logging if out of memory. Call influence_finish() in both cases. */
+/* Computes the influence by conduction. decay_m: decay length, INFINITY for harmonic. anchors: for each of the vertex_count vertices, its
+ * position on the mesh. bend: receives the weights of all sensors at mesh points, to measure the interpolation error inside drawn
+ * triangles; may be NULL. workers may be NULL. Returns false after logging if out of memory. Call influence_finish() in both cases. */
 bool influence_conduct(struct influence *influence, struct log *log, struct workers *workers, const struct influence_mesh *mesh,
                        double decay_m, const struct influence_anchor *anchors, size_t vertex_count, struct influence_bend *bend);
 /* Frees the arrays of a computed or zeroed struct. */

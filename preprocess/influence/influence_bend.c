@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Clips the mesh triangles against each drawn triangle in the drawn triangle's plane. A first pass takes the mesh triangles lying in that
- * plane, further passes those near it, for the area that is still uncovered. */
+/* Clips the triangles of the solved mesh against each drawn triangle, in the drawn triangle's plane. The first pass takes mesh triangles
+ * lying in that plane. Further passes take mesh triangles near the plane, for the area that is still uncovered. */
 #include "preprocess/influence/influence_bend.h"
 
 #include <math.h>
@@ -19,7 +19,8 @@
 #define COVERED 1e-3
 #define SAME 1e-7 /* places (corners of overlaps) closer than this share of a triangle's size count as equal */
 #define LEAST_FACING 0.5
-/* number of recent places that a new one is compared with: duplicates come from mesh triangles visited shortly after each other */
+/* number of recent places that a new place is compared with to find duplicates, which come from mesh triangles visited shortly after each
+ * other */
 enum { LOOK_BACK = 64 };
 
 struct finding {
@@ -67,8 +68,8 @@ static void weights_in(const double corners[3][2], const double at[2], float wei
         weights[i] = (float)(w[i] / sum);
 }
 
-/* Normalises an anchor: points with zero weight are replaced by a point with weight, so that a position on an edge or corner has the same
- * anchor from all sides. */
+/* Normalises an anchor: replaces points of zero weight by the point of largest weight. So a position on an edge or corner gets the same
+ * anchor from each of the triangles there. */
 static void tidy(struct influence_anchor *anchor)
 {
     int heaviest = 0;
@@ -97,8 +98,8 @@ static bool is_single(const struct influence_anchor *anchor)
     return anchor->points[0] == anchor->points[1] && anchor->points[0] == anchor->points[2];
 }
 
-/* Returns whether the place is at a corner of the drawn triangle whose value is that of the same mesh point, so that the difference there
- * is 0. */
+/* Returns whether the place is a corner of the drawn triangle, and the drawn value at this corner is the value of the mesh point there.
+ * Then the difference at the place is 0. */
 static bool is_corner(const struct finding *finding, const struct bend_place *place)
 {
     const struct bend_drawn *drawn = &finding->bend->drawn;
@@ -151,7 +152,7 @@ static void add_place(struct finding *finding, const double at[2], const double 
 /* --- passes -------------------------------------------------------------------------------------------------------------------- */
 
 /* Processes a mesh triangle whose box is near the drawn triangle: removes the area that it covers from finding->cut. If the triangle
- * belongs to the solved mesh and overlaps finding->left, adds the corners of the overlap as places. */
+ * belongs to the solved mesh (not to the hidden triangles) and overlaps finding->left, adds the corners of the overlap as places. */
 static void visit(void *arg, uint32_t tri)
 {
     struct finding *finding = arg;
@@ -161,7 +162,7 @@ static void visit(void *arg, uint32_t tri)
     double piece[3][2], normal[3], off_m;
     vec_normal(at[points[0]], at[points[1]], at[points[2]], normal);
     double facing = vec_dot(normal, finding->axes[2]), least = LEAST_FACING * vec_length(normal);
-    /* a solved triangle must face the same way; one that hides the drawn triangle may face either way */
+    /* triangles of the solved mesh must face the same way as the drawn triangle; hidden triangles may face either way */
     if (finding->full || !((solved ? facing : fabs(facing)) > least))
         return;
     uint32_t order[3] = { points[0], points[facing > 0 ? 1 : 2], points[facing > 0 ? 2 : 1] };
@@ -276,7 +277,8 @@ static void find_places(struct finding *finding)
 enum { SAMPLES = 7 };
 static const double samples[SAMPLES][3] = { { 2, 1, 0 }, { 1, 2, 0 }, { 0, 2, 1 }, { 0, 1, 2 }, { 1, 0, 2 }, { 2, 0, 1 }, { 1, 1, 1 } };
 
-/* Adds the samples of a coarse level's triangle as places. Counts of samples take the role of areas. */
+/* Adds the samples of a triangle of a coarse level as places. The counts of samples replace the areas that are recorded in the finest
+ * level. */
 static void sample_triangle(struct finding *finding, const struct influence_mesh *mesh, const struct surface *surface, size_t tri,
                             double within_m)
 {

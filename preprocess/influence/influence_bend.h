@@ -19,14 +19,14 @@ struct bend_place {
 
 struct bend_level { /* one level of detail */
     size_t triangle_count;
-    double error_m; /* distance of the level's triangles from the surface, metres */
+    double error_m; /* largest distance in metres of the level's triangles from the surface */
 };
 
 struct bend_drawn { /* the drawn triangles */
     const float (*positions_m)[3];
     const uint32_t *triangles; /* indices of the drawn triangles, 3 each, level by level, finest first */
     size_t vertex_count, triangle_count;
-    const struct influence_anchor *anchors; /* position on the mesh of each vertex */
+    const struct influence_anchor *anchors; /* by vertex: its position on the mesh */
     /* All overlap corners are found for the finest level. Triangles of coarser levels do not lie on the surface: the bend is measured at a
      * few points of each. */
     const struct bend_level *levels;
@@ -42,7 +42,7 @@ struct influence_bend {
     double *area_m2, *hidden_m2, *unknown_m2;
     /* by place: sums over sensors of the positive and of the negative errors of their weights, in fixed point */
     _Atomic int64_t *plus, *minus;
-    struct mesh_error *mesh_error; /* sums for the discretisation error of the solution */
+    struct mesh_error *mesh_error; /* sums from which the discretisation error of the finite-element solution is computed (mesh_error.h) */
     size_t point_count;            /* number of points of the mesh */
 };
 
@@ -61,10 +61,11 @@ struct bend_report { /* all zero: no bend was measured */
     /* measured: count of (group, interpolation) pairs whose bend was measured; unmeasured: count of pairs with too many places to
      * measure */
     size_t measured, unmeasured;
-    double steps;         /* bound of the deviation from linear interpolation, in steps of (MAX - MIN) / 255, for any good readings */
-    double over_share;    /* share of the area covered by triangles in which the bend may exceed one step */
-    double hidden_share;  /* share of the area inside or against another part, where nothing is solved */
-    double unknown_share; /* share of the area that is not on the solved surface; `steps` and `over_share` exclude it and the hidden area */
+    double steps;        /* bound of the deviation from linear interpolation, in steps of (MAX - MIN) / 255, for any good readings */
+    double over_share;   /* share of the area covered by triangles in which the bend may exceed one step */
+    double hidden_share; /* share of the area inside or against another part, where nothing is solved */
+    /* share of the area that is not on the solved surface; this area and the hidden area are excluded from `steps` and `over_share` */
+    double unknown_share;
 };
 /* Computes the error of one interpolation after the shares of all sensors were added, and resets the sums for the next one. Merges the
  * finest level's result into the report, which keeps the maximum of each number. steps (may be NULL): receives the bend of each drawn

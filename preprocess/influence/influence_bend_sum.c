@@ -10,11 +10,12 @@
 #include "preprocess/influence/influence_bend.h"
 
 #define STEPS 255.0
-#define FIXED 0x1p40 /* fixed-point scale of a weight: integer sums do not depend on the order of addition */
+#define FIXED 0x1p40 /* fixed-point scale of weights: integer sums do not depend on the order of addition */
 
 typedef float shares_of[BEND_WIDTH];
 
-/* Interpolates the weights of `width` sensors at an anchor. The remaining elements of the BEND_WIDTH results are set to 0. */
+/* Interpolates the weights of `width` sensors at an anchor (a position on the mesh). Sets the remaining elements of the BEND_WIDTH results
+ * to 0. */
 SIMD_BODY void gather(const struct influence_anchor *anchor, const float *at_points, size_t stride, size_t width, shares_of out)
 {
     const float *a = at_points + anchor->points[0] * stride, *b = at_points + anchor->points[1] * stride;
@@ -59,7 +60,8 @@ void influence_bend_add(struct influence_bend *bend, const float *at_points, siz
 }
 
 /* Returns the largest error for any readings, in colour steps. The worst readings are MAX for all sensors whose weight error is positive
- * and MIN for the others, or vice versa. */
+ * and MIN for the others, or vice versa. plus, minus: sums of the positive and of the negative weight errors. around: see
+ * influence_bend_measure(). */
 static double worst_of(double plus, double minus, double around)
 {
     double level = around * (plus + minus);

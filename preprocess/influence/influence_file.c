@@ -39,8 +39,8 @@ struct influence_making {
     size_t capacity, found_capacity;
 };
 
-/* Lists the sensors of a group that have a position. Returns their number; *places_m receives the positions, which the caller frees
- * (mem_free). */
+/* Lists the sensors of a group that have a position. Returns the number of these sensors; *places_m receives their positions, which the
+ * caller frees (mem_free). */
 static size_t places_of(const struct influence_input *input, int group, double (**places_m)[3])
 {
     size_t count = 0;
@@ -116,7 +116,7 @@ static bool find_params(struct influence_making *making, int group, const double
     return good;
 }
 
-/* Returns whether the mesh has MIN_EDGES edges per range; otherwise logs an error. */
+/* Returns whether the mesh has at least MIN_EDGES edges along one correlation range; otherwise logs an error. */
 static bool range_good(const struct influence_making *making, int group, const struct influence_mesh *mesh,
                        const struct gaussian_params *gp)
 {
@@ -147,7 +147,7 @@ static bool bound_errors(const struct influence_making *making, const struct pla
                          struct influence_bend *bend, struct influence *found)
 {
     double around = interpolation == INTERPOLATION_FIN ? (group->ambient - group->min) / (group->max - group->min) : 0;
-    /* one element more, because the array is padded to 8 bytes in the file */
+    /* one extra element, because the file pads the array to a multiple of 8 bytes */
     found->errors = mem_try_array(making->input->vertex_count + 1, sizeof(*found->errors));
     if (!found->errors)
         return false;

@@ -15,7 +15,9 @@ struct cloud_report {
     size_t points;
     int k;
     double spacing_m, mean, worst;
-    size_t reached, unreached; /* vertices reached only by the point cloud (through thin walls); vertices reached only by our distances */
+    /* reached: number of vertices that only the point cloud reaches, through thin walls; unreached: number of vertices that only our
+     * distances reach */
+    size_t reached, unreached;
 };
 enum { CLOUD_CHECKED = 4 };
 
@@ -37,11 +39,12 @@ struct influence_input {
     struct bend_report *bend;   /* filled in if a group requests harmonic, fin or gp */
 };
 
-/* Returns whether a group of these sensors requests any prepared interpolation other than distances. */
+/* Returns whether a group with at least one of these sensors requests an interpolation that is prepared in the influence file, other than
+ * distances. */
 bool influence_is_wanted(const struct plant *plant, const struct plant_sensor *sensors, size_t sensor_count);
 /* Computes the interpolations that the groups request and writes the file. Returns false with the reason in why. */
 bool influence_file_make(struct log *log, struct workers *workers, const struct influence_input *input, char why[200]);
-/* Returns whether the influence file exists and is complete. */
+/* Returns whether the influence file of the asset with this key exists and is complete. */
 bool influence_file_good(const char *folder, uint64_t key);
 
 #endif

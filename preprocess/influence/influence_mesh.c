@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Halves edges near sensors until the edges are short enough, and finds the points covered by each sensor's disc. */
+/* Computes the interpolations that the groups request and writes the influence file. Returns false with the reason in why. */
 #include "preprocess/influence/influence_mesh.h"
 
 #include <math.h>
@@ -10,7 +10,8 @@
 
 /* an edge at distance D from the nearest sensor may be GRADING * D long, or half the disc's radius if that is longer */
 #define GRADING 0.7
-/* maximum number of points added per sensor; if the disc's radius is far smaller than the triangles, edges there stay too long */
+/* maximum number of points added per sensor; if the disc's radius is so small that more would be needed, edges stay longer than GRADING
+ * allows */
 #define MAX_ADDED 1000
 #define MAX_ADDED_EVENLY 400000 /* maximum number of points added to make edges short everywhere (edge_m below INFINITY) */
 
@@ -26,7 +27,8 @@ static double nearest_m(const struct influence_mesh *mesh, const double point[3]
 
 struct halving {
     struct influence_mesh *of;
-    double radius_m, edge_m, *near_m; /* near_m: distance of each point to the nearest sensor */
+    /* radius_m: of a sensor's disc; edge_m: maximum edge length everywhere; near_m: by point, distance to the nearest sensor */
+    double radius_m, edge_m, *near_m;
     size_t near_capacity, limit;
     struct edge_table edges; /* edges to split */
     uint32_t *middle;        /* by edge: index of the point at its middle */
@@ -79,7 +81,7 @@ static void cut_triangle(struct halving *halving, size_t t)
     }
     if (cut == 0)
         return;
-    for (int i = 0; i < 3; i++) /* rotate the corners so that the edge that differs from the other two comes first */
+    for (int i = 0; i < 3; i++) /* rotate the corners so that the one split edge of three, or the one unsplit edge, comes first */
         if ((m[i] != TRIMESH_NONE) == (cut == 1))
             at = i;
     const uint32_t a = p[at], b = p[(at + 1) % 3], c = p[(at + 2) % 3];
@@ -166,7 +168,8 @@ static void barycentric(const struct trimesh *mesh, const uint32_t corners[3], c
     weights[0] = 1 - weights[1] - weights[2];
 }
 
-/* Returns the piece of a visible triangle that contains the point, or is nearest to it. weights: barycentric, not negative. */
+/* Returns the mesh triangle ("piece") of surface triangle `tri` that contains the point or is nearest to it. weights: barycentric, not
+ * negative. */
 static uint32_t piece_of(const struct influence_mesh *mesh, uint32_t tri, const double point[3], double weights[3])
 {
     double best = -INFINITY, sum = 0;
@@ -190,8 +193,8 @@ static uint32_t piece_of(const struct influence_mesh *mesh, uint32_t tri, const 
 
 /* --- discs ------------------------------------------------------------------------------------------------------------------- */
 
-/* Collects the points of a sensor's disc. Walks along the surface from the nearest corner, so that the other side of a thin wall is not
- * touched. */
+/* Collects the mesh points of a sensor's disc by a search along the surface from the nearest corner, so that the other side of a thin wall
+ * stays out. */
 static void spread_disc(struct influence_mesh *mesh, size_t sensor, double radius_m, char *seen)
 {
     const struct trimesh *from = &mesh->mesh;

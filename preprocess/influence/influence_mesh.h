@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The finite-element mesh for sensors: the sampled surface, refined around each sensor so that a disc of the sensor's size contains some
- * mesh points. Thread: one; a const mesh can be read from any. */
+/* The finite-element mesh on which sensors' weights are solved: the triangles of the surface, refined around each sensor so that a disc of
+ * the sensor's size contains some mesh points. Thread: one; a const mesh can be read from any. */
 #ifndef PREPROCESS_INFLUENCE_INFLUENCE_MESH_H
 #define PREPROCESS_INFLUENCE_INFLUENCE_MESH_H
 #include "surface/geodesic/intrinsic.h"
@@ -35,14 +35,14 @@ bool influence_mesh_init(struct influence_mesh *mesh, const struct surface *surf
 /* Frees the mesh. */
 void influence_mesh_finish(struct influence_mesh *mesh);
 
-/* The position of an asset file's vertex on the mesh: its value is the weighted sum of the values at three mesh points. */
+/* Position of an asset file's vertex on the mesh. The value at the vertex is the weighted sum of the values at three mesh points. */
 struct influence_anchor {
     uint32_t points[3];
     float weights[3];
 };
 /* Writes the anchor of a position on the surface. */
 void influence_mesh_anchor(const struct influence_mesh *mesh, const struct surface_point *place, struct influence_anchor *out);
-/* Writes the anchors of `count` vertices of an embedding into the same surface. */
+/* Writes the anchors of `count` vertices. embedding: positions of the vertices on the surface that the mesh was made from. */
 void influence_mesh_anchors(const struct influence_mesh *mesh, const struct vertex_embedding *embedding, size_t count,
                             struct influence_anchor *out);
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Expresses the flux imbalance at each edge as a linear form of the field's values at mesh points, and sums the imbalance over sensors. */
+/* Computes the flux imbalance at each edge from the field's values at mesh points, in which it is linear, and sums the imbalance over
+ * sensors. */
 #include "preprocess/influence/mesh_error.h"
 
 #include <math.h>
@@ -12,11 +13,11 @@
 #define SAFETY 2.0   /* safety factor 2, because the values at mesh points have an error about as large as the error between points */
 #define FIXED 0x1p40 /* fixed-point scale of an imbalance: integer sums do not depend on the order of addition */
 
-/* Flux imbalance of an edge times the height of its lowest triangle. Equals the amount by which the field at that triangle's tip differs
- * from the linear field of the other triangles at the edge. */
+/* Linear form whose value is the flux imbalance of an edge times the height of its lowest triangle. That is how far the field at this
+ * triangle's tip (the corner opposite the edge) differs from a linear continuation of the other triangles at the edge. */
 struct edge_form {
     uint32_t first, count; /* range of the terms */
-    float low_m, sum_m;    /* heights of the triangles at the edge, measured from the edge: the smallest height, and their sum */
+    float low_m, sum_m;    /* heights above the edge of the triangles at it: the smallest height, and the sum of all heights */
 };
 struct edge_term {
     uint32_t point;
@@ -64,7 +65,7 @@ static void measure_heights(struct mesh_error *error)
     edge_table_finish(&table);
 }
 
-/* Marks edges whose two ends lie in the disc of the same sensor. */
+/* Returns an array by edge: 1 if both ends are in the disc of one sensor, else 0. The caller frees the array (mem_free). */
 static char *find_discs(const struct mesh_error *error)
 {
     const struct trimesh *mesh = &error->mesh->mesh;
@@ -97,7 +98,8 @@ static void add_term(struct mesh_error *error, struct edge_form *edge, uint32_t 
     error->terms[edge->first + edge->count++] = (struct edge_term){ point, (float)factor };
 }
 
-/* Reserves space for the terms of each edge's linear form: one per end of the edge, and one per tip of an adjacent triangle. */
+/* Reserves space for the terms of each edge's linear form: one for each end of the edge, and one for each adjacent triangle's corner
+ * opposite the edge. */
 static bool reserve_terms(struct mesh_error *error)
 {
     uint32_t *faces = mem_array(error->edge_count, sizeof(*faces)), next = 0;
@@ -199,8 +201,8 @@ void mesh_error_add(struct mesh_error *error, const float *at_points, size_t str
     }
 }
 
-/* Returns the discretisation error that one edge contributes to a triangle. It is at most the deviation at the tip of the edge's
- * lowest triangle (struct edge_form). */
+/* Returns the discretisation error in triangle `tri` that its edge i causes. At most the deviation at the tip of the edge's lowest triangle
+ * (struct edge_form). */
 static double across(const struct mesh_error *error, size_t tri, int i)
 {
     const struct edge_form *edge = &error->edges[error->edges_of[tri][i]];

@@ -22,7 +22,8 @@ double polygons_area(const struct polygons *polygons)
     return sum;
 }
 
-/* Writes the part of the polygon to the left of the line from a to b (side 1), or to the right of the line (side -1). */
+/* Writes the part of the polygon to the left of the line from a to b (side 1), or to its right (side -1). Returns false with an empty
+ * result if the part could have more than POLYGON_CORNERS corners. */
 static bool half_of(const struct polygon *polygon, const double a[2], const double b[2], double side, struct polygon *out)
 {
     out->count = 0;
@@ -75,7 +76,7 @@ void polygons_add_outside(struct polygons *polygons, const struct polygon *polyg
                half_of(&inside, triangle[i], triangle[(i + 1) % 3], 1, &next);
         inside = next;
     }
-    /* the overlap is at most least_m2: keep the polygon whole instead of splitting it */
+    /* keep the polygon whole instead of splitting it if the overlap has at most the area least_m2 */
     if (!good || !(polygon_area(&inside) > least_m2)) {
         polygons_add(polygons, polygon);
         return;

@@ -28,7 +28,8 @@ struct vector_heat {
     atomic_bool failed;
 };
 
-/* --- the surface ------------------------------------------------------------------------------------------------------------ */
+/* --- normals and path lengths on the surface
+ * ------------------------------------------------------------------------------------------------------------ */
 
 /* Computes point normals: area-weighted mean of the triangles around a point, or the largest triangle's normal where the normals cancel
  * out, as on a two-sided sheet. */
@@ -59,7 +60,7 @@ static void find_normals(struct vector_heat *transport)
     mem_free(spare);
 }
 
-/* Adjacency lists: the edges of triangles around each point. */
+/* Adjacency lists: for each point, the mesh edges that end at it. */
 struct ways {
     size_t *first; /* by point: start of its edges in `at`; one extra element at the end */
     struct transport_edge {
@@ -241,8 +242,8 @@ static bool factorize(struct vector_heat *transport, cholmod_common *common)
 
 /* --- one sensor ------------------------------------------------------------------------------------------------------------- */
 
-/* Sets the right-hand side: a tangent vector at the point nearest to the sensor, transported to all points that the sensor's disc
- * touches. */
+/* Sets the right-hand side for a sensor: a tangent vector at the mesh point nearest to the sensor, and its copies, rotated into the tangent
+ * planes of all other points in the sensor's disc. */
 static void start_from(const struct vector_heat *transport, size_t sensor, double *b)
 {
     const struct influence_disc *disc = &transport->mesh->discs[sensor];

@@ -10,7 +10,7 @@
 #include "protocol/asset_distance.h"
 #include "surface/mesh/trimesh.h"
 
-/* offset between the sensors' output lines, chosen so that they do not evict each other from the CPU cache */
+/* offset in numbers between the output lines of consecutive sensors, chosen so that the lines do not evict each other from the CPU cache */
 #define APART (ASSET_DISTANCE_BLOCK + 32)
 #define AHEAD 8  /* prefetch distance in vertices: the next vertex's row is probably not in the CPU cache */
 #define LINE 32u /* sensors processed at a time, so that their output lines fit the first-level cache */
@@ -47,7 +47,7 @@ static void fetch_row(const struct distance_rows *rows, size_t vertex, size_t be
         __builtin_prefetch(row + at);
 }
 
-/* Computes the codes of one block of vertices. */
+/* Converts the distances of one block of vertices to 16-bit codes (protocol/asset_distance.h), sensor by sensor. */
 static void turn_block(const struct distance_rows *rows, size_t first, size_t count, uint16_t *codes)
 {
     uint16_t line[LINE * APART];

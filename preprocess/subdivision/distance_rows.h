@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Distances computed during subdivision, stored as one row of sensors per position, and written to the asset file in its format: blocks of
- * vertices, sensor by sensor. */
+/* Distances computed during subdivision, stored as one row per position with one distance per sensor, and written to the asset file in its
+ * format: blocks of vertices, sensor by sensor. */
 #ifndef PREPROCESS_SUBDIVISION_DISTANCE_ROWS_H
 #define PREPROCESS_SUBDIVISION_DISTANCE_ROWS_H
 #include <stddef.h>
@@ -16,9 +16,10 @@ struct distance_rows {
     uint32_t vertex_count;
 };
 
-/* Frees the arrays. A zeroed struct is fine. */
+/* Frees the arrays of an initialised or zeroed struct. */
 void distance_rows_finish(struct distance_rows *rows);
-/* Renumbers the vertices by new_of (TRIMESH_NONE: dropped); `kept` is the new number of vertices. */
+/* Renumbers the vertices: new_of[old index] is the new index, or TRIMESH_NONE for a dropped vertex. `kept`: number of vertices
+ * afterwards. */
 void distance_rows_renumber(struct distance_rows *rows, const uint32_t *new_of, uint32_t kept);
 /* Writes the distances as 16-bit codes (protocol/asset_distance.h) to fd, from offset `at` on. Uses write() and not a mapping, whose page
  * faults would double the cost. workers may be NULL. Returns 0 or an errno value. */

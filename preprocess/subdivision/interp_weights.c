@@ -11,7 +11,8 @@
 #define L INTERP_LANES
 #define MIN_M 1e-5f    /* metres; a sensor nearer than this has all the weight */
 #define MIN_EXP -87.0f /* argument of exp() below which the result would be denormal; smaller arguments are raised to it */
-/* lower limit of the nearness that slopes are computed from: with a decay below 1, the slope is infinite at the radius */
+/* lower limit of the nearness (1 at a sensor, 0 at the radius) from which slopes are computed: with a decay below 1, the slope is infinite
+ * at the radius */
 #define MIN_NEARNESS 1e-3f
 
 typedef float lanes __attribute__((vector_size(4 * L)));
@@ -95,8 +96,8 @@ SIMD_BODY void raise_lanes(lanes *x, float power)
             (*x)[l] = powf(base[l], power);
 }
 
-/* Fades a weight to 0 at the reach: multiplies it by the square of (reach - distance) / (reach - distance of the nearest sensor). Beyond
- * the reach, the weight is 0, but the nearest sensor's stays 1. */
+/* Fades a weight to 0 towards the reach: multiplies it by the square of (reach - distance) / (reach - distance of the nearest sensor).
+ * Beyond the reach, the weight is 0, except that of the nearest sensor, which stays 1. */
 SIMD_BODY void fade(const struct interp_group *group, float near_m, const lanes *far, lanes *weight)
 {
     const lanes zero = { 0 }, near = zero + near_m;
@@ -109,7 +110,7 @@ SIMD_BODY void fade(const struct interp_group *group, float near_m, const lanes 
     *weight *= left;
 }
 
-/* Computes weights relative to the nearest sensor's, so that no power overflows a float. */
+/* Computes Shepard weights (power of the inverse distance) divided by the nearest sensor's weight, so that no power overflows a float. */
 SIMD_BODY void shepard_weight(const struct interp_group *group, size_t i, float near_m, const float *distance_m, lanes *weight)
 {
     const lanes floor_m = (lanes){ 0 } + MIN_M;
@@ -124,7 +125,7 @@ SIMD_BODY void shepard_weight(const struct interp_group *group, size_t i, float 
         fade(group, near_m, &far, weight);
 }
 
-/* Computes the relative change of a weight per metre of distance, where it fades towards the reach. */
+/* Computes the fraction by which the fade towards the reach lowers a weight per metre of distance: 2 / (reach - distance). */
 SIMD_BODY void per_left(const struct interp_group *group, const lanes *far, lanes *out)
 {
     const lanes least_m = (lanes){ 0 } + MIN_M;
@@ -220,8 +221,9 @@ SIMD_BODY void exponential(lanes *x)
 }
 
 struct softmax {
-    float per_m, largest; /* largest: exponent of the largest contributing sensor */
-    float near_m;         /* distance to the nearest sensor, metres; used only with a reach */
+    /* per_m: 1 / radius; largest: largest exponent of any sensor, which is subtracted from all exponents so that exp() cannot overflow */
+    float per_m, largest;
+    float near_m; /* distance to the nearest sensor, metres; used only with a reach */
 };
 
 /* Computes the nearness of sensors: 1 at a sensor, falling to 0 at the radius of Algorithm 1 and beyond. */
@@ -233,7 +235,8 @@ SIMD_BODY void nearness(const float *distance_m, float per_m, lanes *out)
     take_more(&zero, out);
 }
 
-/* Computes softmax weights before division by their sum, and the nearness of each sensor. */
+/* Computes the softmax weights of Algorithm 1 before division by their sum, and the nearness of each sensor (1 at the sensor, 0 at the
+ * radius). */
 SIMD_BODY void paper_weight(const struct interp_group *group, size_t i, const struct softmax *softmax, const float *distance_m, lanes *near,
                             lanes *weight)
 {
@@ -250,9 +253,9 @@ SIMD_BODY void paper_weight(const struct interp_group *group, size_t i, const st
         fade(group, softmax->near_m, &far, weight);
 }
 
-/* Returns the largest change of the interpolated value, as a share of the range, if each sensor's nearness changes by at most 1. A sensor
- * changes its own share, through its weight and its decay, and the others' shares, which sum to 1 minus its own. Sensors beyond the radius
- * change nothing. */
+/* Returns the largest change of the interpolated value, as a share of the range, if the nearness of each sensor (1 at the sensor, 0 at the
+ * radius) changes by at most 1. A sensor changes its own share, through its weight and its decay. It also changes the shares of the others,
+ * which sum to 1 minus its own. Sensors beyond the radius change nothing. */
 SIMD_BODY float paper_slope(const struct interp_group *group, const struct softmax *softmax, const float *distance_m, float per,
                             const float *interp, float all)
 {
@@ -342,7 +345,7 @@ SIMD_BODY float error_of(const float *const *corners, const float *weights, size
     return most > least ? most : least;
 }
 
-/* --- variants for wider processors ---------------------------------------------------------------------------------------------- */
+/* --- variants of the functions for wider SIMD registers ------------------------------------------------------------------------- */
 
 SIMD_AVX2 static void euclidean_wide(const float point_m[3], const float *const places_m[3], size_t count, float *distance_m)
 {

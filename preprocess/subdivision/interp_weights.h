@@ -6,7 +6,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Sensor counts are multiples of INTERP_LANES. Padding sensors have distance INFINITY, strength 0 and decay 1, which gives weight 0. */
+/* Arrays of sensors are padded to a multiple of INTERP_LANES. Padding sensors have distance INFINITY, strength 0 and decay 1, which gives
+ * weight 0. */
 #define INTERP_LANES 8
 /* Returns `count` rounded up to a multiple of INTERP_LANES. */
 static inline size_t interp_padded(size_t count)
@@ -16,13 +17,15 @@ static inline size_t interp_padded(size_t count)
 
 /* Writes the straight-line distances from the point to `count` positions, whose x, y and z are in separate arrays. */
 void interp_euclidean(const float point_m[3], const float *const places_m[3], size_t count, float *distance_m);
-/* Returns the smallest of the values. */
+/* Returns the smallest of `count` values. */
 float interp_least(const float *values, size_t count);
 
 struct interp_group {
     const float *strength, *decay;
-    bool decays;          /* the decay of at least one sensor differs from 1 */
-    float power, reach_m; /* reach_m: INFINITY for no limit; out of reach of all sensors, the nearest one has all the weight */
+    bool decays; /* the decay of at least one sensor differs from 1 */
+    /* power: exponent of inverse distance weights; reach_m: distance beyond which a sensor has no weight, INFINITY for no limit; at points
+     * out of reach of all sensors, the nearest one has all the weight */
+    float power, reach_m;
     size_t count;
 };
 /* Converts Shepard weights relative to the nearest sensor into weights that sum to 1. */
@@ -34,16 +37,19 @@ struct interp_norm {
 /* Writes the inverse-distance (Shepard) weights of a group's sensors to `interp` and their normalisation to *norm. With `slopes`, returns
  * the largest change of the interpolated value per metre at the point, for any readings within the range; otherwise 0. */
 float interp_shepard(const struct interp_group *group, const float *distance_m, bool slopes, float *interp, struct interp_norm *norm);
-/* Like interp_shepard(), with Algorithm 1 of the paper and radius radius_m. Always returns the largest change per metre. */
+/* Like interp_shepard(), but with Algorithm 1 of Kim & Suh (Electronics 2025, 14(15), 2938) and its radius R = radius_m. Always returns the
+ * largest change per metre. */
 float interp_paper(const struct interp_group *group, float radius_m, const float *distance_m, float *interp);
 
 /* Computes only the normalisation of Shepard weights, for interp_shepard_again(). distance_m: group->count values including padding. */
 void interp_shepard_norm(const struct interp_group *group, const float *distance_m, struct interp_norm *norm);
-/* Writes the same weights as interp_shepard() from their normalisation, in less than half the time. */
+/* Writes the same weights as interp_shepard() from the normalisation that interp_shepard_norm() or interp_shepard() computed, in less than
+ * half the time. */
 void interp_shepard_again(const struct interp_group *group, const float *distance_m, const struct interp_norm *norm, float *interp);
 
-/* Compares the weights at a point with the linear combination of the corners' weights. Returns the largest error of linear interpolation,
- * as a share of the range (0 to 1): the sum of the positive differences or of the negative ones, the larger sum. */
+/* Compares the weights `sample` at a point with the linear combination of the corners' weights. Returns the largest error of linear
+ * interpolation for any readings, as a share of the range (0 to 1): the larger of two sums, that of the positive and that of the negative
+ * differences. */
 float interp_error(const float *const *corners, const float *weights, size_t corner_count, const float *sample, size_t count);
 
 #endif

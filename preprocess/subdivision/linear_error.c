@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes sensor weights as server/field does, and their error against linear interpolation. */
+/* Computes sensor weights as server/field does, and how far they deviate from linear interpolation. */
 #include "preprocess/subdivision/linear_error.h"
 
 #include <math.h>
@@ -11,7 +11,8 @@
 #include "plant/singles.h"
 
 #define MAX_SLACK (1 / 255.0) /* share of the range */
-/* with more sensors in a group, each has so small a weight in Algorithm 1 that its errors are far below Shepard's and are not measured */
+/* maximum number of sensors in a group for which errors of Algorithm 1 are measured; with more sensors, each has so small a weight in
+ * Algorithm 1 that these errors are far below those of Shepard interpolation */
 #define MANY 64
 
 static double factor_of(double x)
@@ -219,8 +220,8 @@ struct error_question {
     double wide_m, slack_m;
 };
 
-/* Returns the largest error over all groups, as a share of the range. A group without a value at a corner, because no path connects it to a
- * sensor, has no error. */
+/* Returns the largest error over all groups, as a share of the range. A group that has no value at one of the corners, because no path
+ * leads from there to a sensor, counts as error 0. */
 static double worst_of(const struct linear_error *linear, const struct error_question *question, const float *sample)
 {
     double most = 0;
@@ -237,12 +238,12 @@ static double worst_of(const struct linear_error *linear, const struct error_que
             at[c] = question->corners[c] + first;
             reached = reached && (g % 2 != INTERPOLATION_SHEPARD || has_value(at[c], count));
         }
-        /* change of the value per metre; a negative number is minus the distance in metres from the end of the group's data */
+        /* change of the group's value per metre; if negative: minus the distance in metres from the point where the group's data ends */
         double slope = (double)sample[linear->share_count + g];
         if (reached && slope >= -question->wide_m && question->modes & 1 << g / 2 / linear->group_count)
             most = max_of((double)interp_error(at, question->weights, question->corner_count, sample + first, count) -
                               min_of(question->slack_m * max_of(slope, 0), MAX_SLACK),
-                          most); /* the order of the arguments of max_of() matters: it ignores NaN */
+                          most); /* `most` must be the second argument: max_of() returns the second argument if the first is NaN */
         first += count;
     }
     return most;

@@ -9,7 +9,8 @@
 #include "preprocess/cache/build_cache.h"
 #include "surface/mesh/trimesh.h"
 
-/* low bits of an entry, which hold the triangle index + 1; the key's low bits are above them, its high bits select the slot */
+/* An entry holds the triangle index + 1 in its TRI_BITS low bits, and the low bits of the key above them. The high bits of the key select
+ * the slot. */
 #define TRI_BITS 24
 #define NOWHERE ((1u << TRI_BITS) - 1)
 #define FULL 0.85

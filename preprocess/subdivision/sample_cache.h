@@ -19,7 +19,7 @@ struct sample_cache {
 };
 
 #define SAMPLE_CACHE_NOTES 128
-struct sample_cache_notes { /* lookups recorded by one thread; zero-initialise */
+struct sample_cache_notes { /* lookups recorded by one thread; initialise with zeros */
     struct sample_cache_asked {
         uint64_t key;
         uint32_t tri;

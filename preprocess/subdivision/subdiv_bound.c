@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Predicts which coarser levels will need too many triangles, before they are fully split. */
+/* Predicts which coarser levels will need too many triangles, before they are split completely. */
 #include <math.h>
 #include <stdatomic.h>
 #include <string.h>
@@ -7,14 +7,13 @@
 #include "base/mem.h"
 #include "preprocess/subdivision/subdivide_impl.h"
 
-#define SAMPLE_OF 8 /* one block of triangles in this many is sampled; a power of 2 */
+#define SAMPLE_OF 8 /* one block of triangles in every SAMPLE_OF is sampled; a power of 2 */
 #define BLOCK 8     /* triangles per block */
-#define GRAIN 4096  /* triangles per unit of work: a few tenths of a millisecond */
+#define GRAIN 4096  /* triangles per unit of work of a thread: takes a few tenths of a millisecond */
 #define SURE 1.5    /* number of standard deviations by which the estimate from the sample must exceed the level's triangle limit */
 
-/* Returns the number of triangles needed that replace one triangle once its errors are fixed. An edge with an error needs a split, and
- * further ones until its error is small enough: each split leaves a quarter of the error where the field bends evenly, and more at a
- * peak. */
+/* Returns the number of triangles that will replace one triangle once its errors are small enough. Each split of an edge leaves a quarter
+ * of the edge's error where the field bends evenly, and more at a peak, so an edge may need several splits. */
 static size_t tris_needed(const struct subdiv *subdiv, const struct subdiv_tri *tri)
 {
     size_t needed = 1;
@@ -24,8 +23,8 @@ static size_t tris_needed(const struct subdiv *subdiv, const struct subdiv_tri *
     return needed;
 }
 
-/* Returns a lower bound of the triangles that the whole level will have, estimated from the triangles of the sample. The variance between
- * the sample's blocks gives the uncertainty. */
+/* Returns a lower bound of the triangles that the whole level will have, estimated from the triangles of the sampled blocks. The variance
+ * between the sample's blocks gives the uncertainty. */
 static double least_needed_by_sample(const struct subdiv *subdiv)
 {
     const struct subdiv_mesh *mesh = &subdiv->mesh;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Stores findings (errors of edges and triangles), with a hash of the corners' positions as key, and decides whether they still hold. */
+/* Stores findings (measured errors of edges and triangles), with a hash of the corners' positions as key. Decides whether a finding of the
+ * last run is still valid. */
 #include "preprocess/subdivision/subdiv_cache.h"
 
 #include <math.h>
@@ -13,12 +14,14 @@
 #include "preprocess/subdivision/subdivide_impl.h"
 
 #define MAX_CHANGES 16 /* limit of sensor changes */
-#define FEW 16         /* cached findings are used only if fewer than one sensor in this many changed */
-/* maximum doubt of a finding that is used. Measured: with this doubt, one in a thousand edges with an error of about one colour step is
- * wrong by a tenth of a colour step or more. */
+#define FEW 16         /* findings of the last run are used only if fewer than one sensor in FEW has changed */
+/* largest doubt (subdiv_cache.h: weight of the sensors that changed since the measurement) of a finding that is used. Measured: with this
+ * doubt, one in a thousand edges with an error of about one colour step is wrong by a tenth of a colour step or more. */
 #define MAX_DOUBT 0.05f
-#define MAX_SETTLED 0.5f /* maximum doubt for findings whose error is so far from any limit that a change would not cross the limit */
-#define LITTLE 0.4f      /* share of SUBDIV_AIM; if an edge's error at the midpoint is smaller, no other points of the edge were measured */
+/* largest doubt of a finding that is used although it exceeds MAX_DOUBT, because its error is so far from every limit that the sensor
+ * changes cannot move it across one */
+#define MAX_SETTLED 0.5f
+#define LITTLE 0.4f /* share of SUBDIV_AIM; an edge whose error at the midpoint is smaller was not measured at other points */
 
 struct subdiv_cache_entry {
     uint64_t key;
@@ -26,7 +29,7 @@ struct subdiv_cache_entry {
     uint32_t jumps;
 };
 
-struct sensor { /* everything that a sensor's weights depend on */
+struct sensor { /* the parameters of a sensor on which its weights depend */
     float place_m[3], strength, power;
     uint32_t group;
 };
@@ -36,11 +39,11 @@ struct subdiv_head {
     uint64_t given_up, changes_since; /* see subdiv_cache.h */
 };
 
-/* Flags for the optional numbers of a finding; most findings have only a key and an error. The file stores the numbers in the order of
- * these flags. */
+/* Flags that say which optional numbers of a finding follow in the file, in the order of these flags. Most findings have only a key and an
+ * error. */
 #define SHARE_FOLLOWS 1
 #define BARRED_FOLLOWS 2
-#define DOUBT_FOLLOWS 4 /* two numbers follow: the finding's doubt, and the amount by which its error may be wrong */
+#define DOUBT_FOLLOWS 4 /* two numbers follow: the finding's doubt (subdiv_cache.h), and the amount by which its error may be wrong */
 #define SHARE_IS_HALF 8 /* the split fraction is 0.5; without this flag and SHARE_FOLLOWS it is 0 */
 #define JUMPS 16
 
@@ -85,8 +88,8 @@ static uint32_t column_of(const struct linear_error *linear, const struct sensor
     return UINT32_MAX;
 }
 
-/* Lists the sensors that were added or removed between two sorted lists. Returns false if they are too many, or belong to a group that no
- * longer exists. */
+/* Lists the sensors that were added or removed between two sorted lists, that of the last run and that of this run. Returns false if there
+ * are too many, or if one belongs to a group that no longer exists. */
 static bool find_changes(struct subdiv_cache *cache, const struct linear_error *linear, const struct sensor *old, size_t old_count)
 {
     const struct sensor *now = (const struct sensor *)(const void *)cache->sensors.at;
@@ -134,7 +137,7 @@ static void index_findings(struct subdiv_cache *cache, size_t count)
     }
 }
 
-/* Computes the index of each finding's optional numbers. Returns their total count. */
+/* Computes for each finding the index of its first optional number in `rest`. Returns the number of optional numbers of all findings. */
 static size_t index_rest(struct subdiv_cache *cache, size_t count)
 {
     size_t rest = 0;
@@ -195,7 +198,7 @@ void subdiv_cache_close(struct subdiv_cache *cache)
     *cache = (struct subdiv_cache){ 0 };
 }
 
-/* Findings in the file's format. */
+/* The findings of this run, in the layout of the file. */
 struct packed_findings {
     uint64_t *keys;
     float *errors, *rest;
@@ -260,7 +263,7 @@ void subdiv_cache_write(const struct subdiv_cache *cache, const char *folder, ui
 
 /* --- findings --------------------------------------------------------------------------------------------------------------------- */
 
-/* Returns a key that does not depend on the order of the corners. */
+/* Returns a key for the edge or triangle with these corners, which does not depend on their order. */
 uint64_t subdiv_cache_key(const struct subdiv *subdiv, const uint32_t *corners, size_t count)
 {
     if (!subdiv->in->cache || !subdiv->in->cache->applies)
@@ -323,8 +326,8 @@ static float share_of_changes(const struct subdiv *subdiv, const uint32_t *corne
     return share;
 }
 
-/* Returns whether the error is so far from the limits SUBDIV_AIM and LITTLE that it certainly stays on the same side of both, despite the
- * sensor changes. */
+/* Returns whether a cached error is so far from the limits SUBDIV_AIM and LITTLE that the sensor changes cannot have moved it across one.
+ * doubt: weight of the changed sensors (subdiv_cache.h). */
 static bool is_settled(const struct subdiv_cache_entry *old, float doubt, float off)
 {
     const float matters = (float)SUBDIV_AIM, error = fmaxf(old->error, old->barred);
@@ -349,8 +352,8 @@ static void unpack_finding(const struct subdiv_cache *cache, size_t i, struct su
     }
 }
 
-/* Finds a finding by key. Most findings are looked up in the order of the last run, so the index *next is tried first. Returns false if the
- * key is absent. */
+/* Finds a finding by key and unpacks it to *found. *next: guess of the finding's index, tried first, because most findings are looked up in
+ * the order of the last run; receives the index after the found one. Returns false if the key is absent. */
 static bool find(const struct subdiv_cache *cache, uint64_t key, uint32_t *next, struct subdiv_cache_entry *found)
 {
     if (*next >= cache->finding_count || cache->keys[*next] != key) {

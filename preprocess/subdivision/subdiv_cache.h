@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Cache of the errors measured at edges and triangles ("findings"): KEY.splitting in the folder of prepared files. If few of many sensors
- * have changed since the last run, its findings still hold everywhere except near those sensors; only there errors are measured again. A
- * new or removed sensor with at most the weight x at an edge changes the edge's error by about x times that error. Such changes add up from
+ * have changed since the last run, its findings still hold everywhere except near those sensors; only there are errors measured again. A
+ * new or removed sensor with at most the weight x at an edge changes the edge's error by about x times the error. Such changes add up from
  * run to run ("doubt") until the edge is measured again; in total they stay far below the tenth of a colour step that subdivision keeps in
  * reserve (SUBDIV_AIM). With larger doubt, a finding still holds if its error is far from any limit. This is valid for Shepard
  * interpolation with one strength for all sensors of a group. Under Algorithm 1 every sensor matters everywhere, and a reach bends the
@@ -15,12 +15,12 @@
 #include "preprocess/subdivision/linear_error.h"
 
 struct subdiv_cache {
-    bool applies; /* the cache is applicable; false: nothing is cached */
+    bool applies; /* the cache is usable for this asset; false: nothing is read or written */
     struct cache_file file;
     const uint64_t *keys; /* keys of the last run's findings, in the mapped file */
     const float *errors, *rest;
     const unsigned char *kinds;
-    uint32_t *rest_at; /* by finding: index in `rest` of the first of its optional numbers */
+    uint32_t *rest_at; /* by finding: index in `rest` of its first optional number */
     uint32_t *slots;   /* hash table by key: finding index + 1; 0: empty slot. NULL: no usable findings */
     size_t mask, finding_count;
     struct subdiv_sensor_change { /* a sensor that was added or removed */
@@ -29,19 +29,21 @@ struct subdiv_cache {
         uint32_t column; /* column of an added sensor; UINT32_MAX: the sensor was removed */
     } * changes;
     size_t change_count;
-    /* bit masks of levels; hopeless: skipped in this run because an earlier run dropped them; given_up: dropped in this run */
+    /* bit masks by level index; hopeless: levels skipped in this run because an earlier run dropped them; given_up: levels dropped in this
+     * run */
     uint64_t hopeless, given_up;
     uint64_t changes_since;     /* count of sensor changes since the dropped levels were last tried */
-    struct text sensors, found; /* sensors and findings of this run, to be written to the file */
+    struct text sensors, found; /* sensors and findings of this run, in binary form, to be written to the file */
     size_t measured_count, kept_count;
 };
 
-/* Opens the findings of the last run under this key and determines which sensors have changed since. Never fails: without a usable file the
- * cache is empty. linear must outlive the cache. */
+/* Opens the findings of the last run that were stored under this key, and determines which sensors have changed since. Never fails: without
+ * a usable file the cache is empty. linear must outlive the cache. */
 void subdiv_cache_open(struct subdiv_cache *cache, const char *folder, uint64_t key, const struct linear_error *linear);
-/* Unmaps and frees the cache. A zeroed cache is fine. */
+/* Unmaps the file and frees the arrays. A zeroed cache is allowed. */
 void subdiv_cache_close(struct subdiv_cache *cache);
-/* Writes this run's findings, after subdivision. Ignores errors: then nothing is cached. */
+/* Writes this run's findings to the file, when subdivision has ended. Write errors are ignored: then the next run measures everything
+ * again. */
 void subdiv_cache_write(const struct subdiv_cache *cache, const char *folder, uint64_t key);
 
 #endif

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Flips edges to the other diagonal of their two triangles: where that reduces the error as much as a split, it adds no triangle. */
+/* Flips edges: replaces the common edge of two triangles by the other diagonal. Where that reduces the error as much as a split would, it
+ * saves a triangle. */
 #include <math.h>
 #include <string.h>
 
@@ -8,18 +9,18 @@
 #include "preprocess/subdivision/subdivide_impl.h"
 
 #define MAX_FLIP_ROUNDS 4  /* maximum consecutive rounds of flips */
-#define FLAT_OF_ERROR 0.02 /* share of the level's surface error; a flip may move the surface by at most that */
+#define FLAT_OF_ERROR 0.02 /* maximum distance by which a flip may move the surface, as a share of the level's error_m */
 #define GAIN 0.7           /* maximum ratio of the error after a flip to the error before it */
-#define CROSSING 0.02      /* share of either edge's length; both edges must cross at least this far from their ends */
+#define CROSSING 0.02      /* share of an edge's length; the old and the new diagonal must cross at least this far from the ends of both */
 
-#define GRAIN 1024 /* flips per unit of work: a few tenths of a millisecond */
+#define GRAIN 1024 /* flips per unit of work of a thread: takes a few tenths of a millisecond */
 
 struct edge_flip {
     uint32_t edge, tris[2], across;
-    bool may; /* whether the flip is allowed: the two diagonals cross, and the surface moves by less than the limit */
+    bool may; /* the flip is allowed: old and new diagonal cross, and the surface moves by less than the limit */
 };
 
-/* Lists edges with an error above the limit, of the triangles mesh->made.at[first] and after. */
+/* Lists the edges with an error above the limit of triangles made since the last call: mesh->made.at[first] and later. */
 static void list_edges(struct subdiv *subdiv, double limit, size_t first, struct subdiv_list *edges)
 {
     const struct subdiv_mesh *mesh = &subdiv->mesh;
@@ -51,7 +52,8 @@ static void position_of(const struct subdiv *subdiv, uint32_t vertex, double at[
         at[i] = (double)subdiv_position(subdiv, vertex)[i];
 }
 
-/* Returns whether the closest points of the two edges are inside both and at most apart_m from each other. */
+/* Returns whether the points at which the edges a-b and c-d are closest to each other lie inside both edges and at most apart_m from each
+ * other. */
 static bool cross(const double a[3], const double b[3], const double c[3], const double d[3], double apart_m)
 {
     double ab[3], cd[3], ac[3], normal[3], side[3];

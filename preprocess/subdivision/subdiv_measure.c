@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Measures the field between vertices, its deviation from linear interpolation, and the best point to split an edge. */
+/* Measures the field at points between vertices, its deviation from linear interpolation, and the best point at which to split an edge. */
 #include <math.h>
 #include <string.h>
 #include <xxhash.h>
@@ -12,17 +12,21 @@
 
 /* share of SUBDIV_AIM; if the error at an edge's midpoint is smaller, the error is assumed small along the whole edge */
 #define PROBABLE 0.4
-/* share of the distance to the nearest sensor; edges longer than that are measured at all points, without the PROBABLE test */
+/* share of the distance from the nearest sensor; edges longer than this are measured at all their points, without the PROBABLE test */
 #define CLOSE 0.5
-/* share of the distance to the nearest sensor; longer edges are split in the middle, so that splits of neighbours line up */
+/* share of the distance from the nearest sensor; longer edges are split at their middle, so that the split points of neighbouring edges
+ * line up */
 #define WIDE 0.3
-#define GRAIN 256     /* minimum edges, triangles or positions per unit of work: half a millisecond */
-#define POINTS 16     /* maximum number of points sampled on an edge */
-#define CORNERS 61    /* number of cached corner samples */
-#define STEPS 2       /* refinement steps for the best split point */
-#define NO_GAIN 0.5   /* share of the error left by the best split: a smooth bend leaves a quarter, a kink nothing */
-#define ROUNDING 1e-9 /* relative margin, larger than the rounding error of a distance */
-#define JUMP 1.5 /* factor on the length of a path; a distance that grows by more has a jump, because the surface is not connected there */
+#define GRAIN 256  /* minimum number of edges, triangles or positions per unit of work of a thread: takes half a millisecond */
+#define POINTS 16  /* maximum number of points sampled on an edge */
+#define CORNERS 61 /* number of cached corner samples */
+#define STEPS 2    /* number of refinement steps in the search for the best split point */
+/* share of the edge's error that remains after the best split; if more remains, the edge is checked for a jump. A smooth bend leaves a
+ * quarter, a kink nothing. */
+#define NO_GAIN 0.5
+#define ROUNDING 1e-9 /* relative margin in comparisons of distances, larger than their rounding error */
+/* a distance that grows along a path by more than this multiple of the path's length has a jump: the surface is not connected there */
+#define JUMP 1.5
 
 static uint32_t place_of(const struct subdiv *subdiv, uint32_t vertex)
 {
@@ -62,7 +66,7 @@ bool subdiv_find_parts(struct subdiv *subdiv)
     return list_faces(subdiv);
 }
 
-struct origin_sight { /* conditions for the triangles of the original model that a point is projected onto */
+struct origin_sight { /* which triangles of the original model a sample point may be projected onto */
     const struct subdiv *subdiv;
     uint32_t origin[2]; /* used in the finest level: the point is projected onto one of these two triangles */
     /* used in coarser levels: the point is projected onto a triangle of this connected component that faces the same way as `normal` */
@@ -102,8 +106,8 @@ static void to_doubles(const float point[3], double at[3])
         at[i] = (double)point[i];
 }
 
-/* Finds the surface point for a sample point. In a coarser level, first searches the point's own connected component, then all others: a
- * point that protrudes slightly may belong to the component that hides its own. */
+/* Finds the surface point for a sample point. In a coarser level, searches the connected component of the sample point first, then all
+ * others: a point that protrudes slightly may belong to the component that hides the sample point's own. */
 static bool search(const struct origin_sight *sight, const double at[3], struct surface_point *hit)
 {
     const struct subdiv *subdiv = sight->subdiv;
@@ -114,7 +118,7 @@ static bool search(const struct origin_sight *sight, const double at[3], struct 
     return surface_find_point_within(subdiv->in->surface, at, sight->normal, subdiv->on_surface_m, hit);
 }
 
-/* Returns a hash of everything the projection of a point depends on, except the surface. */
+/* Returns a hash of everything on which the projection of a point depends, except the surface. */
 static uint64_t key_of(const struct origin_sight *sight, const float point[3])
 {
     struct {
@@ -148,9 +152,9 @@ static bool project(const struct origin_sight *sight, const float point[3], cons
     return seen;
 }
 
-/* Finds the visible point nearest to the position `from` inside a partly hidden triangle: only a piece of a large triangle may protrude
- * from other components. *hit: in: result for another position, or TRIMESH_NONE; out: result for this position, even if it is too far away
- * to count, or TRIMESH_NONE if the whole triangle is hidden. Returns whether the result counts. */
+/* Finds the visible point nearest to the position `from` inside a partly hidden triangle: only a part of a large triangle may protrude from
+ * other components. hit->tri on entry: result of the search for another position, or TRIMESH_NONE. On return: result for `from`, even if it
+ * is too far away to count; TRIMESH_NONE if the whole triangle is hidden. Returns whether the result is near enough to count. */
 static bool find_seen(const struct origin_sight *sight, const double corners[3][3], const double from[3], double weights[3],
                       struct surface_point *hit)
 {
@@ -174,8 +178,8 @@ static bool find_seen(const struct origin_sight *sight, const double corners[3][
     return vec_distance(at, hit->point_m) <= subdiv->on_surface_m;
 }
 
-/* Computes the distances along the surface at the projection of a point. Returns false if the point is hidden deep inside another part,
- * where no error is visible. */
+/* Computes the distances of a point from all sensors along the surface, at the point's projection. Returns false if the point is hidden
+ * deep inside another part, where no error is visible. */
 static bool measure(const struct origin_sight *sight, const float point[3], float *geodesic_m)
 {
     const struct subdiv *subdiv = sight->subdiv;
@@ -188,7 +192,8 @@ static bool measure(const struct origin_sight *sight, const float point[3], floa
     return true;
 }
 
-/* Computes distances along the surface like measure(); if the point is hidden, takes those of the nearest visible point. */
+/* Computes the distances of a point from all sensors along the surface, also if the point is hidden: then those of the nearest visible
+ * point. */
 static void measure_always(const struct origin_sight *sight, const float point[3], float *geodesic_m)
 {
     struct surface_point hit;
@@ -202,7 +207,7 @@ static void measure_always(const struct origin_sight *sight, const float point[3
 
 /* --- edges ------------------------------------------------------------------------------------------------------------------ */
 
-struct line { /* sample points along an edge, in order */
+struct line { /* sample points along an edge, in order from a to b */
     const struct subdiv *subdiv;
     const float *a, *b; /* positions of the edge's ends */
     double length_m;
@@ -214,7 +219,8 @@ struct line { /* sample points along an edge, in order */
     struct interp_norm *norms;
 };
 
-/* Returns the error at a point against linear interpolation between two other points. */
+/* Returns the error at sample point `point` if the field is interpolated linearly between sample points `from` and `to`. modes: kinds of
+ * distance to include. */
 static double error_at(const struct line *line, enum linear_error_modes modes, int from, int to, int point)
 {
     double t = (line->t[point] - line->t[from]) / (line->t[to] - line->t[from]);
@@ -256,7 +262,8 @@ static bool jumps(const struct line *line, double length_m)
     return false;
 }
 
-/* Returns the largest error that remains if the edge is split at one of its sample points. Stops early once the error exceeds `enough`. */
+/* Returns the largest error that remains on the edge if it is split at its sample point `cut`. Stops early once the error exceeds
+ * `enough`. */
 static double left_after(const struct line *line, int cut, double enough)
 {
     double most = 0;
@@ -268,7 +275,7 @@ static double left_after(const struct line *line, int cut, double enough)
     return most;
 }
 
-/* Returns the sample point with the smallest remaining error, preferring the middle if about as good. */
+/* Returns the index of the sample point at which a split leaves the smallest error, *left. Prefers the middle if it is about as good. */
 static int best_cut(const struct line *line, double *left)
 {
     int best = 0;
@@ -290,7 +297,7 @@ static void add_eighths(struct line *line, struct subdiv_finding *finding)
 }
 
 /* Finds the split point. Where a field bends evenly, the middle is best. At a kink, where two paths are equally long, the kink is best. If
- * the distance jumps, no split helps; splitting in halves closes in on the jump until the edges are short. */
+ * the distance jumps, no split helps; halving the edge repeatedly narrows the jump down to a short edge. */
 static void find_cut(struct line *line, double length_m, double enough, struct subdiv_finding *finding)
 {
     double left;
@@ -316,13 +323,13 @@ struct measure_job {
     double enough;
 };
 
-/* A thread's buffers: points of the current edge, and a cache of the samples at recently used corners, because the next edge probably
+/* Buffers of one thread: points of the current edge, and a cache of the samples at recently used corners, because the next edge probably
  * shares a corner. */
 struct measure_room {
     float *points, *corners;
     struct interp_norm *norms; /* of the last sample point */
-    /* by cache slot: the position whose sample is stored; the last three slots serve corners whose slot another corner of the same edge
-     * or triangle occupies */
+    /* by cache slot: the position whose sample is stored; the last three slots serve corners whose regular slot another corner of the same
+     * edge or triangle occupies */
     uint32_t of[CORNERS + 3];
     uint32_t taken[3]; /* by corner of the current edge or triangle: its cache slot */
     struct sample_cache_notes notes;
@@ -346,7 +353,7 @@ static void room_finish(struct measure_room *room, const struct subdiv *subdiv)
     mem_free(room->norms);
 }
 
-/* Returns the sample at a corner of the current edge or triangle, from the cache of this thread if possible. */
+/* Returns the sample (linear_error.h) at a corner of the current edge or triangle, from the cache of this thread if possible. */
 static const float *shares_at(const struct subdiv *subdiv, uint32_t vertex, uint32_t corner, struct measure_room *room)
 {
     uint32_t place = place_of(subdiv, vertex), number = place % CORNERS;
@@ -370,8 +377,8 @@ static void bar_short(struct subdiv_finding *finding)
     finding->error = 0;
 }
 
-/* Marks an edge across which the geodesic distance jumps: its geodesic error cannot be fixed. Errors of straight-line distances, which do
- * not jump, remain. */
+/* Moves an edge's error to finding->barred if the geodesic distance jumps across the edge, because no split fixes a jump. Errors of
+ * straight-line distances, which do not jump, stay in finding->error. */
 static void bar_jump(struct subdiv_finding *finding, const struct line *line)
 {
     finding->jumps = true;
@@ -382,8 +389,8 @@ static void bar_jump(struct subdiv_finding *finding, const struct line *line)
     }
 }
 
-/* Returns the distance from the edge's midpoint to the nearest sensor or end of data. Reuses the normalisations if the midpoint was
- * measured last. */
+/* Returns the distance from the edge's midpoint to the nearest sensor or end of a group's data. Reuses the midpoint's normalisations if the
+ * midpoint was the last point measured. */
 static double nearest_to_middle(const struct line *line, uint32_t end)
 {
     const struct linear_error *linear = line->subdiv->in->linear;
@@ -473,7 +480,7 @@ static bool jumps_inside(const struct subdiv *subdiv, const struct subdiv_tri *t
     return false;
 }
 
-struct inside { /* a triangle while its error is measured at inner points */
+struct inside { /* state while a triangle's error is measured at inner points */
     struct origin_sight sight;
     const struct subdiv_tri *tri;
     const float *interp[3]; /* samples at its corners */
@@ -488,7 +495,8 @@ static void place_in(const struct inside *inside, const double weights[3], doubl
         at[i] = weights[0] * inside->corners[0][i] + weights[1] * inside->corners[1][i] + weights[2] * inside->corners[2][i];
 }
 
-/* Returns the error at a point with these barycentric weights, given its projection onto the surface. */
+/* Returns the interpolation error at the point of the triangle with these barycentric weights. hit: the point's projection onto the
+ * surface. */
 static double error_inside(const struct inside *inside, const double weights[3], const struct surface_point *hit)
 {
     const struct subdiv *subdiv = inside->sight.subdiv;
@@ -506,8 +514,8 @@ static double error_inside(const struct inside *inside, const double weights[3],
     return linear_error_in_triangle(linear, modes, inside->interp, weights, interp, wide_m, subdiv->slack_m);
 }
 
-/* Measures a triangle at its centre. If the centre is hidden, measures the visible points nearest to the centre and to three points near
- * the corners. */
+/* Measures a triangle's error at its centre. If the centre is hidden inside another part, measures at the visible points nearest to the
+ * centre and to three points near the corners. */
 static void try_inside(const struct subdiv *subdiv, struct subdiv_finding *finding, struct measure_room *room)
 {
     static const double places[4][3] = {
@@ -551,8 +559,8 @@ static void try_insides(void *arg, size_t begin, size_t end)
     room_finish(&room, subdiv);
 }
 
-/* Rounds distances beyond a reach to the file's precision: there the nearest sensor has all the weight, and rounding may make two sensors
- * equally near. */
+/* Rounds distances beyond a group's reach to the precision of the asset file. There the nearest sensor has all the weight, so rounding
+ * decides between two sensors that are about equally near, and must be the same here as in the file. */
 static void round_beyond_reach(const struct linear_error *linear, float *geodesic_m)
 {
     for (size_t g = 0; g < linear->group_count; g++) {
@@ -598,8 +606,8 @@ void subdiv_parallel(const struct subdiv *subdiv, size_t count, size_t grain, vo
         body(arg, 0, count);
 }
 
-/* Measures the interpolation error along `count` edges. Errors below `enough` need not be exact, and for those edges no split point is
- * determined. */
+/* Measures the interpolation error along `count` edges. Errors below `enough` need not be exact, and edges with such an error get no split
+ * point. */
 static void measure_edges(struct subdiv *subdiv, struct subdiv_finding *findings, size_t count, double enough)
 {
     subdiv_parallel(subdiv, count, GRAIN, try_edges, &(struct measure_job){ .subdiv = subdiv, .findings = findings, .enough = enough });

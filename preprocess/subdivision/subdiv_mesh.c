@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Splits edges and the triangles at them. */
+/* Splits edges at new vertices, and the triangles at split edges. */
 #include "preprocess/subdivision/subdiv_mesh.h"
 
 #include <math.h>
@@ -112,7 +112,7 @@ static uint32_t edge_of(struct subdiv_mesh *mesh, uint32_t a, uint32_t b, uint32
 
 #define LOOK_UP TRIMESH_NONE
 
-/* Creates a triangle. known: indices of its edges, TRIMESH_NONE where an edge must be looked up, which is expensive. */
+/* Creates a triangle. known: indices of its three edges; TRIMESH_NONE for an edge that must be looked up by its vertices, which is slow. */
 static struct subdiv_tri make_tri(struct subdiv_mesh *mesh, const struct subdiv_tri *like, const uint32_t v[3], const uint32_t known[3])
 {
     struct subdiv_tri tri = { .v = { v[0], v[1], v[2] }, .primitive = like->primitive, .origin = like->origin };
@@ -182,7 +182,7 @@ void subdiv_mesh_load(struct subdiv_mesh *mesh, const struct level *level)
     mesh->tri_count = 0;
     mesh->loads++;
     mesh->made.count = mesh->open.count = 0;
-    /* errors of edges without `proven` are unknown again, because the limits depend on the level */
+    /* edges that were not proven to need no split must be measured again, because the error limit depends on the level */
     for (size_t e = 0; e < mesh->edges.count; e++) {
         mesh->cuts[e].error = mesh->cuts[e].proven ? mesh->cuts[e].error : -1;
         mesh->cuts[e].corner = TRIMESH_NONE;
@@ -308,8 +308,8 @@ static double distance2(const struct subdiv_mesh *mesh, uint32_t a, uint32_t b)
     return x * x + y * y + z * z;
 }
 
-/* Splits a triangle at one edge. The two pieces take over the unsplit edges and share a new edge. e: indices of edges that are known
- * already. */
+/* Splits a triangle in two: corners v, edges e, of which e[0] is split at vertex m. Appends one piece and returns the other. Each keeps an
+ * unsplit edge, and they share a new one. */
 static struct subdiv_tri cut_once(struct subdiv_mesh *mesh, const struct subdiv_tri *old, const uint32_t v[3], const uint32_t e[3],
                                   uint32_t m)
 {
@@ -341,7 +341,7 @@ static struct subdiv_tri cut_thrice(struct subdiv_mesh *mesh, const struct subdi
     return piece;
 }
 
-/* Splits a triangle: the first piece replaces it, the others are appended. */
+/* Splits a triangle at all its split edges: the first piece replaces it, the others are appended. */
 static void split_tri(struct subdiv_mesh *mesh, size_t t)
 {
     struct subdiv_tri old = mesh->tris[t];
@@ -373,7 +373,7 @@ static bool is_open(const struct subdiv_mesh *mesh, size_t t)
     return subdiv_mesh_is_split(mesh, e[0]) || subdiv_mesh_is_split(mesh, e[1]) || subdiv_mesh_is_split(mesh, e[2]);
 }
 
-/* Triangles that need further splits are appended to mesh->open and handled in the next round. */
+/* Pieces that need further splits are appended to mesh->open and handled in the next round. */
 size_t subdiv_mesh_apply(struct subdiv_mesh *mesh)
 {
     size_t before = mesh->tri_count;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The mesh that subdivision works on: a geometry whose edges are split at new vertices, and the triangles of one level at a time. Splits
- * are shared by all levels. */
+/* The mesh that subdivision works on: a geometry whose edges are split at new vertices, and the triangles of one level at a time. An edge
+ * is split at the same vertex in all levels. */
 #ifndef PREPROCESS_SUBDIVISION_SUBDIV_MESH_H
 #define PREPROCESS_SUBDIVISION_SUBDIV_MESH_H
 #include "base/mem.h"
@@ -10,23 +10,24 @@
 
 struct subdiv_tri {
     uint32_t v[3], e[3]; /* e[i]: the edge from v[i] to v[i + 1] */
-    /* primitive: index of the level's primitive; origin: index of the level's original triangle that contains this one (first index / 3) */
+    /* primitive: index of the level's primitive; origin: index of the original triangle, before subdivision, that contains this one */
     uint32_t primitive, origin;
-    bool good;  /* the inside of the triangle has been measured */
+    bool good;  /* the error inside the triangle has been measured */
     bool aimed; /* the triangle has been checked for flatness (aim_at_corners()) */
 };
 
 struct subdiv_edge { /* an edge between two positions, shared by all levels */
     /* vertices at the edge's ends; where several vertices share a position (with different normals or texture coordinates), any one */
     uint32_t a, b;
-    uint32_t origin[2]; /* two original triangles that contain the edge, of the first level that had it; TRIMESH_NONE: none */
+    uint32_t origin[2]; /* two original triangles at the edge, in the first level that had the edge; TRIMESH_NONE: none */
     uint32_t middle;    /* position index of the split point; TRIMESH_NONE: not split */
-    uint32_t load;      /* value of mesh.loads for the last level that splits the edge */
-    /* first corner of the current level's triangles at which the edge begins, 3 * triangle + i; TRIMESH_NONE: no triangle has the edge */
+    uint32_t load;      /* value that mesh.loads (number of levels loaded so far) had in the last level that split the edge */
+    /* head of the list of corners of the current level at which the edge begins (3 * triangle + i, linked by mesh.next); TRIMESH_NONE: no
+     * triangle of the level has the edge */
     uint32_t corner;
-    float share;  /* fraction of the way from a to b at which the edge is split, or should be */
-    float error;  /* field error along the edge that a split may fix; below 0: not measured yet */
-    float barred; /* field error along the edge that no split may fix */
+    float share;  /* fraction of the way from a to b of the split point, or of the best split point if the edge is not split yet */
+    float error;  /* error of the field along the edge that a split may fix, as a share of the range; below 0: not measured yet */
+    float barred; /* error of the field along the edge that no split may fix, as a share of the range */
     bool jumps;   /* reason for `barred`; true: the distance jumps along the edge; false: the edge is too short */
     bool unasked; /* the edge is too short to split in the current level, so it is not measured */
     bool proven;  /* the edge was measured and needs no split; coarser levels have looser limits */
@@ -42,21 +43,22 @@ struct subdiv_mesh {
     struct geometry *geometry;
     struct welded_positions welded;
     size_t place_capacity, of_vertex_capacity, position_capacity, normal_capacity, texcoord_capacity, second_capacity, color_capacity;
-    struct edge_table edges, vertex_edges; /* edge tables: `edges` by positions, `vertex_edges` by vertices */
+    /* edge tables: `edges` finds an edge by the position indices of its ends, `vertex_edges` by their vertex indices */
+    struct edge_table edges, vertex_edges;
     struct subdiv_edge *cuts;
-    uint32_t *vertex_middles; /* by vertex edge: the vertex at the edge's split point */
+    uint32_t *vertex_middles; /* by index in vertex_edges: the vertex at the edge's split point */
     size_t cut_capacity, middle_capacity;
     uint32_t loads;          /* number of levels loaded so far */
     struct subdiv_tri *tris; /* triangles of the current level */
     size_t tri_count, tri_capacity;
     uint32_t *next; /* by corner (3 * triangle + i): the next corner at which the same edge begins; TRIMESH_NONE: none */
     size_t next_capacity;
-    struct subdiv_list made; /* triangles made since the list was last emptied */
-    struct subdiv_list open; /* triangles that subdiv_mesh_apply() still has to split */
+    struct subdiv_list made; /* indices of the triangles made since this list was last emptied */
+    struct subdiv_list open; /* indices of the triangles that subdiv_mesh_apply() still has to split */
 };
 
-/* Builds the mesh over a geometry, to which it will add vertices. Returns false if out of memory. Call subdiv_mesh_finish() in both
- * cases. */
+/* Builds the mesh over a geometry, to which subdivision will add vertices. Returns false if out of memory. Call subdiv_mesh_finish() in
+ * both cases. */
 bool subdiv_mesh_init(struct subdiv_mesh *mesh, struct geometry *geometry);
 /* Frees the mesh, but not the geometry. */
 void subdiv_mesh_finish(struct subdiv_mesh *mesh);
@@ -71,8 +73,8 @@ static inline bool subdiv_mesh_is_split(const struct subdiv_mesh *mesh, uint32_t
 {
     return mesh->cuts[edge].load == mesh->loads;
 }
-/* Splits an edge at its stored fraction, at position_m. Triangles change only in subdiv_mesh_apply(). Returns true if the position
- * cuts[edge].middle is new, false if another level had already split the edge. */
+/* Splits an edge at its stored fraction (subdiv_edge.share), at position_m. Triangles change only in subdiv_mesh_apply(). Returns true if
+ * the position cuts[edge].middle is new, false if another level had already split the edge. */
 bool subdiv_mesh_split_edge(struct subdiv_mesh *mesh, uint32_t edge, const float position_m[3]);
 /* Appends a number to a list. */
 static inline void subdiv_mesh_list(struct subdiv_list *list, uint32_t number)
@@ -86,14 +88,15 @@ static inline void subdiv_mesh_list(struct subdiv_list *list, uint32_t number)
 void subdiv_mesh_sort(struct subdiv_list *list);
 /* Marks all triangles of the current level as new (mesh->made). */
 void subdiv_mesh_list_all(struct subdiv_mesh *mesh);
-/* Splits the triangles at all edges that subdiv_mesh_split_edge() or another level has split. Returns the number of triangles added. */
+/* Splits all triangles of the current level at their split edges, whether subdiv_mesh_split_edge() or another level split the edge. Returns
+ * the number of triangles added. */
 size_t subdiv_mesh_apply(struct subdiv_mesh *mesh);
 /* Inserts a vertex into a triangle at these barycentric weights. Returns the vertex. */
 uint32_t subdiv_mesh_insert(struct subdiv_mesh *mesh, size_t tri, const double weights[3], const float position_m[3]);
 
 /* Returns the other diagonal of the two triangles at an edge: the edge between their opposite corners, which need not exist in the level.
- * The two triangles must run through the edge in opposite directions. Returns TRIMESH_NONE if the triangles do not share the edge's two
- * vertices. */
+ * The two triangles must pass along the edge in opposite directions (equal winding). Returns TRIMESH_NONE if the triangles do not share the
+ * edge's two vertices. */
 uint32_t subdiv_mesh_opposite_edge(struct subdiv_mesh *mesh, const uint32_t tris[2], uint32_t edge);
 /* Flips the two triangles' common edge to the other diagonal, `across`. */
 void subdiv_mesh_flip_edge(struct subdiv_mesh *mesh, const uint32_t tris[2], uint32_t edge, uint32_t across);

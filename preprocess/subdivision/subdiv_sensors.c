@@ -9,8 +9,9 @@
 #include "surface/mesh/bvh.h"
 
 #define ON_OF_SIZE 1e-5 /* relative to the asset's size; a sensor this close to a vertex or an edge gets its vertex there */
-#define MAX_CUTS 30     /* maximum number of edges split at one sensor because another level splits them elsewhere */
-#define FEW 32          /* number of sensors up to which all triangles are searched instead of building a tree */
+#define MAX_CUTS 30     /* maximum number of edges that are split at one sensor because another level has split them at a different point */
+/* maximum number of sensors for which every triangle is compared with every sensor instead of building a bounding volume hierarchy */
+#define FEW 32
 
 struct sensor_hit { /* the point of a level nearest to a sensor */
     size_t tri;
@@ -46,8 +47,8 @@ static double try_piece(const struct subdiv *subdiv, size_t t, const double poin
     return distance_m;
 }
 
-/* Finds the piece nearest to a point among the pieces of one original triangle of the level: the piece in the original's slot, and the
- * appended pieces. */
+/* Finds, among the pieces of the level's original triangle `tri`, the piece nearest to a point. The first piece has the index of the
+ * original; the others were appended. Returns the distance. */
 static double find_piece(const struct subdiv *subdiv, uint32_t tri, const double point[3], struct sensor_hit *hit)
 {
     double best_m = try_piece(subdiv, tri, point, INFINITY, hit);
@@ -139,7 +140,7 @@ static void stand(struct subdiv *subdiv, uint32_t tri, size_t sensor, double err
     subdiv_measure_places(subdiv, place, NULL, 1);
 }
 
-/* --- nearest triangle to each sensor; the first of equally near ones ------------------------------------------------------------- */
+/* --- nearest triangle to each sensor; of equally near ones the triangle with the lowest index ----------------------------------- */
 
 static void look_at_all(const struct subdiv *subdiv, uint32_t *nearest)
 {

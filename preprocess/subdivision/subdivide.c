@@ -11,53 +11,60 @@
 #include "preprocess/subdivision/subdivide_impl.h"
 
 #define MAX_ROUNDS 16
-#define GRAIN 2048     /* triangles per unit of work: a few tenths of a millisecond */
-#define MAX_STORED 512 /* samples at positions are stored if one has at most this many numbers, else computed again */
-#define LARGE 0.25     /* share of the distance to the nearest sensor; a triangle with a longer edge is large */
-/* sum of a triangle's edge errors, in limits; below it, only one of 500 large triangles has an error inside above the limit */
+#define GRAIN 2048 /* triangles per unit of work: a few tenths of a millisecond */
+/* maximum count of numbers in a sample for which the samples at all positions are stored; larger samples are computed again */
+#define MAX_STORED 512
+#define LARGE 0.25 /* share of the distance to the nearest sensor; a triangle is large if it has a longer edge */
+/* sum of a triangle's edge errors, in multiples of the limit; below this sum, only one of 500 large triangles has an error inside above the
+ * limit */
 #define LIKELY 1.0
-#define MIN_INSIDE 2.0 /* in multiples of shortest_m; a triangle whose longest edge is at most this long is not measured inside */
-#define FLAT 1e-3      /* a triangle is flat if its longest edge is shorter than the sum of the other two by at most this share */
+/* in multiples of the minimum length shortest_m; a triangle whose longest edge is at most this long is not measured inside */
+#define MIN_INSIDE 2.0
+#define FLAT 1e-3 /* a triangle is flat if its longest edge is shorter than the sum of the other two by at most this share */
 /* share of the longest edge; the opposite corner of a flat triangle must be at least this far from the edge's ends */
 #define ASIDE 0.1
 /* height relative to the asset's size, a few rounding errors of a float; a triangle below this height is degenerate */
 #define LINE_OF_SIZE 2.5e-7
-#define MORE_PLACES 12.0        /* capacity for positions, in multiples of the model's number of positions */
+#define MORE_PLACES 12.0        /* number of positions for which memory is reserved, in multiples of the model's number of positions */
 #define MAX_REPORTED_EDGES 2000 /* maximum number of short edges of a coarser level that are measured for the report */
-/* subdivision of a level stops when it may grow by less than this share of its limit; each round uses half of the rest */
+/* subdivision of a level stops when a round of splits may add fewer triangles than this share of the level's; a round may add half of the
+ * triangles that the limit leaves */
 #define FULL 2e-4
 
-/* Growth limits of the finest level: additional triangles as a multiple of its own, and as a count. The larger limit applies. */
+/* limits of the triangles added to the finest level: as a multiple of its triangles, and as a count; the larger limit applies */
 #define FINEST_GROWTH 2.0
 #define FINEST_GROWTH_TRIS 100000.0
 #define WORTH 0.95 /* a coarser level is dropped if it would need more than this share of the next finer one's triangles */
-/* used instead of WORTH with MANY_SENSORS or more, because distances then take most of a file, and if the finest level reached its limit */
+/* used in place of WORTH if there are at least MANY_SENSORS, whose distances then take most of a file, or if the finest level reached its
+ * limit */
 #define WORTH_MANY 0.5
 #define MANY_SENSORS 128
-/* minimum triangle count of a level whose final size is first estimated on a sample; smaller samples are unreliable */
+/* minimum number of triangles for which a level's size is first estimated from a sample; smaller samples are unreliable */
 #define SAMPLE_WORTH 9000
 #define SAMPLE_ROUNDS 4 /* maximum rounds of splits on a sample; more rounds would not change the estimate */
-/* minimum length of pieces of an edge in the finest level, in tolerances; short because sensors may be close together */
+/* minimum length of a piece of an edge in the finest level, in multiples of the model's tolerance; short because sensors may be close
+ * together */
 #define SHORTEST_NEAR 0.125
-/* minimum length of pieces of an edge in a coarser level, in its error_m: at most a pixel where the level is drawn */
+/* minimum length of a piece of an edge in a coarser level, in multiples of its error_m: at most a pixel where the level is drawn */
 #define SHORTEST 1.0
 #define JUMP_WIDTH 8    /* in tolerances or errors */
-#define ON_SURFACE 0.25 /* in tolerances; distance from the surface up to which a point counts as being on it */
-/* in multiples of the level's error_m; a coarser level may show at a point the field of another point up to this far away */
+#define ON_SURFACE 0.25 /* distance from the surface, in multiples of the tolerance, up to which a point counts as on the surface */
+/* in multiples of the level's error_m; distance up to which a coarser level may show the field of another point */
 #define SLACK 0.7
 
 /* --- cutting -------------------------------------------------------------------------------------------------------------- */
 
 #define BINS (1u << 16)
-static uint32_t bin_of(float error) /* positive floats compare like their bit patterns, so the upper 16 bits serve as bin index */
+/* index of the histogram bin: positive floats compare like their bit patterns, so the upper 16 bits serve */
+static uint32_t bin_of(float error)
 {
     uint32_t bits;
     memcpy(&bits, &error, sizeof(bits));
     return bits >> 16;
 }
 
-/* Removes all findings but the `most` with the largest errors, without changing their order. Of findings in the threshold's bin, keeps the
- * first ones. Returns the number of findings kept. */
+/* Keeps the `most` findings with the largest errors, in their order. The threshold comes from a histogram of errors; of findings in the
+ * threshold's bin, the first ones are kept. Returns the number of findings kept. */
 static size_t keep_worst(struct subdiv_finding *findings, size_t count, size_t most)
 {
     if (count <= most)
@@ -100,7 +107,7 @@ static bool is_too_short(const struct subdiv *subdiv, const struct subdiv_edge *
 /* Flags of a new triangle. SIDE_* flags exist per edge, shifted left by the edge's index 0 to 2. */
 #define SIDE_IS_NEW 1u
 #define SIDE_IS_TOO_SHORT 8u
-#define ASKS 64u /* the triangle has new edges and is not degenerate */
+#define ASKS 64u /* flag: the triangle has new edges and is not degenerate */
 
 struct sides {
     const struct subdiv *subdiv;
@@ -126,8 +133,9 @@ static void look_at_sides(void *arg, size_t begin, size_t end)
     }
 }
 
-/* Processes new edges. With asks = ASKS, of triangles with ASKS: lists the edges to measure and returns their number. With asks = 0, of
- * degenerate triangles: sets the error of edges still unmeasured to 0 and returns 0. */
+/* Sets the error of unmeasured edges of new triangles to 0 until they are measured. asks = ASKS: visits triangles with this flag, lists in
+ * findings[] the edges that must be measured, and returns their number. asks = 0: visits degenerate triangles, whose edges need no
+ * measurement, and returns 0. */
 static size_t take_new_sides(struct subdiv *subdiv, const struct sides *sides, unsigned asks, struct subdiv_finding *findings)
 {
     struct subdiv_mesh *mesh = &subdiv->mesh;
@@ -178,9 +186,10 @@ static int longest_edge(const struct subdiv *subdiv, const struct subdiv_tri *tr
     return longest;
 }
 
-/* Returns whether the error inside a triangle may exceed the limit. Where a field bends evenly, the error at the centre is 4/9 of the sum
- * of the three edges' errors. In a triangle that is large compared with the distance to the nearest sensor, the error inside may have any
- * size. Such a triangle with small edge errors is measured only in the last pass, which has the smallest limit. */
+/* Returns whether the field's error inside a triangle may exceed the limit although its edges are good. Where a field bends evenly, the
+ * error at the centre is 4/9 of the sum of the three edges' errors. In a triangle that is large compared with the distance to the nearest
+ * sensor, the error inside may have any size. Such a triangle with small edge errors is measured only in the last pass over the level,
+ * which has the smallest limit (SUBDIV_AIM). */
 static bool inside_may_err(const struct subdiv *subdiv, const struct subdiv_tri *tri, double limit)
 {
     const struct subdiv_mesh *mesh = &subdiv->mesh;
@@ -200,7 +209,7 @@ static bool inside_may_err(const struct subdiv *subdiv, const struct subdiv_tri 
 struct insides {
     const struct subdiv *subdiv;
     double limit;
-    char *asked; /* by new triangle: whether to measure its inside */
+    char *asked; /* by new triangle: whether the error inside it must be measured */
 };
 
 static void choose_insides(void *arg, size_t begin, size_t end)
@@ -348,7 +357,8 @@ static struct subdiv_finding *list_errors(const struct subdiv *subdiv, double li
 {
     const struct subdiv_mesh *mesh = &subdiv->mesh;
     struct subdiv_list corners = { 0 };
-    bool all = mesh->made.count == mesh->tri_count; /* true in the first round: every triangle is new, and no list of new ones is needed */
+    /* true in the first round: every triangle is new, so no list of new triangles is needed */
+    bool all = mesh->made.count == mesh->tri_count;
     for (size_t t = 0; t < mesh->tri_count && all; t++)
         for (uint32_t i = 0; i < 3; i++)
             if ((double)mesh->cuts[mesh->tris[t].e[i]].error > limit)
@@ -369,7 +379,8 @@ static struct subdiv_finding *list_errors(const struct subdiv *subdiv, double li
     return findings;
 }
 
-/* Splits edges with an error above the limit, largest first, as far as the level may grow. Returns false if there was nothing to do. */
+/* Splits the edges with the largest errors above the limit, as many as the level's remaining triangles allow. Returns false if no edge was
+ * split. */
 static bool cut_worst(struct subdiv *subdiv, double limit)
 {
     struct subdiv_mesh *mesh = &subdiv->mesh;
@@ -399,8 +410,8 @@ static void note_left(struct level *level, enum level_limit limit, float error, 
     level->left[limit].steps = fmaxf(level->left[limit].steps, error / (float)SUBDIV_ERROR);
 }
 
-/* Measures a sample of the edges that were too short to be measured, for the report. Returns the number of edges that each measured one
- * represents. */
+/* Measures, for the report, a sample of the edges that were too short to split and therefore unmeasured. Returns the number of edges that
+ * each measured edge represents. */
 static uint32_t ask_some(struct subdiv *subdiv)
 {
     struct subdiv_mesh *mesh = &subdiv->mesh;
@@ -455,8 +466,8 @@ static void cut_to(struct subdiv *subdiv, double limit)
     }
 }
 
-/* Estimates a level's final size by splitting a sample of its triangles down to the largest limit. Returns whether the level would
- * certainly need too many triangles; then most of its work is saved. */
+/* Estimates a level's final size by splitting a sample of its triangles until no error exceeds the limit `large`. Returns whether the whole
+ * level would certainly need too many triangles, so that its subdivision can be skipped. */
 static bool is_hopeless(struct subdiv *subdiv, const struct level *level, double large)
 {
     struct level sample;
@@ -480,7 +491,8 @@ static bool is_known_hopeless(const struct subdiv *subdiv)
     return subdiv->in->cache && subdiv->in->cache->hopeless >> subdiv->level & 1;
 }
 
-/* Subdivides a level in passes with decreasing limits, so that only small errors remain if the level reaches its triangle limit. */
+/* Subdivides a level in several passes, each with a smaller error limit. If the level reaches its triangle limit, the errors that remain
+ * are then the smallest ones. */
 static void subdivide_level(struct subdiv *subdiv, struct level *level, size_t finer_tris)
 {
     static const double limits[] = { 16 * SUBDIV_AIM, 4 * SUBDIV_AIM, 2 * SUBDIV_AIM, SUBDIV_AIM };
@@ -509,7 +521,8 @@ static void subdivide_level(struct subdiv *subdiv, struct level *level, size_t f
     subdiv_mesh_store(&subdiv->mesh, level);
 }
 
-/* Subdivides all levels. A coarser level that reaches its limit is dropped, because the next finer one is no more expensive. */
+/* Subdivides all levels. A coarser level that reaches its triangle limit is dropped: the next finer level takes its place at little
+ * cost. */
 static void subdivide_all(struct subdiv *subdiv, struct levels *levels)
 {
     size_t kept = 0, finer_tris = 0;
@@ -560,7 +573,8 @@ static bool start(struct subdiv *subdiv, struct geometry *geometry)
     if (!subdiv_mesh_init(&subdiv->mesh, geometry) || !subdiv_find_parts(subdiv))
         return false;
     size_t places = subdiv->mesh.welded.count;
-    subdiv->geodesic_capacity = (size_t)(MORE_PLACES * (double)places) * subdiv->sensors; /* memory is committed only when used */
+    /* large, but the kernel provides memory only for pages that are used */
+    subdiv->geodesic_capacity = (size_t)(MORE_PLACES * (double)places) * subdiv->sensors;
     subdiv->geodesic_m = mem_try_array(subdiv->geodesic_capacity, sizeof(*subdiv->geodesic_m));
     if (subdiv->samples <= MAX_STORED) {
         subdiv->share_capacity = places * subdiv->samples;

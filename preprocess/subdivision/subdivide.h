@@ -23,7 +23,7 @@
 #define SUBDIV_ERROR (1 / 255.0) /* share of the range: one colour step */
 
 struct subdiv_input {
-    struct linear_error *linear; /* error measure; subdivide_levels() sets its radii */
+    struct linear_error *linear; /* error measure; subdivide_levels() calls linear_error_set_radius() */
     const struct surface *surface;
     const struct surface_field *field; /* distances from the sensors */
     /* subdivide_levels() sets their nearest_vertex to the vertex inserted at the sensor in the finest level */
@@ -31,7 +31,7 @@ struct subdiv_input {
     struct workers *workers;           /* may be NULL */
     struct subdiv_cache *cache;        /* cache of measured errors from run to run; zeroed or NULL: nothing is cached */
     struct sample_cache *sample_cache; /* may be NULL */
-    /* May be NULL. Called for each finished level. The level's content will not change any more, but its address in `levels` may. */
+    /* called for each finished level; may be NULL. The level's content will not change any more, but its address in `levels` may. */
     void (*level_done)(void *arg, const struct level *level);
     void *arg;
 };

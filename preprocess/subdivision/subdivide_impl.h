@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shared by the files of adaptive subdivision (subdiv*.c). */
+/* Declarations shared by the files of adaptive subdivision (subdiv*.c). */
 #ifndef PREPROCESS_SUBDIVISION_SUBDIVIDE_IMPL_H
 #define PREPROCESS_SUBDIVISION_SUBDIVIDE_IMPL_H
 #include <math.h>
@@ -7,36 +7,38 @@
 #include "preprocess/subdivision/subdiv_mesh.h"
 #include "preprocess/subdivision/subdivide.h"
 
-/* error limit at the sampled points; the reserve of a tenth is for larger errors between these points */
+/* error limit at the sampled points, a tenth below SUBDIV_ERROR, because errors between these points may be larger */
 #define SUBDIV_AIM (0.9 * SUBDIV_ERROR)
 
 struct subdiv {
     const struct subdiv_input *in;
     struct subdiv_mesh mesh;
-    const uint32_t *model;      /* vertex indices of the original model's triangles (the finest level before subdivision) */
-    size_t sensors, samples;    /* array strides per position: sensor count, and count of numbers in a sample (linear_error.h) */
-    float *geodesic_m, *interp; /* [position][sensor] distances in metres; [position][sample] weights, or NULL if too large */
-    struct interp_norm *norms;  /* [position][norm] */
+    const uint32_t *model; /* vertex indices of the original model's triangles (the finest level before subdivision) */
+    /* count of numbers per position: in geodesic_m (one per sensor), and in `interp` (one sample, linear_error.h) */
+    size_t sensors, samples;
+    /* [position][sensor] distances along the surface in metres; [position][sample] weights, or NULL if they would be too large */
+    float *geodesic_m, *interp;
+    struct interp_norm *norms;                                           /* [position][norm] */
     size_t geodesic_capacity, share_capacity, norm_capacity, norm_count; /* norm_count: normalisations per position */
     uint32_t *part;                                                      /* by position: its connected component */
     struct subdiv_face {
         double normal[3]; /* not normalised */
         uint32_t part;
-    } * faces; /* normals and components, by triangle of the original model */
+    } * faces; /* by triangle of the original model: normal and connected component */
     size_t part_capacity;
     double size_m;
     /* State of the current level: */
     uint32_t level; /* index of the level */
     bool finest;
-    double on_surface_m; /* a point farther than this from the surface is hidden inside another part */
+    double on_surface_m; /* a point farther than this from the surface counts as hidden inside another part */
     double error_m, shortest_m, slack_m;
-    double jump_m;    /* length in metres; where a distance jumps, shorter edges are not split */
+    double jump_m;    /* edges shorter than this, in metres, are not split where the distance along the surface jumps */
     bool finest_full; /* the finest level reached its triangle limit */
     bool full;        /* the level has almost reached, or would certainly reach, its triangle limit */
-    /* count of sampled blocks of triangles while a sample of the level is processed; 0: the whole level is */
+    /* count of blocks of triangles in the current sample (subdiv_take_sample()); 0: the whole level is processed */
     size_t sample_blocks;
-    double sample_of; /* number of the level's triangles per triangle of the sample */
-    /* triangle limit of the level; first_count: triangles of the level before vertices were inserted at sensors */
+    double sample_of; /* number of the level's triangles that one triangle of the sample represents */
+    /* most_tris: triangle limit of the level; first_count: number of its triangles before vertices were inserted at sensors */
     size_t most_tris, first_count;
 };
 
@@ -63,7 +65,8 @@ static inline bool subdiv_is_short(const struct subdiv *subdiv, double length_m)
     return length_m < 2 * subdiv->shortest_m;
 }
 
-/* Runs body(arg, begin, end) over [0, count) on all cores, in ranges of about `grain`; on the calling thread if there are no workers. */
+/* Calls body(arg, begin, end) for ranges of about `grain` indices that cover [0, count), on all cores; on the calling thread if there are
+ * no workers. */
 void subdiv_parallel(const struct subdiv *subdiv, size_t count, size_t grain, void (*body)(void *arg, size_t begin, size_t end), void *arg);
 
 /* --- measuring (subdiv_measure.c) --- */
@@ -71,10 +74,10 @@ void subdiv_parallel(const struct subdiv *subdiv, size_t count, size_t grain, vo
 /* The measured error of one edge or triangle. */
 struct subdiv_finding {
     uint32_t number;
-    float error, share; /* share: the best fraction at which to split the edge */
+    float error, share; /* share: fraction at which a split of the edge leaves the smallest error */
     float barred;       /* error, as a share of the range, that no split may fix */
     bool jumps;
-    bool is_cached;   /* the finding was taken from the last run's cache, not measured */
+    bool is_cached;   /* the last run's cache contained the finding, so it was not measured */
     float doubt, off; /* see subdiv_cache.h */
     uint64_t key;     /* cache key */
 };
@@ -83,42 +86,43 @@ struct subdiv_finding {
 bool subdiv_find_parts(struct subdiv *subdiv);
 /* Sets the connected component of a new position. */
 void subdiv_add_place(struct subdiv *subdiv, uint32_t place, uint32_t part);
-/* Computes the weights at positions from `first` on. With `edges` (the edge that each position is on) computes their distances first. */
+/* Computes the samples (linear_error.h) at the positions from index `first` on. edges: for each of these positions, the edge it is on, from
+ * which its distances are computed first; NULL: the distances are known. */
 void subdiv_measure_places(struct subdiv *subdiv, uint32_t first, const uint32_t *edges, size_t count);
 /* Measures edges and stores the results at the edges themselves. */
 void subdiv_measure_new_edges(struct subdiv *subdiv, struct subdiv_finding *findings, size_t count);
 /* Measures the interpolation error inside triangles. */
 void subdiv_measure_insides(struct subdiv *subdiv, struct subdiv_finding *findings, size_t count);
 
-/* --- levels that would grow too large (subdiv_bound.c) --- */
+/* --- prediction of levels that would grow too large (subdiv_bound.c) --- */
 
 /* Returns whether a coarser level, or the level that the current sample represents, will certainly need more triangles than allowed.
  * Estimated from the measured errors, before the splits are made. */
 bool subdiv_will_exceed_bound(const struct subdiv *subdiv);
-/* Copies some of a level's triangles, in blocks of a few neighbours, into *sample, which the caller frees (level_finish()). Returns the
- * number of blocks. */
+/* Copies some of a level's triangles into *sample, in blocks of a few consecutive triangles. The caller frees *sample with level_finish().
+ * Returns the number of blocks. */
 size_t subdiv_take_sample(struct level *sample, const struct level *level);
 
 /* --- cache (subdiv_cache.c) --- */
 
 /* Returns the cache key of a finding about the edge or triangle with these corners, or 0 if it is not cached. Thread: any. */
 uint64_t subdiv_cache_key(const struct subdiv *subdiv, const uint32_t *corners, size_t count);
-/* Looks up the last run's finding with this key, if it still holds. *next: guess of its index, initially 0; updated for the next call.
- * Returns false if it is unknown or may no longer hold. Thread: any. */
+/* Looks up the last run's finding with this key, if it is still valid despite the sensors that changed. *next: guess of its index,
+ * initially 0; updated for the next call. Returns false if the key is unknown or the finding may be out of date. Thread: any. */
 bool subdiv_cache_find(const struct subdiv *subdiv, uint64_t key, const uint32_t *corners, size_t count, uint32_t *next,
                        struct subdiv_finding *finding);
-/* Records a finding, with its key, for the next run. */
+/* Records a finding for the next run, under finding->key. */
 void subdiv_cache_add(struct subdiv *subdiv, const struct subdiv_finding *finding);
 
 /* --- edge flips (subdiv_flip.c) --- */
 
-/* Flips edges between two triangles with an error above `limit`, if the error along the other diagonal is smaller and the surface stays
- * about in place. */
+/* Flips edges between two triangles with an error above `limit`, if the error along the other diagonal is smaller and the surface moves by
+ * at most a small share of the level's error. */
 void subdiv_flip_edges(struct subdiv *subdiv, double limit);
 
 /* --- sensors (subdiv_sensors.c) --- */
 
-/* Inserts a vertex at each sensor. error_m: largest distance of the level's surface from the finest level's. */
+/* Inserts a vertex at each sensor. error_m: largest distance of the current level's surface from the finest level's surface, metres. */
 void subdiv_place_sensors(struct subdiv *subdiv, double error_m);
 
 #endif
