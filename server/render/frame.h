@@ -7,12 +7,12 @@
 
 #include "render/view.h"
 
-#define FRAME_BEHIND_PX (-1e4f) /* x_px of a marker behind the eye */
+#define FRAME_BEHIND_PX (-1e4f) /* value of x_px for a marker behind the eye */
 
 struct frame_marker {
     int tag;
     float x_px, y_px; /* pixels from the top left of the frame; may lie outside the frame */
-    uint8_t occluded; /* 1: behind a surface or outside the frame */
+    uint8_t occluded; /* 1: a surface hides the marker, or it lies outside the frame; 0: visible */
     uint32_t quality; /* OPC UA quality of the reading shown; for a difference the worse of the two readings */
     /* reading in engineering units, 0 where the quality is Bad; SHOW_DIFFERENCE: now minus baseline; SHOW_DISTANCE: metres, NAN if
        unknown */
@@ -49,9 +49,11 @@ struct frame {
     int64_t data_utc_ns;   /* UTC of the snapshot that the frame shows */
     bool clock_unset;      /* true if the clock that gave data_utc_ns was not synchronised */
     int64_t oldest_age_ns; /* age of the oldest reading used; INT64_MAX: no reading contributes */
-    double drawn_error;    /* error bound, in engineering units and rounded up, where the frame is marked uncertain; 0: nothing is marked */
+    /* largest error, in engineering units and rounded up, of values in areas that the frame marks as uncertain; 0: no area is marked */
+    double drawn_error;
     int64_t field_ns, render_ns, readback_ns; /* duration of each stage */
-    int64_t turn_ns;             /* time that the render thread spent on this frame, waiting for the GPU included; 0: drawn elsewhere */
+    /* time that the render thread spent on this frame, waiting for the GPU included; 0: not drawn by a render thread */
+    int64_t turn_ns;
     struct baseline baseline;    /* the baseline that a difference is taken from; id 0: none */
     struct frame_record *record; /* readings that the frame was drawn from (render/frame_record.h); NULL: not requested */
     uint64_t content;            /* equal for equal frames: hash of view and field versions, without sequence numbers and times */
@@ -61,7 +63,7 @@ struct frame {
 /* Fills in values and qualities of the markers from the snapshot that the frame was drawn from, and removes markers behind the eye. Call
    this before other threads see the frame. baselines: for differences; NULL: there are none. */
 void frame_read_markers(struct frame *frame, const struct snapshot *snapshot, struct baselines *baselines);
-struct frame *frame_create(int width_px, int height_px); /* returns NULL when out of memory. The caller owns one reference */
+struct frame *frame_create(int width_px, int height_px); /* returns NULL when out of memory; the caller owns the frame (frame_unref) */
 /* Returns a frame that shows a part of `whole` and shares its pixels. The part must lie inside. Markers and labels near the part are
    copied. Never NULL. */
 struct frame *frame_cut(struct frame *whole, const struct frame_part *part);

@@ -13,7 +13,8 @@ struct frame_context {
     const struct gpu_scene *gpu_scene;
     const struct view *view;
     struct view_constants constants;
-    struct light_key lit_by; /* key of the light used: the one that the view asks for, or the most similar light that is ready */
+    /* key of the light set (baked light) used: the set that the view asks for, or the most similar one that is ready */
+    struct light_key lit_by;
     const struct light_set *light;
     const struct target *target;
     struct field *field;

@@ -7,7 +7,7 @@
 #include "render/view.h"
 #include "value/baselines.h"
 
-enum { FRAME_RECORD_BASELINES = 2 }; /* baselines: one for each half of a split view */
+enum { FRAME_RECORD_BASELINES = 2 }; /* baselines in a record at most: one for each half of a split view */
 struct frame_record {
     _Atomic int refs;
     struct snapshot *readings;
@@ -26,6 +26,7 @@ struct frame_record *frame_record_create(const struct view *view, const struct s
 /* Returns a record in which no tag has a reading. The caller fills it in before other threads see it. */
 struct frame_record *frame_record_empty(size_t tag_count);
 struct frame_record *frame_record_ref(struct frame_record *record); /* NULL is allowed and returned */
-void frame_record_unref(struct frame_record **record);              /* &NULL is fine; sets it to NULL */
+/* releases the record and sets *record to NULL; accepts a pointer to NULL */
+void frame_record_unref(struct frame_record **record);
 
 #endif

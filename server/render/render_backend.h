@@ -31,9 +31,10 @@ struct render_backend {
     bool (*end)(struct renderer *renderer, struct render_job *job);
     /* Frees the backend's part of the job. */
     void (*abandon)(struct renderer *renderer, struct render_job *job);
-    /* Submits all remaining work to the GPU without waiting; end waits. Returns false on failure, logged. NULL where there is no GPU. */
+    /* Submits all remaining work to the GPU without waiting; end() waits for the result. Returns false on failure, logged. NULL where there
+       is no GPU. */
     bool (*submit)(struct renderer *renderer, struct render_job *job);
-    /* Returns whether end would return without waiting, for a submitted job. NULL where submit is NULL. */
+    /* Returns whether the GPU has finished a submitted job, so that end() returns without waiting. NULL where submit is NULL. */
     bool (*is_complete)(const struct render_job *job);
 };
 extern const struct render_backend render_backend_gl, render_backend_soft;

@@ -25,7 +25,7 @@ struct render_job {
     struct fields_entry *copies;        /* copies of the shown fields, per asset; NULL: the frame is drawn at once and needs no copies */
     int *visible;
     struct isoline_points isolines;
-    bool keeps; /* once the job has ended, a frame with the same view and other readings can be drawn quickly */
+    bool keeps; /* true: once the job has ended, a frame of the same view with other readings is drawn in about the time of a preview */
 };
 
 /* Takes ownership of the frame; copies the context's lists and view. */

@@ -34,7 +34,7 @@ bool renderer_keeps(const struct render_job *job);
 bool renderer_step(struct renderer *renderer, struct render_job *job, int64_t budget_ns);
 /* Completes the frame and destroys the job. The caller owns the frame. NULL on failure, logged. */
 struct frame *renderer_end(struct renderer *renderer, struct render_job **job);
-/* Destroys the job without a frame. &NULL is fine; sets it to NULL. */
+/* destroys the job without a frame and sets *job to NULL; accepts a pointer to NULL */
 void renderer_abandon(struct renderer *renderer, struct render_job **job);
 /* Returns whether there is a GPU, so that renderer_submit() works. */
 bool renderer_submits(const struct renderer *renderer);

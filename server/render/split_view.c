@@ -14,7 +14,7 @@ static const uint8_t divider_bgrx[4] = { 48, 40, 34, 255 };
 
 struct split_view {
     struct view view;
-    int half_count, done; /* done: halves that need no more steps */
+    int half_count, done; /* half_count: number of halves (1 or 2); done: number of halves that need no more steps */
     struct render_job *jobs[2];
 };
 
@@ -77,7 +77,8 @@ static void draw_divider(struct frame *frame, int x_px)
             memcpy(frame->bgrx + (size_t)y * (size_t)frame->stride_bytes + (size_t)x * 4, divider_bgrx, 4);
 }
 
-/* Copies a half's markers. x_px: left edge of the half. A marker outside its half is left out, since it would show in the other half. */
+/* Copies a half's markers into the whole frame. x_px: left edge of the half. A marker outside its half is left out, since it would show in
+   the other half. */
 static void copy_markers(struct frame *whole, const struct frame *part, int half, int x_px)
 {
     size_t capacity = whole->marker_count;

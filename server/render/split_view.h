@@ -16,9 +16,9 @@ struct split_view; /* a frame being drawn: one job per half */
 /* Plans a frame of this view: one frame plan per half. Computes the field of each half for about budget_ns (INT64_MAX: until done). The
    caller owns the plan (split_plan_destroy). NULL: a field is not ready yet. */
 struct split_plan *split_view_plan(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot, int64_t budget_ns);
-void split_plan_destroy(struct split_plan **plan); /* &NULL is fine; sets it to NULL */
+void split_plan_destroy(struct split_plan **plan); /* frees the plan and sets *plan to NULL; accepts a pointer to NULL */
 
-/* The functions below do for all halves what the renderer.h function with the same suffix does for one frame. */
+/* The functions below apply the renderer.h function with the same suffix to all halves. */
 bool split_view_is_quick(struct renderer *renderer, const struct split_plan *plan);
 struct frame *split_view_draw(struct renderer *renderer, const struct split_plan *plan);
 struct split_view *split_view_begin(struct renderer *renderer, const struct split_plan *plan);
@@ -27,7 +27,8 @@ bool split_view_is_complete(const struct split_view *split);
 bool split_view_keeps(const struct split_view *split);
 bool split_view_step(struct renderer *renderer, struct split_view *split, int64_t budget_ns);
 struct frame *split_view_end(struct renderer *renderer, struct split_view **split);
-void split_view_abandon(struct renderer *renderer, struct split_view **split); /* &NULL is fine; sets it to NULL */
+/* abandons all jobs and sets *split to NULL; accepts a pointer to NULL */
+void split_view_abandon(struct renderer *renderer, struct split_view **split);
 
 /* Plans and draws a frame and waits for its field. The caller owns the frame. NULL on failure, logged. */
 struct frame *split_view_draw_now(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot);

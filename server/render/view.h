@@ -13,7 +13,9 @@
 
 enum look {
     LOOK_DEFAULT,  /* field colours, shaded only by changing L* by up to 7; PBR for assets without a field */
-    LOOK_GLOSSY,   /* PBR with the field as albedo (Fig. 13 of the paper); labelled in the picture, since shading changes the colours */
+    /* PBR with the field as albedo (Fig. 13 of Kim & Suh, Electronics 2025, 14(15), 2938); labelled in the picture, since shading changes
+       the colours */
+    LOOK_GLOSSY,
     LOOK_FLAT,     /* no shading */
     LOOK_MATERIALS /* no field: all assets with their models' materials in full colour */
 };
@@ -26,7 +28,7 @@ enum tier { TIER_PREVIEW, TIER_REFINED };
 enum { VIEW_LINES = PLANT_ISOLINES };
 struct color_scale { /* colours and isolines of a scale, in addition to colour map, range and colour step. All zero: the defaults */
     bool log;
-    double breaks[SCALE_BREAKS]; /* ascending values that separate bands of colour; replace the ramp */
+    double breaks[SCALE_BREAKS]; /* ascending values that separate bands of uniform colour; used instead of a continuous ramp */
     int break_count;
     double lines[VIEW_LINES]; /* isolines, ascending; edges of bands always have lines */
     int line_count;
@@ -65,7 +67,7 @@ struct view {
     bool strip;             /* draws a machine-readable legend strip into the overlay */
     int environment;        /* index of the environment map: 0: the built-in sky; 1 and up: those of the plant file */
     struct visibility visibility;
-    int64_t at_us;           /* the instant shown, UTC microseconds; 0: now. Set by view_set_instant */
+    int64_t at_us;           /* the instant shown, UTC microseconds; 0: now. Set it with view_set_instant() */
     bool split;              /* true: two halves side by side under one camera: this struct is the left half, `right` the right half */
     struct split_half right; /* right half; zero if the view is not split */
 };
@@ -86,8 +88,9 @@ enum { VIEW_ALL_LINES = VIEW_LINES + SCALE_EDGES };
 int view_lines(const struct view *view, double lines[VIEW_ALL_LINES]);
 /* Copies half 0 (all of a view that is not split) or half 1 into `out` as a view of its own. */
 void view_half(const struct view *view, int half, struct view *out);
-/* Sets the instant that the view shows; 0: now. slot: of the instant's historical snapshot (value/snapshot_cache.h); 0: now, or not loaded
-   yet. The slot is stored in the field parameters of both halves: call this again after replacing them. */
+/* Sets the instant that the view shows; 0: now. slot: index of the instant's snapshot in the cache of historical snapshots
+   (value/snapshot_cache.h); 0: now, or not loaded yet. The slot is stored in the field parameters of both halves: call this again after
+   replacing them. */
 void view_set_instant(struct view *view, int64_t at_us, int slot);
 /* Sets the trial whose sensor positions the view uses (field/trials.h), in both halves; 0: the plant's positions. Call this again after
    replacing the field parameters. */

@@ -10,7 +10,8 @@
 #include "render/gl/model.h"
 
 struct draw_instance { /* as in shaders/instance.glsl */
-    /* rows of eye_from_normal; the fourth elements of the rows are: index of the light block, index of the field block, unused */
+    /* rows of the matrix eye_from_normal. The fourth elements of the three rows are indices of blocks in the buffers of draw_batch_state:
+       light, field, unused */
     float normals[3][4];
     float clip_from_file[16];
     float from_file[3][4]; /* rows */

@@ -21,7 +21,7 @@ enum { REFINED_SAMPLES = 4 };
 static const int64_t TILE_NS = 4 * NS_PER_MS;
 static const double TRIANGLE_NS = 36;
 enum { TILE_TRIANGLES = 80000 };
-/* A refined frame that a GPU draws in less than this time is drawn at once, like a preview, instead of in steps. */
+/* A refined frame whose last GPU time was below this is drawn in one call, like a preview, instead of in steps. */
 static const int64_t MAX_QUICK_NS = 12 * NS_PER_MS;
 /* Occlusion culling runs for frames with at least this many triangles, about half a millisecond of a slow GPU. On a processor, testing
    boxes costs more than it saves. */
@@ -101,8 +101,8 @@ bool gl_backend_take_up(struct renderer *renderer, struct frame_context *context
     return true;
 }
 
-/* Prepares to continue a job after other frames were drawn meanwhile. From then on the job holds a reference to its light set, so that the
-   set is not evicted. */
+/* Prepares to continue a job after the renderer drew other frames. The job then holds a reference to its light set, so that the set is not
+   evicted. */
 static bool take_up(struct renderer *renderer, struct render_job *job)
 {
     return renderer_light_job(renderer, job) && gl_backend_take_up(renderer, &job->context);
@@ -222,7 +222,7 @@ static bool step(struct renderer *renderer, struct render_job *job, int64_t budg
     int cells = count_cells(job);
     unsigned shortages = gl_out_of_memory_count();
     if (own->tiles.next < cells && !take_up(renderer, job))
-        own->tiles.next = cells; /* counts as done: end() repeats the failed call and reports the error */
+        own->tiles.next = cells; /* a failed take_up() ends the steps: end() repeats the call and reports the error */
     while (own->tiles.next < cells && (spent_ns == 0 || spent_ns + (last_ns > TILE_NS ? last_ns : TILE_NS) <= budget_ns)) {
         int64_t work_ns = clock_work_ns();
         struct drawn_tile drawn = draw_tile(renderer, job);

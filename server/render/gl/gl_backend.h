@@ -24,7 +24,7 @@ struct gl_backend {
     int64_t refined_ns;         /* GPU time of the last refined frame; 0: unknown */
 };
 
-/* Binds light, colour map and uniforms of a frame, after other frames were drawn meanwhile. Returns false when out of GPU memory,
+/* Binds light, colour map and uniforms of a frame; needed again after other frames were drawn. Returns false when out of GPU memory,
    logged. */
 bool gl_backend_take_up(struct renderer *renderer, struct frame_context *context);
 

@@ -8,7 +8,8 @@
 #include "scene/asset.h"
 
 enum model_map { MODEL_BASE_COLOR, MODEL_METALLIC_ROUGHNESS, MODEL_NORMAL, MODEL_OCCLUSION, MODEL_EMISSIVE, MODEL_MAPS };
-/* two colour ramps per material: MUTED: greyed, for assets without a field; OWN: the material's own colours */
+/* two colour ramps (tables of colours from dark to bright) per material: MUTED: greyed, for assets without a field; OWN: the material's own
+   colours */
 enum { MODEL_MUTED, MODEL_OWN, MODEL_RAMPS };
 enum { MODEL_LIGHT_STEPS = 64 }; /* texels of a material's ramp */
 
@@ -46,7 +47,7 @@ struct gl_model {
     size_t level_count, material_count, texture_count;
     GLuint material_buffer;
     uint32_t *ramp_texels[MODEL_RAMPS]; /* MODEL_LIGHT_STEPS per material, from ramp_fill() */
-    GLuint ramps[MODEL_RAMPS];          /* textures of the ramps, one row per material */
+    GLuint ramps[MODEL_RAMPS];          /* textures of the colour ramps, by MODEL_MUTED and MODEL_OWN; one row per material */
 };
 
 struct model_draws { /* scratch memory for the draws of one submesh; zero-initialise */

@@ -10,11 +10,13 @@
 #include "render/matrix.h"
 
 enum { BIND_COMMANDS = 1, BIND_PLACES = 2, STRIP_VERTICES = 14 };
-/* The first round draws 1/8 of all triangles untested; each later round draws as many as all rounds before. */
+/* Occlusion culling draws assets in rounds, nearest first, and tests the boxes of the next round against the depth so far. The first round
+   draws 1/8 of all triangles untested; each later round draws as many as all rounds before. */
 enum { FIRST_ROUND_DIVISOR = 8 };
 static const int MIN_TESTED_TRIANGLES = 200; /* an asset with fewer triangles costs no more than testing its box */
 static const double MARGIN_PART = 1e-3;      /* margin around a box, relative to its size, since positions are 32-bit floats */
-static const double MARGIN_PX = 1;           /* additional margin at the far side, since sample coverage is not exact */
+/* additional margin around a box: pixels, at the distance of its farthest corner; GPUs round sample coverage */
+static const double MARGIN_PX = 1;
 
 bool occlusion_init(struct occlusion *occlusion, struct log *log)
 {

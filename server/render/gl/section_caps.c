@@ -51,9 +51,9 @@ static void count_asset(struct section_caps *caps, const struct frame_context *c
     model_draw_closed(&caps->draws, model, frame_level(context, asset));
 }
 
-/* Enables clipping by the planes through which rays enter the remaining space. Geometry beyond the exit stays, because a ray that leaves a
-   body there was inside it. In clip space, the sign of a plane's depth coefficient tells whether rays enter or leave the space there, for
-   all pixels alike; a plane through the eye is ignored. */
+/* Enables clipping by those section planes through which view rays enter the space that the planes leave. Geometry beyond a plane through
+   which rays leave that space stays, because a ray that leaves a body there was inside it. In clip space, the sign of a plane's depth
+   coefficient tells whether rays enter or leave, for all pixels alike; a plane through the eye is ignored. */
 static void clip_entries(const struct frame_context *context)
 {
     const struct clip *clip = &context->view->visibility.clip;

@@ -11,8 +11,8 @@
 
 /* Uniform locations and texture units; must match the shaders. */
 enum { MATERIAL = 2, TEXTURES = 3 };
-/* Polygon offset factor per step of scene_asset.front: GPUs round corners to fractions of a pixel, differently for each triangle, so
-   coincident faces differ in depth by a fraction of their slope. */
+/* Polygon offset factor per step of scene_asset.front (rank of an asset whose faces coincide with another asset's). GPUs round corners to
+   fractions of a pixel, differently for each triangle, so coincident faces differ in depth by a fraction of their slope. */
 static const double FORWARD_SLOPE = 0.05;
 enum { UNIT_COLORMAP = 0, UNIT_RAMPS = 1, UNIT_SUN_MAP = 2, UNIT_MAPS = 3, UNIT_LIGHTS = 12, UNIT_SCALARS = 13, UNIT_LINES = 15 };
 
@@ -70,7 +70,8 @@ static bool is_per_fragment(const struct frame_context *context, const struct fi
     return context->reference && field && field->sensors;
 }
 
-/* Each pixel evaluates the field from few sensors. */
+/* Returns whether shaders compute the field at each pixel from its few sensors (field/pixel_field.h) instead of interpolating between
+   vertices. */
 static bool has_pixel_field(const struct frame_context *context, const struct fields_entry *field)
 {
     return !context->reference && field && field->pixels.count > 0 && field->sensors;
@@ -84,7 +85,8 @@ static enum surface_program_kind kind_of(const struct frame_context *context, co
     return context->measured ? picture + SURFACE_MEASURE : picture;
 }
 
-/* cut: a section plane cuts the asset. */
+/* Returns the features, of enum surface_variant, with which one material of an asset is drawn. field: NULL: the asset shows none. cut: a
+   section plane cuts the asset. */
 static int choose_variant(const struct frame_context *context, const struct model_material *material, const struct fields_entry *field,
                           bool cut)
 {
@@ -92,7 +94,7 @@ static int choose_variant(const struct frame_context *context, const struct mode
     int variant = field ? SURFACE_FIELD : 0;
     if (field && (context->colormap.lines || view->color_scale.log))
         variant |= SURFACE_RICH;
-    /* draws it in greys (RICH without FIELD): no material may have a colour close to those that mean alarm limits */
+    /* assets without a field are grey here (RICH without FIELD): no material may have a colour close to those that mean alarm limits */
     if (!field && view_is_operator(view))
         variant |= SURFACE_RICH;
     if (field && view->look == LOOK_GLOSSY)
@@ -106,7 +108,7 @@ static int choose_variant(const struct frame_context *context, const struct mode
     return variant | (cut ? SURFACE_CLIP : 0);
 }
 
-/* Returns 0 if the program cannot be compiled; logged. */
+/* Returns the program for these features, compiled on first use. 0: compiling failed, logged. */
 static GLuint choose_program(struct surface_pass *pass, const struct frame_context *context, const struct fields_entry *field, int variant)
 {
     enum surface_program_kind kind = kind_of(context, field);
@@ -156,8 +158,8 @@ static void place_instance(const struct frame_context *context, int index, const
     out->normals[2][3] = 0;
 }
 
-/* Collects one asset's surfaces, either the blended or the opaque ones. The field is never blended, since that would mix its colours.
-   hidden: drawn only if the GPU's occlusion test enables the draw. */
+/* Collects one asset's surfaces, either the blended or the opaque ones. An asset that shows a field is always opaque, since blending would
+   mix the field's colours. hidden: drawn only if the GPU's occlusion test enables the draw. */
 static void gather(struct surface_pass *pass, struct draw_batches *batches, const struct frame_context *context, int index, bool hidden)
 {
     const struct gpu_scene *gpu_scene = context->gpu_scene;

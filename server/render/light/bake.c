@@ -16,11 +16,13 @@ enum { SKY_DIRECTIONS = 32, SKY_MAP_PX = 1024, SUN_MAP_PX = 4096 };
 /* constant openness (0..255) of every point in a rough light set, which is baked without openness */
 static const uint8_t ROUGH_OPENNESS = 190;
 static const double LARGE_FACE_TEXELS = 8; /* large faces have an edge of at least this length, in texels of the sky's depth maps */
-static const double SUN_MARGIN = 0.002;    /* empty border of the sun's map, as a fraction of its width: lookups reach beyond a point */
-/* lower bound of openness where the hidden assets are as large as the plant; proportionally less where they are smaller */
+/* empty border of the sun's shadow map, as a fraction of its width, because a lookup also reads texels around its point */
+static const double SUN_MARGIN = 0.002;
+/* lower bound of openness (0: no sky is visible, 1: all) where the hidden assets are as large as the plant; proportionally less where they
+   are smaller */
 static const double OPEN_AT_LEAST = 0.6;
-/* Size of a step where GL runs on a processor: vertices, or points in faces, with and without sky; rows of the ground with and without sky.
-   A GPU takes everything in one step. */
+/* Size of a step where GL runs on a processor: number of vertices, or of points in large faces, and number of rows of the ground. SKY_:
+   openness is baked, too; SUN_: only sunlight. A GPU takes everything in one step. */
 enum { SKY_VERTICES = 4096, SUN_VERTICES = 65536, SKY_ROWS = 8, SUN_ROWS = 128 };
 
 /* Must match shaders/bake.comp. */
@@ -34,7 +36,8 @@ struct bake {
     const struct bake_programs *programs;
     const double *plant_from_ground;
     struct light_set set;
-    struct visibility start; /* asset visibility with which the plant file begins; the sky's maps are drawn with it */
+    /* which assets are visible at the start, as set in the plant file; the sky's depth maps are drawn with these */
+    struct visibility start;
     bool with_sky;
     struct directions_block *directions;
     GLuint sky_maps, directions_buffer, framebuffer;

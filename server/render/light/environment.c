@@ -21,7 +21,7 @@ static const int layer_px[ENVIRONMENT_LAYERS] = { 128, 128, 128, 64, 64, 32, 32,
 struct environment_source { /* an environment map: first equirectangular like its image, then an octahedral pyramid in plant axes */
     const float (*pixels)[4];
     int width, height;
-    bool y_up, even;        /* radiance depends on elevation only, as in the built-in sky */
+    bool y_up, even;        /* y_up: +y of the plant is up, else +z; even: radiance depends on elevation only, as in the built-in sky */
     double factor[3], most; /* factor: exposure and white balance; most: limit of the brightest channel before the factor */
     float (*pyramid[PYRAMID])[4];
 };

@@ -125,7 +125,7 @@ static struct light_set *make_room(struct light *light, size_t bytes)
     }
 }
 
-/* Returns a set from which openness can be copied. NULL: there is none. */
+/* Returns a set from which the openness of a new set for `key` can be copied. NULL: the cache has none. */
 static const struct light_set *find_open(const struct light *light, const struct light_key *key)
 {
     double most = bake_least_open(light->gpu_scene, &key->shown);
@@ -211,7 +211,7 @@ bool light_step(struct light *light, const struct light_key *key, int64_t budget
     if (!environments_wait(light->environments, key->environment, budget_ns / 2))
         return false;
     if (!light->bake && !begin(light, key))
-        return true; /* light_get() will try again to begin the bake, and report the failure */
+        return true; /* the bake could not begin. "Ready" makes the caller call light_get(), which tries again and reports the failure */
     environments_bind(light->environments, bake_key(light->bake)->environment);
     while (!issued && spent_ns + last_ns <= budget_ns) {
         issued = bake_step(light->bake);

@@ -19,7 +19,7 @@ struct light {
     struct bake *bake; /* in progress; NULL: none */
     uint64_t uses, last_id;
     bool kept;                      /* the openness file has been written, or writing was attempted and failed */
-    struct openness_writer *writer; /* writer of that file; NULL: none */
+    struct openness_writer *writer; /* writer of the openness file; NULL: not writing */
 };
 
 /* Compiles the programs; bakes nothing yet. Returns false on failure, logged. */

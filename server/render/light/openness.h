@@ -27,6 +27,7 @@ struct openness_writer; /* writes the openness file in a thread of its own */
 /* Starts to write the plant's file. slices: baked vertices, one per asset; ground: its texture; both are read during the call. A failure to
    write is logged later. Returns NULL if the plant has no folder, or no thread could be started. */
 struct openness_writer *openness_write(const struct gpu_scene *gpu_scene, struct pool_slice *const *slices, GLuint ground);
-void openness_writer_finish(struct openness_writer **writer); /* waits until the file is written; &NULL is fine; sets it to NULL */
+/* waits until the openness file is written and sets *writer to NULL; accepts a pointer to NULL */
+void openness_writer_finish(struct openness_writer **writer);
 
 #endif

@@ -11,7 +11,7 @@
 enum { TRIED_ANGLES = 32 }; /* number of angles tried in a quarter turn */
 
 struct sun_extent {
-    double low[3], high[3]; /* across, up, towards the sun; relative to the centre of the scene */
+    double low[3], high[3]; /* bounds relative to the scene's centre, along three axes: across, up, and towards the sun */
 };
 
 static void axes_of(const double towards[3], double turn, double axes[3][3])

@@ -50,7 +50,7 @@ static void put(struct item_buckets *crowd, int index)
     *head = index;
 }
 
-/* Counts the items of a cell that are nearer than sqrt(least), counting at most to the limit. */
+/* Counts the items of a grid cell whose squared distance to `item` is less than `least`, up to MAX_NEIGHBOURS. */
 static int count_cell(const struct item_buckets *crowd, double column, double row, const struct crowd_item *item, double least)
 {
     int count = 0;

@@ -6,10 +6,12 @@
 
 #define LABEL_CLEARANCE 3.0 /* free space, in units, around a label that was not in the previous frame */
 
-enum label_over { /* kinds of boxes that a label may cover; also the kind of an occupied box */
+/* Boxes that a label may cover; each value includes those before. take() stores with each occupied box the smallest value whose labels may
+   cover that box. */
+enum label_over {
                   OVER_NOTHING,
                   OVER_MARKS, /* markers without an alarm ring */
-                  OVER_RINGS, /* markers with and without an alarm ring */
+                  OVER_RINGS, /* markers with and without an alarm ring (the circle around the marker of a tag in alarm) */
                   OVER_ALL
 };
 

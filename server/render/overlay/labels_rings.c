@@ -167,7 +167,8 @@ static struct label_box box_at(const struct rings *rings, const struct ring_grou
                                item->height };
 }
 
-/* Returns whether the group's label fits in a slot with `more` pixels of free space around. Labels of earlier groups count as occupied. */
+/* Returns whether the group's label, with `more` pixels of free space around, fits in this slot (candidate position around the group).
+   Labels of earlier groups count as occupied. */
 static bool is_free(const struct rings *rings, const struct ring_group *group, int slot, double more, enum label_over over)
 {
     struct label_box box = box_at(rings, group, slot);
@@ -192,7 +193,7 @@ static int find_slot(const struct rings *rings, const struct ring_group *group)
     for (int i = 0; i < 2 * LABEL_SLOTS; i++)
         if (is_free(rings, group, i % LABEL_SLOTS, clearance, i < LABEL_SLOTS ? OVER_NOTHING : OVER_MARKS))
             return i % LABEL_SLOTS;
-    /* OVER_RINGS: as a last resort the label may cover its own rings */
+    /* OVER_RINGS: as a last resort the label may cover the alarm rings of its own group */
     for (int over = OVER_MARKS; over <= (alone ? OVER_RINGS : OVER_MARKS); over++)
         for (int i = 0; i < OFFSETS && (alone || rings->offsets[i].squared <= MAX_DISTANCE * MAX_DISTANCE); i++)
             if (is_free(rings, group, LABEL_SLOTS + i, clearance, (enum label_over)over))

@@ -346,8 +346,8 @@ static double legend_share(struct pen *pen, const struct view *view)
     return legend_px / width_px;
 }
 
-/* Computes the rectangle that legend and clock leave free. unit: as in overlay_draw_pane(); 0: the layout of a snapshot, which has a
-   header. */
+/* Computes the rectangle that legend and clock leave free. unit: surface pixels per pixel at 1280x720 for a pane of a wall; 0: the layout
+   of a snapshot, which has a header. */
 static void find_window(const struct scene *scene, const struct view *view, double unit, struct camera_window *out)
 {
     cairo_surface_t *surface = cairo_image_surface_create(CAIRO_FORMAT_A8, 1, 1);

@@ -24,7 +24,7 @@ void overlay_draw_pane(cairo_surface_t *surface, const struct frame *frame, cons
 
 /* Computes the part of the view, or of each half of a split view, that legend and clock do not cover. Pure. */
 void overlay_window(const struct scene *scene, const struct view *view, struct camera_window *out);
-/* Computes the free rectangle of a pane that overlay_draw_pane() draws over. unit: as there. */
+/* Computes the free rectangle of a pane that overlay_draw_pane() draws over. unit: surface pixels per pixel at 1280x720. */
 void overlay_pane_window(const struct scene *scene, const struct view *view, double unit, struct camera_window *out);
 
 #endif

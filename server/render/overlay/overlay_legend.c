@@ -213,7 +213,7 @@ static const char *row_text(const struct pen *pen, const struct legend *legend, 
     return row == ROW_BELOW ? legend->below : row == ROW_ARROW ? legend->longest : pen_word(pen, texts[row]);
 }
 
-/* Returns the y below anything already drawn that the card would overlap. */
+/* Returns the lowest y at which the legend's card does not overlap anything already drawn. */
 static double free_from(const struct pen *pen, const struct label_box *card)
 {
     double from = pen->area.y;
@@ -238,8 +238,8 @@ static void lay_out(struct pen *pen, struct legend *legend)
         width = fmax(width, beside + pen_text_width(pen, row_text(pen, legend, legend->rows[i])));
     for (int i = 0; i < legend->note_count; i++)
         width = fmax(width, pen_text_width(pen, legend->notes[i]));
-    /* space for the row is reserved even if it is not listed: the free rectangle is computed before it is known whether there are
-       crosses */
+    /* the width of the row "unknown direction" counts even if the row is not listed: the free rectangle is computed before it is known
+       whether there are crosses */
     if (overlay_has_arrows(pen))
         width = fmax(width, beside + pen_text_width(pen, row_text(pen, legend, ROW_NOWHERE)));
     width = fmax(width, overlay_bar_width(pen));

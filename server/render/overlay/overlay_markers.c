@@ -100,8 +100,8 @@ static bool is_elsewhere(const struct pen *pen, const struct frame_marker *marke
     return pen->view.field.show == SHOW_DISTANCE && isnan(marker->value);
 }
 
-/* Formats the label of a Bad reading. The label's alarm is the one that the last usable value raised. A time more than a day ago includes
-   the date. */
+/* Formats the label of a tag whose reading is Bad: the alarm that the last usable value raised, and the time of that value, with the date
+   if more than a day old. */
 static void format_bad(const struct pen *pen, const struct reading *reading, char out[64])
 {
     enum alarm_kind alarm = (enum alarm_kind)reading->alarm;
@@ -195,7 +195,7 @@ static bool is_inside(const struct pen *pen, const struct frame_marker *marker)
            marker->y_px < area->height;
 }
 
-/* Label items for every visible marker that no card covers. The caller owns both arrays. */
+/* Label items for every visible marker that no card (box of the overlay) covers. The caller owns both arrays. */
 struct marker_labels {
     struct label_item *items;
     struct label_text *texts;
@@ -384,7 +384,8 @@ static bool is_kept(const struct pen *pen, const struct frame_marker *marker)
            pen->scene->plant->tags[marker->tag].asset == pen->view.selected_asset;
 }
 
-/* Chooses the markers to draw, among those that no card covers. Returns their number; the caller frees the array of indices. */
+/* Chooses the markers to draw. Markers under a card (a box of the overlay such as legend or header) are left out. Returns the number of
+   markers; the caller frees the array of their indices. */
 static size_t choose_markers(const struct pen *pen, int cards, size_t **chosen)
 {
     const struct frame *frame = pen->frame;

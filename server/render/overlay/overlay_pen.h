@@ -29,7 +29,7 @@ struct pen {
     bool bare;                             /* true: draws no markers, sensor labels and alarms */
     bool calm;                             /* true: only alarms and Bad readings have labels */
     double unit, text_px;
-    struct burn_shift legend_shift;        /* shift of the legend, within its margin */
+    struct burn_shift legend_shift;        /* shift of the legend, changed slowly against screen burn-in */
     struct label_box taken[PEN_MAX_TAKEN]; /* occupied areas */
     int taken_count;
 };

@@ -11,7 +11,7 @@
 enum { FIRST_UNCOVERED = 0x590 }; /* first code point that DejaVu Sans may lack: Hebrew */
 
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
-/* --- below: under the lock. Last fonts found, regular and bold */
+/* --- protected by the lock. The last fonts found: [0] regular, [1] bold */
 static struct found_face {
     FcCharSet *letters; /* NULL: no search yet */
     cairo_font_face_t *face;

@@ -92,7 +92,8 @@ static void find_positions(struct arrow_set *set, const struct scene_asset *asse
 {
     struct arrow_candidates candidates = { .view = &asset->file->view };
     const struct asset_level *level = coarse_level(asset);
-    for (int pass = 0; pass < 2; pass++) { /* pass 0 measures the area, pass 1 adds positions spaced by it */
+    /* pass 0 measures the asset's area; pass 1 adds positions at a spacing that follows from the area */
+    for (int pass = 0; pass < 2; pass++) {
         double area_m2 = 0;
         uint32_t triangle = 0;
         for (uint32_t p = 0; p < level->primitive_count; p++) {

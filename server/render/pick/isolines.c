@@ -75,7 +75,8 @@ static void between_ends(const struct edge_piece *piece, double part, float out_
         out_m[c] = (float)((double)piece->ends_m[0][c] + part * ((double)piece->ends_m[1][c] - (double)piece->ends_m[0][c]));
 }
 
-/* Where a value is on a piece whose ends have a lower and a higher one: a field that is evaluated at pixels bends in between. */
+/* Returns where on a piece of an edge the field has this value: 0 at the first end, 1 at the second. The value must lie between those at
+   the ends. A field that is evaluated at pixels is not linear along the piece, so it is searched by bisection. */
 static double part_of_value(const struct isoline_search *search, const struct edge_piece *piece, double value)
 {
     double low = 0, high = 1;
@@ -226,7 +227,7 @@ static void add_arrow(const struct arrow_set *set, size_t place, const struct fr
     out->at[out->count++] = point;
 }
 
-/* Adds the points of a stroke. Where the direction is unknown, adds an arrow instead, which is drawn as a cross. */
+/* Adds the points of a stroke (short streamline). Where the direction is unknown, adds an arrow instead, which is drawn as a cross. */
 static void add_stroke(const struct isolines *isolines, size_t place, const struct frame_context *context, int asset,
                        struct isoline_points *out)
 {

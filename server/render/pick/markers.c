@@ -156,7 +156,7 @@ void markers_measure(const struct frame_context *context, struct frame *frame)
 void markers_get(const struct point_visibility *queries, const struct frame_context *context, struct frame *frame)
 {
     size_t count = count_shown(context);
-    /* only for the markers that still exist: their number may have changed, because a trial may have ended since the test was started */
+    /* skips the results if more markers are shown now than the buffer holds: a trial may have ended since the test was started */
     if (count > 0 && count <= queries->capacity)
         emit_markers(context, queries->places, count, frame);
 }

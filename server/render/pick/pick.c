@@ -26,7 +26,8 @@ struct pick_spot { /* state of one pick */
 /* --- which sensor's marker --------------------------------------------------------------------------------------------------- */
 
 struct lens {
-    double right[3], up[3], forward[3], pixel_per_unit; /* pixels per metre; with perspective, at a distance of 1 m from the eye */
+    /* unit vectors of the camera; pixel_per_unit: pixels per metre, with perspective at a distance of 1 m from the eye */
+    double right[3], up[3], forward[3], pixel_per_unit;
 };
 
 static void lens_init(struct lens *lens, const struct view *view)

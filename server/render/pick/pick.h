@@ -7,7 +7,7 @@
 #include "render/view.h"
 
 enum pick_state {
-    PICK_CONTEXT, /* no value of the shown group: another asset, the inner side of a cut, or background */
+    PICK_CONTEXT, /* no value of the shown group is there: an asset without a sensor of the group, the inner side of a cut, or background */
     PICK_NO_DATA,
     PICK_BETWEEN,
     PICK_MEASURED /* a contributing sensor is there, and the interpolation reproduces its reading */

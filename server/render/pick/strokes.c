@@ -20,7 +20,7 @@ static const double MIN_DOT = -0.5;
 
 struct triangle_side { /* one side of a triangle */
     float low[3], high[3];
-    uint32_t at; /* 3 times the triangle plus the corner where the side begins */
+    uint32_t at; /* side of a triangle: 3 * index of the triangle + number (0 to 2) of the corner where the side begins */
 };
 
 static int compare_sides(const void *a, const void *b)
@@ -83,7 +83,8 @@ static void corners_of(const struct tracing *tracing, uint32_t tri, double out[3
     vec_normal(out[0], out[1], out[2], normal);
 }
 
-/* Computes the change of the three corner weights along v. Returns false for a triangle without an area. */
+/* Computes the change of the three corner weights per metre of movement along v (unit vector). Returns false for a triangle without an
+   area. */
 static bool rates_of(const double at[3][3], const double normal[3], const double v[3], double rates[3])
 {
     const double square = vec_dot(normal, normal);
@@ -142,7 +143,8 @@ static bool step(const struct tracing *tracing, struct direction_place *place, c
         const uint32_t next = tracing->set->across[tri][edge];
         if (next == STROKE_NONE)
             return false;
-        /* The neighbour has the edge in the opposite direction, or in the same if the triangles are wound inconsistently. */
+        /* The neighbour's corners run along this edge in the opposite direction, or in the same direction if the triangles are wound
+           inconsistently. */
         double mirror[3], there[3][3], turned[3], share = weights[(edge + 1) % 3] / max_of(weights[edge] + weights[(edge + 1) % 3], 1e-30);
         from = (int)(next % 3);
         corners_of(tracing, next / 3, there, mirror);
@@ -176,7 +178,8 @@ static struct direction midway(const struct stroke_point *last, const struct dir
         from[c] = (double)half->normal[c];
         to[c] = (double)last->place.normal[c];
     }
-    if (vec_dot(from, to) > 0) /* if the corners do not match, the two triangles are wound inconsistently */
+    /* opposite normals come from triangles that are wound inconsistently: the direction is then not turned */
+    if (vec_dot(from, to) > 0)
         vec_turn(v, from, to);
     for (int c = 0; c < 3; c++)
         out.along[c] = (float)v[c];

@@ -16,10 +16,13 @@ struct fields_entry { /* field of one asset. An entry without a slice could not 
     struct field_params params;
     double step;            /* smallest value step that can be seen (scale_step) */
     uint64_t flags_version; /* scalars->flags_version of the shown values */
-    double travel;    /* scalars->travel at the shown values, less their known error: `scalars->travel - travel` bounds the change since */
+    /* value of scalars->travel when the shown values were computed, less their known error. `scalars->travel - travel` is an upper bound of
+       the change of any value since */
+    double travel;
     uint64_t content; /* hash of the first `hashed` shown scalars, as many as the last request needed */
     size_t hashed;
-    struct pixel_field pixels; /* field of the shown readings; count 0: `shown` is interpolated between vertices */
+    /* sensors of a field that is evaluated at pixels; count 0: the field is interpolated between vertices, from `shown` */
+    struct pixel_field pixels;
     struct scalar *shown;
     size_t count, ready; /* count: vertices of the file; ready: the first `ready` values are shown */
     struct pool_slice *slice;
@@ -43,7 +46,7 @@ struct fields {
     struct fields_entry **entries;
     struct fields_entry lost; /* placeholder entry for every field that there is no room for */
     size_t count, capacity, bytes, bound_bytes;
-    uint64_t uses, trimmed; /* trimmed: value of `uses` at the last fields_trim() */
+    uint64_t uses, trimmed; /* uses: number of fields_get() lookups so far; trimmed: value of `uses` at the last fields_trim() */
 };
 
 void fields_init(struct fields *fields, struct log *log, struct field *field);

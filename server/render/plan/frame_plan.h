@@ -15,8 +15,9 @@ struct frame_plan {
     double error_px; /* largest error of a level of detail's surface, in pixels of the frame (lod_selection.h); 0: finest levels only */
     int *visible;    /* indices of visible assets, nearest first */
     size_t visible_count;
-    size_t *vertex_counts; /* by index in `visible`: the first n vertices of the asset are drawn or examined for labels */
-    /* --- once it is complete --- */
+    /* by index in `visible`: number n of the asset's vertices such that drawing and labelling read only the first n */
+    size_t *vertex_counts;
+    /* --- set by frame_plan_complete() --- */
     /* field of each asset; NULL: the asset shows no field. Valid until a plan with newer readings is completed */
     const struct fields_entry **fields;
     int64_t data_utc_ns;     /* of the snapshot */

@@ -14,7 +14,7 @@ struct frame_planner { /* inputs of frame plans; all inputs outlive the plans */
 
 /* Plans everything about the view except its fields. The view must be valid and not split. The caller owns the plan. */
 struct frame_plan *frame_plan_create(const struct frame_planner *planner, const struct view *view);
-void frame_plan_destroy(struct frame_plan **plan); /* &NULL is fine; sets it to NULL */
+void frame_plan_destroy(struct frame_plan **plan); /* frees the plan and sets *plan to NULL; accepts a pointer to NULL */
 /* Computes the plan's fields for about budget_ns. Returns true when the fields are ready: frame_plan_complete() is then fast. With
    INT64_MAX returns true at once, and frame_plan_complete() computes them. */
 bool frame_plan_prepare(struct frame_plan *plan, const struct frame_planner *planner, const struct snapshot *snapshot, int64_t budget_ns);

@@ -12,7 +12,9 @@ struct view_constants { /* eye space: axes of the plant frame, origin at the cam
     double pixel_per_radian;
     double pixel_per_metre; /* orthographic cameras; 0: perspective */
     double back[3];         /* orthographic: unit vector towards the viewer; zero: perspective */
-    double depth_scale;     /* orthographic: distance from the near to the far plane, divided by camera_parallel_m(); 0: perspective */
+    /* orthographic: distance from the near to the far plane, divided by camera_parallel_m() (the viewing distance of an equivalent
+       perspective camera); 0: perspective */
+    double depth_scale;
     double planes[6][4];    /* frustum planes, normals inward, in the plant frame */
 };
 

@@ -22,12 +22,15 @@ void reference_finish(struct reference *reference); /* a zeroed struct is fine *
 /* Uploads the sensors of one asset, with the readings that the last call of field_scalars_of() with these parameters used. The caller owns
    the buffer. Returns 0 when out of memory. */
 GLuint reference_sensors(const struct reference *reference, int asset, const struct field_params *params);
-/* Creates the buffer of a field that is evaluated at pixels, as the shader reads it. Returns 0 when out of memory, logged. */
+/* Creates the GPU buffer from which shaders with PIXEL_FIELD evaluate this field at each pixel. The caller owns the buffer. Returns 0 when
+   out of memory, logged. */
 GLuint reference_pixel_sensors(struct log *log, const struct pixel_field *field);
-/* Binds that buffer for the next draws; their program is compiled with PIXEL_FIELD. */
+/* Binds a buffer of reference_pixel_sensors() for the next draws; their program must be compiled with PIXEL_FIELD. */
 void reference_bind_pixel_sensors(GLuint sensors);
-/* Binds the buffers for the next draws of that asset. Returns false when out of GPU memory, logged. */
+/* Binds the asset's distances and a buffer of reference_sensors() for the next draws of that asset. Returns false when out of GPU memory,
+   logged. */
 bool reference_bind(struct reference *reference, int asset, GLuint sensors);
-void reference_draw(const struct draw_command *commands, size_t count); /* draws; the current program must be compiled with PER_FRAGMENT */
+/* draws these commands; the current program must be compiled with PER_FRAGMENT */
+void reference_draw(const struct draw_command *commands, size_t count);
 
 #endif

@@ -13,8 +13,8 @@ struct near_corner near_corner_of(const struct soft_mesh *mesh, uint32_t vertex,
     return corner;
 }
 
-/* Returns the signed distance of a corner from a plane, positive on the side that clipping keeps. plane: 0 the near plane, 1 to 4 left,
-   right, top, bottom of the guard band, then section planes. */
+/* Returns the signed distance of a corner from a plane, positive on the side that clipping keeps. plane: 0: near plane; 1 to 4: left,
+   right, top, bottom of the guard band; 5 and up: section planes. */
 static float inside(const struct raster *raster, const struct near_corner *corner, int plane)
 {
     const float *at = corner->at;
@@ -37,8 +37,8 @@ static float part_way(float in, float out, float part)
     return in + part * (out - in);
 }
 
-/* Returns where an edge crosses a plane. Both triangles that share the edge get the same point, though they traverse it in opposite
-   directions. */
+/* Returns the point on an edge at `part` (0..1) of the way from its end `in`, inside a plane, to its end `out`, outside. Both triangles
+   that share the edge get the same point, though they traverse it in opposite directions. */
 static struct near_corner between(const struct near_corner *in, const struct near_corner *out, float part)
 {
     struct near_corner corner = { .a = part_way(in->a, out->a, part), .b = part_way(in->b, out->b, part) };

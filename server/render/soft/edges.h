@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Edge functions of triangles, and values interpolated over them, for eight pixels at a time. Private to soft/. */
+/* Edge functions of triangles (positive on one side of an edge, negative on the other), and values interpolated over triangles, for eight
+   pixels at a time. Private to soft/. */
 #ifndef RENDER_SOFT_EDGES_H
 #define RENDER_SOFT_EDGES_H
 #include <stdbool.h>

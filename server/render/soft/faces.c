@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Projects the vertices of a part and lists its front-facing triangles that cover a pixel centre. */
+/* Projects the vertices of a part (group of neighbouring triangles, parts.h) and lists its front-facing triangles that cover a pixel
+   centre. */
 #include <string.h>
 
 #include "render/soft/kernels.h"
@@ -8,7 +9,8 @@
 
 /* --- vertices --------------------------------------------------------------------------------------------------------------- */
 
-/* Prefetches field values and light of eight vertices; they are needed after projecting the vertices and finding faces. */
+/* Prefetches field values and light of eight vertices. The caller then projects the vertices and finds faces, and reads these data
+   afterwards. */
 SOFT_INLINE void fetch_carried(const struct soft_mesh *mesh, const uint32_t vertices[LANES])
 {
     for (int l = 0; l < LANES && mesh->scalars && mesh->pixels < 0; l++)
@@ -95,7 +97,9 @@ SOFT_INLINE void carry_nothing(const struct raster *raster, const struct soft_me
     corners->all_flags = SOFT_NO_DATA;
 }
 
-/* So that the mark is that of MARK_PIXELS, which is made as one of context. */
+/* Sets a and b of vertices whose field is evaluated at pixels. A pixel drawn from them gets a mark as of a vertex without a field, in which
+   MARK_PIXELS (soft_impl.h) is the kind, `a` holds bits 0 to 7 of the index in raster->pixels and `b` holds the row of the colour
+   map. */
 SOFT_INLINE void carry_pixels(const struct raster *raster, const struct soft_mesh *mesh, const uint32_t *vertices, const uint8_t *numbers,
                               int count, struct soft_corners *corners)
 {
@@ -199,13 +203,14 @@ SOFT_INLINE bool is_hidden(const struct soft_tile *tile, const struct soft_face 
 struct eight { /* eight triangles */
     lanes_int corners[3];
     lanes_int left, right, top, bottom;
-    /* doubtful: hidden in the blocks at the corners of its rectangle, but the rectangle has other blocks between them */
+    /* kept: -1: the triangle is drawn. doubtful: -1: the depth blocks at the corners of its rectangle hide the triangle, but the rectangle
+       has other blocks between them */
     lanes_int kept, doubtful;
     lanes nearest;
 };
 
-/* Drops triangles whose rectangle touches only hidden blocks; if it has blocks besides those at its four corners, marks the triangle as
-   doubtful. */
+/* Drops triangles whose rectangle touches only hidden depth blocks (8 x 8 pixels). If the rectangle has blocks besides those at its four
+   corners, marks the triangle as doubtful instead. */
 SOFT_INLINE void hide(const struct soft_tile *tile, struct eight *eight)
 {
     const float *farthest = &tile->farthest[0][0], *depth = tile->corners.depth;
@@ -233,10 +238,12 @@ SOFT_INLINE lanes_int may_face(const float *planes, int rounded, const float eye
     return x * eye_m[0] + y * eye_m[1] + z * eye_m[2] + slack_m >= *(const lanes *)(planes + 3 * rounded);
 }
 
-/* first: index, in the part, of the first of the eight triangles. back: FACE_BACK for back faces, where requested. */
+/* Appends the kept ones of eight triangles to the tile's list of faces. first: index, in the part, of the first of the eight. back:
+   FACE_BACK for triangles that look away from the eye, else 0. */
 SOFT_INLINE void keep_faces(struct soft_tile *tile, const struct eight *eight, int first, lanes_int back)
 {
-    uint32_t words[sizeof(struct soft_face) / sizeof(uint32_t)][LANES]; /* struct soft_face as words in memory */
+    /* eight struct soft_face, transposed: word i of face l is words[i][l] */
+    uint32_t words[sizeof(struct soft_face) / sizeof(uint32_t)][LANES];
     float nearest[LANES];
     *(lanes_int *)words[0] = eight->corners[0] | eight->corners[1] << 16;
     *(lanes_int *)words[1] = eight->corners[2] | ((lanes_int){ 0, 1, 2, 3, 4, 5, 6, 7 } + first + back) << 16;
@@ -286,9 +293,9 @@ void soft_find_faces(struct soft_tile *tile, const struct soft_mesh *mesh, const
     }
 }
 
-/* --- occlusion: depth that the faces leave ------------------------------------------------------------------------------------- */
+/* --- occlusion: farthest depth in each block of 8 x 8 pixels ------------------------------------------------------------ */
 
-/* Returns the farthest depth in a block. left, top: the block's position in the tile. */
+/* Returns the farthest depth in a block of 8 x 8 pixels. left, top: the block's position in the tile. */
 SOFT_INLINE float farthest_in(const struct soft_tile *tile, int left, int top)
 {
     int bottom = top + BLOCK_PX - 1 < tile->rect.bottom - tile->rect.top ? top + BLOCK_PX - 1 : tile->rect.bottom - tile->rect.top;

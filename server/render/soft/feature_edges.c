@@ -8,7 +8,8 @@
 struct view_of_depth {
     const float *depth;
     int width_px, height_px, pitch_px;
-    float scale; /* orthographic frames: view_constants.depth_scale; 0: perspective, where depth is proportional to 1 / distance */
+    /* orthographic frames: view_constants.depth_scale; 0: perspective, where depth is proportional to 1 / distance from the eye */
+    float scale;
 };
 
 SOFT_INLINE lanes at(const struct view_of_depth *view, int column, int row)

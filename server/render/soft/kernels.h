@@ -11,8 +11,8 @@ struct shaded_items;
 struct visibility_band;
 
 struct soft_kernels {
-    /* place_part projects the vertices of a part (soft/parts.h). carry_part then computes field and light for the vertices that the part's
-       listed faces use, or for all if some faces are clipped. */
+    /* place_part projects the vertices of a part (soft/parts.h). carry_part then computes field and light for the vertices of the part's
+       listed faces. If some faces are clipped, it does so for all vertices of the part. */
     void (*place_part)(struct soft_tile *tile, const struct soft_mesh *mesh, const struct soft_parts *parts, const struct soft_part *part);
     void (*carry_part)(struct soft_tile *tile, const struct soft_mesh *mesh, const struct soft_parts *parts, const struct soft_part *part);
     /* Lists those faces (front-facing triangles) of the part whose corners are all projected and need no clipping. */
@@ -21,21 +21,22 @@ struct soft_kernels {
     void (*raster_faces)(const struct soft_tile *tile, uint32_t mark);
     /* Counts in the marks, for all listed faces: +1 per pixel where a face looks away from the eye, -1 where it faces the eye. */
     void (*count_faces)(const struct soft_tile *tile);
-    /* Recomputes the farthest depth of these blocks of the tile. */
+    /* Recomputes tile->farthest for these blocks (8 x 8 pixels) of the tile. */
     void (*look_again)(struct soft_tile *tile, const struct soft_rect *blocks);
-    /* Turns the marks of a rectangle's pixels into colours. The rectangle begins at a multiple of SOFT_STRETCH_MOST. */
+    /* Turns the marks (contents of pixels, soft_impl.h) in a rectangle into colours. The rectangle begins at a multiple of
+       SOFT_STRETCH_MOST pixels. */
     void (*color)(const struct raster *raster, const struct soft_rect *rect);
     /* --- of refined frames */
-    /* Shades surfaces that show the field, and stores in `out` triangle, weights and colour map row of each. */
+    /* Shades surfaces that show the field. For each item, writes triangle, corner weights and colour map row to `out`. */
     void (*shade_field)(const struct refined *refined, struct visibility_band *band, const struct refined_item *items, size_t count,
                         const struct shaded_items *out);
-    /* Shades surfaces of the field in the glossy look: as shade_field, and fills out->gloss. */
+    /* Shades surfaces of the field in the glossy look: as shade_field, and also writes reflected light to out->gloss. */
     void (*shade_gloss)(const struct refined *refined, struct visibility_band *band, const struct refined_item *items, size_t count,
                         const struct shaded_items *out);
-    /* Shades all other surfaces. alphas may be NULL. */
+    /* Shades all other surfaces and writes their colours. alphas: receives their opacity, 0..1; NULL: not needed. */
     void (*shade_surfaces)(const struct refined *refined, const struct refined_item *items, size_t count, uint32_t *colors, float *alphas);
     void (*shade_sky)(const struct refined *refined, int row, const uint8_t *wanted, uint32_t *colors);
-    /* Draws the feature edges of a band. */
+    /* Draws the feature edges of a band (group of pixel rows) into the ink of the visibility buffer. */
     void (*ink_band)(const struct refined *refined, int band);
 };
 /* _wide (AVX2) and _widest (AVX-512) exist on x86 only */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Eight numbers at a time by the compiler's vector extensions, with intrinsics where these miss an instruction. Results are bit-identical
-   on every machine. Private to soft/. */
+/* Eight numbers at a time by the compiler's vector extensions, and by intrinsics where the compiler would not find the right instruction.
+   Results are bit-identical on every machine. Private to soft/. */
 #ifndef RENDER_SOFT_LANES_H
 #define RENDER_SOFT_LANES_H
 #include <stdint.h>

@@ -36,7 +36,8 @@ static void aim_sun(struct raster *raster, const double clip[16])
     copy_columns(out, raster->sun_from_pixel);
 }
 
-/* Computes the matrix from pixels to view rays: near.xyz / near.w of shaders/sky.vert, whose w is constant. */
+/* Computes raster->ray_from_pixel: a matrix that maps pixels to directions of view rays, as near.xyz / near.w in shaders/sky.vert. near.w
+   is the same for all pixels. */
 static void aim_rays(struct raster *raster, const double clip[16])
 {
     double eye_from_clip[16], out[16];
@@ -56,9 +57,9 @@ static void aim_rays(struct raster *raster, const double clip[16])
     }
 }
 
-/* Chooses the number of pixels over which the sky's elevation may be interpolated linearly. Over n pixels a line deviates from the sine of
-   a ray's elevation by at most 0.15 n^2 / f^2, with f the distance of eye and image plane in pixels: a ray's direction turns by at most 1 /
-   f per pixel, and its second difference is at most 1.2 / f^2. */
+/* Chooses raster->stretch_px: the number n of pixels over which the sky's elevation is interpolated linearly. The interpolation deviates
+   from the sine of a ray's elevation by at most 0.15 n^2 / f^2, where f is the distance of eye and image plane in pixels: a ray's direction
+   turns by at most 1 / f per pixel, and its second difference is at most 1.2 / f^2. */
 static void choose_stretch(struct raster *raster)
 {
     /* largest error in columns of the backdrop table: half a grey level at the horizon, where the backdrop changes most */
@@ -72,7 +73,8 @@ static void choose_stretch(struct raster *raster)
         area2 += normal * normal;
         volume += normal * (double)m[2][r];
     }
-    double turn2 = step2 > 0 ? step2 * area2 / (volume * volume) : 0; /* 1 / f^2; 0: rays are parallel */
+    /* 1 / f^2, where f is the distance of eye and image plane in pixels; 0: rays are parallel */
+    double turn2 = step2 > 0 ? step2 * area2 / (volume * volume) : 0;
     int n = SOFT_STRETCH_MOST;
     while (n >= SOFT_STRETCH_LEAST && !(0.15 * n * n * turn2 * SKY_BACKDROPS / 2 <= most))
         n /= 2;
@@ -86,7 +88,7 @@ static void aim_ground(struct raster *raster, const struct light *light)
     float(*to)[3] = raster->ground_from_pixel;
     raster->has_ground = sky_sees_ground(raster->context, light);
     matrix_multiply(raster->context->constants.clip_from_plant, light->plant_from_ground, clip);
-    double h[3][3]; /* maps u, v, 1 on the ground (columns) to x w and y w in pixels, and w (rows) */
+    double h[3][3]; /* matrix: maps (u, v, 1) on the ground to (x w, y w, w), with x and y in pixels; column by column */
     for (int c = 0; c < 3; c++) {
         const double *column = &clip[c == 2 ? 12 : 4 * c];
         h[0][c] = 0.5 * raster->width_px * (column[3] + column[0]);

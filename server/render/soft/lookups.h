@@ -35,13 +35,14 @@ SOFT_INLINE lanes byte_of(lanes_int packed, int number)
    reading texels. The lookup has three steps with other work between them, each prefetching the memory of the next: sun_aim, sun_bound,
    sun_look. */
 struct sun_aim {
-    lanes u_part, v_part, place; /* position between texels, 0..1; depth in units of the map */
+    lanes u_part, v_part, place; /* u_part, v_part: position between the four texels, 0..1; place: depth in units of the map */
     lanes_int tile, at;          /* at: index of the upper left of the four texels */
     lanes_int open; /* mask of lanes whose texels must still be read; for the others `lit` is final: the visible part of the sun, 0..1 */
     lanes lit;
 };
 
-/* s_t_depth: position on the map and depth, 0..1. wanted: mask of the lanes that need a shadow. */
+/* Begins the lookup of eight shadows: finds tiles and texels. s_t_depth: position on the map and depth, 0..1. wanted: mask of the lanes
+   that need a shadow. */
 SOFT_INLINE void sun_aim(const struct soft_light *light, const lanes s_t_depth[3], lanes_int wanted, struct sun_aim *aim)
 {
     const float over = 1.0f / SUN_TILE_STEP_PX, size = (float)light->sun_map_px;
@@ -65,7 +66,7 @@ SOFT_INLINE void sun_prefetch_bounds(const struct soft_light *light, const struc
         __builtin_prefetch(light->sun_bounds + tile[i]);
 }
 
-/* Decides lanes by the bounds of their tiles; lanes that remain undecided stay in `open`. */
+/* Decides the lanes that the smallest and largest depth of their tile of the map decide. Undecided lanes stay in `open`. */
 SOFT_INLINE void sun_bound(const struct soft_light *light, struct sun_aim *aim)
 {
     lanes_int bounds = gather(light->sun_bounds, aim->tile & aim->open);
@@ -86,7 +87,7 @@ SOFT_INLINE void sun_prefetch(const struct soft_light *light, const struct sun_a
 /* Compares depth with four texels and weights the results, like a GL shadow sampler with linear filter. at: indices as in aim->at. */
 SOFT_INLINE lanes sun_compare(const struct soft_light *light, const struct sun_aim *aim, lanes_int at)
 {
-    uint32_t pairs[2][LANES]; /* horizontal neighbours: upper row, lower row */
+    uint32_t pairs[2][LANES]; /* each element holds two texels, left and right, in 16 bits each; [0]: upper row, [1]: lower row */
     for (int i = 0; i < LANES; i++) {
         memcpy(&pairs[0][i], light->sun_map + at[i], 4);
         memcpy(&pairs[1][i], light->sun_map + at[i] + SUN_TILE_PX, 4);
@@ -100,7 +101,7 @@ SOFT_INLINE lanes sun_compare(const struct soft_light *light, const struct sun_a
     return upper + aim->v_part * (lower - upper);
 }
 
-/* Returns the visible part of the sun, 0..1. */
+/* Reads texels for the lanes that are still open. Returns, for all lanes, the visible part of the sun, 0..1. */
 SOFT_INLINE lanes sun_look(const struct soft_light *light, const struct sun_aim *aim)
 {
     if (!lanes_any(aim->open))
@@ -108,8 +109,8 @@ SOFT_INLINE lanes sun_look(const struct soft_light *light, const struct sun_aim 
     return lanes_choose(aim->open, sun_compare(light, aim, aim->at & aim->open), aim->lit);
 }
 
-/* Looks up a shadow at once, without tile bounds. Refined frames use this: their four neighbouring lookups per point do not profit from the
-   bounds. */
+/* Looks up a shadow in a single step, without the bounds of tiles. Refined frames use this: their four neighbouring lookups per point do
+   not profit from the bounds. */
 SOFT_INLINE lanes sun_tap(const struct soft_light *light, lanes s, lanes t, lanes depth)
 {
     struct sun_aim aim;

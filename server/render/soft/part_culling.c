@@ -126,7 +126,8 @@ static void find_eye(const struct raster *raster, double eye_m[3])
                        : constants->eye_m[c];
 }
 
-/* Adds what evaluates the mesh's field at pixels. Its frame begins in the mesh's middle, where floats are finest. clip: from file. */
+/* Adds the mesh's field to raster->pixels, for evaluation at pixels. Positions there are relative to the centre of the mesh, where 32-bit
+   floats are most precise. clip: matrix from the asset file to clip space. */
 static void add_pixels(struct raster *raster, struct soft_mesh *mesh, const struct pixel_field *field, const double clip[16])
 {
     const struct asset_header *header = mesh->file->header;
@@ -200,7 +201,7 @@ static bool add_asset(struct raster *raster, int asset, const struct model_level
     struct soft_found *found = &raster->found[raster->mesh_count++];
     found->parts = parts_of(raster, model, level);
     found->material = raster->soft->material_of_model[model - raster->soft->gpu_scene->models];
-    found->both_sides = both_sides || mesh->cut; /* meshes that a section plane cuts show their inner side, so back faces are needed */
+    found->both_sides = both_sides || mesh->cut; /* meshes that a section plane cuts show their inner side, so their back faces are drawn */
     matrix_invert(raster->soft->gpu_scene->scene->assets[asset].placement, file_from_plant);
     find_eye(raster, eye_m);
     matrix_point(file_from_plant, eye_m, eye);

@@ -11,7 +11,7 @@
 struct parts_maker {
     struct soft_parts *parts;
     const struct asset_view *file;
-    uint32_t *seen; /* by vertex of the file: number (from 1 up) of the last part that uses it */
+    uint32_t *seen; /* by vertex of the file: 1 + index of the newest part that uses the vertex; 0: none */
     uint8_t *number;
     uint8_t corners[3][PART_TRIANGLES];
 };
@@ -49,7 +49,8 @@ static bool add_triangle(struct parts_maker *maker, struct soft_part *part, cons
 
 /* --- sorting by direction of the normal ----------------------------------------------------------------------------------- */
 
-/* Directions are numbered cells of the square into which an octahedron unfolds. */
+/* Normals are sorted by direction: an octahedron around the origin is unfolded into a square (octahedral mapping), and the index of a cell
+   of this square is the direction. */
 enum { DIRECTION_CELLS = 8, DIRECTION_COUNT = DIRECTION_CELLS * DIRECTION_CELLS };
 
 struct plane_of_triangle {
@@ -82,7 +83,7 @@ static int step_of(float x)
     return step < DIRECTION_CELLS ? step : DIRECTION_CELLS - 1;
 }
 
-/* Returns the number of the direction of a normal. Directions with close numbers are mostly similar. */
+/* Returns the direction of a normal as the index of a cell. Normals with close indices mostly point in similar directions. */
 static int direction_of(const float n[3])
 {
     float sum = fabsf(n[0]) + fabsf(n[1]) + fabsf(n[2]);

@@ -12,12 +12,14 @@ struct eight_values {
     lanes_int no_data, uncertain, no_limits; /* -1: yes */
 };
 
-struct eight_nearest { /* metres squared, FAR2: there is none */
+/* squared distance, m^2, to the nearest sensor of each state: used: its reading counts; lost: no usable reading; no_limits: no alarm
+   limits. PIXEL_FAR2: no sensor has that state */
+struct eight_nearest {
     lanes used, lost, no_limits;
 };
 #define PIXEL_FAR2 1e30f
 
-/* 2^x for x <= 0: 1 at 0, 0 below -126. As exp2_down in field/kernels.c. */
+/* 2^x for x <= 0. Returns 1 at 0, and 0 below -126. Same polynomial as exp2_down() in field/kernels.c. */
 SOFT_INLINE lanes lanes_exp2_down(lanes x)
 {
     x = lanes_most(x, (lanes){ 0 } - 127.0f);
@@ -31,7 +33,7 @@ SOFT_INLINE lanes lanes_exp2_down(lanes x)
     return p * (lanes)((whole + 127) * (1 << 23));
 }
 
-/* Squares of the distances, and the nearest ones. */
+/* Writes the squared distance of each sensor to `square`. Returns the smallest one for each state of a sensor. */
 SOFT_INLINE struct eight_nearest pixel_distances(const struct pixel_field *field, const lanes at[3], lanes square[EXACT_SENSORS])
 {
     lanes far2 = (lanes){ 0 } + PIXEL_FAR2;
@@ -58,7 +60,8 @@ SOFT_INLINE void pixel_add(const struct pixel_sensor *sensor, lanes weight, lane
         sums->marked += weight;
 }
 
-/* (near / distance)^power, 1 for the nearest. */
+/* Returns the Shepard weight of a sensor relative to the nearest one: (distance of the nearest / distance)^power, which is 1 for the
+   nearest. square, near2: squared distances. */
 SOFT_INLINE lanes pixel_part(const struct pixel_field *field, lanes square, lanes near2, lanes near_log2)
 {
     lanes one = (lanes){ 0 } + 1.0f, part;
@@ -70,7 +73,8 @@ SOFT_INLINE lanes pixel_part(const struct pixel_field *field, lanes square, lane
     return lanes_choose(nearest, one, part);
 }
 
-/* Returns the squared rest of the reach at this sensor, as a fraction of the rest at the nearest sensor; 0 beyond the reach. */
+/* Returns the factor that lowers a sensor's weight to 0 at the end of its reach: ((reach - distance) / (reach - distance of the nearest
+   sensor))^2. Beyond the reach it is 0. */
 SOFT_INLINE lanes pixel_fade(const struct pixel_field *field, lanes square, lanes near2)
 {
     lanes none = { 0 }, one = none + 1.0f, distance = lanes_root(square);
@@ -122,7 +126,7 @@ SOFT_INLINE void pixel_sum_paper(const struct pixel_field *field, const lanes sq
     }
 }
 
-/* at: in the frame of the sensors' places. */
+/* Evaluates the field at eight points. at: x, y, z in the coordinates of sensors[].place_m. */
 SOFT_INLINE void pixel_lanes_at(const struct pixel_field *field, const lanes at[3], struct eight_values *out)
 {
     lanes square[EXACT_SENSORS], none = { 0 };
@@ -143,7 +147,9 @@ SOFT_INLINE void pixel_lanes_at(const struct pixel_field *field, const lanes at[
     lanes value = sums.values / lanes_choose(any, sums.total, none + 1.0f) * field->scale + field->offset;
     out->value = lanes_choose(any, lanes_clamp(value, field->low, field->high), none + field->empty);
     out->uncertain = (sums.marked > 0.0f) & (2.0f * sums.marked >= sums.total);
-    if (field->show == PIXEL_BLIND) { /* exponent -log2(e)/2 (near/s)^2, limited so that the result is at most `most` */
+    /* seen * 2^(log2(e)/2 (near/s)^2), where near is the distance of the nearest sensor and s the size of a hot spot; the limit `most` caps
+       the result */
+    if (field->show == PIXEL_BLIND) {
         lanes down = nearest.used * (-0.72134752f / (field->hot_spot_m * field->hot_spot_m));
         out->value = lanes_least(field->seen / lanes_exp2_down(lanes_most(down, none - 100.0f)), none + field->most);
     }

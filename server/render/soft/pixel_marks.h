@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes marks of eight pixels at a time (render/soft/soft_impl.h describes marks). Private to soft/. */
+/* Computes marks (32-bit contents of pixels, described in render/soft/soft_impl.h) of eight pixels at a time. Private to soft/. */
 #ifndef RENDER_SOFT_PIXEL_MARKS_H
 #define RENDER_SOFT_PIXEL_MARKS_H
 #include "render/soft/soft_impl.h"
 #include "render/soft/lanes.h"
 
 struct mark_ink {
-    int32_t last_row; /* index of the last row (colour) of the colour map */
+    int32_t last_row; /* index of the last row (brightness step) of the colour map */
     float pattern_px;
     bool rich; /* there are isolines, or the scale is logarithmic */
     bool log;
     float low, over;    /* logarithmic scales: position on the scale = (log2(value) - low) * over */
     float line_px;      /* width of isolines; 0: there are none */
-    const float *lines; /* nearest isoline by position on the scale, from struct raster */
+    const float *lines; /* by position on the scale: the nearest position that has an isoline, from struct raster */
 };
 
 SOFT_INLINE struct mark_ink ink_of(const struct raster *raster)
@@ -66,7 +66,8 @@ SOFT_INLINE lanes_int stipple(lanes x, float y, float pattern_px)
     return across * across + down * down < (float)STIPPLE_RADIUS * (float)STIPPLE_RADIUS;
 }
 
-/* Computes marks as field_color() in shaders/field.glsl does, without patterns. value_x, value_y: change of the value per pixel. */
+/* Computes the marks of eight pixels of a field with isolines or a logarithmic scale, without patterns, as field_color() in
+   shaders/field.glsl does. value_x, value_y: change of the value per pixel. */
 SOFT_INLINE lanes_int rich_mark(lanes value, lanes value_x, lanes value_y, lanes row, const struct mark_ink *ink)
 {
     const float slack = 1e-5f, columns = COLORMAP_PLACES / (1 + 2 * slack), first = 1 + slack * columns, farthest = 1e6f;
@@ -99,7 +100,8 @@ SOFT_INLINE bool rule(float y, float pattern_px)
     return phase < (float)-RULE_EDGE || phase > (float)RULE_EDGE;
 }
 
-/* Adds the patterns for no data, uncertain and no limits to marks. Needed where corners differ in flags or have a pattern's flag. */
+/* Adds the patterns for no data, uncertain and no limits to marks. Called for faces whose corners differ in flags, or have a flag that
+   shows a pattern. */
 SOFT_INLINE lanes_int pattern_marks(lanes_int marks, lanes_int no_data, lanes_int uncertain, lanes_int no_limits, lanes row, lanes x,
                                     float y, const struct mark_ink *ink)
 {

@@ -88,7 +88,7 @@ static bool draw_ghosts(struct raster *raster, struct visibility_buffer *buffer)
     return true;
 }
 
-/* keep: also stores a visibility buffer, from which the preview can be recoloured, if memory allows. */
+/* Draws all of a preview. keep: also stores a visibility buffer, from which the preview can be recoloured, if memory allows. */
 static bool draw_all(struct raster *raster, const struct isoline_points *points, struct frame *frame, bool keep)
 {
     if (keep)
@@ -130,7 +130,7 @@ bool preview_draw(struct soft *soft, const struct frame_context *context, const 
                   struct frame *frame)
 {
     struct raster *raster = &soft->preview;
-    /* isoline labels need depth, which kept visibility buffers of previews do not have */
+    /* isoline labels need the depth of each pixel, which the visibility buffers of previews do not store */
     bool lined = has_lines(context) || points->count > 0;
     if (!lined && soft_resolve_again(soft, context, points, frame))
         return true;

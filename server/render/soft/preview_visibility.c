@@ -161,6 +161,7 @@ bool soft_resolve_again(struct soft *soft, const struct frame_context *context, 
     frame->markers = mem_array(buffer->marker_count, sizeof(*frame->markers));
     frame->marker_count = buffer->marker_count;
     memcpy(frame->markers, buffer->markers, buffer->marker_count * sizeof(*buffer->markers));
-    markers_measure(context, frame); /* distances may have changed since the buffer was kept */
+    /* recomputes the distances that markers show: the chosen sensor may have changed since the buffer was kept */
+    markers_measure(context, frame);
     return true;
 }

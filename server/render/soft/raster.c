@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rasterizes the faces of a part into a tile: the nearest face at each pixel and its mark. Small faces are set up eight at a time. A pixel
-   on an edge that two triangles share belongs to exactly one of the two triangles: both compute the edge function from the same end in the
-   same way; one takes non-negative values, the other negative ones. */
+/* Rasterizes the faces of a part (group of neighbouring triangles, parts.h) into a tile: writes the nearest face's depth at each pixel and
+   its mark (content of a pixel, soft_impl.h). Small faces are set up eight at a time. A pixel on an edge that two triangles share belongs
+   to exactly one of the two triangles: both compute the edge function from the same end in the same way; one takes non-negative values, the
+   other negative ones. */
 #include "render/soft/kernels.h"
 #include "render/soft/section_colors.h"
 #include "render/soft/sixteen.h"
@@ -22,7 +23,8 @@ struct setup {
     float x, y; /* position of the first corner, the origin of all planes below */
     struct raster_edge edges[3];
     struct plane depth, a, b, inverse_w;
-    struct plane no_data, uncertain, no_limits; /* planes of the pattern flags as in struct near_patterns, set if the face has flags */
+    /* how much of each pattern a pixel has, 0..1, as linear functions over the frame; only set if the face has flags */
+    struct plane no_data, uncertain, no_limits;
     uint32_t mark, flags;
     bool flat; /* perspective is negligible */
     bool thin; /* the face is so thin that rounding may give values outside the range of its corners' values */
@@ -86,7 +88,8 @@ SOFT_INLINE void setup_init(struct setup *setup, const struct soft_vertex v[3], 
         setup_patterns(setup, &slopes, v, patterns);
 }
 
-/* w: 1 / inverse_w at the pixels; used only if the face needs perspective correction. */
+/* Returns the marks of eight pixels that show the field. a, b: column and row of the colour map. w: 1 / inverse_w at the pixels, used only
+   if the face needs perspective correction. */
 SOFT_INLINE lanes_int field_marks(const struct setup *setup, const struct mark_ink *ink, lanes a, lanes b, lanes w)
 {
     lanes none = { 0 }, x = none + setup->a.dx, y = none + setup->a.dy;
@@ -152,12 +155,12 @@ SOFT_INLINE lanes_int leave_out_holes(const struct soft_cutout *cutout, lanes x,
     return seen;
 }
 
-/* cutout: alpha mask of the face; NULL: the face has no holes. */
+/* Draws one face, stamp by stamp (blocks of eight pixels). cutout: alpha mask of the face; NULL: the face has no holes. */
 SOFT_INLINE void draw_face(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *face,
                            const struct setup *setup, const struct soft_cutout *cutout, const struct mark_ink *ink)
 {
     bool wide = face->right - face->left >= 2 * LANES;
-    /* last column at which a stamp (a block of pixels drawn at once) may begin: another thread draws outside the tile */
+    /* last column at which a stamp may begin without reaching beyond the tile, where another thread draws */
     int last = tile->rect.right + 1 - LANES;
     for (int row = face->top; row <= face->bottom; row++) {
         size_t start = place_in(tile, tile->rect.left, row);
@@ -199,7 +202,7 @@ SOFT_INLINE void draw_face(const struct soft_tile *tile, const struct soft_sampl
 
 /* --- small ones ------------------------------------------------------------------------------------------------------------- */
 
-/* Draws a face of at most 4 x 2 pixels in one stamp (a block of pixels drawn at once). */
+/* Draws a face of at most 4 x 2 pixels in one stamp (a block of eight pixels that is drawn as a unit). */
 SOFT_INLINE void draw_by_one(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *face,
                              const struct small *small, int l, int top, uint32_t mark, const struct mark_ink *ink)
 {
@@ -263,7 +266,7 @@ static void draw_any(const struct soft_tile *tile, const struct soft_face *face,
         draw_face(tile, &tile->samples[s], face, &setup, has_holes ? &cutout : NULL, ink);
 }
 
-/* Returns the mark of the inner side of a cut mesh. */
+/* Returns the mark (content of a pixel) of the inner side of a mesh that a section plane cuts. */
 static uint32_t mark_of_back(const struct soft_tile *tile, const struct soft_face *face)
 {
     const float *planes = soft_part_planes(tile->parts, tile->part) + (face->triangle & FACE_TRIANGLE), *turn = tile->mesh->turn;

@@ -153,7 +153,8 @@ static bool find(struct refined *refined, const struct frame *frame, const struc
     return true;
 }
 
-/* Finds which pixels are covered by section caps at one sample number, by drawing the frame shifted to that sample. */
+/* Finds the pixels that section caps cover at sample `sample` of each pixel, by drawing the frame shifted by that sample's offset. Returns
+   false when out of memory. */
 static bool find_caps(struct refined *refined, const struct frame *frame, size_t sample)
 {
     struct raster *raster = &refined->raster;
@@ -176,7 +177,8 @@ static bool find_caps(struct refined *refined, const struct frame *frame, size_t
     return true;
 }
 
-/* Stores depth for isoline labels and arrows. */
+/* Stores the depth of each pixel in the visibility buffer, if labels of isolines or arrows will need it. Returns false when out of
+   memory. */
 static bool keep_depth(struct refined *refined)
 {
     const struct raster *raster = &refined->raster;
@@ -230,7 +232,7 @@ static bool advance(struct refined *refined, size_t all, size_t some, size_t *be
     return *end == all;
 }
 
-/* Draws the rim of the selected asset. */
+/* Draws the rim of the selected asset into the visibility buffer's ink. */
 static bool mark(struct refined *refined, const struct frame *frame)
 {
     struct raster *raster = &refined->raster;

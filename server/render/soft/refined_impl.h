@@ -39,7 +39,7 @@ struct refined {
     size_t mesh_capacity;
     uint8_t *caps; /* section caps: one bit per sample, rows of pitch_px. NULL: nothing is cut */
     struct visibility_buffer *buffer;
-    /* --- of the picture, recomputed at each step */
+    /* --- members for the frame being drawn, computed again at each step --- */
     const struct frame_context *context;
     struct environment_light surroundings;
     float sun_from_pixel[4][4], sun_from_ground[4][4]; /* matrices, as columns */

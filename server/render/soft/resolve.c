@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Colours pixels of a visibility buffer from the values that its vertices carry. */
+/* Colours pixels of a visibility buffer from the field's values at the vertices. */
 #include <math.h>
 #include <string.h>
 
@@ -13,7 +13,8 @@ struct coloring {
     const uint32_t *colormap;
     struct resolve_lines lines;
     float pattern_px;
-    bool log, rich; /* rich: slow path: there are isolines, or the scale is logarithmic */
+    /* log: the scale is logarithmic; rich: there are isolines, or the scale is logarithmic, so the slower code path is used */
+    bool log, rich;
     struct frame *frame;
     size_t first_band;
 };
@@ -54,7 +55,8 @@ static float rule(float y, float pattern_px)
 
 static const float MIN_SLOPE = 1e-7f, MAX_LINE_COVERAGE = (float)ISOLINE_MOST;
 
-/* Returns how much the position on the scale changes per pixel. by_x, by_y: change of the carried value; here: the carried value. */
+/* Returns how much the position on the scale (0..1) changes per pixel. here: carried value (colour map column; on a logarithmic scale the
+   field's value); by_x, by_y: its change per pixel. */
 static float slope_of(const struct coloring *coloring, float by_x, float by_y, float here)
 {
     float slope = hypotf(by_x, by_y);
@@ -73,7 +75,8 @@ static void weight_steps(const struct visibility_slopes *slopes, float w1, float
     steps[1][1] = (slopes->w2_y - w2 * slopes->sum_y) * over;
 }
 
-/* Returns a pixel's coverage by an isoline, 0..1. column: position on the scale as a colour map column, with fraction. */
+/* Returns a pixel's coverage by an isoline, 0..1. column: position on the scale as a column of the colour map, with fraction. slope: change
+   of the position per pixel. */
 static float line_part(const struct coloring *coloring, float column, float slope)
 {
     float place = (column - (1 + SLACK * COLUMNS_OF_RANGE)) * (1 / COLUMNS_OF_RANGE);
@@ -123,7 +126,8 @@ static uint32_t color_of_place(const struct coloring *coloring, const struct sho
     return coloring->lines.line_px > 0 ? lined(color, line_part(coloring, column, place->slope)) : color;
 }
 
-/* From the corners. steps: of weights; looked at where there are lines. */
+/* Interpolates the field at a point of a triangle from its corners. w: weights of the corners. steps: change of the weights per pixel, read
+   only if there are isolines. */
 static void interpolate_place(const struct coloring *coloring, const uint32_t vertices[3], const float w[3], float steps[2][2],
                               struct shown_place *out)
 {
@@ -142,7 +146,8 @@ static void interpolate_place(const struct coloring *coloring, const uint32_t ve
     out->slope = slope_of(coloring, d1 * steps[0][0] + d2 * steps[1][0], d1 * steps[0][1] + d2 * steps[1][1], out->carried);
 }
 
-/* Evaluates at the pixel in one lane, and at the next ones in x and in y in two others. */
+/* Evaluates the field at one pixel from its sensors: lane 0 at the pixel itself, lanes 1 and 2 one pixel farther in x and y, which give the
+   slope. */
 static void evaluate_place(const struct coloring *coloring, const struct visibility_band *band, uint32_t triangle, const float w[3],
                            float steps[2][2], struct shown_place *out)
 {
@@ -159,7 +164,7 @@ static void evaluate_place(const struct coloring *coloring, const struct visibil
     out->slope = slope_of(coloring, carried[1] - carried[0], carried[2] - carried[0], carried[0]);
 }
 
-/* Colours one pixel slowly: a corner has flags, or an isoline may cross. */
+/* Colours one pixel by the slower code path: a corner has flags (field/scalars.h), or an isoline may cross the pixel. */
 static uint32_t flagged_color(const struct coloring *coloring, const struct visibility_band *band, uint32_t triangle, uint32_t weights,
                               uint8_t row, float x, float y)
 {
@@ -187,11 +192,12 @@ SOFT_INLINE void transpose(const quad rows[4], quad columns[3])
 
 struct eight_shown { /* of pixels of the field */
     lanes w1, w2, carried;
-    lanes_int known; /* 0: a corner or the pixel has flags */
-    struct eight_places places; /* where the buffer evaluates fields at pixels */
+    lanes_int known; /* -1: the fast path may colour the pixel; 0: a corner or the pixel has a flag */
+    struct eight_places places; /* positions for fields that are evaluated at pixels */
 };
 
-/* Computes the carried values of eight pixels, as field_color() in shaders/field.glsl does. */
+/* Computes the carried values (colour map columns; on a logarithmic scale values) of eight pixels, as field_color() in shaders/field.glsl
+   does. */
 SOFT_INLINE void carry(const struct coloring *coloring, const struct visibility_band *band, lanes_int triangles, lanes_int weights,
                        struct eight_shown *out)
 {
@@ -282,16 +288,18 @@ SOFT_INLINE lanes_int field_colors(const struct coloring *coloring, const struct
     return colors;
 }
 
-/* --- pixels of several surfaces ---------------------------------------------------------------------------------------------- */
+/* --- pixels that show several surfaces ----------------------------------------------------------------------------------- */
 
 /* 64-bit colour sums: blue from bit 0, red from bit 16, green from bit 32 */
 typedef uint64_t sums __attribute__((vector_size(32), aligned(8)));
 
-/* The surfaces of such pixels are coloured in advance, eight at a time; pixels use them in the order of storage. */
+/* Surfaces of pixels that show several surfaces are coloured in advance, eight at a time, in the order of storage, which is also the order
+   of use. */
 enum { PARTS_AHEAD = 64 };
 struct ahead {
     size_t first, end;
-    bool all_known;                                       /* no corner of these parts has flags, and there are no isolines */
+    /* true: no corner of the surfaces first..end-1 has flags, and there are no isolines */
+    bool all_known;
     uint32_t known[PARTS_AHEAD];                          /* 0: a corner has flags */
     uint64_t colors[PARTS_AHEAD + VISIBILITY_MOST_PARTS]; /* colour times share */
 };
@@ -366,7 +374,7 @@ static uint64_t flagged_sum(const struct coloring *coloring, const struct visibi
     return sum;
 }
 
-/* Colours pixels with several surfaces, after color_lanes() wrote arbitrary values there. */
+/* Colours the pixels that show several surfaces. color_lanes() wrote arbitrary values there before. */
 SOFT_INLINE void color_mixed(const struct coloring *coloring, const struct visibility_band *band, int top)
 {
     static const sums wanted[] = { { 0 }, { -1ull }, { -1ull, -1ull }, { -1ull, -1ull, -1ull }, { -1ull, -1ull, -1ull, -1ull } };
@@ -433,7 +441,8 @@ SOFT_INLINE lanes_int color_lanes(const struct coloring *coloring, const struct 
     return colors;
 }
 
-/* In rows whose length is no multiple of eight, the last eight pixels overlap the previous ones. */
+/* Colours one band (group of pixel rows). Where the width is no multiple of eight, the last eight pixels of a row overlap the eight
+   before. */
 SOFT_KERNEL static void color_band(const struct coloring *coloring, int number)
 {
     const struct visibility_buffer *buffer = coloring->buffer;

@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Fields that are evaluated at pixels, in a picture whose triangles are kept. Private to soft/. */
+/* Evaluates fields at pixels (field/pixel_field.h) while a visibility buffer is coloured. Private to soft/. */
 #ifndef RENDER_SOFT_RESOLVE_PIXELS_H
 #define RENDER_SOFT_RESOLVE_PIXELS_H
 #include "render/soft/pixel_lanes.h"
 #include "render/soft/visibility_buffer_impl.h"
 
-struct eight_places { /* on triangles: the place, and by how much it changes from the first corner to the others */
+/* points on triangles, one per lane; at: the point in metres; second, third: vectors from the triangle's first corner to the others */
+struct eight_places {
     lanes at[3], second[3], third[3];
-    lanes_int meshes; /* in the buffer; -1: that pixel's field is interpolated */
+    lanes_int meshes; /* index of the triangle's mesh in the visibility buffer; -1: the field there is interpolated between vertices */
 };
 
 SOFT_INLINE void places_of(const struct visibility_band *band, lanes_int triangles, lanes w1, lanes w2, struct eight_places *out)
@@ -25,7 +26,7 @@ SOFT_INLINE void places_of(const struct visibility_band *band, lanes_int triangl
         out->at[c] += w1 * out->second[c] + w2 * out->third[c];
 }
 
-/* Evaluates those whose mesh is not -1, each by its mesh. */
+/* Evaluates the field at the points whose mesh is not -1, with the sensors of each point's mesh. Results of other points are 0. */
 SOFT_INLINE void evaluate_places(const struct visibility_buffer *buffer, const struct eight_places *places, const lanes at[3],
                                  struct eight_values *out)
 {
@@ -44,7 +45,8 @@ SOFT_INLINE void evaluate_places(const struct visibility_buffer *buffer, const s
     }
 }
 
-/* Converts values to the scalars that pixels carry, like carried_of() in visibility_buffer.c. */
+/* Converts field values to carried values (colour map columns; on a logarithmic scale unchanged), like carried_of() in
+   visibility_buffer.c. */
 SOFT_INLINE lanes carried_of_values(const float *scale, lanes values)
 {
     const float farthest = 1e6f;
@@ -53,7 +55,8 @@ SOFT_INLINE lanes carried_of_values(const float *scale, lanes values)
     return lanes_clamp((values - scale[0]) * scale[1] * COLUMNS_OF_RANGE + (1 + SLACK * COLUMNS_OF_RANGE), -farthest, farthest);
 }
 
-/* By how much what is carried changes where the second and third corner's weights change by w1 and w2. */
+/* Returns the change of the carried value (colour map column; on a logarithmic scale the value) when the weights of the triangle's second
+   and third corner grow by w1 and w2. carried: value at the points. */
 SOFT_INLINE lanes carried_change(const struct visibility_buffer *buffer, const struct eight_places *places, lanes w1, lanes w2,
                                  lanes carried)
 {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Colours a rectangle of a preview from its marks. Only visible pixels look up shadow and backdrop. */
+/* Colours a rectangle of a preview from its marks (contents of pixels, soft_impl.h). Shadow and backdrop are looked up for visible surfaces
+   only. */
 #include <string.h>
 
 #include "render/soft/kernels.h"
@@ -24,7 +25,7 @@ SOFT_INLINE void sun_place(const struct raster *raster, lanes x, float y, lanes 
         place[r] = s[r] * over;
 }
 
-/* Starts the shadow lookups of eight pixels. Surfaces that face away from the sun need none. */
+/* Starts the shadow lookups of eight pixels. Pixels whose surface faces away from the sun need no lookup. */
 SOFT_INLINE void aim_at_sun(const struct raster *raster, int column, int row, struct sun_aim *aim)
 {
     size_t place = (size_t)row * (size_t)raster->pitch_px + (size_t)column;
@@ -125,7 +126,7 @@ SOFT_INLINE lanes_int sky_color(const struct raster *raster, const struct height
     return darkened(color, ground_at(raster, LANES_IOTA + ((float)column + 0.5f), (float)row + 0.5f));
 }
 
-/* Returns the colours of section cuts. */
+/* Returns the colours of section caps and of inner sides of cut surfaces. */
 SOFT_INLINE lanes_int section_color(const struct raster *raster, lanes_int marks, lanes x, float y)
 {
     const float(*m)[3] = raster->ray_from_pixel;
@@ -142,7 +143,7 @@ SOFT_INLINE lanes_int section_color(const struct raster *raster, lanes_int marks
     return lanes_choose_int(is_cap, cap_color(x, y, raster->block.scale[3]), inside_color(v, n, raster->block.up)) | (int32_t)0xff000000;
 }
 
-/* Colours eight pixels. Fast paths: all show the field, or all are empty, as is usual. */
+/* Returns the colours of eight pixels. Two fast paths for the most frequent cases: all eight show the field, or all are empty. */
 SOFT_INLINE lanes_int color_at(const struct raster *raster, const struct heights *heights, const struct sun_aim *aim, int column, int row)
 {
     size_t place = (size_t)row * (size_t)raster->pitch_px + (size_t)column;
@@ -198,14 +199,17 @@ SOFT_INLINE lanes carried_of(const struct pixel_row *row, lanes value)
     return row->ink->log ? value : lanes_clamp((value - scale[0]) * scale[1] * columns + (1 + slack * columns), -farthest, farthest);
 }
 
-/* How much deeper the surface is one pixel on, by the neighbour whose depth is more alike: the other one may show another surface. */
+/* Returns the change of depth from a pixel to the next one. Of the changes to the next and from the previous pixel, takes the smaller: the
+   larger one may lead to another surface. step: distance between the pixels in `at`. before, after: whether the previous and next pixel
+   exist. */
 static float depth_step(const float *at, ptrdiff_t step, bool before, bool after)
 {
     float ahead = after ? at[step] - at[0] : 1, behind = before ? at[0] - at[-step] : 1;
     return fabsf(ahead) < fabsf(behind) ? ahead : behind;
 }
 
-/* By how much what pixels carry changes from pixel to pixel. rect: that no other thread writes. */
+/* Writes the change of the carried values (colour map columns; on a logarithmic scale values) from pixel to pixel, in x and y. rect: the
+   thread's own pixels; depth outside is not read, because other threads may write there. */
 SOFT_INLINE void carried_steps(const struct pixel_row *pixels, const struct soft_rect *rect, int column, int row, lanes carried,
                                lanes *by_x, lanes *by_y)
 {
@@ -224,7 +228,7 @@ SOFT_INLINE void carried_steps(const struct pixel_row *pixels, const struct soft
     *by_y = carried_of(pixels, values.value) - carried;
 }
 
-/* The marks of eight pixels, as if all were of that field. */
+/* Returns the marks of eight pixels, with the field of `pixels` evaluated at each pixel. */
 SOFT_INLINE lanes_int marks_of_field(const struct pixel_row *pixels, const struct soft_rect *rect, lanes_int marks, int column, int row)
 {
     const struct raster *raster = pixels->raster;
@@ -243,7 +247,8 @@ SOFT_INLINE lanes_int marks_of_field(const struct pixel_row *pixels, const struc
     return pattern_marks(marks, values.no_data, values.uncertain, no_limits, light, x, (float)row + 0.5f, ink);
 }
 
-/* Makes marks of all such pixels in eight MARK_FIELD. */
+/* Replaces each mark MARK_PIXELS among eight pixels by the MARK_FIELD of the evaluated field. Pixels are evaluated together if they show
+   the same field. */
 SOFT_INLINE void evaluate_eight(const struct raster *raster, const struct soft_rect *rect, const struct mark_ink *ink, int column, int row)
 {
     lanes_int *at = (lanes_int *)(raster->marks + (size_t)row * (size_t)raster->pitch_px + (size_t)column), marks = *at, out = marks;

@@ -18,17 +18,18 @@ struct sample_group { /* samples of a pixel that show the same surface */
 
 enum { SAMPLE_SHARE = VISIBILITY_SHARES / SAMPLES };
 
-struct mixed { /* a pixel with several surfaces, and its items in the row */
+struct mixed { /* a pixel that shows several surfaces, and the range of its items (surfaces to shade) in the row */
     int column;
     uint8_t field_count, surface_count;
-    uint16_t sky, cap; /* area of the pixel that shows sky, and section caps; 0..VISIBILITY_SHARES */
+    uint16_t sky, cap; /* area of the pixel that shows sky, and area that shows section caps; 0..VISIBILITY_SHARES */
     uint16_t over[3];  /* colour of blended triangles times share: blue, green, red */
     uint32_t first_field, first_surface;
 };
 
 struct refined_row { /* a row of pixels; item arrays hold SAMPLES per pixel */
     struct refined_item *field, *surfaces;
-    int *field_columns, *surface_columns; /* column of the item's pixel; -1: the pixel shows several surfaces and is composed later */
+    /* by item: column of its pixel; -1: the pixel shows several surfaces and is composed after its items are shaded */
+    int *field_columns, *surface_columns;
     struct mixed *mixed;
     uint8_t *sky;  /* 1 for pixels that show some of the sky */
     uint8_t *caps; /* 1 for pixels whose samples all show a section cap */
@@ -184,8 +185,8 @@ static void layers_finish(struct layers *layers)
     mem_free(layers->alphas);
 }
 
-/* Composites the fragments of one pixel. over: receives the sum of their colours times coverage; under: receives the share of each sample
-   that they leave visible. */
+/* Composites the fragments of one pixel. over: receives the sum of their colours times coverage; under: receives, for each sample, the area
+   (0..VISIBILITY_SHARES / SAMPLES) that stays visible behind them. */
 static void blend(const struct layers *layers, size_t first, size_t end, uint16_t over[3], uint16_t under[SAMPLES])
 {
     float left[SAMPLES] = { 1, 1, 1, 1 }, sum[3] = { 0 }, gone = 0;
@@ -220,7 +221,7 @@ static void add_item(const struct refined *refined, struct refined_row *row, con
     }
 }
 
-/* Adds a pixel with several surfaces to the row. first, end: range of the blended fragments over this pixel. */
+/* Adds a pixel that shows several surfaces to the row. first, end: range of the blended fragments over this pixel. */
 static void add_mixed(struct recent *recent, struct refined_row *row, const struct soft_sample samples[SAMPLES], size_t at, int column,
                       int y, const struct layers *layers, size_t first, size_t end)
 {

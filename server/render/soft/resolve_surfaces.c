@@ -8,7 +8,7 @@
 
 /* --- textures ------------------------------------------------------------------------------------------------------------------ */
 
-/* Computes the change of the surface point in plant coordinates per pixel. */
+/* Writes by how much the surface point moves per pixel, in plant coordinates. by: change of the three corner weights per pixel. */
 static void place_slopes(const struct refined *refined, const struct soft_triangle *triangle, const float by[3], float out[3])
 {
     const struct soft_mesh *mesh = &refined->raster.meshes[triangle->mesh];
@@ -92,7 +92,7 @@ static void wear_maps(const struct refined *refined, const struct soft_triangle 
     }
 }
 
-/* Applies textures to these surfaces. alphas may be NULL. */
+/* Applies textures to these surfaces: colours, normals and emitted light. alphas: receives their opacity, 0..1; NULL: not needed. */
 SOFT_INLINE void wear(const struct refined *refined, const struct refined_item *items, size_t count, const struct eight_points *spot,
                       struct pbr_surface *surface, vec *glow, float *alphas)
 {
@@ -118,7 +118,7 @@ SOFT_INLINE void wear(const struct refined *refined, const struct refined_item *
 struct lit { /* eight surfaces */
     struct eight_points spot;
     struct pbr_surface surface;
-    vec v, l, glow; /* v, l: unit vectors towards the eye and the sun; glow: emitted light */
+    vec v, l, glow; /* v, l: unit vectors towards the eye and the sun; glow: light that the surface emits */
 };
 
 /* alphas may be NULL. */
@@ -181,7 +181,8 @@ SOFT_INLINE vec glossy_light(const struct lit *lit, const struct sky_light *sky,
                 times(sun_shade(&surface, lit->v, lit->l), all((float)GLOSSY_SUN)));
 }
 
-/* Light reflected from a non-metal is linear in its colour, so black and white surfaces suffice. */
+/* Stores reflected light in two parts: light from a black surface, and the additional light from a white one. Light from a non-metal is
+   linear in its colour, so these give the light for every colour of the field. */
 void refined_shade_gloss(const struct refined *refined, struct visibility_band *band, const struct refined_item *items, size_t count,
                          const struct shaded_items *out)
 {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draws small faces in stamps of 16 pixels, on machines with 512-bit registers. Bit-identical to stamps of eight. Private to raster.c. */
+/* Draws small faces in stamps (blocks of pixels drawn as a unit) of 16 pixels, on machines with 512-bit registers. Results are
+   bit-identical to stamps of eight. Private to raster.c. */
 #ifndef RENDER_SOFT_SIXTEEN_H
 #define RENDER_SOFT_SIXTEEN_H
 #include "render/soft/small.h"
@@ -11,7 +12,7 @@ typedef int32_t sixteen_int __attribute__((vector_size(64), aligned(4)));
 
 enum { MANY = 16 };
 
-/* width: of a stamp, 4, 8 or 16; a compile-time constant. */
+/* Loads a stamp of 16 pixels: rows of `width` (4, 8 or 16) pixels, `pitch` apart. width: a compile-time constant. */
 SOFT_INLINE sixteen many_floats(const float *at, size_t pitch, int width)
 {
     if (width == MANY)
@@ -39,7 +40,8 @@ SOFT_INLINE void many_put_floats(float *at, size_t pitch, int width, sixteen val
     }
 }
 
-/* Stores the lanes whose bit in `seen` is set; the memory of other pixels is not accessed. */
+/* Stores the pixels of a stamp whose bit in `seen` is set. Memory of its other pixels is not accessed, since another thread may write
+   there. */
 SOFT_INLINE void many_put_ints(uint32_t *at, size_t pitch, int width, uint32_t seen, sixteen_int value)
 {
     __m512i all = (__m512i)value;
@@ -94,7 +96,7 @@ SOFT_INLINE sixteen_int many_within(sixteen x, int32_t high)
     return (sixteen_int)_mm512_min_epi32(whole, _mm512_set1_epi32(high));
 }
 
-/* Draws a stamp of 16 pixels, as draw_stamp() draws one of eight. */
+/* Draws one stamp of 16 pixels, in rows of `width`; same rules as draw_stamp(), which draws eight. l: index of the face in `small`. */
 SOFT_INLINE void draw_many(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *face,
                            const struct small *small, int l, int left, int top, uint32_t mark, const struct mark_ink *ink, int width,
                            bool thin)
@@ -136,7 +138,8 @@ SOFT_INLINE void draw_by_many(const struct soft_tile *tile, const struct soft_sa
     }
 }
 
-/* Returns whether the tile is large enough for a stamp of any shape, and there are no isolines. */
+/* Returns whether faces may be drawn in stamps of 16 pixels: the tile is large enough for a stamp of any shape, and there are no
+   isolines. */
 SOFT_INLINE bool can_draw_sixteen(const struct soft_tile *tile, const struct mark_ink *ink)
 {
     return !ink->rich && tile->rect.right - tile->rect.left >= MANY - 1 && tile->rect.bottom - tile->rect.top >= 3;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Small faces without flags and perspective: set up eight at a time and drawn in stamps of 8 or 16 pixels. Private to raster.c. */
+/* Small faces without flags and perspective are set up eight at a time and drawn in stamps (blocks of 8 or 16 pixels drawn as a unit).
+   Private to raster.c. */
 #ifndef RENDER_SOFT_SMALL_H
 #define RENDER_SOFT_SMALL_H
 #include "render/soft/pixel_marks.h"
@@ -14,7 +15,8 @@ SOFT_INLINE bool is_small(const struct soft_face *face)
     return face->bottom - face->top < SMALL_PX && (face->right - face->left < SMALL_PX || face->bottom - face->top < 2);
 }
 
-/* Returns whether draw_eight() suffices: no perspective over the face, no patterns. */
+/* Returns whether draw_eight() can draw the face: all corners have almost the same depth, so perspective is negligible, and no corner has a
+   pattern. */
 SOFT_INLINE bool is_plain(const struct soft_corners *corners, const struct soft_face *face)
 {
     int i = face->corners[0], j = face->corners[1], k = face->corners[2];
@@ -28,13 +30,16 @@ SOFT_INLINE bool is_plain(const struct soft_corners *corners, const struct soft_
 
 struct small { /* eight faces, as structure of arrays: lane i belongs to face i */
     lanes x, y;
-    lanes edge_y[3], edge_dx[3], edge_dy[3], edge_row[3]; /* edge functions as in struct raster_edge; edge_row: dy times x */
+    /* edge functions, with members as in struct raster_edge; edge_row: edge_dy * x of the edge's upper end */
+    lanes edge_y[3], edge_dx[3], edge_dy[3], edge_row[3];
     lanes_int negative[3];
-    lanes at[3], dx[3], dy[3], low[3], high[3]; /* depth, a and b as planes */
+    /* values interpolated over the face: [0] depth, [1] a, [2] b of struct soft_vertex; at: value at (x, y); dx, dy: change per pixel; low,
+       high: limits */
+    lanes at[3], dx[3], dy[3], low[3], high[3];
     lanes_int thin;
 };
 
-struct eight_faces { /* corner numbers and sizes of eight faces, one lane each */
+struct eight_faces { /* indices of the corners, and sizes, of eight faces, one lane each */
     lanes_int corners[3];
     lanes_int width, height; /* in pixels, less one */
 };
@@ -59,7 +64,8 @@ SOFT_INLINE struct eight_faces read_faces(const struct soft_face *const faces[LA
     };
 }
 
-/* shaded: also sets up a and b. */
+/* Sets up the edge functions of eight faces and interpolation of their depth; shaded: also of a and b. at: corners, as indices in
+   `corners`. */
 SOFT_INLINE void small_init(struct small *small, const struct soft_corners *corners, const lanes_int at[3], bool shaded)
 {
     lanes x[3], y[3];
@@ -147,7 +153,8 @@ SOFT_INLINE size_t place_in(const struct soft_tile *tile, int column, int row)
     return (size_t)(row - tile->rect.top) * (size_t)tile->pitch_px + (size_t)(column - tile->rect.left);
 }
 
-/* Draws one stamp of eight pixels. left, top: the stamp's position in the frame. two, thin: compile-time constants. */
+/* Draws one stamp of eight pixels: depth and mark where the face covers a pixel and is nearest. l: index of the face in `small`. left, top:
+   position in the frame. two: two rows of four instead of one of eight. two, thin: compile-time constants. */
 SOFT_INLINE void draw_stamp(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *face,
                             const struct small *small, int l, int left, int top, uint32_t mark, const struct mark_ink *ink, bool two,
                             bool thin)
@@ -159,7 +166,8 @@ SOFT_INLINE void draw_stamp(const struct soft_tile *tile, const struct soft_samp
     lanes_int side = small_side(small, l, 0, x, y) | small_side(small, l, 1, x, y) | small_side(small, l, 2, x, y);
     lanes depth = stamp_floats(sample->depth + place, pitch, two), here = small_value(small, l, 0, from_x, from_y, thin), none = { 0 };
     lanes_int seen = (side >= 0) & (here >= depth);
-    /* nearly half of all stamps show nothing. With one-instruction choices the remaining work costs less than a branch misprediction */
+    /* nearly half of all stamps show nothing. Where lanes_choose() is a single instruction, finishing them costs less than a branch
+       misprediction */
     if (!LANES_CHOOSE_AT_ONCE && !lanes_any(seen))
         return;
     if (sample->marks) {

@@ -19,14 +19,14 @@ struct refined; /* a refined frame that is drawn in steps */
 /* Returns NULL when out of memory, logged. All arguments must outlive the renderer. */
 struct soft *soft_create(struct workers *workers, const struct gpu_scene *gpu_scene, const struct sky *sky,
                          const struct environments *environments);
-void soft_destroy(struct soft **soft); /* &NULL is fine; sets it to NULL */
+void soft_destroy(struct soft **soft); /* frees the software renderer and sets *soft to NULL; accepts a pointer to NULL */
 
 /* sets the bound of visibility buffers that a tier keeps for still cameras */
 void soft_bound(struct soft *soft, enum tier tier, size_t bytes);
 size_t soft_kept_bytes(const struct soft *soft);  /* bytes of kept visibility buffers */
-size_t soft_room_bytes(const struct soft *soft);  /* bytes of working memory, except that of refined frames under way */
+size_t soft_room_bytes(const struct soft *soft);  /* bytes of working memory, not counting that of refined frames still being drawn */
 size_t soft_light_bytes(const struct soft *soft); /* bytes of baked light copied from the GPU */
-void soft_drop_spare(struct soft *soft);          /* frees the working memory that refined frames left for reuse */
+void soft_drop_spare(struct soft *soft);          /* frees the working memory that finished refined frames left for reuse */
 void soft_rest(struct soft *soft);                /* frees working memory, copied light and kept visibility buffers */
 
 /* Draws pixels, markers and labels. Returns false when out of memory; logged. */
@@ -40,7 +40,7 @@ bool refined_step(struct refined *refined, const struct frame_context *context, 
 /* Ends a refined frame after its last step: labels its isolines at `points` and keeps its visibility buffer for recolouring. Returns false
    when the frame failed because memory ran out; logged. */
 bool refined_keep(struct refined *refined, const struct frame_context *context, const struct isoline_points *points, struct frame *frame);
-void refined_end(struct refined **refined); /* &NULL is fine; sets it to NULL */
+void refined_end(struct refined **refined); /* frees the refined frame and sets *refined to NULL; accepts a pointer to NULL */
 
 /* Returns whether a visibility buffer is kept from a refined frame that differs from this one only in values and colours. */
 bool soft_has_refined(struct soft *soft, const struct frame_context *context);

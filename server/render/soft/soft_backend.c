@@ -8,7 +8,7 @@
 #include "render/soft/soft.h"
 
 struct soft_job {
-    struct refined *refined; /* state of a refined frame; NULL: a preview, or a recoloured frame */
+    struct refined *refined; /* state of a refined frame that is drawn in steps; NULL: a preview, or a recoloured frame */
 };
 
 static bool init(struct renderer *renderer)
@@ -63,13 +63,13 @@ static bool take_up(struct renderer *renderer, struct render_job *job)
     return true;
 }
 
-/* Starts another step only if twice the duration of the last step fits in the budget, since steps (a few milliseconds on all cores) vary by
-   as much. */
+/* Draws steps until the budget is spent. Starts another step only if twice the duration of the last step fits in the rest of the budget: a
+   step takes a few milliseconds on all cores, and the next may take twice as long. */
 static bool step(struct renderer *renderer, struct render_job *job, int64_t budget_ns)
 {
     struct refined *refined = job->of.soft->refined;
     int64_t start_ns = clock_mono_ns(), spent_ns = 0, last_ns = 0;
-    bool done = !refined || !take_up(renderer, job); /* a failure of take_up() counts as done: end() will fail as well and report it */
+    bool done = !refined || !take_up(renderer, job); /* if take_up() fails, no step is left: end() fails as well and reports the error */
     while (!done && spent_ns + 2 * last_ns <= budget_ns) {
         done = refined_step(refined, &job->context, &renderer->light, job->frame);
         last_ns = clock_mono_ns() - start_ns - spent_ns;

@@ -14,25 +14,28 @@
 
 enum { BAND_ROWS = 32, RAMP_STEPS = MODEL_LIGHT_STEPS, SOFT_STRETCH_MOST = 64, SOFT_STRETCH_LEAST = 8 };
 
-/* A mark says what a pixel shows: 0 nothing, else an entry of the colour map, or a material and its light, for the lookup of its colour. */
-/* | row * COLORMAP_COLUMNS + column of the colour map (MARK_PLACE) | coverage by an isoline << MARK_LINE (8 bits) */
+/* A mark is the 32-bit content of a pixel: 0: empty; else an entry of the colour map, or a material and its light, from which the pixel's
+   colour is looked up. The top bits tell the kind. */
+/* MARK_FIELD | row * COLORMAP_COLUMNS + column of the colour map (bits of MARK_PLACE) | coverage by an isoline, 0..255 << MARK_LINE */
 #define MARK_FIELD 0x40000000u
 #define MARK_PLACE 0x1ffffu
 enum { MARK_LINE = 17, MARK_LINE_WHOLE = 255 };
-#define MARK_CONTEXT 0x80000000u /* | ambient light << 8 (8 bits) | sunlight (8 bits) | row of the ramps << 16 (14 bits) */
-#define MARK_SECTION 0xc0000000u /* section cut: MARK_CAP, or a surface's inner side | its normal (section_colors.h) */
+/* MARK_CONTEXT | row of the colour ramps << 16 (14 bits) | ambient light << 8 (8 bits) | sunlight (8 bits) */
+#define MARK_CONTEXT 0x80000000u
+/* a section cut: MARK_CAP, or MARK_SECTION | encoded normal of a surface's inner side (section_colors.h) */
+#define MARK_SECTION 0xc0000000u
 #define MARK_CAP 0xe0000000u
 #define MARK_KIND 0xc0000000u
 enum { MOST_RAMPS = 1 << 14 };
-/* A field that is evaluated at the pixel: | bits 8 to 20 of its number in raster->pixels << 16 | the lower ones << 8 | row of the
-   colormap + raster->row_bias. raster_color replaces it by MARK_FIELD. */
+/* Mark of a field that is evaluated at the pixel. With i the index in raster->pixels: MARK_PIXELS | i >> 8 << 16 | (i & 255) << 8 | row of
+   the colour map + raster->row_bias. raster_color() evaluates the field and replaces the mark by one of MARK_FIELD. */
 #define MARK_PIXELS 0x20000000u
 
 struct soft_vertex {
-    float x, y, depth; /* pixels from the top left; depth 1 near, 0 far */
+    float x, y, depth; /* x, y: pixels from the top left of the frame; depth: 1 near, 0 far */
     float inverse_w;   /* 1/w; 0: the vertex is in front of the near plane or beyond the guard band (clip.h) */
-    /* a, b: of vertices with a field: column and row of the colour map (logarithmic scale: value and row); of other vertices: ambient
-       light, sunlight */
+    /* with a field: a: column of the colour map (logarithmic scale: the value), b: row of the colour map; without a field: a: ambient
+       light, b: sunlight */
     float a, b;
     uint32_t flags; /* from soft_flags() */
 };
@@ -41,18 +44,19 @@ struct soft_mesh { /* one asset in this frame */
     int asset;
     const struct asset_view *file;
     bool has_field;
-    /* field at the vertices; NULL: an asset without a field, or a field that could not be computed (no data) */
+    /* field values at the vertices; NULL: the asset has no field, or the field could not be computed and shows no data */
     const struct scalar *scalars;
     int32_t pixels; /* index in raster->pixels; -1: the field is interpolated between vertices */
     const uint8_t (*baked)[4];
-    float place[4][4]; /* matrix, as columns, from the file to x w and y w in pixels, and z and w of clip space */
+    /* matrix, column by column: from coordinates of the file to (x w, y w, z, w), with x and y in pixels and z, w of clip space */
+    float place[4][4];
     uint32_t first_vertex, vertex_count;
     bool mirrored;
-    bool cut;      /* section planes cut something off, so the inner side of the rest is drawn */
+    bool cut;      /* section planes remove a part of the mesh, so the inner side of the rest is drawn */
     float turn[9]; /* rotation of normals from file to plant, columns; for cut meshes only */
 };
 
-struct soft_pixels { /* field of a mesh that is evaluated at pixels, in a frame that begins in the mesh's middle */
+struct soft_pixels { /* field of a mesh that is evaluated at pixels; positions are relative to the centre of the mesh */
     struct pixel_field field;
     float place_from_pixel[4][4]; /* columns */
 };
@@ -61,15 +65,15 @@ struct soft_rect { /* rectangle in pixels; right and bottom are included */
     int left, top, right, bottom;
 };
 
-struct soft_item { /* a part that may be visible */
+struct soft_item { /* a part (group of neighbouring triangles, parts.h) that may be visible in the frame */
     float near;    /* depth of its nearest point; over 1: the part reaches in front of the near plane */
     struct soft_rect rect;
     uint32_t part;
     bool cut;    /* true if a section plane cuts through the part */
-    bool beyond; /* true if the part is cut away entirely; it may still bound a body that is cut open */
+    bool beyond; /* true if section planes remove the whole part; it is listed because it may bound a body that is cut open */
 };
 
-struct soft_found { /* parts of one mesh that may be visible; its memory is reused from frame to frame */
+struct soft_found { /* list of the parts of one mesh that may be visible; its memory is reused from frame to frame */
     const struct soft_parts *parts;
     uint32_t material; /* index, among the materials of all models, of the mesh's first material */
     bool both_sides;
@@ -87,15 +91,15 @@ struct soft_light {       /* copy of a light_set, read back from the GPU */
     uint32_t *sun_bounds; /* by tile: smallest texel | largest texel << 16 */
     int sun_map_px;       /* width and height of the map on the GPU */
     int sun_tiles;        /* number of tiles in a row */
-    /* brightness of the ground, four bytes per texel: this texel's and those of its right, lower and lower right neighbours; 255: no
-       shadow */
+    /* brightness of the ground, four bytes per texel: of the texel itself and of its right, lower and lower right neighbours; 0..255, 255:
+       no shadow */
     uint32_t *ground;
     uint8_t *open; /* openness of the ground to the sky, for refined frames; rows from the top */
     int ground_px; /* width and height of `ground` and `open` */
     uint64_t used;
 };
-/* Lookups read a texel with its right and lower neighbours. Tiles therefore overlap by one: the last row and column are the next tile's
-   first. */
+/* Width of a tile of the shadow map. Lookups read a texel with its right and lower neighbours, so tiles overlap by one texel: the last row
+   and column of a tile are repeated as the first of the next. */
 enum { SUN_TILE_PX = 8, SUN_TILE_STEP_PX = SUN_TILE_PX - 1, SUN_TILE_TEXELS = SUN_TILE_PX * SUN_TILE_PX };
 static inline uint32_t soft_sun_bounds(const uint16_t texels[SUN_TILE_TEXELS])
 {
@@ -131,9 +135,9 @@ struct raster { /* source and target of one frame's rasterization; its memory is
     size_t mesh_capacity;
     struct soft_pixels *pixels;
     size_t pixels_count, pixels_capacity;
-    int row_bias; /* added to rows of the colour map in MARK_PIXELS, so that they are not negative */
+    int row_bias; /* added to the row of the colour map in a MARK_PIXELS mark, so that the sum is not negative */
     int width_px, height_px, pitch_px; /* pitch_px: row length, a multiple of LANES */
-    /* largest distance of a sample from the pixel's centre along x or y, by which rectangles of parts are enlarged; previews: 0 */
+    /* largest distance of a sample from the pixel's centre along x or y; bounding rectangles of parts are enlarged by it. Previews: 0 */
     float reach_px;
     float *depth;
     uint32_t *marks;
@@ -141,12 +145,12 @@ struct raster { /* source and target of one frame's rasterization; its memory is
     size_t pixel_capacity;
     uint8_t *out;
     size_t out_stride_bytes;
-    /* section planes, as factors of (x w, y w, z, w), x and y in pixels; first the `entry_count` planes through which rays enter the space
-       that is left */
+    /* section planes: a plane's factors of (x w, y w, z, w), with x and y in pixels. The planes through which rays enter the space that is
+       left come first: `entry_count` of `cut_count` planes */
     float cuts[CLIP_MAX_PLANES][4];
     int cut_count, entry_count;
     float shift_px[2];  /* offset of the samples from pixel centres */
-    bool counts_bodies; /* the frame has section caps, so closed bodies are counted (caps.c) */
+    bool counts_bodies; /* the frame has section caps, for which the closed bodies at each pixel are counted (caps.c) */
     bool blends;        /* true if some of the found parts are blended */
     bool has_ground;
     bool greys;                                                                /* context is drawn grey */
@@ -164,10 +168,10 @@ struct soft { /* shared by all frames */
     const struct environments *environments;
     size_t material_count;       /* count of all materials of all models */
     uint32_t *material_of_model; /* by model: index, among all materials, of its first material */
-    /* ramps: RAMP_STEPS colours per row; ramp_of_material: by index of the material: its row */
+    /* tables of RAMP_STEPS colours per row, from dark to bright; ramp_of_material: by index of the material: its row in both tables */
     uint32_t *muted_ramps, *own_ramps, *ramp_of_material;
     struct soft_materials materials;
-    lanes *shading;            /* by material: its attributes, indexed by BASE, ... of refined_impl.h */
+    lanes *shading;            /* by material: attributes of shading, at the indices BASE, METALLIC, ROUGHNESS, EMISSIVE (refined_impl.h) */
     const uint32_t *backdrops; /* from struct sky */
     struct soft_tones *tones;
     /* glossy colour map; its rows are brightness steps. glossy_version: version of the colour map from which it was made */
@@ -177,7 +181,8 @@ struct soft { /* shared by all frames */
     uint64_t uses;
     struct soft_parts **parts;                      /* parts by model, then by level; made when first needed */
     struct visibility_store kept[TIER_REFINED + 1]; /* by tier: visibility buffers of views whose camera stands still */
-    uint64_t shapes[SOFT_SHAPES];                   /* content_hash_shape() of the last previews drawn */
+    /* content_hash_shape() of the last previews drawn; a repeated one means that the camera stands still */
+    uint64_t shapes[SOFT_SHAPES];
     size_t shape_count;
     struct raster preview;
     struct refined *spare; /* memory that a finished refined frame left for reuse; refined frames under way own theirs */
@@ -190,12 +195,13 @@ void soft_free_light(const struct soft *soft, struct soft_light *light);
 const uint32_t *soft_colormap(struct soft *soft, const struct shaded_colormap *colormap, bool glossy);
 void raster_finish(struct raster *raster); /* frees its memory; the raster can be used again */
 size_t raster_bytes(const struct raster *raster);
-void refined_destroy(struct refined **refined); /* &NULL is fine; sets it to NULL */
+void refined_destroy(struct refined **refined); /* frees the refined frame and sets *refined to NULL; accepts a pointer to NULL */
 size_t refined_bytes(const struct refined *refined);
-/* The functions below are the steps of a frame, in order. */
+/* Steps of a frame, in the order in which they are called. */
 void raster_aim(struct raster *raster, const struct light *light); /* computes the matrices from pixels */
-void raster_aim_cuts(struct raster *raster);                       /* computes the section planes; call first */
-/* returns whether a point is cut off; at: x w and y w in pixels, z, w; planes: number of section planes to test */
+/* computes the section planes in pixel coordinates; must be called before the other steps */
+void raster_aim_cuts(struct raster *raster);
+/* returns whether one of the first `planes` section planes cuts a point off; at: (x w, y w, z, w), with x and y in pixels */
 bool raster_is_cut_off(const struct raster *raster, const float at[4], int planes);
 /* Tests a box in the mesh's coordinates against one section plane. Returns true if the box is cut away entirely; sets *cut to true if the
    plane cuts through the box. */
@@ -203,24 +209,27 @@ bool raster_cuts_box(const struct raster *raster, const struct soft_mesh *mesh, 
                      bool *cut);
 /* Returns the depth at which the ray through this point of the frame enters the uncut space. 0: it never does, or the eye is within. */
 float raster_entry_depth(const struct raster *raster, float x, float y);
-/* Finds meshes and their parts that may be visible. bodies: also parts that bound bodies cut open. Returns false when out of memory. */
+/* Lists the meshes and parts (groups of triangles) that may be visible. bodies: also lists parts that bound closed bodies which a section
+   plane cuts open. Returns false when out of memory. */
 bool raster_find(struct raster *raster, bool bodies);
-bool raster_find_only(struct raster *raster, int asset); /* finds one asset's parts, whose back faces are drawn, too */
-bool raster_find_ghosts(struct raster *raster);          /* finds the parts of ghosted assets */
-/* computes how much of a ghost line covers each pixel, 0..255; veil has rows of width_px; destroys the marks. Returns false when out of
-   memory */
+bool raster_find_only(struct raster *raster, int asset); /* lists one asset's parts; their back faces are drawn, too */
+bool raster_find_ghosts(struct raster *raster);          /* lists the parts of ghosted assets */
+/* writes how much of each pixel a ghost line covers, 0..255, to `veil`, rows of width_px; overwrites the marks. bgr: receives the line's
+   colour. Returns false when out of memory */
 bool raster_ghosts(struct raster *raster, uint8_t *veil, uint8_t bgr[3]);
 void raster_paint_ghosts(const struct raster *raster, const uint8_t *veil, const uint8_t bgr[3]);
-enum soft_output { SOFT_CAPS, SOFT_DEPTH, SOFT_COLORS }; /* output: marks of section caps only; marks and depth; marks, depth and colours */
+/* output of raster_tiles(): marks of section caps only; marks and depth; marks, depth and colours */
+enum soft_output { SOFT_CAPS, SOFT_DEPTH, SOFT_COLORS };
 void raster_tiles(struct raster *raster, enum soft_output output);       /* rasterizes the found parts */
 bool raster_make_room(struct raster *raster, const struct frame *frame); /* false: out of memory */
 enum soft_rim { RIM_NONE, RIM_LIGHT, RIM_DARK };
-/* returns an enum soft_rim per pixel, rows pitch_px apart; overwrites raster->depth */
+/* returns an enum soft_rim per pixel, rows pitch_px apart: which pixels the outline of the selected asset covers; overwrites
+   raster->depth */
 const uint8_t *raster_rim(const struct raster *raster);
 /* Returns a visibility buffer for recolouring the frame. Call while raster->ids is valid, before ink, rims and markers are drawn. NULL: out
    of memory. */
 struct visibility_buffer *raster_keep(struct raster *raster);
-/* adds the rim to the buffer; overwrites raster->depth */
+/* adds the outline of the selected asset to the buffer's ink; overwrites raster->depth */
 void raster_keep_rim(const struct raster *raster, struct visibility_buffer *buffer);
 /* Puts the buffer, with the frame's markers, into the store of kept buffers. */
 void soft_keep(struct soft *soft, const struct frame_context *context, struct visibility_buffer *buffer, const struct frame *frame);
@@ -232,9 +241,9 @@ struct soft_triangle {
 /* Finds the triangle with this id among the found parts. On entry triangle->mesh is the index of the mesh to try first: that of a
    neighbouring pixel, or 0. */
 void raster_find_triangle(const struct raster *raster, uint32_t id, struct soft_triangle *triangle);
-/* Writes planes over the frame that give the triangle's corner weights at a point, up to a common factor. vertices: their indices in the
-   asset file. */
+/* Computes the weights of the triangle's three corners at any point of the frame, up to a common factor: weight i = weights[i][0] x +
+   weights[i][1] y + weights[i][2]. vertices: indices in the asset file. */
 void soft_weights(const struct soft_mesh *mesh, const uint32_t vertices[3], double weights[3][3]);
-void raster_outline(const struct raster *raster); /* outlines everything that has a mark; overwrites raster->depth */
+void raster_outline(const struct raster *raster); /* draws an outline around all pixels that have a mark; overwrites raster->depth */
 
 #endif

@@ -23,12 +23,14 @@ struct eight_points {    /* eight surface points */
 /* --- where ------------------------------------------------------------------------------------------------------------------- */
 
 struct corners {                    /* corners of eight triangles relative to the points, from which weights are computed */
-    float a[3][LANES], b[3][LANES]; /* vector to the corner in pixels; times w if a corner of the triangle cannot be projected */
-    float w[3][LANES];              /* 1/w; 1 if a corner cannot be projected */
-    float z[3][LANES], g[3][LANES]; /* g: 1, or w if a corner cannot be projected; z: depth times g */
+    /* a, b: x and y of the vector from the point to the corner, pixels; times clip w if a corner of the triangle cannot be projected */
+    float a[3][LANES], b[3][LANES];
+    float w[3][LANES];              /* 1 / clip w of the corner; 1 if a corner of the triangle cannot be projected */
+    float z[3][LANES], g[3][LANES]; /* g: 1, or clip w if a corner of the triangle cannot be projected; z: depth times g */
 };
 
-/* Projects corners as soft_place_part() in faces.c does. A corner that cannot be projected may lie behind the eye. */
+/* Projects the corners of an item's triangle into lane i, as soft_place_part() in faces.c does. If a corner cannot be projected, which may
+   lie behind the eye, homogeneous coordinates are stored. */
 SOFT_INLINE void see_corners(const struct refined *refined, const struct refined_item *item, int i, struct corners *out)
 {
     const struct raster *raster = &refined->raster;
@@ -59,9 +61,8 @@ SOFT_INLINE lanes load(const float at[LANES])
     return *(const lanes *)at;
 }
 
-/* Moves points outside their triangle to the nearest point on its rim. e: twice the areas opposite to the corners, negative outside an
-   edge. Clamping weights at 0 instead would give a point far along a sliver. Triangles with corners that cannot be projected are clamped as
-   well. */
+/* Moves points outside their triangle to the nearest point on its rim. e: twice the areas opposite to the corners; negative: outside that
+   edge. Clamping weights at 0 instead would move a point far along a thin triangle. */
 SOFT_INLINE void keep_within(const struct corners *corners, lanes e[3])
 {
     lanes_int outside = (e[0] < 0.0f) | (e[1] < 0.0f) | (e[2] < 0.0f);
@@ -156,7 +157,7 @@ SOFT_INLINE void attributes_at(const struct refined *refined, const struct soft_
     out[OPEN] = baked[2] * (1 / 255.0f);
 }
 
-/* Computes surface points of up to eight items; unused lanes repeat the last item. */
+/* Computes the surface points (struct eight_points) of up to eight items; unused lanes repeat the last item. */
 SOFT_INLINE void look(const struct refined *refined, const struct refined_item *items, size_t count, bool with_material,
                       struct eight_points *spot)
 {
@@ -209,7 +210,8 @@ SOFT_INLINE vec facing(const struct eight_points *spot, vec view)
 
 /* --- the sun ----------------------------------------------------------------------------------------------------------------- */
 
-/* Averages four lookups on a rotated square. s, t, depth: 0..1 over the map, lifted off the surface. Points outside the map are lit. */
+/* Returns the visible part of the sun, 0..1: the mean of four shadow lookups on a rotated square. s, t, depth: position on the map and
+   depth, 0..1, lifted off the surface. Points outside the map are lit. */
 SOFT_INLINE lanes sun_visible(const struct soft_light *light, lanes s, lanes t, lanes depth)
 {
     static const float turn[2] = { SUN_TURN };

@@ -20,7 +20,7 @@ static quad texel(const struct soft_texture *texture, const uint8_t at[4])
     return (quad){ texture->linear[at[0]], texture->linear[at[1]], texture->linear[at[2]], (float)at[3] * (1 / 255.0f) };
 }
 
-/* Wraps or clamps a coordinate. x: at most one texel outside. */
+/* Wraps a coordinate around (repeat) or clamps it to 0..side-1. x may lie at most one texel outside. */
 static int within(int x, int side, bool repeat)
 {
     if (repeat)
@@ -28,7 +28,7 @@ static int within(int x, int side, bool repeat)
     return x < 0 ? 0 : x < side ? x : side - 1;
 }
 
-/* x, y: in texels of the level, from the centre of the first texel. */
+/* Returns the bilinear mean of the four texels around (x, y) of a mipmap level. x, y: in texels, 0 at the centre of the first texel. */
 static quad between_texels(const struct soft_texture *texture, int level, float x, float y)
 {
     int width = side_of(texture->width_px, level), height = side_of(texture->height_px, level);

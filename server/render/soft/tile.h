@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A tile: a rectangle of the frame into which one thread draws parts, nearest first. Private to soft/. */
+/* A tile: a rectangle of the frame into which one thread draws parts (groups of neighbouring triangles, parts.h), nearest first. Private to
+   soft/. */
 #ifndef RENDER_SOFT_TILE_H
 #define RENDER_SOFT_TILE_H
 #include "render/soft/clip.h"
@@ -9,7 +10,8 @@ enum { TILE_WIDTH_PX = 320, TILE_HEIGHT_PX = 184, BLOCK_SHIFT = 3, BLOCK_PX = 1 
 enum { BLOCK_COLUMNS = TILE_WIDTH_PX / BLOCK_PX, BLOCK_ROWS = TILE_HEIGHT_PX / BLOCK_PX };
 enum { MOST_FACES = NEAR_TRIANGLES * PART_TRIANGLES, MOST_CORNERS = PART_VERTICES + NEAR_CORNERS * PART_TRIANGLES };
 
-#define SOFT_LITTLE 1.02f /* largest ratio of depths within a face at which perspective is ignored */
+/* faces whose nearest and farthest corner differ in depth by less than this factor are drawn without perspective correction */
+#define SOFT_LITTLE 1.02f
 
 struct soft_corners { /* vertices of a part, as struct soft_vertex, then those that clipping added */
     float x[MOST_CORNERS], y[MOST_CORNERS], depth[MOST_CORNERS], inverse_w[MOST_CORNERS], a[MOST_CORNERS], b[MOST_CORNERS];
@@ -24,7 +26,7 @@ struct soft_corners { /* vertices of a part, as struct soft_vertex, then those t
 
 struct soft_face { /* a triangle that faces the eye and covers a pixel centre of the tile; its area in pixels is positive */
     uint16_t corners[3];
-    uint16_t triangle;                /* index of the triangle in the part; for cut meshes also the flag FACE_BACK */
+    uint16_t triangle;                /* index of the triangle in the part; for meshes that a section plane cuts also the flag FACE_BACK */
     int16_t left, right, top, bottom; /* in pixels of the frame */
 };
 
@@ -34,12 +36,12 @@ enum { MOST_SAMPLES = 4 };
 struct soft_sample { /* one sample of every pixel of a tile, row by row from the tile's upper left */
     float *depth;
     uint32_t *marks; /* mark of each sample; NULL (marks, ids): not needed */
-    uint32_t *ids;   /* first_id of the part + index of the triangle in the part, and the flag ID_BACK */
+    uint32_t *ids;   /* id of the triangle at each sample: first_id of the part + index in the part, and the flag ID_BACK */
     float x, y;      /* offset from the pixel's centre */
 };
-#define ID_BACK 0x80000000u /* flag of an id, for cut meshes: the triangle looks away */
+#define ID_BACK 0x80000000u /* flag of a triangle id, only for meshes that a section plane cuts: the triangle looks away from the eye */
 
-struct soft_fragment { /* a blended triangle at one sample */
+struct soft_fragment { /* a blended (transparent) triangle at one sample */
     uint32_t pixel;    /* index in the samples' rows */
     uint32_t id, layer;
     float depth;
@@ -57,15 +59,16 @@ struct soft_tile {
     struct soft_sample samples[MOST_SAMPLES];
     int sample_count, pitch_px;                /* pitch_px: distance between the starts of two rows of samples */
     float reach_px;                            /* largest distance of a sample from the pixel's centre along either axis */
-    float farthest[BLOCK_ROWS][BLOCK_COLUMNS]; /* farthest depth in each block of pixels: surfaces behind it are hidden */
+    float farthest[BLOCK_ROWS][BLOCK_COLUMNS]; /* farthest depth in each block of 8 x 8 pixels; a surface entirely behind it is hidden */
     struct soft_corners corners;
     struct soft_face faces[MOST_FACES];
     int face_count;
     uint32_t first_id; /* id of the part's first triangle, in raster->ids */
     int cuts;          /* number of section planes, from the first in raster->cuts, that clip the part */
     enum { DRAW_ALL, DRAW_OPAQUE, DRAW_BLENDED } draws;
-    struct soft_fragments *fragments; /* DRAW_BLENDED: receives the fragments; depth and ids are not written */
-    /* --- of the part that is being drawn */
+    /* list to which DRAW_BLENDED appends the transparent triangles at each sample; it writes neither depth nor ids */
+    struct soft_fragments *fragments;
+    /* --- the part that is being drawn --- */
     const struct soft_mesh *mesh;
     const struct soft_parts *parts;
     const struct soft_part *part;
@@ -77,8 +80,8 @@ static inline uint32_t soft_id(const struct soft_tile *tile, const struct soft_f
     return (tile->first_id + (face->triangle & FACE_TRIANGLE)) | (face->triangle & FACE_BACK ? ID_BACK : 0);
 }
 
-/* Rasterizes the found parts in a rectangle (a multiple of LANES wide, at most a tile) into these samples, which already hold the depth of
-   nearer surfaces. Only depth and ids are written. Blended fragments that nothing opaque hides are appended. Runs on a worker. */
+/* Rasterizes the parts that raster_find() listed into a rectangle (a multiple of LANES wide, at most a tile). `samples` already hold the
+   depth of nearer surfaces. Writes only depth and ids. Appends the blended fragments that nothing opaque hides. Runs on a worker. */
 void raster_samples(const struct raster *raster, const struct soft_rect *rect, const struct soft_sample samples[MOST_SAMPLES], int pitch_px,
                     float reach_px, struct soft_fragments *fragments);
 
@@ -90,16 +93,19 @@ struct soft_cutout {
     double weights[3][3];
 };
 void soft_cutout_init(struct soft_cutout *cutout, const struct soft_tile *tile, const struct soft_face *face);
-bool soft_is_hole(const struct soft_cutout *cutout, float x, float y); /* x, y: pixels from the upper left corner of the frame */
+/* returns whether the texture has a hole there; x, y: pixels from the upper left corner of the frame */
+bool soft_is_hole(const struct soft_cutout *cutout, float x, float y);
 /* Appends a fragment to tile->fragments. column, row: pixel of the frame. */
 void soft_add_fragment(const struct soft_tile *tile, int sample, const struct soft_face *face, int column, int row, float depth);
 
-/* Counts, in the marks of the pixels, the closed bodies that the part bounds. */
+/* Counts, in the marks of the pixels, the closed bodies to which the part's triangles belong: +1 where a ray leaves a body, -1 where it
+   enters one. */
 void soft_count_part(struct soft_tile *tile, const struct soft_found *found, const struct soft_item *item);
 void soft_cap_tile(struct soft_tile *tile); /* turns the counts of soft_count_part() into marks and depth of section caps */
-/* Marks the vertices of the tile's part that a section plane cuts off (inverse_w 0). */
+/* Marks those vertices of the tile's part that a section plane cuts off, by setting inverse_w to 0. */
 void soft_cut_corners(struct soft_tile *tile);
-/* Clips the faces of the tile's part and lists the results; its vertices must be projected and carry field and light. */
+/* Clips the faces of the tile's part and appends the resulting faces to the tile's list. The part's vertices must be projected and carry
+   field and light. */
 void soft_cut_faces(struct soft_tile *tile, bool both_sides);
 
 #endif

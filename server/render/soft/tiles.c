@@ -97,7 +97,7 @@ static void begin_part(struct soft_tile *tile, const struct soft_found *found, c
     tile->cuts = cuts;
 }
 
-/* Prepares vertices of a pass without colours: they have no values, light or patterns. */
+/* Fills vertices with zeros where no colours are drawn: no values, light or patterns. */
 static void carry_nothing(struct soft_tile *tile)
 {
     size_t count = (size_t)tile->corners.count;
@@ -146,7 +146,8 @@ static void draw_part(struct soft_tile *tile, const struct soft_found *found, co
     kernels->look_again(tile, &blocks);
 }
 
-/* Returns whether this pass draws the part. A part that shows the field is never blended, since that would mix its colours. */
+/* Returns whether the tile's current mode draws the part: all parts, opaque ones or blended ones. A part that shows the field is never
+   blended, since that would mix its colours. */
 static bool is_drawn(const struct soft_tile *tile)
 {
     bool blended = tile->part->blended && !tile->mesh->has_field;

@@ -118,7 +118,8 @@ void visibility_buffer_add_mesh(struct visibility_buffer *buffer, const struct v
 
 struct band_settling {
     struct visibility_buffer *buffer;
-    uint32_t *numbers; /* by vertex of the frame: 0: not visible; else 1 + its index among the kept vertices */
+    /* by index of the vertex among all of the frame: 0: not visible; else 1 + its index among the kept (visible) vertices */
+    uint32_t *numbers;
 };
 
 static void settle_inks(struct visibility_buffer *buffer, size_t begin, size_t end)
@@ -157,7 +158,7 @@ static void number_bands(void *arg, size_t begin, size_t end)
     }
 }
 
-/* Numbers the visible vertices, mesh by mesh. */
+/* Gives the visible vertices consecutive indices, mesh by mesh. */
 static void number_vertices(struct visibility_buffer *buffer, uint32_t *numbers)
 {
     uint32_t count = 0;
@@ -243,7 +244,7 @@ static size_t mesh_of_vertex(const struct visibility_buffer *buffer, uint32_t ve
     size_t low = 0, high = buffer->mesh_count;
     if (vertex >= meshes[likely].first_vertex && vertex - meshes[likely].first_vertex < meshes[likely].vertex_count)
         return likely;
-    while (high - low > 1) { /* a mesh without vertices has the same first vertex as the next one */
+    while (high - low > 1) { /* a mesh without vertices has the same first vertex as the next one, which is the one searched for */
         size_t middle = (low + high) / 2;
         if (meshes[middle].first_vertex <= vertex)
             low = middle;

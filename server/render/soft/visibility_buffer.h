@@ -9,8 +9,9 @@
 #include "render/frame.h"
 #include "render/frame_context.h"
 
-/* surfaces[] of a pixel holds one of: VISIBILITY_FIXED | a colour that no reading changes (blue | green << 8 | red << 16); VISIBILITY_MIXED
-   | index, in the band, of a pixel with several surfaces; or the index, in the band, of one triangle of the field. */
+/* surfaces[] of a pixel is one of: VISIBILITY_FIXED | a colour that no reading changes (blue | green << 8 | red << 16); VISIBILITY_MIXED |
+   index of a struct visibility_mixed in the band; or, without flag, the index in the band of the triangle of a field that the pixel
+   shows. */
 #define VISIBILITY_FIXED 0x80000000u
 #define VISIBILITY_MIXED 0x40000000u
 
@@ -20,12 +21,13 @@ enum { VISIBILITY_INK = 253, VISIBILITY_RIM_DARK, VISIBILITY_RIM_LIGHT };
 
 struct soft_tones;
 
-/* glossy look, packed (tones.h): light reflected from a white surface, and light independent of the surface's colour */
+/* light on a pixel in the glossy look, packed (tones.h); of_color: light that a white surface reflects in addition to a black one; besides:
+   light independent of the surface's colour */
 struct visibility_gloss {
     uint32_t of_color, besides;
 };
 
-struct visibility_part { /* one surface of the field in a pixel with several surfaces */
+struct visibility_part { /* one of the surfaces with a field in a pixel that shows several surfaces */
     uint32_t triangle, weights;
     uint8_t row;
     uint16_t share; /* area of the pixel that the surface covers, 0..VISIBILITY_SHARES */
@@ -33,14 +35,16 @@ struct visibility_part { /* one surface of the field in a pixel with several sur
 enum { VISIBILITY_SHARES = 256, VISIBILITY_MOST_PARTS = 4 };
 
 struct visibility_mixed {
-    /* blue_red: sum of the fixed colours times their shares, 16 bits each for blue and red; first_part: index of the first of its parts */
+    /* blue_red: sum of the colours that no reading changes, each times the area that it covers, 16 bits each for blue and red; first_part:
+       index in the band of the pixel's first visibility_part */
     uint32_t blue_red, first_part;
     uint16_t green;  /* the same sum for green */
     uint16_t x, row; /* position in the band */
     uint8_t part_count;
 };
 
-/* Planes over the frame that give the weights of a triangle's second and third corner: w1/sum and w2/sum. */
+/* Corner weights of a triangle at a point (x, y) of the frame: p1 / s for the second corner and p2 / s for the third, where p1, p2 and s
+   are linear in x and y. w1_x, w1_y: slopes of p1; w2_x, w2_y: slopes of p2; s = sum_x x + sum_y y + sum. */
 struct visibility_slopes {
     float w1_x, w1_y, w2_x, w2_y, sum_x, sum_y, sum;
 };
@@ -49,14 +53,14 @@ struct visibility_place { /* a triangle: first corner, and vectors from it to th
     float first[3], second[3], third[3];
 };
 
-struct visibility_band { /* a band of rows; written by one worker */
-    /* indices of vertices: among all of the frame, and after visibility_buffer_settle() among the kept (visible) ones */
+struct visibility_band { /* a band: group of pixel rows; written by one worker */
+    /* indices of the corners: among all vertices of the frame, and after visibility_buffer_settle() among the kept (visible) ones */
     uint32_t (*triangles)[3];
-    /* present values of each triangle: that of the first corner, and the differences of the second and third corner from it;
-       fourth: 0, or 1 + the index of the mesh if its field is evaluated at pixels */
+    /* present field values of each triangle: value at the first corner, difference of the second corner's from it, difference of the
+       third's; fourth: 0, or 1 + index of the mesh if its field is evaluated at pixels */
     float (*corners)[4];
     struct visibility_place *places; /* by triangle; only filled in where some field is evaluated at pixels */
-    struct visibility_slopes *slopes; /* slopes of each triangle; only filled in where there are isolines */
+    struct visibility_slopes *slopes; /* slopes of each triangle's corner weights; only filled in where there are isolines */
     struct visibility_part *parts;
     struct visibility_gloss *gloss; /* per part, for glossy frames */
     struct visibility_mixed *mixed;
@@ -68,7 +72,8 @@ struct visibility_band { /* a band of rows; written by one worker */
 struct visibility_mesh { /* an asset with a field */
     int asset;
     const struct asset_view *file;
-    /* range of vertices: among all of the frame, and after visibility_buffer_settle() among the kept (visible) ones */
+    /* range of vertices that the mesh uses: indices among all of the frame, after visibility_buffer_settle() among the kept (visible)
+       ones */
     uint32_t first_vertex, vertex_count;
     bool read;        /* true if `carried` has the values of the field version `content` */
     uint64_t content; /* hash from struct fields_entry */
@@ -82,16 +87,18 @@ struct visibility_buffer {
     uint8_t *rows;                  /* row of the colour map (brightness) for each pixel */
     struct visibility_gloss *gloss; /* light of glossy surfaces for each pixel; NULL: not glossy, brightness is in `rows` */
     const struct soft_tones *tones; /* set with gloss; not owned */
-    uint8_t *ink;  /* ink of each pixel; visibility_buffer_settle() applies ink and veil to fixed colours and clears both there */
+    /* ink of each pixel (VISIBILITY_INK: lines drawn over its colour). visibility_buffer_settle() draws ink and veil over colours that no
+       reading changes, and sets both to 0 there */
+    uint8_t *ink;
     uint8_t *veil; /* coverage by ghost lines, 0..255. NULL: there are no ghosts */
     uint8_t veil_bgr[3];
-    bool lined;   /* slopes are stored, so isolines can be drawn */
+    bool lined;   /* true: slopes are stored, which isolines need */
     float *depth; /* depth for placing isoline labels, rows of width_px. NULL: there are none */
     struct visibility_band *bands;
     struct visibility_mesh *meshes;
     size_t mesh_count, mesh_capacity, vertex_count;
     bool evaluates;     /* some mesh's field is evaluated at pixels */
-    float scale[4];     /* scale in struct frame_uniforms when the vertices were read */
+    float scale[4];     /* struct frame_uniforms.scale at the time when the vertices' values were read */
     uint32_t *vertices; /* kept vertices, mesh by mesh: index in the asset's file */
     /* carried value of each kept vertex: column of the colour map (logarithmic scale: the value); NAN: it has a pattern's flag */
     float *carried;
@@ -104,7 +111,8 @@ struct visibility_buffer {
 struct visibility_buffer *visibility_buffer_create(int width_px, int height_px, int band_rows); /* NULL: out of memory */
 /* Adds storage for the glossy look. Returns false when out of memory. */
 bool visibility_buffer_gloss(struct visibility_buffer *buffer, const struct soft_tones *tones);
-void visibility_buffer_destroy(struct visibility_buffer **buffer); /* &NULL is fine; sets it to NULL */
+/* frees the buffer and sets *buffer to NULL; accepts a pointer to NULL */
+void visibility_buffer_destroy(struct visibility_buffer **buffer);
 size_t visibility_buffer_bytes(const struct visibility_buffer *buffer);
 /* Isolines of a frame. line_px 0: there are none. */
 struct resolve_lines {
@@ -121,8 +129,7 @@ bool visibility_buffer_settle(struct visibility_buffer *buffer, struct workers *
 
 /* Reads the fields of the frame into buffer->carried and the other values of the kept vertices. */
 void resolve_read(struct visibility_buffer *buffer, const struct frame_context *context, struct workers *workers);
-/* Stores the slopes of the triangle that visibility_add_triangle() added last. weights: planes of its corner weights, up to a factor. Runs
-   on a worker. */
+/* Stores the slopes of the triangle that visibility_add_triangle() added last. weights: from soft_weights(). Runs on a worker. */
 void visibility_add_slopes(struct visibility_band *band, const double weights[3][3]);
 /* Colours `count` bands from `first` on. colormap: COLORMAP_ROWS x COLORMAP_COLUMNS texels. pattern_px: cell size of patterns. */
 void resolve_colors(const struct visibility_buffer *buffer, const uint32_t *colormap, const struct resolve_lines *lines, float pattern_px,
