@@ -22,20 +22,20 @@ struct colormap {
     uint8_t below[3], above[3]; /* colours for values below MIN and above MAX; none of the map's colours is like them */
 };
 
-/* Adds a map, or replaces one added before: rates its shading and chooses its out-of-range colours. Returns its index; -1 if the name
-   belongs to a built-in map or there is no room. Thread: before others start. */
+/* Adds a map, or replaces an added map of the same name. Computes its `shading` and `safe` and chooses its out-of-range colours. Returns
+   the map's index; -1 if the name belongs to a built-in map or there is no room. Thread: before others start. */
 int colormap_add(const char *name, const uint8_t rgb[256][3]);
 /* Adds the colour maps that the plant file defines. Thread: before others start. */
 void colormaps_of_plant(const struct plant *plant);
-/* Computes `shading` and `safe` from the map's colours; takes a few milliseconds. Built-in maps have both in their files. */
+/* Computes `shading` and `safe` from the map's colours; takes a few milliseconds. The files of built-in maps already contain both. */
 void colormap_rate_shading(struct colormap *map);
 
 /* Returns the number of maps. */
 size_t colormap_count(void);
 /* Returns the map with this index; 0 is the default. */
 const struct colormap *colormap_at(size_t index);
-/* Returns the map for positions between alarm limits, -3 to 3 (field/limits.h). It is not in the list of maps, because it does not show
-   values. */
+/* Returns the map of the operator's view, which shows where a reading is between its alarm limits: -3 to 3 (field/limits.h). It has no
+   index and no entry in the list of maps. */
 const struct colormap *colormap_operator(void);
 /* Returns the index of the map with this name, or -1. */
 int colormap_find(const char *name);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes how much a map can be shaded before shading is read as value. */
+/* Computes how much shading may change a map's colours before viewers misread the values. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -7,10 +7,11 @@
 #include "field/lab.h"
 
 static const double MAX_MISREAD = 0.03 * 256; /* tolerance in colours */
-/* required fraction of correctly read samples; 0.95 in frames, which have extreme light more often than these samples */
+/* fraction of samples that must be read correctly; stricter than the 0.95 promised for frames (struct colormap: safe), because frames
+   contain extreme light more often than these samples */
 static const double MIN_RIGHT_PART = 0.974;
 static const double MIN_SHADING = 2, UNSAFE_SHADING = 4, STEP = 0.5;
-/* amplitude of the noise added to each of luma and chroma in turn, of 255: about that of JPEG at quality 80 */
+/* amplitude of the noise added to luma and chroma in turn, of 255: about that of JPEG at quality 80 */
 static const double NOISE_AMPLITUDE = 2.0;
 enum { SAMPLED = 5, STEPS = 4, NOISES = 6 };
 
@@ -37,7 +38,8 @@ static void add_noise(const uint8_t rgb[3], int noise, double out[3])
         out[c] = fmin(fmax(rgb[c] + (noise % 2 ? -NOISE_AMPLITUDE : NOISE_AMPLITUDE) * axes[noise / 2][c], 0), 255);
 }
 
-/* Returns true if nearly all shaded colours are read correctly: the value of the nearest legend colour differs by at most MISREAD. */
+/* Returns true if at least MIN_RIGHT_PART of the shaded colours are read correctly: the value of the nearest legend colour differs by at
+   most MAX_MISREAD. */
 static bool is_read_right(const struct colormap *map, enum color_vision vision, double shading)
 {
     double labs[256][3];

@@ -9,8 +9,8 @@
 #include "field/layout.h"
 #include "value/quality.h"
 
-#define AT_ONE_PLACE 1e-6 /* metres; a point nearer than this to a sensor is at the sensor */
-/* smallest part of a vector's length that must lie along the surface; with less, its direction there is unknown */
+#define AT_ONE_PLACE 1e-6 /* metres; a point nearer to a sensor than this counts as being at the sensor */
+/* smallest fraction of a vector's length that must lie along the surface; the direction of a steeper vector is unknown */
 #define MIN_TANGENT_PART 0.1
 
 static const float *angles_of(const struct field_layout *layout)
@@ -22,7 +22,8 @@ static const float *angles_of(const struct field_layout *layout)
 
 /* --- readings --------------------------------------------------------------------------------------------------------------- */
 
-/* Converts a bearing: degrees clockwise from +Y (in a Y-up plant from -Z), seen from above. */
+/* Converts a bearing (degrees clockwise from north, seen from above) to a unit vector of the plant. North is +Y; in a plant whose up
+   axis is Y, it is -Z. */
 static void from_bearing(const struct plant *plant, double degrees, double out[3])
 {
     double east = sin(degrees * M_PI / 180), north = cos(degrees * M_PI / 180);
@@ -76,7 +77,8 @@ size_t directions_read(const struct scene *scene, int asset, int group, const st
 
 /* --- places ----------------------------------------------------------------------------------------------------------------- */
 
-/* A sensor's vector as an angle to the reference vector that is transported along the surface, and as a length along the surface. */
+/* A sensor's vector on the surface: its angle to the sensor's reference vector, which parallel transport moves along the surface, and
+   its length along the surface. */
 struct spread {
     double turn, length;
     bool configured, known, uncertain;

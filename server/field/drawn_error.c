@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Measures interpolation errors by sampling triangles where weights may be curved, more densely near sensors. */
+/* Measures the error of linear interpolation within triangles: samples triangles where sensors' weights may be curved, more densely near
+   sensors. */
 #include "field/drawn_error.h"
 
 #include <math.h>
@@ -10,20 +11,23 @@
 #include "plant/exact.h"
 #include "plant/singles.h"
 
-/* GROUP: triangles processed together; GRAIN: triangles per job; PIECES_MOST: pieces per triangle. */
+/* GROUP: triangles evaluated together; GRAIN: triangles per job of a worker thread; MAX_PIECES: pieces that one triangle is halved into
+   at most. */
 enum { GROUP = 64, GRAIN = 1024, MAX_PIECES = 96 };
 /* largest length of a piece (part of a triangle), relative to its distance to the nearest sensor; longer pieces are halved */
 #define STEP 0.3f
-#define MAX_POWER 2.0f /* largest power of shepard at which STEP samples finely enough */
-/* L^2 K / (6 d^2) bounds the error of a triangle of side L if the second derivative of the weights is at most K / d^2 */
+#define MAX_POWER 2.0f /* largest power of shepard (exponent of the distance) at which STEP samples finely enough */
+/* For shepard: L^2 K / (6 d^2) bounds the error in a triangle, with L its longest side, d its distance to the nearest sensor, and K /
+   d^2 a bound of the weights' second derivative. */
 #define SHEPARD_ACCEPTED 6.0f
-#define PAPER_ACCEPTED 0.015f /* triangles up to this size need no samples: relative to the distance d of the nearest sensor, and to R */
+#define PAPER_ACCEPTED 0.015f /* for paper: largest side of triangles that need no samples, as a fraction of the distance to the nearest
+                                 sensor and of the radius R */
 #define STEP_OF_COLOR (1 / 255.0f)
-#define BORDER_SLACK 4  /* tolerated displacement of the border beyond which there is no data, in units of `lacking` */
+#define BORDER_SLACK 4  /* tolerated displacement of the border between data and no data, in units of struct scalar's `lacking` */
 #define MIN_ERROR 1e-4f /* smaller errors are stored as 0 */
 
 struct triangle_piece {  /* part of a triangle; the error is sampled at the middle of the piece's longest side */
-    uint32_t tri;        /* index of the triangle in the group */
+    uint32_t tri;        /* index of the triangle in the group of triangles evaluated together */
     float corners[3][3]; /* barycentric coordinates of its corners */
 };
 
@@ -84,7 +88,8 @@ static void sampler_finish(struct sampler *sampler)
     mem_free(sampler->queue);
 }
 
-/* Evaluates the weights at points: afterwards, a sensor's column divided by the total is the sensor's weight. */
+/* Evaluates all sensors' weights at the sampled points. A sensor's weight at a point is its column's element divided by the point's
+   total. */
 static void evaluate(struct sampler *sampler, size_t count)
 {
     struct weights *weights = sampler->weights;
@@ -122,7 +127,7 @@ static void enqueue(struct sampler *sampler, const struct triangle_piece *piece)
     sampler->queue[sampler->queued++] = *piece;
 }
 
-/* Returns the length of the longest side and the corner where it begins. */
+/* Returns the length of the piece's longest side. *begin receives the index of the corner where that side begins. */
 static float longest_side(const struct sampler *sampler, const struct triangle_piece *piece, int *begin)
 {
     float at[3][3], longest = -1;
@@ -153,7 +158,7 @@ static void split(struct sampler *sampler, const struct triangle_piece *piece, i
     enqueue(sampler, &half);
 }
 
-/* Returns true if frames are wrong here: there is no data at this point, but interpolation from the corners draws data. */
+/* Returns true if frames are wrong at this point: the field has no data here, but interpolation from the triangle's corners draws data. */
 static bool hides_rim(const struct sampler *sampler, size_t point, const struct triangle_piece *piece, const float parts[3], bool *shown)
 {
     const uint32_t *corners = sampler->tris[piece->tri];
@@ -267,8 +272,9 @@ static void prepare_some(void *arg, size_t begin, size_t end)
     }
 }
 
-/* Returns the size of triangles that need no samples, relative to the distance d of the nearest sensor. The weights' second derivative is
-   at most K / d^2, from the derivatives of D^-p with |grad D| = 1. */
+/* Returns the largest size of triangles that need no samples, as a fraction of the distance d to the nearest sensor; 0: all need
+   samples. Shepard's weights have a second derivative of at most K / d^2: it follows from those of D^-p, with p the power, D the
+   distance and |grad D| = 1. */
 static float accepted_of(const struct weights *weights)
 {
     float p = weights->power;
@@ -335,15 +341,17 @@ static void measure_level(struct drawn_error_job *job, struct weights *weights, 
     mem_free(ones);
 }
 
-/* Returns true if the subdivision that preparation chose suffices (preprocess/subdivision/linear_error.h): the weights are not more curved
-   than those it assumed. With fewer sensors they may be, because the field then bends at other places, perhaps in larger triangles. */
+/* Returns true if the subdivision that preparation chose suffices (preprocess/subdivision/linear_error.h), because the weights are no
+   more curved than preparation assumed. They may be more curved when sensors are missing: the field then bends at other places, perhaps
+   in larger triangles. */
 static bool is_as_prepared(const struct weights *weights, const struct field_params *params)
 {
     const struct field_layout *layout = weights->layout;
     const struct plant_group *group = layout->group;
     if (layout->trial || params->override_count > 0 || params->distance == DISTANCE_HEAT || params->reach_m != group->reach_m)
         return false;
-    if (plant_group_is_exact(group, layout->sensor_count)) /* no triangle was cut for the group */
+    if (plant_group_is_exact(group, layout->sensor_count)) /* pixels evaluate this field themselves, so preparation subdivided no
+                                                              triangle for the group */
         return false;
     for (size_t i = 0; i < layout->sensor_count; i++)
         if (weights->configured[i] && !weights->takes_part[i])

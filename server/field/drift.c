@@ -14,21 +14,24 @@ enum { JUMPS = 2, COLUMNS = 3 + DRIFT_NEAREST + JUMPS, MIN_SENSORS = 3, ROUNDS =
 enum { CHANGE_BEFORE = 3, CHANGE_AFTER = 1 };
 static const double FAST_FACTOR = 2;  /* an hour in which the plant changes by this multiple of the usual change has half the weight */
 static const double STILL_PART = 0.1; /* a change per hour below this multiple of the noise counts as no change */
-static const double MEAN_PART = 0.25; /* noise of an hourly mean relative to a reading's noise, for at least 16 independent readings */
-/* numbers of hours: averaged before a jump, and again after the jump; between the two means */
+static const double MEAN_PART = 0.25; /* noise of an hourly mean relative to the noise of one reading: 1/4 if the mean has at least 16
+                                         independent readings */
+/* number of hours averaged on each side of a possible jump; number of hours left out between the two averages */
 enum { BESIDE = 3, WITHIN = 2 };
 static const double MIN_JUMP_FACTOR = 6;     /* smallest jump, relative to the usual change of residuals over the same number of hours */
-static const double LAG_HOURS = 12;          /* time that heat takes from the other sensors to this one */
+static const double LAG_HOURS = 12;          /* time constant of the low-pass filter that models how long heat takes from the other
+                                                sensors to this one */
 static const double DEPENDENT_PART = 1. / 6; /* residuals further apart than this fraction of the recorded time count as independent */
-static const double MIN_NEW_PART = 1e-3;     /* smallest part of a column's length that must be independent of the other columns */
+static const double MIN_NEW_PART = 1e-3;     /* smallest part of a column's length (a column is one term of the model, by hour) that must
+                                                be independent of the other columns */
 
 struct week {                                   /* hourly data of one sensor */
     const double *values, *predicted, *nearest; /* nearest: [nearest_count][hours]: hourly means of the nearest sensors */
     int nearest_count, hours;
-    double noise, root[DRIFT_HOURS]; /* root: square root of each hour's weight */
+    double noise, root[DRIFT_HOURS]; /* root: square root of each hour's weight in the fit */
 };
 
-struct drift_rows { /* equations of the hours with values of all sensors, each multiplied by the root of its weight */
+struct drift_rows { /* one equation per hour with values of all sensors, multiplied by the square root of the hour's weight */
     double at[COLUMNS][DRIFT_HOURS], time[DRIFT_HOURS], value[DRIFT_HOURS];
     double counted; /* sum of the hours' weights */
     int hour[DRIFT_HOURS], count, columns;
@@ -83,8 +86,8 @@ static void collect(const struct week *week, struct drift_rows *rows)
     rows->columns = 3 + week->nearest_count;
 }
 
-/* Makes the columns orthonormal and subtracts their components from the columns of time and value. largest: the largest magnitude of the
-   values. Returns the number of columns that were kept. */
+/* Makes the model's columns orthonormal, and subtracts their components from the columns of time and of the values. largest: the largest
+   magnitude of the values. Returns the number of columns kept; columns that depend on others are dropped. */
 static int reduce(struct drift_rows *rows, double largest)
 {
     int kept = 0, n = rows->count;
@@ -93,7 +96,8 @@ static int reduce(struct drift_rows *rows, double largest)
         for (int k = 0; k < kept; k++)
             take_out(column, rows->at[k], n);
         double length = sqrt(dot(column, column, n));
-        /* when readings are nearly constant, only rounding is left; the first column is all 1 */
+        /* Drops a column of which only rounding errors are left, as happens when readings are nearly constant. The first column is all 1
+           and always stays. */
         if (c > 0 && !(length > 1e-9 * sqrt(n) * (1 + largest)))
             continue;
         for (int i = 0; i < n; i++)
@@ -125,7 +129,7 @@ static double median(const double *of, int n)
     return (sorted[(n - 1) / 2] + sorted[n / 2]) / 2;
 }
 
-/* Finds the row before which the residuals jump most. Returns 0 if they do not jump. */
+/* Finds the row (hour) before which the residuals jump most. Returns its index, or 0 if they do not jump. */
 static int find_jump(const struct drift_rows *rows, double noise)
 {
     double change[DRIFT_HOURS];
@@ -147,7 +151,7 @@ static int find_jump(const struct drift_rows *rows, double noise)
     return at;
 }
 
-/* Computes each hour's weight: 1/2 where the prediction changes FAST times as much as usual, 1 where it is constant. */
+/* Computes each hour's weight: 1/2 where the prediction changes FAST_FACTOR times as much as usual, 1 where it is constant. */
 static void weigh(struct week *week)
 {
     double change[DRIFT_HOURS], sorted[DRIFT_HOURS];
@@ -170,8 +174,8 @@ static void weigh(struct week *week)
         week->root[h] = 1 / hypot(1, change[h] / (FAST_FACTOR * usual));
 }
 
-/* Collects and reduces the rows, and adds a column for each jump, which is 0 before the jump and 1 after it. Returns the number of columns
-   kept. */
+/* Collects the rows and makes their columns orthonormal. Then adds a column for each jump found, which is 0 before the jump and 1 after
+   it. Returns the number of columns kept. */
 static int reduce_with_jumps(const struct week *week, struct drift_rows *rows)
 {
     double largest = 0;
@@ -189,8 +193,8 @@ static int reduce_with_jumps(const struct week *week, struct drift_rows *rows)
     return columns;
 }
 
-/* Returns the variance of the slope by Newey & West's estimate: from the residuals' contributions to the slope, and their correlation over
-   `reach` hours. */
+/* Returns the variance of the slope by Newey & West's estimate, which uses each residual's contribution to the slope. Contributions up
+   to DEPENDENT_PART of the hours apart count as correlated. */
 static double slope_variance(const struct drift_rows *rows, double time_square, int hours)
 {
     double pull[DRIFT_HOURS] = { 0 };
@@ -232,7 +236,8 @@ void drift_fit(const double *values, const double *predicted, const double *near
         out->verdict = DRIFT_NONE;
 }
 
-/* Computes each sensor's own offset, by least squares of value = own[sensor] + common[hour], over the existing values. */
+/* Computes each sensor's own offset by least squares of value[hour][sensor] = own[sensor] + common[hour], over all values that are not
+   NaN. */
 static void find_own(const double *values, int hours, size_t count, double *own)
 {
     double *sum = mem_array(count, sizeof(*sum));
@@ -306,7 +311,7 @@ static void read_filled(const struct drift_search *search, size_t sensor, double
         out[h] = isfinite(out[h]) ? out[h] : said[h] + off / known;
 }
 
-/* Returns whether a sensor can be compared with others: it is not found to drift, and has values for at least half of the time. */
+/* Returns true if a sensor can be compared with others: it is not found to drift, and has values for at least half of the hours. */
 static bool is_of_use(const struct drift_search *search, size_t sensor, const struct drift *drift)
 {
     int known = 0;
@@ -315,7 +320,7 @@ static bool is_of_use(const struct drift_search *search, size_t sensor, const st
     return drift->verdict != DRIFT_FOUND && 2 * known >= search->hours;
 }
 
-/* Judges all sensors not found yet. Returns the index of the sensor that drifts most clearly; `count`: none drifts. */
+/* Judges all sensors not yet found to drift. Returns the index of the sensor that drifts most clearly, or `count` if none drifts. */
 static size_t judge(const struct drift_search *search, const double *noise, struct drift *out)
 {
     double own[DRIFT_HOURS], nearest[DRIFT_NEAREST * DRIFT_HOURS];
@@ -361,7 +366,7 @@ void drift_find(const struct neighbours *neighbours, const double *values, int h
             break;
         out[clearest].verdict = DRIFT_FOUND;
     }
-    /* too few sensors remain to decide, and their predictions depend on drifting ones */
+    /* the search stopped because too few sensors remain that do not drift: the verdicts about them depend on drifting sensors */
     for (size_t i = 0; i < count && clearest < count; i++)
         if (out[i].verdict == DRIFT_NONE)
             out[i].verdict = DRIFT_UNKNOWN;

@@ -12,9 +12,11 @@
 #define FIELD_DRIFT_H
 #include "field/neighbours.h"
 
-enum { DRIFT_HOURS = 168, DRIFT_HOURS_LEAST = 84 }; /* hours of a week; with fewer hours than the minimum nothing is decided */
-enum { DRIFT_NEAREST = 2 };                         /* nearest sensors that get a term of their own, at most */
-#define DRIFT_SIGMAS 3.0 /* a drift over the week of at least this many standard deviations (struct drift: scatter) should be found */
+enum { DRIFT_HOURS = 168, DRIFT_HOURS_LEAST = 84 }; /* DRIFT_HOURS: hours of a week; DRIFT_HOURS_LEAST: fewest hours with values of all
+                                                       sensors for which a verdict is given */
+enum { DRIFT_NEAREST = 2 };                         /* largest number of nearest sensors whose readings become terms of the model */
+#define DRIFT_SIGMAS 3.0 /* DRIFT_FOUND is meant for a drift over the week of at least this many standard deviations (struct drift:
+                            scatter) */
 /* an estimated drift counts from this many standard deviations on, fewer than DRIFT_SIGMAS because estimates err */
 #define DRIFT_SIGMAS_LEAST 2.5
 #define DRIFT_ERRORS 5.0 /* an estimated drift must also be this many times its own standard error */
@@ -33,13 +35,13 @@ struct drift {
     int hours;      /* number of hours used */
 };
 
-/* Judges one sensor. values, predicted: by hour; NaN: none. nearest: [nearest_count][hours], readings of at most DRIFT_NEAREST nearest
-   sensors. noise: error and recording resolution of a reading, above 0. */
+/* Decides whether one sensor drifts. values, predicted: by hour; NaN: no value. nearest: [nearest_count][hours], readings of at most
+   DRIFT_NEAREST nearest sensors. noise: error and recording resolution of a reading, above 0. */
 void drift_fit(const double *values, const double *predicted, const double *nearest, int nearest_count, int hours, double noise,
                struct drift *out);
-/* Judges all sensors that can be predicted. values: [hour][sensor]; noise: by sensor; out: by sensor. predicted: [hour][sensor], receives
-   predictions from sensors that do not drift, including each sensor's own offset; may be NULL. Takes (hours * sensors * sensors) steps, and
-   as many again for each drifting sensor. */
+/* Decides for all sensors that can be predicted whether they drift. values: [hour][sensor]; noise: by sensor; out: by sensor. predicted:
+   [hour][sensor], receives predictions from sensors that do not drift, including each sensor's own offset; may be NULL. Takes (hours *
+   sensors * sensors) steps, and as many again for each drifting sensor. */
 void drift_find(const struct neighbours *neighbours, const double *values, int hours, const double *noise, struct drift *out,
                 double *predicted);
 

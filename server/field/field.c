@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Caches the fields in use, each once, within a memory bound. */
+/* Computes the scalars of assets on request: finds or creates the cached states and weights, and updates them. */
 #include "field/field.h"
 
 #include <math.h>
@@ -72,7 +72,7 @@ struct field_layout *field_layout(struct field *field, int asset, const struct f
 {
     struct field_layout **at = &field->layouts[(size_t)asset * field->scene->plant->group_count + (size_t)params->group];
     if (params->trial && interpolation_is_prepared(params->interpolation) && params->show != SHOW_DISTANCE)
-        return NULL; /* a prepared interpolation does not exist for trial positions: shows no data, not the previous field */
+        return NULL; /* prepared interpolations do not exist for trial positions: shows no data, not the previous field */
     if (params->trial)
         return field_trial_layout(field, asset, params);
     if (!*at)
@@ -185,7 +185,8 @@ static const struct scalars *distance_scalars(struct field *field, int asset, co
 bool field_covers(struct field *field, int asset, const struct field_params *params)
 {
     const struct field_layout *layout = field_layout(field, asset, params);
-    if (field_params_cover(params) && layout && layout->assumed) /* the positions of the layout's sensors are unknown */
+    if (field_params_cover(params) && layout && layout->assumed) /* uncertainty and blind spots depend on where sensors are, and this
+                                                                    layout only assumes the positions */
         return false;
     return params->show == SHOW_DISTANCE ? find_sensor(layout, params->sensor) >= 0 : layout != NULL;
 }

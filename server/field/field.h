@@ -1,29 +1,34 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* From readings to a scalar at every vertex. Algorithm 1 of Kim & Suh, Electronics 2025, 14(15), 2938 (`paper`) and inverse distance
-   weighting (Shepard, 1968; `shepard`), with Euclidean or geodesic distance D. paper: w_i = exp(d_i s_i) / sum_k exp(d_k s_k), value =
-   sum_i v~_i w_i d_i^o_i, d = max(0, 1 - D/R), v~ = clamp((v - MIN)/(MAX - MIN)); the scalar is MIN + value (MAX - MIN). shepard: value =
-   sum_i s_i v_i / D_i^p / sum_i s_i / D_i^p; exactly v_i where D_i = 0. A sensor contributes at a point if it belongs to the group and the
-   asset, its quality is not Bad, D is finite and D <= reach_m. If reach_m is set, weights are multiplied by (1 - D/reach_m)^2 (for
-   shepard's p = 2 these are the weights of Franke and Nielson, 1980), so that the field has no edge where a sensor's contribution ends.
-   Since weights are divided by their sum, the nearest sensor alone never seems to fade. In shepard a sensor of strength 0 never
-   contributes, a common factor on all strengths cancels, and decay has no effect. Sensors with an assumed position (`Place: equipment`)
-   never produce a gradient. If the group has a sensor with a known position on the asset, they do not contribute. If it has none, one
-   sensor with an assumed position gives the value of the whole asset: the one whose reading is nearest to trouble (by its own limits, else
-   the farthest from the middle of the group's range), never a mean. While all are Bad there is no data. There is no data where no sensor
-   contributes, and where a configured sensor that does not contribute is nearer than all that do (`fill` can have such places filled; they
-   are flagged uncertain). The value stored there continues that of the nearest contributing sensor; else it is MIN. harmonic, fin: sum_i
-   H_i v_i with H from the asset's influence file (protocol/ASSET.md); fin relative to ambient. Lost sensors get the values that follow from
-   the others (field/influence_fill.h), so that H, prepared for all sensors, can be used even if some are lost. Not available in trials.
-   Where fin's H add up to less than a tenth there is no data. gp: the same with weights that add up to 1 on each body and may be negative
-   (preprocess/influence/gaussian.h). There is no data where sensors remove less than a tenth of the prior's variance. Its standard
-   deviation (uncertainty), and the smallest hot spot that the nearest good sensor would show (blind), depend only on which sensors are
-   good. The scalar may also be the distance from one sensor in metres, or the difference from a baseline: the present field minus the
-   earlier one, both over the sensors usable in both (paper clamps readings, so clamped ones are subtracted there). For operators it is the
-   position of readings between their own tags' limits (field/limits.h), interpolated with the same weights; with paper the scalar falls to
-   0, which is the middle. A sensor whose tag has no limits has no position and does not contribute; where it is the nearest, the scalar is
-   flagged so. The field is linear in the readings: value = G v / G 1. G is kept in a bounded cache or recomputed for each sum, with
-   identical bits; a changed reading adds one column times its change, a changed quality recomputes the sum. Thread: one at a time per field
-   (work is spread over `workers`). */
+/* Computes the field: from readings to a scalar at every vertex of an asset.
+   Letters: for sensor i, v_i is the reading, s_i the strength, o_i the decay and D_i the distance of the vertex, Euclidean or geodesic. p
+   is the power, R the radius, and MIN to MAX the group's range.
+   paper (Algorithm 1 of Kim & Suh, Electronics 2025, 14(15), 2938): d_i = max(0, 1 - D_i/R), w_i = exp(d_i s_i) / sum_k exp(d_k s_k), u_i
+   = clamp((v_i - MIN)/(MAX - MIN)), value = sum_i u_i w_i d_i^o_i; the scalar is MIN + value (MAX - MIN).
+   shepard (inverse distance weighting, Shepard 1968): value = (sum_i s_i v_i / D_i^p) / (sum_i s_i / D_i^p); exactly v_i where D_i = 0. A
+   sensor of strength 0 never contributes, a common factor on all strengths cancels, and decay has no effect.
+   A sensor contributes at a point if it belongs to the group and the asset, its quality is not Bad, D_i is finite and D_i <= reach_m. If
+   reach_m is set, weights are multiplied by (1 - D_i/reach_m)^2 (with p = 2 these are the weights of Franke and Nielson, 1980), so that
+   the field has no edge where a sensor's contribution ends. Weights are divided by their sum, so a single sensor in reach does not seem to
+   fade.
+   Sensors with an assumed position (`Place: equipment`) never produce a gradient. They are ignored if the group has a sensor with a known
+   position on the asset. If it has none, one sensor gives the value of the whole asset, never a mean: the sensor whose reading is nearest
+   to trouble (by its own limits, else the farthest from the middle of the group's range). While all are Bad there is no data.
+   There is no data where no sensor contributes, and where a configured sensor that does not contribute is nearer than all that do. The
+   parameter `fill` fills such places; they are flagged uncertain. The scalar stored there continues that of the nearest contributing
+   sensor; without one it is MIN.
+   harmonic, fin: value = sum_i H_i v_i with weights H from the asset's influence file (protocol/ASSET.md); fin's values are relative to
+   ambient. Lost sensors get the values that follow from the others (field/influence_fill.h), so that H, prepared for all sensors, can be
+   used even if some are lost. Trial positions have no prepared weights. Where fin's weights add up to less than a tenth there is no data.
+   gp: as harmonic, but the weights add up to 1 on each body and may be negative (preprocess/influence/gaussian.h). There is no data where
+   sensors remove less than a tenth of the prior's variance. The standard deviation of gp (shown as uncertainty), and the smallest hot spot
+   that the nearest good sensor would show (shown as blind), depend only on which sensors are good.
+   Instead of the value, the scalar may be the distance from one sensor in metres, or the difference from a baseline: the present field
+   minus an earlier one, both over the sensors usable in both (paper subtracts clamped readings). For operators it is the position of
+   readings between their own tags' limits (field/limits.h), interpolated with the same weights; 0 is the middle. A sensor whose tag has no
+   limits does not contribute to it, and vertices nearest to such a sensor are flagged.
+   The field is linear in the readings: with G the weights before division and 1 a vector of ones, value = G v / G 1. G is kept in a
+   bounded cache or recomputed for each sum, with identical bits. A changed reading adds one column of G times its change; a changed
+   quality recomputes the sum. Thread: one at a time per field (work is spread over `workers`). */
 #ifndef FIELD_FIELD_H
 #define FIELD_FIELD_H
 #include "base/workers.h"
@@ -52,17 +57,18 @@ void field_set_baselines(struct field *field, struct baselines *baselines);
 /* Sets the registry in which trial positions of sensors are looked up; it must outlive the field. Without it, or for a trial that no longer
    exists, sensors have the plant's positions. */
 void field_set_trials(struct field *field, struct trials *trials);
-/* Returns the parameters under which this asset's field is cached: params, or a modified copy in *room: without the trial, if it moves
-   nothing on this asset; with those of a constant field, if the positions of all sensors are assumed. */
+/* Returns the parameters under which this asset's field is cached: params or a modified copy in *room. The copy lacks a trial that moves
+   nothing on this asset. If the positions of all sensors are assumed, it has the parameters of a constant field. */
 const struct field_params *field_params_of(struct field *field, int asset, const struct field_params *params, struct field_params *room);
-/* Returns the trial that params name, held until field_give_trial(). NULL: there is none. */
+/* Returns the trial that params name; the caller releases it with field_give_trial(). NULL: they name none, or it no longer exists. */
 const struct trial *field_take_trial(struct field *field, const struct field_params *params);
 /* Releases a trial. &NULL is fine; sets it to NULL. */
 void field_give_trial(struct field *field, const struct trial **trial);
 /* Looks up the baseline of a difference into *out. Returns false if params show no difference or the baseline was forgotten. */
 bool field_baseline(const struct field *field, const struct field_params *params, struct baseline *out);
 #define FIELD_DEFAULT_BYTES ((size_t)512 << 20)
-/* Sets the limit of the cache in bytes, FIELD_DEFAULT_BYTES at first. The parameters requested last may exceed it for themselves. */
+/* Sets the limit of the cache in bytes; initially FIELD_DEFAULT_BYTES. The field of the parameters requested last is kept even if it
+   alone exceeds the limit. */
 void field_set_cache_limit(struct field *field, size_t bytes);
 /* Returns the bytes that the cache takes now. */
 size_t field_bytes(const struct field *field);
@@ -75,19 +81,21 @@ void field_clear_cache(struct field *field);
    a distance: not that sensor), or when out of memory. */
 const struct scalars *field_scalars(struct field *field, int asset, const struct field_params *params, const struct snapshot *snapshot);
 
-/* Does the same for the first `count` vertices only, those of a level of detail: the first scalars->ready vertices are valid. */
+/* Like field_scalars(), but updates only the first `count` vertices, which are those of one level of detail: the first scalars->ready
+   vertices are valid. */
 const struct scalars *field_scalars_of(struct field *field, int asset, const struct field_params *params, const struct snapshot *snapshot,
                                        size_t count);
-/* Brings the fields of several small assets up to date in parallel, one core each. Large fields, trials and fields short of memory are left
-   to field_scalars_of(), which must be called next for every one of these assets. counts: vertices wanted, by index in `assets`. */
+/* Updates the fields of several small assets in parallel, each on one core. Skips large fields, fields of trials and fields that memory
+   is short for: the caller must call field_scalars_of() for each of these assets afterwards. counts: number of vertices wanted, by index
+   in `assets`. */
 void field_update_all(struct field *field, const int *assets, const size_t *counts, size_t asset_count, const struct field_params *params,
                       const struct snapshot *snapshot);
-/* Works towards field_scalars_of() for about `work` nanoseconds of one core, so that a large update blocks nobody. Returns true when that
-   call would return at once. While it returns false, the readings are those of the first call, and the scalars must not be read. */
+/* Does about `work` nanoseconds (of one core) of what field_scalars_of() does, so that a large update blocks nobody. Returns true when
+   the update is complete. While it returns false, the update uses the readings of the first call, and the scalars must not be read. */
 bool field_advance(struct field *field, int asset, const struct field_params *params, const struct snapshot *snapshot, size_t count,
                    double work);
 
-/* Returns whether one sensor gives the value of the whole asset, because all its sensors have assumed positions. */
+/* Returns true if one sensor gives the value of the whole asset, because the positions of all its sensors are assumed. */
 bool field_is_assumed(struct field *field, int asset, const struct field_params *params);
 /* Returns whether the asset has a field to show with these parameters, given enough memory. */
 bool field_covers(struct field *field, int asset, const struct field_params *params);
@@ -112,19 +120,20 @@ bool field_at(struct field *field, int asset, const struct field_params *params,
 struct field_sensor {
     int tag;
     float surface_m[3]; /* position in the coordinates of the asset file */
-    uint32_t column;    /* index among the asset file's sensors; at least their count: a trial sensor */
+    uint32_t column;    /* index of the sensor in the asset file; trial sensors have indices from the file's sensor count on */
     bool in_file;       /* true: the file has a column with the sensor's geodesic distances; false: they are in along_m */
-    /* geodesic distance of each vertex, if not in the file; NULL: not known yet, or straight-line distances are used */
+    /* geodesic distance of each vertex, unless the file has them; NULL: not known yet, or straight-line distances are used */
     const float *along_m;
     float strength, decay;
     float value;                        /* value that enters the sum: for `paper` 0..1; for a difference the reading minus the baseline's */
-    bool configured, usable, uncertain; /* configured: the sensor would contribute if its quality were good */
+    bool configured, usable, uncertain; /* configured: the sensor would contribute if its quality were good; usable: it contributes;
+                                           uncertain: its quality is Uncertain */
 };
-/* Lists the inputs of the field on an asset, as the last field_scalars() with these parameters used them. *radius_m receives R of Algorithm
-   1. Returns their number; the caller frees *out (mem_free). 0: no sensor contributes. */
+/* Lists the inputs of the field on an asset, as the last field_scalars() with these parameters used them. *radius_m receives the radius
+   R of Algorithm 1 (Kim & Suh). Returns the number of inputs; 0: no sensor contributes. The caller frees *out (mem_free). */
 size_t field_sensors(struct field *field, int asset, const struct field_params *params, struct field_sensor **out, float *radius_m);
-/* Fills in what renderers need to evaluate the field at pixels, of the readings that the last field_scalars() with these parameters took.
-   out->count is 0 where the field is interpolated between vertices, and where it is the same everywhere. */
+/* Fills *out with the sensors and readings from which renderers evaluate the field at each pixel, as the last field_scalars() with these
+   parameters took them. out->count is 0 if the field must be interpolated between vertices, or is the same everywhere. */
 void field_pixels(struct field *field, int asset, const struct field_params *params, struct pixel_field *out);
 
 #endif

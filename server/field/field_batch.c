@@ -16,7 +16,8 @@ static void update_some(void *arg, size_t begin, size_t end)
         update_run(together->states[i]);
 }
 
-/* Updates in parallel only those assets whose weights are complete, because instances share weights. */
+/* Updates several assets in parallel, but only those whose weights are complete: an update would fill in incomplete weights, and
+   instances of one asset share them. */
 void field_update_all(struct field *field, const int *assets, const size_t *counts, size_t asset_count, const struct field_params *params,
                       const struct snapshot *snapshot)
 {
@@ -34,7 +35,7 @@ void field_update_all(struct field *field, const int *assets, const size_t *coun
         if (field_begin_update(field, state, snapshot, counts[i]) && state->update)
             together.states[begun++] = state;
     }
-    /* checked only after all updates have begun, because beginning an update may evict cached columns that another one needs */
+    /* decided only after all updates have begun, because beginning an update may evict cached columns that another update needs */
     for (size_t i = 0; i < begun; i++)
         if (update_is_light(together.states[i]))
             together.states[together.count++] = together.states[i];

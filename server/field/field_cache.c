@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The cache of states and weights, and its eviction. */
+/* The cache of states (fields of assets) and of weights, and its eviction. */
 #include "base/mem.h"
 #include "field/field_impl.h"
 #include "field/update.h"
@@ -58,7 +58,7 @@ static bool weights_may_go(const struct weights *weights)
     return weights->users == 0 || weights->columns;
 }
 
-/* Returns the earliest last use (in ticks) of all entries that may be evicted; UINT64_MAX: no entry may be. */
+/* Returns the earliest tick of last use among all entries that may be evicted; UINT64_MAX: none may be evicted. */
 static uint64_t oldest_use(const struct field *field, const struct field_params *keep)
 {
     uint64_t oldest = UINT64_MAX;
@@ -95,8 +95,6 @@ static void drop_used_before(struct field *field, const struct field_params *kee
         }
 }
 
-/* Evicts entries last used before tick `before`, except states of the parameters `keep`, until `need` more bytes fit the bound. Evicts the
-   oldest eighth of the time span at once, so that searches are rare. Returns false if the bytes do not fit. */
 bool field_cache_make_room(struct field *field, size_t need, const struct field_params *keep, uint64_t before)
 {
     while (field->bytes + need > field->bound) {
@@ -109,9 +107,9 @@ bool field_cache_make_room(struct field *field, size_t need, const struct field_
     return true;
 }
 
-/* Caches columns when they are summed for the second time, because weights are summed only once while a user drags a parameter. Columns
-   evict only entries last used before the previous use of these weights, or two busy fields would evict each other forever. If not all fit,
-   as many as possible are cached, from the first vertices on, which all levels of detail use. */
+/* Caches columns when the weights are summed for the second time, because while a user drags a parameter each set of weights is summed
+   only once. Caching columns evicts only entries last used before the previous use of these weights, or two busy fields would evict each
+   other forever. If not all columns fit, those of the first vertices are cached, which all levels of detail use. */
 void field_cache_keep_columns(struct field *field, struct weights *weights, const struct field_params *params, uint64_t previous)
 {
     size_t bytes = weights_column_bytes(weights), had = weights_kept_bytes(weights);
@@ -119,7 +117,8 @@ void field_cache_keep_columns(struct field *field, struct weights *weights, cons
         return;
     if (had == 0)
         field_cache_make_room(field, bytes < field->bound ? bytes : field->bound, params, previous);
-    else if (field->bytes - had + bytes > field->bound) /* does not try again while there is no room for all columns */
+    else if (field->bytes - had + bytes > field->bound) /* some columns are cached and there is still no room for all columns: keeps
+                                                           those and does not retry */
         return;
     else
         columns_drop(field, weights);

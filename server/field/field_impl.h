@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shared by the files of the field (field*.c). */
+/* Internals of struct field, shared by the files field*.c. */
 #ifndef FIELD_FIELD_IMPL_H
 #define FIELD_FIELD_IMPL_H
 #include "field/field.h"
@@ -10,7 +10,8 @@
 struct field {
     struct workers *workers;
     const struct scene *scene;
-    struct field_layout **layouts;          /* [asset][group]; NULL: not created yet, or there is none */
+    struct field_layout **layouts;          /* sensor layouts by [asset][group]; NULL: not created yet, or the asset has no sensor of the
+                                               group */
     struct field_state **states;            /* per asset: a list */
     struct weights *weights[FIELD_BUCKETS]; /* all weights, hashed by their key */
     struct baselines *baselines;            /* NULL: none */
@@ -18,7 +19,7 @@ struct field {
     struct trial_layout {                   /* layouts with trial positions */
         const struct trial *trial;          /* reference to the trial */
         int asset, group;
-        struct field_layout *layout; /* layout with the trial's positions; NULL: with them, the asset has no sensor of the group */
+        struct field_layout *layout; /* sensors at the trial's positions; NULL: the asset then has no sensor of the group */
         struct trial_layout *next;
     } * tried;
     size_t bytes, bound;
@@ -29,7 +30,7 @@ struct field {
 /* Returns the layout of the sensors of params' group on the asset, created if needed. NULL: there are none. params must come from
    field_params_of(). */
 struct field_layout *field_layout(struct field *field, int asset, const struct field_params *params);
-/* Returns the layout with the trial's positions. */
+/* Returns the layout in which the sensors are at the trial's positions. */
 struct field_layout *field_trial_layout(struct field *field, int asset, const struct field_params *params);
 /* Frees all trial layouts. */
 void field_trials_finish(struct field *field);
@@ -42,14 +43,15 @@ bool field_begin_update(struct field *field, struct field_state *state, const st
 
 /* --- the cache (field_cache.c) --- */
 
-/* Returns the list of weights with this hash. */
+/* Returns the hash bucket (a linked list of weights) for this hash. */
 struct weights **field_cache_bucket(struct field *field, uint64_t hash);
 /* Releases the state's reference to its weights. */
 void field_cache_release_weights(struct field_state *state);
 /* Unlinks *link from its list and destroys it. */
 void field_cache_remove_state(struct field *field, struct field_state **link);
-/* Evicts entries last used before tick `before`, except states of the parameters `keep`, until `need` more bytes fit the limit: the oldest
-   first, an eighth of the time span at once, so that searches are rare. Returns false if the bytes do not fit. */
+/* Evicts entries last used before tick `before`, except states of the parameters `keep`, until `need` more bytes fit the limit. Evicts
+   the oldest entries first, an eighth of the time span of last uses in one search, so that searches are rare. Returns false if the bytes
+   do not fit. */
 bool field_cache_make_room(struct field *field, size_t need, const struct field_params *keep, uint64_t before);
 /* Starts caching the columns of weights if they are summed for at least the second time. previous: tick of their previous use. */
 void field_cache_keep_columns(struct field *field, struct weights *weights, const struct field_params *params, uint64_t previous);

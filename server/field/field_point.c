@@ -9,7 +9,7 @@
 #include "field/update.h"
 #include "plant/influence.h"
 
-/* Interpolates the scalars of the triangle's corners, as frames do. */
+/* Interpolates the scalars of the triangle's corners, as a drawn frame does. */
 static void point_drawn(const struct scalars *scalars, const struct field_place *place, struct field_point *out)
 {
     double value = 0, no_data = 0, uncertain = 0;
@@ -32,7 +32,7 @@ static double error_near(const struct field_state *state, const struct field_pla
     return most > state->error_limit ? most * state->error_scale : 0;
 }
 
-struct single_point { /* layout (sensors and distances) for a single point in place of the vertices */
+struct single_point { /* a layout (sensors and distances) with one point instead of the asset's vertices */
     float position_m[1][3], parts[1][3], away_m[1][3];
     uint32_t corners[1][3];
     struct layout_points points;
@@ -61,7 +61,7 @@ static void point_distance(const struct field_state *state, const struct single_
     out->value = out->no_data ? out->value : far_m;
 }
 
-/* Sums the sensors' weights at the point, with the same arithmetic as at vertices, multiplied by the readings that the scalars show. */
+/* Sums the sensors' weights at the point, multiplied by the readings that the scalars show, with the same arithmetic as at vertices. */
 static void point_sum(const struct field_state *state, const struct single_point *point, struct field_point *out)
 {
     const size_t sensors = point->layout.sensor_count;

@@ -39,7 +39,7 @@ void field_trials_finish(struct field *field)
         tried_remove(field, &field->tried);
 }
 
-/* Frees layouts of dropped trials: dragging a sensor leaves an old layout behind at every step. */
+/* Frees the layouts of dropped trials except trial `keep`. Each step of dragging a sensor creates a trial, and its layout would stay. */
 static void forget_dropped(struct field *field, uint32_t keep)
 {
     for (struct trial_layout **link = &field->tried; *link;)
@@ -95,7 +95,7 @@ static const struct field_params *trial_params(struct field *field, int asset, c
     return room;
 }
 
-/* Returns parameters for SHOW_BLIND: it depends on distances alone, even if the group uses a prepared interpolation. */
+/* Returns parameters for SHOW_BLIND, which depends on distances alone, even if the group uses a prepared interpolation. */
 static const struct field_params *blind_params(const struct field_params *params, struct field_params *room)
 {
     if (params->show != SHOW_BLIND)

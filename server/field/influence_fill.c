@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes the values of lost sensors with a dense Cholesky factor of their block. */
+/* Computes the values of lost sensors with a dense Cholesky factor of their block of the precision matrix. */
 #include "field/influence_fill.h"
 
 #include <math.h>
@@ -7,7 +7,8 @@
 
 #include "base/mem.h"
 
-/* smallest valid pivot, relative to the sensor's precision; below it, no used sensor determines the lost one, whose value is set to 0 */
+/* smallest valid pivot of the factorisation, relative to the sensor's precision. With a smaller pivot no used sensor determines the lost
+   sensor, and the lost sensor's value is set to 0 */
 #define MIN_PIVOT_PART 1e-9
 
 struct influence_fill {
@@ -60,7 +61,7 @@ void influence_fill_destroy(struct influence_fill **fill_ptr)
     *fill_ptr = NULL;
 }
 
-/* Solves x = L^-1 x, where x is 0 before index `first`. */
+/* Replaces x by L^-1 x, where L is the Cholesky factor and x is 0 before index `first`. */
 static void solve_lower(const struct influence_fill *fill, size_t first, double *x)
 {
     const size_t n = fill->lost_count;
@@ -102,7 +103,8 @@ static double own_of_used(const struct influence_fill *fill, size_t sensor, doub
     return own;
 }
 
-/* Returns 1 / ((P_LL)^-1)_ll, the variance of lost sensor l, from a column of the factor's inverse. */
+/* Returns 1 / ((P_LL)^-1)_ll, the precision of lost sensor l given the used sensors, from a column of the factor's inverse. x: scratch
+   memory. */
 static double own_of_lost(const struct influence_fill *fill, size_t lost, double *x)
 {
     const size_t n = fill->lost_count;

@@ -19,8 +19,9 @@ void influence_fill_values(const struct influence_fill *fill, double *values);
    Takes (lost * lost * sensors) steps. */
 void influence_fill_own(const struct influence_fill *fill, double *own);
 
-/* Adds to out[v], for `count` vertices, the variance that lost sensors add: H_L (P_LL)^-1 H_L'. shares: H from the first of these vertices
-   on, `stride` elements per sensor. For interpolations whose precision is in 1/unit^2. */
+/* Adds to out[v], for `count` vertices, the variance that lost sensors add: H_L (P_LL)^-1 H_L', with H_L the lost sensors' weights at
+   the vertex. shares: H from the first of these vertices on, `stride` elements per sensor. For interpolations whose precision is in
+   1/unit^2. */
 void influence_fill_variances(const struct influence_fill *fill, const float *shares, size_t stride, size_t count, double *out);
 
 #endif

@@ -43,8 +43,8 @@ static inline float log2_from_tiny(float x)
     return (float)exponent + x * p;
 }
 
-/* 2^x, with relative error 2e-7, for -2e6 <= x <= 0; exactly 1 at 0, exactly 0 below -126.5. From 0 to 2e6: some finite number. Minimax
-   polynomial of (2^f - 1)/f over [-1/2, 1/2]. */
+/* Returns 2^x for -2e6 <= x <= 0, with relative error 2e-7; exactly 1 at 0, exactly 0 below -126.5. For x from 0 to 2e6, some finite
+   number. Minimax polynomial of (2^f - 1)/f over [-1/2, 1/2]. */
 static inline float exp2_down(float x)
 {
     int32_t whole = (int32_t)(x - 0.5f);
@@ -69,7 +69,8 @@ static inline bool takes_part(float distance_m, float near_m, float reach_m)
     return (within | nearest) & finite;
 }
 
-/* Fades weights towards the reach: by the squared remaining distance, relative to that of the nearest sensor. */
+/* Multiplies weights by the squared remaining distance to the reach, relative to the nearest sensor's: ((reach - distance) / (reach -
+   near))^2. */
 static inline void fade(const struct kernel_column *column, float *restrict weight)
 {
     const float *distance_m = column->distance_m, *near_m = column->near_m;
@@ -102,7 +103,8 @@ KERNEL void kernel_nearest(const float *restrict distance_m, size_t count, float
         near_m[j] = distance_m[j] < near_m[j] ? distance_m[j] : near_m[j];
 }
 
-/* Non-negative floats sort like their bits, and integers may be compared in any order. */
+/* compares the floats' bits as integers: non-negative floats sort like their bits, and the compiler may reorder an integer maximum, so
+   that the loop becomes SIMD code */
 KERNEL float kernel_largest(const float *distance_m, size_t count, float most_m)
 {
     int32_t most, infinity = 0x7f800000;
@@ -126,8 +128,8 @@ KERNEL void kernel_top_shepard(const float *restrict distance_m, const float *re
     }
 }
 
-/* Returns log2(e) d strength, with d = max(0, (R - D)/R), exactly 0 at R: exactness matters because a small decay exponent amplifies small
-   values. */
+/* Returns log2(e) d strength, with d = max(0, (R - D) / R), D the distance and R the radius. d, which *d receives, is exactly 0 at D =
+   R: exactness matters because a small decay exponent amplifies small values. */
 static inline float exponent_of(float distance_m, float radius_m, float per_radius, float strength, float *d)
 {
     float near_one = (radius_m - distance_m) * per_radius;
@@ -152,7 +154,8 @@ KERNEL void kernel_log2(const float *restrict x, size_t count, float *restrict o
         out[j] = log2_from_tiny(x[j]);
 }
 
-/* (near / distance)^power; divisions dominate the cost, so it is computed as 2^(power (log2 near - log2 distance)). */
+/* Multiplies weights by (near / distance)^power, with near the distance of the nearest sensor. Divisions dominate the cost, so this is
+   computed as 2^(power (log2 near - log2 distance)). */
 static inline void part_of_nearest(const struct kernel_column *column, float *restrict weight)
 {
     const float *distance_m = column->distance_m, *near_m = column->near_m, *near_log2 = column->near_log2;
@@ -290,8 +293,8 @@ KERNEL void kernel_value(const struct kernel_value *rule, const double *restrict
         value[j] = value_of(&own, sum[j], weight[j]);
 }
 
-/* Reads and writes a scalar as one number: the value is in the lower half and leaves the flags unchanged. Returns the bits of the change,
-   which sort like the changes themselves (kernel_largest). */
+/* Stores a value, reading and writing the scalar as one 64-bit number: the value is its lower half, and the flags in the upper half
+   stay. Returns the bits of the absolute change, which sort as integers like the changes themselves (kernel_largest). */
 static inline int32_t put(struct scalar *restrict at, float value)
 {
     _Static_assert(sizeof(*at) == 8 && offsetof(struct scalar, value) == 0 && __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "value first");

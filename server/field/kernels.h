@@ -10,7 +10,7 @@
 #define KERNEL_BLOCK 256         /* number of vertices processed at a time, so that their data stays in the L1 cache */
 #define KERNEL_COLUMNS 8         /* columns added at a time */
 #define KERNEL_LINE 16           /* floats per cache line */
-#define KERNEL_FACTOR_LIMIT 1e4f /* largest strength and decay: exponents stay within the range of the loops' integer conversions */
+#define KERNEL_FACTOR_LIMIT 1e4f /* largest strength and decay; beyond it exponents would overflow the loops' integer conversions */
 
 struct scalar;
 
@@ -23,12 +23,13 @@ void kernel_nearest(const float *restrict distance_m, size_t count, float *restr
 /* Returns the largest finite distance, or most_m if that is larger. */
 float kernel_largest(const float *distance_m, size_t count, float most_m);
 
-/* Raises top[i], the scale that keeps a vertex's weights from overflowing, for one sensor: the largest strength among the nearest sensors.
-   A sensor contributes if it is within reach or the nearest: if none is within reach, the nearest alone continues its value, so that a
-   triangle with one reached corner can be interpolated. */
+/* For one sensor, raises top[i] to its strength if the sensor is the nearest one to vertex i. After a call for each sensor, top[i] is
+   the largest strength among equally near nearest sensors; kernel_shepard() divides by it, so that weights cannot overflow. */
 void kernel_top_shepard(const float *restrict distance_m, const float *restrict near_m, size_t count, float strength, float *restrict top);
 /* Raises top[i] to one sensor's exponent of Algorithm 1, max(0, 1 - distance / radius) strength / ln 2 (a power of 2), if that is larger
-   and the sensor contributes as in kernel_top_shepard(). Start with zeros and call it for each sensor. */
+   and the sensor contributes. A sensor contributes within its reach. If no sensor reaches vertex i, the nearest one contributes alone
+   and continues its value, so that a triangle with one reached corner can be interpolated. Start with zeros and call once for each
+   sensor. */
 void kernel_top_paper(const float *restrict distance_m, const float *restrict near_m, size_t count, float reach_m, float radius_m,
                       float strength, float *restrict top);
 
@@ -45,12 +46,12 @@ struct kernel_column {
     bool alike;             /* shepard: all strengths are equal */
     float radius_m;         /* R of paper */
 };
-/* Writes the sensor's Shepard weight at each vertex: (strength / top) (near / distance)^power; exactly 1 for the strongest of the nearest,
-   exactly 0 for all others where near is 0. With a reach, times ((reach - distance) / (reach - near))^2: 1 for the nearest, 0 for others
-   from the reach on. */
+/* Writes the sensor's Shepard weight at each vertex: (strength / top) (near / distance)^power, with near the distance of the nearest
+   sensor. It is exactly 1 for the strongest of the nearest sensors, and exactly 0 for all others where near is 0. With a reach, it is
+   multiplied by ((reach - distance) / (reach - near))^2: 1 for the nearest sensor, 0 for others from the reach on. */
 void kernel_shepard(const struct kernel_column *column, float *restrict weight);
-/* Writes the sensor's weight of Algorithm 1, exp(d strength - top), unless `weight` is NULL, and its term, weight times d^decay, with d =
-   max(0, 1 - distance / radius). Reach: as in kernel_shepard(). */
+/* Writes the sensor's weight of Algorithm 1, exp(d strength - top), with d = max(0, 1 - distance / radius), unless `weight` is NULL; and
+   its term, the weight times d^decay. A reach fades both as in kernel_shepard(). */
 void kernel_paper(const struct kernel_column *column, float *restrict weight, float *restrict term);
 
 /* Adds columns[c] * factors[c] to sum, for column_count <= KERNEL_COLUMNS. next: the same number of columns to be read afterwards, which
@@ -58,7 +59,7 @@ void kernel_paper(const struct kernel_column *column, float *restrict weight, fl
 void kernel_add(double *restrict sum, const float *const *columns, const double *factors, size_t column_count, size_t count,
                 const float *const *next);
 
-/* Does the same for KERNEL_COLUMNS columns, and also adds the plain columns to total. */
+/* Adds KERNEL_COLUMNS columns times their factors to sum, as kernel_add() does, and adds the columns without factors to total. */
 void kernel_add_both(double *restrict sum, double *restrict total, const float *const columns[KERNEL_COLUMNS],
                      const double factors[KERNEL_COLUMNS], size_t count);
 
@@ -71,8 +72,8 @@ void kernel_value(const struct kernel_value *rule, const double *restrict sum, c
                   float *restrict value);
 /* Stores values into scalars. Returns the largest change, and sets *changed if any differs. */
 float kernel_store(const float *restrict value, size_t count, struct scalar *restrict at, bool *changed);
-/* Does kernel_add() to zeros, kernel_value() and kernel_store() in one pass, with identical bits, for fewer than KERNEL_COLUMNS columns.
-   Returns the largest change, and sets *changed if any value differs. */
+/* Computes kernel_add() to a sum of zeros, kernel_value() and kernel_store() in one pass, with identical bits, for fewer than
+   KERNEL_COLUMNS columns. Returns the largest change, and sets *changed if any value differs. */
 float kernel_few(const struct kernel_value *rule, const float *const *columns, const double *factors, size_t column_count,
                  const float *restrict weight, size_t count, struct scalar *restrict at, bool *changed);
 

@@ -46,7 +46,7 @@ void lab_from_rgb(const uint8_t rgb[3], double lab[3])
     lab_from_srgb((double[3]){ rgb[0], rgb[1], rgb[2] }, VISION_NORMAL, lab);
 }
 
-/* Returns false if sRGB has no such colour; rgb is then clamped. */
+/* Converts CIELAB to sRGB. Returns false if sRGB has no such colour; rgb is then clamped. */
 static bool rgb_from_lab(const double lab[3], uint8_t rgb[3])
 {
     static const double to_rgb[3][3] = { { 3.2404542, -1.5371385, -0.4985314 },
@@ -73,7 +73,7 @@ void lab_shade(const uint8_t rgb[3], double offset, uint8_t out[3])
     memcpy(out, rgb, 3);
     if (offset == 0)
         return;
-    /* near the border of sRGB the offset is reduced; hue and chroma stay the same */
+    /* near the border of sRGB the whole offset is impossible: tries smaller and smaller offsets, with the same hue and chroma */
     for (int step = 0; step < 24; step++, reach -= 1.0 / 24) {
         lab[0] = lightness + reach * offset;
         if (rgb_from_lab(lab, out))

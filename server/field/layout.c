@@ -155,9 +155,9 @@ void layout_set_point(const struct asset_view *file, const struct layout_points 
         points->away_m[point][k] = parts[k] == 1 ? 0 : vecf_distance(points->positions_m[point], file->positions_m[corners[k]]);
 }
 
-/* Returns the distance of a point from a virtual source in the triangle's plane that has the given distances from the corners: |p - s|^2 =
-   sum_k part_k (|corner_k - s|^2 - |corner_k - p|^2). Where paths from two sides meet within the triangle, no such source exists; the
-   triangle inequality then bounds the distance. */
+/* Returns the distance of point p in a triangle from a virtual source s in the triangle's plane that has the given distances from the
+   corners: |p - s|^2 = sum_k part_k (|corner_k - s|^2 - |corner_k - p|^2), with part_k the barycentric coordinates of p. Where paths
+   from two sides meet within the triangle, no such source exists; the triangle inequality then bounds the distance. */
 static float along_at(const struct field_layout *layout, const struct layout_sensor *sensor, const float *along_m, size_t point)
 {
     const float *part = layout->points->parts[point], *away_m = layout->points->away_m[point];

@@ -9,7 +9,7 @@
 
 struct layout_sensor {
     int tag;               /* index in plant->tags */
-    uint32_t column;       /* index among the asset file's sensors; trial sensors have indices beyond the last of these */
+    uint32_t column;       /* index of the sensor in the asset file; trial sensors have indices from the file's sensor count on */
     float surface_m[3];    /* position in the coordinates of the asset file */
     uint32_t vertex;       /* vertex nearest to the sensor */
     bool tried;            /* true: a trial sensor, whose geodesic distances are in tried_m and not in the file */
@@ -21,7 +21,7 @@ struct layout_sensor {
 /* Points inside triangles of the file. */
 struct layout_points {
     float (*positions_m)[3];
-    uint32_t (*corners)[3]; /* vertex numbers of the triangle's corners */
+    uint32_t (*corners)[3]; /* indices of the vertices at the triangle's corners */
     float (*parts)[3];      /* barycentric coordinates */
     float (*away_m)[3];     /* straight distances from the corners */
 };
@@ -33,14 +33,14 @@ void layout_set_point(const struct asset_view *file, const struct layout_points 
 struct field_layout {
     const struct asset *file;
     const struct plant_group *group;
-    uint32_t number;              /* number of the group in the plant */
+    uint32_t number;              /* index of the group in the plant */
     const struct plant_tag *tags; /* the plant's tags */
     struct layout_sensor *sensors;
     size_t sensor_count, vertex_count;
     const struct layout_points *points; /* points at which distances are requested; NULL: at the asset file's vertices */
     bool assumed; /* true: the positions of all sensors are assumed, so one sensor gives the value of the whole asset (field.h) */
-    float largest_m[DISTANCES]; /* largest distance for each distance_mode; 0: not computed yet */
-    uint32_t trial;             /* trial that some of the positions belong to; 0: none */
+    float largest_m[DISTANCES]; /* largest distance of a vertex from a sensor, by distance_mode; 0: not computed yet */
+    uint32_t trial;             /* id of the trial that moved some of these sensors (field/trials.h); 0: none */
 };
 
 /* Builds the layout of a group's sensors on an asset. trial: sensors at trial positions (NULL: none). Scene and trial must outlive the
@@ -53,14 +53,15 @@ void layout_destroy(struct field_layout **layout);
 /* Returns a sensor's geodesic distances of each vertex by this mode; if that mode's were not prepared (trial sensors), returns those of the
    other geodesic mode. NULL: the mode is straight-line, or the distances are in the asset file or not known yet. */
 const float *layout_along(const struct layout_sensor *sensor, enum distance_mode mode);
-/* Returns whether each pixel evaluates the sensors' sum (plant/exact.h). */
+/* Returns true if renderers evaluate the sum over the sensors at each pixel instead of interpolating between vertices (plant/exact.h). */
 bool layout_is_exact(const struct field_layout *layout, enum interpolation interpolation, enum distance_mode mode);
 /* Returns whether the sensor's distances by this mode are in its column of the asset file. */
 bool layout_is_in_file(const struct layout_sensor *sensor, enum distance_mode mode);
-/* Returns the distances of `count` vertices from `begin` on from one sensor: a pointer to them, or to `scratch`, which receives them. They
-   must be in one block of KERNEL_BLOCK vertices. With layout->points: of these points; geodesic distances then follow from those at the
-   corners, for a flat triangle reached from one side. Straight-line distances start at the sensor's surface point, so that both kinds are 0
-   there; they replace geodesic ones that are not known yet. */
+/* Returns the distances of `count` vertices from one sensor, beginning with vertex `begin`: a pointer to them, or to `scratch`, which
+   receives them. The vertices must be in one block of KERNEL_BLOCK vertices. If layout->points is set, the distances are those of these
+   points; geodesic ones then follow from the distances at the triangle's corners, as if the triangle were flat and reached from one
+   side. Straight-line distances start at the sensor's surface point, so that both kinds are 0 there; they replace geodesic ones that are
+   not known yet. */
 const float *layout_distances(const struct field_layout *layout, enum distance_mode mode, size_t sensor, size_t begin, size_t count,
                               float *scratch);
 /* Returns the largest finite distance of any vertex from any sensor, computed once; 1 if all are 0 or infinite. */

@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-#define MAX_ALONE 1.999 /* largest position beyond H for a tag without HH: below +2, the position of HH */
+#define MAX_ALONE 1.999 /* largest position above H if the tag has no HH: just below +2, which is the position of HH */
 
 /* The limits of one side (high or low), with the low side mirrored, so that larger values are always closer to an alarm. */
 struct limit_side {
@@ -22,7 +22,8 @@ static double middle_of(const struct plant_group *group, const struct limit_side
     return group->max > l ? group->max : l + range / 2;
 }
 
-/* Returns a value's position between the limits on its side; 0 is the middle, from which all values are measured. */
+/* Returns a value's position on the scale of its side. value, inner and outer are measured from the middle of the range, whose position
+   is 0. */
 static double side_place(double value, double inner, double outer)
 {
     if (!isfinite(inner) && !isfinite(outer))

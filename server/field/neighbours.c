@@ -11,7 +11,7 @@
 #include "plant/influence.h"
 #include "value/quality.h"
 
-#define AT_ONE_PLACE 1e-6 /* metres; nearer sensors are at the same point */
+#define AT_ONE_PLACE 1e-6 /* metres; sensors nearer than this to each other are at the same point */
 
 struct neighbours {
     struct field_layout *layout;
@@ -48,7 +48,7 @@ static float *distances_between(const struct field_layout *layout)
     return along_m;
 }
 
-/* Returns whether another good sensor is on the same body; otherwise the prediction would be mere rounding. */
+/* Returns true if another usable sensor is on the same body. Without one, the prediction would consist of rounding errors. */
 static bool is_predictable(const struct neighbours *neighbours, const uint8_t *used, size_t sensor)
 {
     const size_t n = neighbours->layout->sensor_count;

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Leave-one-out predictions: what the other good sensors of a group predict at each sensor's position. Uses the first interpolation
-   prepared for the group among gp, harmonic and fin, by the precision P of the prepared sensors: v_i - (P v)_i / P_ii (Dubrule, Cross
-   validation of kriging in a unique neighborhood, 1983); else shepard on geodesic distances. Takes time and memory proportional to sensors
-   * sensors, so with more than NEIGHBOURS_MOST sensors on an asset nothing is predicted. Thread: any that may read the scene. */
+ * prepared for the group among gp, harmonic and fin, by the precision P of the prepared sensors: v_i - (P v)_i / P_ii, with v the
+ * readings (Dubrule, Cross validation of kriging in a unique neighborhood, 1983); else shepard on geodesic distances. Time and memory
+ * grow with the square of the number of sensors, so on an asset with more than NEIGHBOURS_MOST sensors nothing is predicted. Thread: any
+ * that may read the scene. */
 #ifndef FIELD_NEIGHBOURS_H
 #define FIELD_NEIGHBOURS_H
 #include "scene/scene.h"
@@ -18,28 +19,29 @@ struct neighbour {
     double deviation; /* gp: standard deviation of the difference between reading and prediction; else NaN */
 };
 
-/* The sensors of one group on one asset, for repeated predictions with different values. */
+/* The sensors of one group on one asset, for repeated predictions with different readings. */
 struct neighbours;
-/* Returns NULL if no sensor has a known position. The scene must outlive the result; the caller destroys it. */
+/* Prepares predictions for a group on an asset. Returns NULL if no sensor has a known position. The scene must outlive the result; the
+   caller destroys it. */
 struct neighbours *neighbours_create(const struct scene *scene, int asset, int group);
 void neighbours_destroy(struct neighbours **neighbours); /* &NULL is fine; sets it to NULL */
 size_t neighbours_count(const struct neighbours *neighbours);
-/* Returns the tag of a sensor. */
+/* Returns the index of the tag of a sensor in the plant. */
 int neighbours_tag(const struct neighbours *neighbours, size_t sensor);
-/* Returns the reading for which, if all sensors have it, the prediction is the same: `ambient` for fin; 0 for the others, for which any
-   reading has this property. */
+/* Returns a level L with this property: if all sensors read L, the prediction is L. For fin that is `ambient`. For the others any level
+   has the property, and 0 is returned. */
 double neighbours_level(const struct neighbours *neighbours);
 /* Predicts each sensor from the others. values: by sensor; NaN: not usable. out: by sensor. */
 void neighbours_predict(const struct neighbours *neighbours, const double *values, struct neighbour *out);
 
-/* Lists the sensors nearest to one along the surface, nearest first, leaving out sensors with apart[sensor] set, and those to which no path
-   leads. out: room for `most`. Returns their number. */
+/* Lists the sensors nearest to a sensor along the surface, nearest first. Leaves out sensors with apart[sensor] set, and sensors to
+   which no path leads. out: receives at most `most` indices of sensors. Returns the number of indices. */
 size_t neighbours_nearest(const struct neighbours *neighbours, size_t sensor, const bool *apart, size_t most, size_t *out);
 
 /* A cache of the latest predictions for each asset and group; zero-initialise. The scene must outlive the cache. Thread: one. */
 struct neighbours_cache {
     struct neighbours_kept {
-        struct neighbours *of;  /* neighbours of the group; NULL: the group has no sensor with a known position on the asset */
+        struct neighbours *of;  /* sensors of the group; NULL: the group has no sensor with a known position on the asset */
         struct neighbour *list; /* predictions by sensor, in the order of `of` */
         size_t count;
         int64_t taken_mono_ns, taken_utc_ns; /* time of the snapshot; 0: none yet */
@@ -53,8 +55,8 @@ const struct neighbours_kept *neighbours_look(struct neighbours_cache *cache, co
                                               const struct snapshot *snapshot);
 /* Frees the cached predictions and empties the cache. */
 void neighbours_cache_finish(struct neighbours_cache *cache);
-/* Returns the difference between reading and prediction in standard deviations; if these are unknown, in twentieths of the group's range.
-   NaN: unknown. */
+/* Returns the difference between reading and prediction in standard deviations; if the deviation is unknown, in twentieths of the
+   group's range. NaN: reading or prediction is unknown. */
 double neighbour_off(const struct plant *plant, const struct neighbour *neighbour);
 
 #endif

@@ -105,7 +105,7 @@ static float largest_distance(const struct asset_view *view, size_t column, enum
     return most_m;
 }
 
-/* Rounds up to two and a half digits: 16.375 becomes 16.5. */
+/* Rounds up to a multiple of 5 in the third significant digit: 16.375 becomes 16.5. */
 static double rounded_up(double most_m)
 {
     double step = 0.5 * pow(10, floor(log10(most_m)) - 1);

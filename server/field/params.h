@@ -26,15 +26,15 @@ struct field_params {
     int sensor;        /* tag whose distance is shown; -1: none */
     uint32_t baseline; /* id of the baseline that a difference is taken from; 0: none */
     uint32_t trial;    /* trial sensor positions (field/trials.h); 0: none */
-    /* slot of the instant whose readings are shown (value/snapshot_cache.h), so that fields of different instants are cached separately; 0:
-       now */
+    /* index of the slot of value/snapshot_cache.h that holds the past readings to show; 0: present readings. Fields of different
+       instants are thus cached separately */
     int slot;
     enum interpolation interpolation;
     enum distance_mode distance;
     enum fill_mode fill;
     double strength, decay; /* factors on each sensor's strength and decay as configured; 1: unchanged */
     double power;           /* exponent p of shepard */
-    double radius_m;        /* R of paper; 0: the largest distance on the asset from any of its configured sensors */
+    double radius_m;        /* radius R of paper; 0: the largest distance on the asset from any of its configured sensors */
     double reach_m;         /* INFINITY: no limit */
     size_t override_count;
     struct field_override overrides[FIELD_OVERRIDES]; /* overrides sorted by tag; unused elements are zero */

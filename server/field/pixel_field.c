@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The sums over few sensors at one point. */
+/* Evaluates a pixel field at one point: sums over its few sensors. */
 #include "field/pixel_field.h"
 
 #include <math.h>
@@ -25,7 +25,7 @@ static float nearness(const struct pixel_field *field, float distance_m)
     return fmaxf(0, (field->radius_m - distance_m) / field->radius_m);
 }
 
-/* top: of paper, the largest exponent. */
+/* Returns a sensor's weight. top: for paper, the largest exponent of all sensors at this point, which keeps expf() from overflowing. */
 static float weight_of(const struct pixel_field *field, int sensor, float distance_m, float near_m, float top)
 {
     float strength = field->sensors[sensor].strength, left = 1, part = 1;
@@ -82,7 +82,8 @@ void pixel_field_at(const struct pixel_field *field, const float point_m[3], str
     out->uncertain |= reached && lost && field->fill && field->show != PIXEL_BLIND;
 }
 
-/* shepard's values are means of readings, paper's lie within their largest change. */
+/* The largest change of a reading bounds the change of any value: shepard's values are weighted means of readings, and paper's values
+   change by no more than the readings. */
 float pixel_field_change(const struct pixel_field *field, const struct pixel_field *before)
 {
     struct pixel_field same = *before;

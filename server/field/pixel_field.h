@@ -8,18 +8,18 @@
 
 #include "plant/exact.h"
 
-enum pixel_show { PIXEL_SUM, PIXEL_DISTANCE, PIXEL_BLIND }; /* BLIND: the smallest hot spot that the nearest sensor shows */
+enum pixel_show { PIXEL_SUM, PIXEL_DISTANCE, PIXEL_BLIND }; /* PIXEL_BLIND: the smallest hot spot that the nearest sensor would show */
 enum { PIXEL_CONFIGURED = 1, PIXEL_USABLE = 2, PIXEL_UNCERTAIN = 4, PIXEL_NO_LIMITS = 8 };
 
 struct pixel_sensor {
-    float place_m[3]; /* in the frame of the asset file */
+    float place_m[3]; /* position in the coordinates of the asset file */
     float value;      /* value that enters the sum */
     float strength, decay;
-    uint32_t state; /* PIXEL_* bits; neither USABLE nor NO_LIMITS: the sensor is lost */
+    uint32_t state; /* PIXEL_* bits; with neither PIXEL_USABLE nor PIXEL_NO_LIMITS the sensor is lost */
 };
 
-struct pixel_field { /* zeroed before it is filled, so that equal ones have equal bytes */
-    int32_t count;   /* number of configured sensors; 0: the field is interpolated between vertices */
+struct pixel_field { /* zeroed before it is filled, so that equal fields are equal byte by byte */
+    int32_t count;   /* number of configured sensors; 0: the field is interpolated between vertices instead */
     int32_t paper, fill;
     enum pixel_show show;
     float power, reach_m, radius_m;        /* metres; reach_m INFINITY: no limit */
@@ -32,7 +32,7 @@ struct pixel_value {
     float value;
     bool no_data, uncertain, no_limits;
 };
-/* Evaluates the field at a point in the asset file's frame. */
+/* Evaluates the field at a point in coordinates of the asset file. */
 void pixel_field_at(const struct pixel_field *field, const float point_m[3], struct pixel_value *out);
 /* Returns the largest change of any value of the field since `before`; INFINITY if more than readings changed. */
 float pixel_field_change(const struct pixel_field *field, const struct pixel_field *before);

@@ -7,12 +7,12 @@
 
 struct scalar {
     float value; /* engineering units; may exceed MIN and MAX. Finite even where there is no data, so that it can be interpolated */
-    /* distance beyond the border of the area with data, encoded by weights_lacking(). Above 127: no data. A distance and not a flag, so
-       that the border is exact when interpolated between vertices */
+    /* distance beyond the border between data and no data, encoded by weights_lacking(). Above 127: no data. A distance is stored and
+       not a flag, so that the border is exact when interpolated between vertices */
     uint8_t lacking;
-    /* A value above 127 means that at least half of the weight is on Uncertain sensors, or that the value is filled. The byte is
-       proportional to that part of the weight, so that the border at 127 is exact after interpolation, too. It is also 255 where triangles
-       deviate from the field (struct scalars: drawn_error). */
+    /* proportional to the fraction of the weight that is on Uncertain sensors, so that the border at 127 is exact after interpolation,
+       too. Above 127: at least half of the weight is on them, or the value was filled in from neighbours. 255 also marks triangles whose
+       interpolation deviates from the field (struct scalars: drawn_error) */
     uint8_t uncertain;
     /* 255: in the operator's view, the nearest sensor is good but its tag has no limits, so there is data without a value */
     uint8_t no_limits;
@@ -26,7 +26,7 @@ struct scalars {
     uint64_t flags_version; /* version of the last change of a flag */
     /* sum, over all versions so far, of the largest change of a value: scalars uploaded at travel t err by at most travel - t */
     double travel;
-    size_t count;   /* = vertex_count of the asset file */
+    size_t count;   /* number of vertices in the asset file */
     size_t ready;   /* the first `ready` vertices are up to date: as many as the requested levels of detail need */
     uint64_t grown; /* counts how often `ready` grew */
     const struct scalar *at;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Inputs from sensors for the sums, and whether they differ from the shown ones. */
+/* Reads each sensor's input to the sums, and decides whether the shown scalars are out of date. */
 #include "field/state.h"
 
 #include <float.h>
@@ -67,7 +67,7 @@ size_t state_bytes(const struct field_state *state)
     return sizeof(struct field_state) + state->room * each_vertex(state) + state->layout->sensor_count * each_sensor;
 }
 
-/* Returns the vertices to allocate, in whole blocks. */
+/* Returns the number of vertices to allocate: `count` rounded up to whole blocks, at most all vertices. */
 static size_t room_for(const struct field_state *state, size_t count)
 {
     size_t whole = (count + KERNEL_BLOCK - 1) / KERNEL_BLOCK * KERNEL_BLOCK;
@@ -137,8 +137,8 @@ static struct state_input input_of(const struct field_state *state, const struct
     };
 }
 
-/* Subtracts the baseline's input. Only sensors usable in both contribute: otherwise a sensor that appeared or failed would look like a
-   change of the plant. */
+/* Subtracts the baseline's input `then` from the present input `now`. Only sensors usable in both contribute: otherwise a sensor that
+   appeared or failed would look like a change of the plant. */
 static struct state_input less(struct state_input now, struct state_input then)
 {
     bool usable = now.usable && then.usable;
@@ -212,7 +212,7 @@ void state_fill(struct field_state *state)
         doubts[i] = state->now[i].uncertain;
     }
     influence_fill_values(weights->fill, values);
-    influence_fill_values(weights->fill, doubts); /* a lost sensor's value may rest on uncertain readings */
+    influence_fill_values(weights->fill, doubts); /* computes the fraction of each lost sensor's value that rests on Uncertain readings */
     for (size_t i = 0; i < state->layout->sensor_count; i++)
         if (!weights->takes_part[i]) {
             state->now[i].value = limited(values[i], -READING_LIMIT, READING_LIMIT);

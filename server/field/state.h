@@ -9,7 +9,7 @@
 
 struct update; /* update.h */
 
-struct state_input {           /* values of one sensor that enter the sums */
+struct state_input {           /* one sensor's inputs to the sums */
     double value;              /* engineering units; for `paper` 0..1 */
     uint8_t usable, uncertain; /* usable: enum sensor_use */
 };
@@ -21,20 +21,20 @@ struct field_state {
     struct scalars scalars;  /* scalars.version 0: nothing computed yet */
     struct scalar *at;
     double *sums;            /* by vertex: numerator of the value; NULL: not stored, because few sensors are summed again as quickly */
-    size_t room;             /* `at` and `sums` have room for the first so many vertices */
+    size_t room;             /* number of vertices that `at` and `sums` have room for */
     double error_limit;      /* vertices with a larger weights->errors are marked uncertain; initially 0 */
-    unsigned errors_version; /* version of weights->errors that the flags are based on */
+    unsigned errors_version; /* version of weights->errors from which the flags were set */
     double error_scale;      /* factor from weights->errors to the largest error drawn */
-    unsigned added;          /* updates since the sums were last recomputed */
+    unsigned added;          /* number of updates since the sums were last recomputed in full */
     struct state_input *now, *shown; /* by sensor of the layout: inputs that are requested now, and inputs that the scalars contain */
     uint8_t *usable;                 /* enum sensor_use of `now`, by sensor of the layout */
-    struct state_list {              /* storage for weights_terms: of all members, and of the changed ones */
+    struct state_list {              /* storage for struct weights_terms: [0] the members of the sum whose input changed, [1] all members */
         uint32_t *members;
         double *factors;
         uint8_t *marked;
     } lists[2];
     struct update *update; /* update in progress; NULL: none */
-    size_t wanted;         /* the first so many vertices were requested since the last update */
+    size_t wanted;         /* number of vertices requested since the last update: always the first ones of the file */
     uint64_t used;
     struct field_state *next;
 };
@@ -46,21 +46,21 @@ struct field_state *state_create(int asset, struct field_layout *layout, const s
 void state_destroy(struct field_state **state);
 /* Returns the bytes that the state takes. */
 size_t state_bytes(const struct field_state *state);
-/* Returns how much state_bytes() would grow with room for the first `count` vertices. */
+/* Returns by how many bytes state_bytes() would grow with room for the first `count` vertices. */
 size_t state_more_bytes(const struct field_state *state, size_t count);
 /* Makes room for the first `count` vertices; distant assets need few. Returns false when out of memory, with nothing changed. */
 bool state_grow(struct field_state *state, size_t count);
 
 /* Reads the snapshot into state->now, state->usable and the ages. baseline: subtracted for a difference; NULL: unknown. */
 void state_read(struct field_state *state, const struct snapshot *snapshot, const struct snapshot *baseline);
-/* For prepared interpolations: gives lost sensors in state->now the values that follow from the others. The weights must be those of
-   state->now. */
+/* For prepared interpolations: gives lost sensors in state->now the values that follow from the other sensors. The state's weights must
+   be for the qualities in state->now. */
 void state_fill(struct field_state *state);
 /* Returns whether the state's weights are for a set of usable sensors that differs from that of state->now. */
 bool state_needs_weights(const struct field_state *state);
-/* Returns whether the scalars show something else than state->now. */
+/* Returns true if the scalars show other inputs than state->now. */
 bool state_is_behind(const struct field_state *state);
-/* For SHOW_DISTANCE, instead of all the above: fills the scalars with the distances from one sensor of the layout, once. */
+/* For SHOW_DISTANCE, instead of the functions above: fills the scalars once with the distances from one sensor of the layout. */
 void state_measure(struct field_state *state, size_t sensor, uint64_t *versions);
 
 #endif

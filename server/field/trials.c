@@ -93,7 +93,7 @@ void trials_destroy(struct trials **pointer)
     *pointer = NULL;
 }
 
-/* Frees dropped trials beyond the newest TRIALS_KEPT, except trials that somebody holds. Call under the lock. */
+/* Frees dropped trials beyond the newest TRIALS_KEPT, except trials that a caller holds (trials_take). Call under the lock. */
 static void sweep(struct trials *trials)
 {
     int dropped = 0;

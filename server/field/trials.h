@@ -19,7 +19,7 @@ void trial_reach_unref(struct trial_reach **reach);
 struct trial_sensor {
     int tag, asset;            /* tag of the sensor, and the only asset it is on */
     float surface_m[3];        /* position in the coordinates of the asset file */
-    double place_m[3];         /* position of the sensor in the plant frame */
+    double place_m[3];         /* position of the sensor in plant coordinates */
     uint32_t vertex;           /* vertex nearest to the position */
     struct trial_reach *reach; /* geodesic distances; NULL: not known yet, straight-line distances are used meanwhile */
     uint32_t number;           /* unique number of this position with these distances, set by trials_put() */
@@ -43,7 +43,8 @@ void trials_destroy(struct trials **trials);
 /* Adds a trial of 1..TRIAL_SENSORS sensors; copies them and takes references of its own. Returns the trial's id, never 0. */
 uint32_t trials_put(struct trials *trials, const struct trial_sensor *sensors, size_t count);
 enum { TRIALS_KEPT = 16 };
-/* Marks a trial as no longer wanted; the newest TRIALS_KEPT such trials are kept for frames under way. 0 is fine. */
+/* Marks a trial as no longer wanted. The newest TRIALS_KEPT such trials are kept, because frames being drawn may use them. id 0 is a
+   no-op. */
 void trials_drop(struct trials *trials, uint32_t id);
 /* Returns whether the trial exists and was not dropped. */
 bool trials_live(struct trials *trials, uint32_t id);

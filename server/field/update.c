@@ -13,16 +13,17 @@
 #include "plant/influence.h"
 
 #define FLAG 255
-#define DRAWN_ERROR (1 / 255.0) /* fraction of the range: vertices that may be drawn with a larger error are marked uncertain */
-#define ERROR_MARGIN 1.1        /* a newly chosen limit of the error is stricter than necessary by this factor */
-#define ERROR_SLACK 1.5         /* a limit is replaced once it is stricter than necessary by more than this factor */
+#define DRAWN_ERROR (1 / 255.0) /* fraction of the range; a vertex whose triangles may be drawn with a larger error is marked uncertain */
+#define ERROR_MARGIN 1.1        /* factor by which a newly chosen error limit is stricter than necessary, so that it survives small
+                                   changes of readings */
+#define ERROR_SLACK 1.5         /* an error limit that is stricter than necessary by more than this factor is replaced */
 #define MAX_BLIND 1000.0        /* largest undetectable hot spot shown, in multiples of the group's range; larger ones are shown as this */
-/* largest change of a reading, in multiples of the range, that is added to the sums; after a larger one, all is summed again, since its
-   rounding errors would stay in the sums */
+/* largest change of a reading, in multiples of the range, that is added to existing sums; its rounding errors stay in them. After a
+   larger change all columns are summed again */
 #define STEP_LIMIT 1e6
-/* number of updates after which all is summed again, so that the accumulated rounding stays below 1e-9 of the range */
+/* number of updates after which all columns are summed again, so that the accumulated rounding stays below 1e-9 of the range */
 #define MAX_ADDED 4096
-#define JOB_WORK 30000.0 /* a thread is woken only for at least so many nanoseconds of work */
+#define JOB_WORK 30000.0 /* nanoseconds of work that justify waking another thread */
 #define SMALL_WORK 1e6   /* nanoseconds; if many assets are updated, an update with less work than this runs on one thread */
 #define MAKE_WORK 1.0    /* nanoseconds to compute and add one column at one vertex */
 #define ADD_WORK 0.15    /* nanoseconds to add it only */
@@ -34,8 +35,8 @@ struct update {
     /* indices of blocks: next: to update next; old: end of the blocks shown before; end: end of the blocks to be shown */
     size_t next, old, end;
     bool anew;  /* true: sums all columns; false: in blocks below `old`, adds only changed columns */
-    bool flags; /* true: qualities changed, so flags may change; false: flags in blocks below `old` stay */
-    bool marks; /* whether at least one sensor is Uncertain */
+    bool flags; /* true: qualities changed, so flags of all blocks are set; false: flags in blocks below `old` stay */
+    bool marks; /* true: at least one sensor is Uncertain */
     pthread_mutex_t lock;
     /* --- below: under lock */
     bool value_changed, flag_changed;
@@ -49,7 +50,7 @@ static size_t blocks_of(size_t vertex_count)
 
 /* --- choosing the work ------------------------------------------------------------------------------------------------------ */
 
-/* Lists the sensors (members of the sum) whose columns are added: all, or those whose input changed. */
+/* Lists the sensors (members of the sum) whose columns are added: all, or only those whose input changed. */
 static struct weights_terms choose_terms(struct field_state *state, bool all)
 {
     const struct weights *weights = state->weights;
@@ -67,8 +68,8 @@ static struct weights_terms choose_terms(struct field_state *state, bool all)
     return (struct weights_terms){ .members = list->members, .factors = list->factors, .marked = list->marked, .count = count };
 }
 
-/* Returns whether changes may be added to the sums: they must be few, which is cheaper, and small, so that their rounding does not
-   matter. */
+/* Returns whether changes may be added to the existing sums. They must be few, which makes adding cheaper than summing all columns, and
+   small, so that their rounding errors do not matter. */
 static bool steps_are_small(const struct update *update)
 {
     const struct field_state *state = update->state;
@@ -92,7 +93,7 @@ void update_rule(const struct field_state *state, const struct state_input *inpu
             .scale = scale, .offset = offset, .low = difference ? -scale : offset, .high = difference ? scale : (float)group->max
         };
     } else {
-        /* values are relative to ambient, so the offset is ambient and 0 a valid value */
+        /* fin sums differences from ambient, which the rule adds again; a sum of 0 is the valid value ambient */
         bool around = state->params.interpolation == INTERPOLATION_FIN;
         float offset = around && !difference && !places ? (float)group->ambient : 0;
         *rule = (struct kernel_value){ .scale = 1, .offset = offset, .low = around ? offset : FLT_MAX, .high = around ? offset : -FLT_MAX };
@@ -107,8 +108,8 @@ void update_rule(const struct field_state *state, const struct state_input *inpu
     rule->empty = difference || places ? 0 : (float)group->min;
 }
 
-/* Returns the factor from error weights to the largest error of a value. For most interpolations they add up to 0, so only the spread of
-   the readings matters; for fin, ambient counts as a reading. */
+/* Returns the factor from an error of the weights to the largest error of a value. The errors of the weights at a point add up to 0, so
+   only the spread of the readings matters; with fin they do not, and ambient counts as one more reading. */
 static double error_scale(const struct field_state *state)
 {
     double low = INFINITY, high = -INFINITY;
@@ -128,7 +129,7 @@ static double error_scale(const struct field_state *state)
     return unit * fmax(fabs(low), fabs(high));
 }
 
-/* Returns the range of the colour map, of which a colour step is 1/255. */
+/* Returns the width of the colour map's range. */
 static double error_range(const struct field_state *state)
 {
     const struct plant_group *group = state->layout->group;
@@ -142,8 +143,8 @@ bool update_is_in_range(const struct field_state *state)
     return error_scale(state) <= error_range(state);
 }
 
-/* Chooses the limit of the error of weights above which vertices are marked uncertain. The limit stays while it is safe and not much too
-   strict, so that slightly changed readings do not rebuild all flags. Returns whether flags must be set again. */
+/* Chooses the limit for errors of the weights; vertices above it are marked uncertain. The limit stays while it is safe and not much too
+   strict, so that slightly changed readings do not rebuild all flags. Returns true if the flags must be set again. */
 static bool choose_error_limit(struct field_state *state)
 {
     const struct weights *weights = state->weights;
@@ -192,11 +193,12 @@ void update_begin(struct field_state *state, size_t count)
 
 /* --- block by block --------------------------------------------------------------------------------------------------------- */
 
-/* Returns the flag for the part of the weight on Uncertain sensors. filled: the flag for how far a lost sensor is the nearest one; the
-   larger flag counts. */
+/* Returns struct scalar's `uncertain`. marked / total: the fraction of the weight that is on Uncertain sensors. filled: the byte for a
+   value filled in around a lost sensor; the larger byte counts. */
 static uint8_t uncertain_of(double marked, double total, uint8_t filled)
 {
-    double part = total > 0 && marked > 0 ? 2 * marked / total : 0; /* weights of gp may be negative, so the part is clamped */
+    double part = total > 0 && marked > 0 ? 2 * marked / total : 0; /* twice the fraction; gp's weights may be negative, so the sum may
+                                                                       be 0 or the fraction above 1 */
     uint8_t leans = (uint8_t)(part >= 1 ? 128 + (int)(127 * (fmin(part, 2) - 1)) : (int)(127 * part));
     return leans > filled ? leans : filled;
 }
@@ -204,7 +206,7 @@ static uint8_t uncertain_of(double marked, double total, uint8_t filled)
 void update_flags(const struct field_state *state, const struct weights *weights, size_t vertex, double total, double marked,
                   struct scalar *at)
 {
-    bool blind = state->params.show == SHOW_BLIND; /* SHOW_BLIND has data around lost sensors, too */
+    bool blind = state->params.show == SHOW_BLIND; /* SHOW_BLIND has data around lost sensors like anywhere else */
     bool fill = blind || state->params.fill == FILL_NEIGHBOURS, filled = fill && weights->place[vertex] == PLACE_LOST;
     at->no_limits = weights->place[vertex] == PLACE_NO_LIMITS ? FLAG : 0;
     at->no_data = weights->place[vertex] == PLACE_GOOD || filled || at->no_limits ? 0 : FLAG;
@@ -229,7 +231,7 @@ static bool set_flags(const struct update *update, size_t begin, size_t count, c
     return changed;
 }
 
-/* Sums a block into `values`. Returns whether a flag changed. */
+/* Sums a block's columns into `values`. Returns true if a flag changed. */
 static bool sum_block(const struct update *update, size_t block, size_t begin, size_t count, double *values)
 {
     struct weights *weights = update->state->weights;
@@ -249,7 +251,7 @@ static bool sum_block(const struct update *update, size_t block, size_t begin, s
     weights_add(weights, begin, count, &update->all, &sums);
     for (size_t j = 0; total_wanted && j < count; j++)
         weights->total[begin + j] = (float)total[j];
-    if (total_wanted) /* arrays that are complete are not written, because other threads may be reading them */
+    if (total_wanted) /* a complete array of totals is not written again, because other threads may be reading it */
         weights->known[block] |= KNOWN_TOTAL;
     return flags && set_flags(update, begin, count, total, marked);
 }
@@ -260,7 +262,8 @@ float update_blind(const struct plant_group *group, float near_m)
     return (float)fmin(PLANT_SEEN_PART * (group->max - group->min) * exp(far * far / 2), most);
 }
 
-/* Fills a block of a coverage quantity, which depends on which sensors are good and not on their readings. */
+/* Fills a block of uncertainty or blind spots, which depend on which sensors are good and not on their readings. Returns true if a flag
+   changed. */
 static bool map_block(const struct update *update, size_t begin, size_t count, float *values)
 {
     const struct field_state *state = update->state;
@@ -274,7 +277,7 @@ static bool map_block(const struct update *update, size_t begin, size_t count, f
     return set_flags(update, begin, count, nothing, nothing);
 }
 
-/* Returns whether the fast path applies: few columns, all cached, no flags to set. */
+/* Returns whether kernel_few() suffices for a block: few columns, all cached, and no flags to set. */
 static bool is_simple(const struct update *update, size_t block, size_t begin)
 {
     return !field_params_cover(&update->state->params) && !update->state->sums && !update->flags && block < update->old &&

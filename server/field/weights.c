@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes G of the linear form, block by block: from distances to columns to sums. */
+/* Computes G, the weight of each sensor at each vertex, block by block: from distances to columns of G to their sums. */
 #include "field/weights.h"
 
 #include <math.h>
@@ -11,15 +11,15 @@
 #include "base/system/huge_pages.h"
 #include "plant/influence.h"
 
-/* gp: smallest part of the prior's variance that readings must remove at a vertex; below it, the vertex has no data */
+/* gp: smallest fraction of the prior's variance that readings must remove at a vertex. Vertices below it have no data */
 #define MIN_KNOWN_PART 0.1
-/* fin: smallest part of a value that must come from sensors rather than ambient; below it, the vertex has no data */
+/* fin: smallest fraction of a value that must come from sensors rather than from ambient. Vertices below it have no data */
 #define MIN_SENSOR_SHARE 0.1
 
-/* limit of a standard deviation, as a multiple of the prior's: without this, it has no bound if all sensors of a body are lost */
+/* largest standard deviation shown, as a multiple of the prior's; it would have no bound on a body whose sensors are all lost */
 #define MAX_DEVIATIONS 4.0
 
-struct key_head { /* the struct has no padding, because keys are compared as bytes */
+struct key_head { /* must have no padding, because keys are compared as bytes */
     const struct asset *file;
     uint32_t interpolation, distance;
     float power, reach_m, radius_m;
@@ -30,7 +30,7 @@ struct key_sensor {
     float strength, decay;
 };
 
-/* Returns a sensor's strength. A common factor cancels in shepard's sum, which has no decay either. */
+/* Returns a sensor's strength, for paper times the user's factor. In shepard's sum a common factor cancels. */
 static float strength_of(const struct layout_sensor *sensor, const struct field_params *params)
 {
     const struct field_override *override = field_params_override_of(params, sensor->tag);
@@ -83,7 +83,8 @@ bool weights_key_equal(const struct weights_key *a, const struct weights_key *b)
     return a->hash == b->hash && a->count == b->count && memcmp(a->bytes, b->bytes, a->count) == 0;
 }
 
-/* Returns the prepared entry. NULL: the interpolation is computed from distances, or not prepared for these sensor positions. */
+/* Returns the asset's prepared entry for this interpolation in its influence file. NULL: the interpolation is computed from distances,
+   or not prepared for these sensor positions. */
 static const struct influence_entry *influence_of(const struct field_layout *layout, enum interpolation interpolation)
 {
     const struct influence_entry *entry = interpolation_is_prepared(interpolation) && !layout->trial && !layout->assumed
@@ -115,8 +116,8 @@ static void choose_members(struct weights *weights, const struct field_params *p
         weights->alike &= weights->strength[weights->members[m]] == weights->strength[weights->members[0]];
 }
 
-/* Returns the steps of `lacking` per metre: a byte spans a fifth of the asset's size on either side of the border, more than any triangle
-   there, in steps of centimetres at most. */
+/* Returns the number of steps of `lacking` per metre. The 127 steps on either side of the border span a fifth of the asset's size, which
+   is more than any triangle at the border. */
 static float steps_per_m(const struct field_layout *layout)
 {
     const struct asset_header *header = layout->file->view.header;
@@ -136,13 +137,14 @@ static bool take_errors(struct weights *weights, const float *errors)
         for (int b = 0; b < WEIGHTS_ERRING; b++)
             erring[b] += errors[v] >= ldexpf(1, -b);
     }
-    for (int b = 0; b < WEIGHTS_ERRING; b++) /* a sum of floats would stop growing at 2^24 vertices */
+    for (int b = 0; b < WEIGHTS_ERRING; b++) /* counted as integers, because a float counter stops growing at 2^24 vertices */
         weights->erring[b] = (float)((double)erring[b] / (double)weights->layout->vertex_count);
     weights->errors_version = 1;
     return weights->errors;
 }
 
-/* Uses columns from the file, whose divisor is 1: where they add up to less, the rest is ambient. */
+/* Uses the columns of the influence file, which are not divided by their sum: at a vertex where they add up to less than 1, the rest of
+   the weight is ambient's. */
 static bool take_prepared(struct weights *weights, const struct influence_entry *entry)
 {
     const struct field_layout *layout = weights->layout;
@@ -231,7 +233,8 @@ void weights_copy_known(struct weights *weights, const struct weights *from)
     if (!same_sensors(weights, from))
         return;
     unsigned shared = KNOWN_NEAR;
-    if (same_strengths(weights, from)) /* decay is not in the weights of `paper`, and nothing else can differ */
+    if (same_strengths(weights, from)) /* the weights of `paper` do not depend on decay, which alone may still differ: their totals are
+                                          equal, too */
         shared |= KNOWN_TOP | (weights->interpolation == INTERPOLATION_PAPER ? KNOWN_TOTAL : 0);
     for (size_t block = 0, at = 0; at < weights->layout->vertex_count; block++, at += KERNEL_BLOCK) {
         size_t left = weights->layout->vertex_count - at, count = left < KERNEL_BLOCK ? left : KERNEL_BLOCK;
@@ -284,7 +287,7 @@ size_t weights_bytes(const struct field_layout *layout)
            layout->sensor_count * each_sensor;
 }
 
-/* Returns the bytes of one block's columns. */
+/* Returns the number of bytes of one block's columns. */
 static size_t block_bytes(const struct weights *weights)
 {
     return weights->member_count * (KERNEL_BLOCK * sizeof(float) + 1);
@@ -382,8 +385,8 @@ static enum place place_of(float near_m, float lost_m, float no_limits_m, float 
     return lost_m < near_m ? PLACE_LOST : PLACE_GOOD;
 }
 
-/* fin: computes how many metres nearer the sensors would have to be to determine a tenth of the value: their share falls by e per decay
-   length. */
+/* fin: computes how many metres nearer the sensors would have to be to determine MIN_SENSOR_SHARE of the value. The fraction that they
+   determine falls by the factor e per decay length. */
 static void find_beyond(struct weights *weights, size_t begin, size_t count)
 {
     double share[KERNEL_BLOCK] = { 0 };
@@ -406,7 +409,8 @@ void weights_deviations(const struct weights *weights, size_t begin, size_t coun
     }
 }
 
-/* gp: does the same for the variance that sensors remove, which falls by e^2 per decay length. */
+/* gp: computes how many metres nearer the sensors would have to be to remove MIN_KNOWN_PART of the prior's variance. The fraction that
+   they remove falls by the factor e^2 per decay length. */
 static void find_unknown(struct weights *weights, size_t begin, size_t count)
 {
     float deviations[KERNEL_BLOCK];
@@ -465,12 +469,13 @@ void weights_prepare(struct weights *weights, size_t begin, size_t count)
     }
 }
 
-/* Memory for the columns computed in one step of a sum. */
+/* Scratch memory for the columns computed in one step of a sum. */
 struct workroom {
     float near_log2[KERNEL_BLOCK], distance_m[KERNEL_BLOCK], weights[KERNEL_COLUMNS][KERNEL_BLOCK], terms[KERNEL_COLUMNS][KERNEL_BLOCK];
 };
 
-/* weight: receives the weights; NULL: only the term is wanted. */
+/* Computes one member's column for a block. term: receives the factor of the reading; weight: for paper, receives the weight, which
+   lacks the factor d^decay. weight NULL: only the term is wanted. */
 static void make_column(const struct weights *weights, uint32_t member, size_t begin, size_t count, struct workroom *room, float *weight,
                         float *term)
 {
@@ -494,8 +499,8 @@ static void make_column(const struct weights *weights, uint32_t member, size_t b
         kernel_shepard(&column, term);
 }
 
-/* Returns columns to prefetch: the cached columns of the terms after the first `done` in this block, or, if there are none left, the first
-   ones of the next block. They may not be filled yet. NULL: there are fewer than KERNEL_COLUMNS. */
+/* Returns the columns to prefetch while the first `done` terms are added: the next cached columns of this block, or the first ones of
+   the next block. They may not be filled yet. NULL: there are fewer than KERNEL_COLUMNS, or they are not cached. */
 static const float *const *columns_after(const struct weights *weights, size_t begin, const struct weights_terms *terms, size_t done,
                                          const float **room)
 {
@@ -546,7 +551,7 @@ void weights_add(struct weights *weights, size_t begin, size_t count, const stru
         for (size_t k = 0; sums->marked && k < number; k++) {
             if (terms->marked[first + k] && !weights->deviations)
                 kernel_add(sums->marked, &heavy[k], ones, 1, count, NULL);
-            /* absolute values, so that two weights do not cancel */
+            /* gp's weights may be negative: adds absolute values, so that two weights do not cancel */
             for (size_t j = 0; terms->marked[first + k] && weights->deviations && j < count; j++)
                 sums->marked[j] += fabs((double)heavy[k][j]);
         }

@@ -11,9 +11,9 @@
 #include "field/layout.h"
 
 enum sensor_use {
-    SENSOR_LOST, /* the sensor does not contribute; there is no data around it */
+    SENSOR_LOST, /* the sensor is configured but not usable; there is no data around it */
     SENSOR_USED,
-    SENSOR_NO_LIMITS, /* the sensor does not contribute, but the area around it counts as well measured */
+    SENSOR_NO_LIMITS, /* the sensor is good, but its tag has no limits: the area around it counts as measured but shows no value */
     SENSOR_ASIDE      /* ignored: another sensor gives the asset's value */
 };
 
@@ -25,16 +25,17 @@ enum place {
     PLACE_NO_LIMITS /* the nearest sensor within reach is SENSOR_NO_LIMITS */
 };
 
-/* bits that say which arrays of a block are filled: near_m and place; top; total */
+/* bits for the arrays of a block that are filled. KNOWN_NEAR: near_m and place; KNOWN_TOP: top; KNOWN_TOTAL: total */
 enum weights_known { KNOWN_NEAR = 1, KNOWN_TOP = 2, KNOWN_TOTAL = 4 };
 
-struct weights_key { /* everything that G depends on, as bytes */
+struct weights_key { /* bytes of everything that G depends on */
     void *bytes;
     size_t count;
     uint64_t hash;
 };
 
-enum { WEIGHTS_ERRING = 9 }; /* number of classes of vertices by error: powers of 1/2 of the range, down to 2^-8, a step of colour */
+enum { WEIGHTS_ERRING = 9 }; /* number of error thresholds by which vertices are counted: 1, 1/2, 1/4 ... 1/256 of the range; the last is
+                                about one step of colour */
 
 struct weights {
     struct weights_key key;
@@ -46,7 +47,7 @@ struct weights {
     float *strength, *decay;                     /* by sensor of the layout */
     /* for each sensor of the layout: 1: it would contribute if its quality were good; 0: it would not; more than 1: SENSOR_NO_LIMITS */
     uint8_t *configured;
-    uint8_t *takes_part; /* for each sensor of the layout: 1 if used */
+    uint8_t *takes_part; /* for each sensor of the layout: 1 if it is used */
     /* members of the sum, in the order of the columns: the used sensors of the layout; for prepared interpolations all sensors */
     uint32_t *members;
     size_t member_count;
@@ -57,21 +58,23 @@ struct weights {
     uint8_t *lost;               /* for each vertex: how much nearer the nearest lost sensor is than near_m, encoded by weights_lacking() */
     uint8_t *known;              /* for each block: bits of enum weights_known for the arrays above */
     const float *prepared;       /* [member][vertex]: columns from the asset's influence file; NULL: columns are computed from distances */
-    struct influence_fill *fill; /* prepared with some sensor lost; else NULL */
-    double *ones;  /* prepared interpolations with lost sensors: by sensor, the value it gets if all used sensors read 1; else NULL */
-    float decay_m; /* fin: decay length; gp: 1/k of its kernel */
+    struct influence_fill *fill; /* factor that gives lost sensors a value, for prepared interpolations; NULL: no sensor is lost */
+    double *ones;  /* by sensor, for prepared interpolations with lost sensors: the value that the sensor gets if all used sensors read
+                      1; else NULL */
+    float decay_m; /* metres. fin: decay length; gp: 1/k, with k as in preprocess/influence/gaussian.h */
     const float *deviations; /* gp: standard deviation of the field at each vertex while all sensors are used; else NULL */
     const float *priors;     /* gp: standard deviation of the field at each vertex without any sensor */
     float deviation;         /* gp: standard deviation of the prior */
     float *errors;           /* for each vertex: linear interpolation error of the adjacent triangles (drawn_error.h); NULL: not measured */
     float largest_error;     /* largest element of `errors` */
-    /* [b]: part of the surface with an error of at least 2^-b, in the level of detail with the largest such part. Prepared: part of the
-       vertices */
+    /* [b]: fraction of the surface whose error is at least 2^-b, the largest of all measured levels of detail. For prepared
+       interpolations the fraction of the vertices */
     float erring[WEIGHTS_ERRING];
-    uint64_t measured_levels; /* one bit per level of detail that `errors` covers */
+    uint64_t measured_levels; /* bits of the levels of detail whose triangles `errors` covers */
     unsigned errors_version;  /* counts changes of `errors` */
     float *beyond_m;          /* fin, gp: by vertex, distance beyond the border of the known area; else NULL */
-    float *columns; /* [block][member][KERNEL_BLOCK] of the first kept_blocks, or NULL; columns of other blocks are recomputed each time */
+    float *columns; /* [block][member][KERNEL_BLOCK] of the first kept_blocks blocks, or NULL; columns of other blocks are recomputed for
+                       each sum */
     uint8_t *kept;  /* [block][member]: 1 if its column is filled */
     size_t kept_blocks;
     int users;           /* number of states that use these weights */
@@ -79,8 +82,8 @@ struct weights {
     struct weights *next;
 };
 
-/* Computes the key of everything that G depends on. usable: enum sensor_use by sensor of the layout. radius_m: R of Algorithm 1,
-   resolved. */
+/* Computes the key, the bytes of everything that G depends on. usable: enum sensor_use by sensor of the layout. radius_m: radius R of
+   Algorithm 1 in metres, never 0. */
 void weights_key_init(struct weights_key *key, const struct field_layout *layout, const struct field_params *params, float radius_m,
                       const uint8_t *usable);
 /* Frees the key. */
@@ -92,8 +95,8 @@ bool weights_key_equal(const struct weights_key *a, const struct weights_key *b)
    destroys them. */
 struct weights *weights_create(const struct field_layout *layout, const struct field_params *params, float radius_m, const uint8_t *usable,
                                struct weights_key *key);
-/* Copies from `from`, which has been summed, the arrays that are equal for both parameter sets: most arrays while a user drags one
-   parameter. */
+/* Copies from other weights, which have been summed, the arrays that are equal for the parameters of both. While a user drags one
+   parameter, these are most arrays. */
 void weights_copy_known(struct weights *weights, const struct weights *from);
 /* Frees the weights. &NULL is fine; sets it to NULL. */
 void weights_destroy(struct weights **weights);
@@ -104,7 +107,7 @@ size_t weights_column_bytes(const struct weights *weights);
 /* Returns the bytes of the columns that are cached. */
 size_t weights_kept_bytes(const struct weights *weights);
 /* Starts caching columns as they are computed: as many as fit into `bytes`, from the first vertices on. Call only while none are cached.
-   Returns weights_kept_bytes(); 0 if none fit or memory runs out. */
+   Returns weights_kept_bytes(), or 0 if none fit or memory runs out. */
 size_t weights_keep(struct weights *weights, size_t bytes);
 /* Frees the cached columns. */
 void weights_drop_columns(struct weights *weights);
@@ -121,27 +124,29 @@ void weights_prepare(struct weights *weights, size_t begin, size_t count);
    (lost * lost) steps per vertex. Thread: any. */
 void weights_deviations(const struct weights *weights, size_t begin, size_t count, float *out);
 
-/* Columns to add, and their factors. */
+/* Columns of G to add, each with a factor. */
 struct weights_terms {
     const uint32_t *members;
     const double *factors;
-    const uint8_t *marked; /* for each entry of this list: whether the column is added to sums->marked, too */
+    const uint8_t *marked; /* for each entry of this list: 1 if the column is also added to sums->marked */
     size_t count;
 };
 /* Sums of one block, which weights_add() adds to. */
 struct weights_sums {
     double *values; /* sum of factor times column */
-    /* total: sum of the weights of all columns in the list; marked: of the marked ones; NULL: not needed (marked requires total) */
+    /* total: sum of the weights of all columns in the list; marked: sum of those that are marked. NULL: not needed (marked requires
+       total) */
     double *total, *marked;
 };
 /* Adds the terms' columns to the sums of a prepared block; computes columns that are not cached, and caches them if caching is on. Thread:
    any, on different blocks. */
 void weights_add(struct weights *weights, size_t begin, size_t count, const struct weights_terms *terms, const struct weights_sums *sums);
-/* Returns a cached column of a block. */
+/* Returns a column of a block, which must be cached. */
 const float *weights_column(const struct weights *weights, size_t begin, uint32_t member);
 /* Returns whether all columns of a block are cached. */
 bool weights_has_columns(const struct weights *weights, size_t begin);
-/* Returns whether a block is complete, so that summing only reads it (except for Algorithm 1 with Uncertain sensors). */
+/* Returns true if all arrays and columns of a block are filled, so that summing only reads them (except for Algorithm 1 with Uncertain
+   sensors, whose weights are computed for each sum). */
 bool weights_is_complete(const struct weights *weights, size_t begin);
 
 #endif

@@ -51,8 +51,8 @@ static bool stat_folder(const char *path, struct stat *st)
     return good;
 }
 
-/* Returns the reason why a file must not be copied (static text), or NULL if it may be. The owner of a folder could place a link in it to a
-   file that only we may read. */
+/* Returns the reason why a file must not be copied (static text), or NULL if it may be copied. Refuses files of strangers: the owner of
+   a folder could place a link in it to a file that only the caller may read. */
 static const char *fault_of(const char *path, const struct stat *st)
 {
     struct stat folder;

@@ -8,14 +8,12 @@
 
 #define HISTORY_BACKUP_STAMP "last-backup" /* marker file in the history folder; its modification time is the time of the last backup */
 
-enum { COPY_HASH_BYTES = 33 }; /* length of a hash as text: 32 hexadecimal digits and a 0 */
+enum { COPY_HASH_BYTES = 33 }; /* length in bytes of a hash as text: 32 hexadecimal digits and a terminating 0 */
 
-/* Both functions follow no symbolic link and read no file whose owner is neither the owner of its folder nor the caller, so that root can
-   safely copy from a folder of the daemon's user. `to` must not exist; if root creates it, it gets the owner of its folder, and only that
-   owner and group can read it.
-
-   copy_database() copies the state of `from` at one moment to a single file, checks it and syncs it to disk. Returns false on failure
-   (logged); `to` is then removed. */
+/* Copies the state of the database `from` at one moment to a single file, checks it and syncs it to disk. Returns false on failure
+   (logged); `to` is then removed. This function and copy_file() follow no symbolic link and read no file whose owner is neither the
+   owner of its folder nor the caller, so that root can safely copy from a folder of the daemon's user. `to` must not exist; if root
+   creates it, it gets the owner of its folder, and only that owner and group can read it. */
 bool copy_database(struct log *log, const char *from, const char *to);
 /* Copies a file byte for byte. Returns false on failure (logged); `to` is then removed. */
 bool copy_file(struct log *log, const char *from, const char *to);

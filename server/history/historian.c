@@ -24,11 +24,12 @@
 #include "value/quality.h"
 
 enum {
-    QUEUE_MAX = 4000000,   /* maximum number of queued samples, which arrive within one second */
-    WAITING_MAX = 4000000, /* maximum number of rows that wait in memory while the disk cannot be written */
+    QUEUE_MAX = 4000000,   /* maximum number of queued samples; the queue is emptied once a second */
+    WAITING_MAX = 4000000, /* maximum number of rows held in memory while the disk cannot be written */
     TIDY_ROWS = 200000,
-    TAG_LEADS = -1,   /* value in place of a tag's index: the samples after it come from this daemon's store */
-    TAG_FOLLOWS = -2, /* value in place of a tag's index: the samples after it come over a new connection to the leading daemon */
+    TAG_LEADS = -1,   /* marker in the queue, in place of a tag's index: the samples after it come from this daemon's own store */
+    TAG_FOLLOWS = -2, /* marker in the queue, in place of a tag's index: the samples after it come over a new connection to the leading
+                         daemon */
     RETRY_MAX_S = 30,
 };
 static const int64_t TICK_NS = NS_PER_S, TIDY_NS = 60 * NS_PER_S, KEEP_NS = 60 * NS_PER_S, STEP_NS = 2 * NS_PER_S, LOOK_NS = 20 * NS_PER_MS;
@@ -50,25 +51,25 @@ struct historian {
         counter *samples, *points, *lost, *waiting, *good, *bytes, *free, *backup;
     } counters;
     struct postgres *postgres; /* sender of history to PostgreSQL; NULL: history is not sent to a database */
-    atomic_bool restored;      /* set once older points have been read from the database into the files */
+    atomic_bool restored;      /* set once points that this machine lacked have been read from PostgreSQL into the files */
     /* --- below: used by the historian's thread only */
     struct history_tag *tags;
     struct recorder *recorder;
     struct snapshot *snapshot;
     struct recorder_rows waiting, held;
-    struct spool_rows spooled; /* rows that the last run spooled (saved when the disk was full); written before all others */
-    char *spool_path;          /* path of the last run's spool; NULL: none */
+    struct spool_rows spooled; /* rows that could not be written in the last run, read from its spool file; written before all others */
+    char *spool_path;          /* path of the last run's spool file (rows that could not be written to history); NULL: none */
     struct month_file *file;
     struct historian_queue taken;
     bool recovered, failing, stands_by, fills;
-    int64_t fill_us;     /* with `fills` (points are to be read from the database): time from which they must be read */
-    int64_t mirrored_us; /* time of the newest mirrored sample; 0: none */
+    int64_t fill_us;     /* if `fills` (points are to be read from PostgreSQL): UTC time from which they are missing here */
+    int64_t mirrored_us; /* UTC time of the newest sample mirrored from the leading daemon; 0: none */
     int64_t retry_ns, retry_after_ns, tidied_ns, kept_ns, utc_ahead_ns;
     struct thread thread;
     /* --- below: under thread.lock */
     struct historian_queue queue;
-    const struct plant *next; /* plant of the next historian, which continues this one's lines; NULL: none */
-    /* receives the time spans whose points the next historian must still read from the database; NULL: not wanted */
+    const struct plant *next; /* plant of the historian that will continue this one's recorded lines after a reload; NULL: none */
+    /* receives the time spans whose points the next historian must still read from PostgreSQL; NULL: not wanted */
     struct postgres_owed *owed;
 };
 
@@ -151,7 +152,7 @@ static void take_qualities(struct historian *historian, int64_t mono_ns, int64_t
     }
 }
 
-/* Ends the recorded lines of all tags after last_us, because the values after that time are unknown. */
+/* Ends the recorded lines of all tags just after last_us with a point without a value, because later values are unknown. */
 static void leave_out(struct historian *historian, int64_t last_us)
 {
     for (size_t i = 0; i < historian->plant->tag_count; i++)
@@ -159,8 +160,8 @@ static void leave_out(struct historian *historian, int64_t last_us)
             put(historian, (int)i, &(struct history_point){ last_us + 1, NAN, QUALITY_BAD_NO_COMMUNICATION });
 }
 
-/* A new connection to the leading daemon begins: the samples that the leader recorded since the last mirrored one are missing here, and
-   must be read from the database. */
+/* Handles a new connection to the leading daemon: the samples that the leader recorded since the last mirrored one are missing here and
+   must be read from PostgreSQL. */
 static void begin_to_follow(struct historian *historian)
 {
     if (historian->mirrored_us)
@@ -178,7 +179,8 @@ static void take_mirrored(struct historian *historian, int64_t t_us)
         historian->mirrored_us = t_us;
 }
 
-/* This daemon takes the lead. The former leader may have recorded more after the connection was lost, and sent that to the database. */
+/* Handles that this daemon takes the lead. The former leader may have recorded more after the connection was lost, and sent that to
+   PostgreSQL. */
 static void begin_to_lead(struct historian *historian, int64_t t_us)
 {
     if (historian->mirrored_us)
@@ -195,7 +197,7 @@ static bool is_after_step(const struct sample_event *event, int64_t ahead_ns, in
     return llabs(off_ns) < llabs(off_ns + step_ns);
 }
 
-/* Records the queued samples. step_ns: duration by which the wall clock was set since the last call; 0: not at all. */
+/* Passes the queued samples to the recorder. step_ns: by how much the wall clock was set since the last call; 0: it was not set. */
 static void take_events(struct historian *historian, const struct now *now, int64_t step_ns)
 {
     pthread_mutex_lock(&historian->thread.lock);
@@ -257,7 +259,8 @@ static void say_gap(struct historian *historian, struct month_file *file, int64_
     mem_free(text);
 }
 
-/* After a daemon was killed: ends its recorded lines at its newest samples, and records the gap. */
+/* After a daemon was killed: records the newest sample of each of its tags, ends the recorded lines there, and records the gap as an
+   event. */
 static int recover(struct historian *historian)
 {
     size_t count;
@@ -306,7 +309,7 @@ static int enter_month(struct historian *historian, int month)
     return error;
 }
 
-/* Returns the end of the run of rows, from index `begin` on, that belong to the same month. */
+/* Returns the index after the last row, from `begin` on, that belongs to the same month as row `begin`. */
 static size_t same_month(const struct recorder_rows *rows, size_t begin)
 {
     int month = month_of(rows->at[begin].point.t_us);
@@ -317,7 +320,7 @@ static size_t same_month(const struct recorder_rows *rows, size_t begin)
     return end;
 }
 
-/* Writes rows month by month; written rows are removed from `rows`. */
+/* Writes rows month by month; written rows are removed from `rows`. held: the rows are newest samples that are not recorded yet. */
 static int write_rows(struct historian *historian, struct recorder_rows *rows, bool held)
 {
     size_t done = 0;
@@ -337,7 +340,7 @@ static int write_rows(struct historian *historian, struct recorder_rows *rows, b
     return error;
 }
 
-/* Writes the rows of one second: usually all in one month, in one transaction. */
+/* Writes the rows that one second brought: usually all to one month's file, in one transaction. */
 static int write_second(struct historian *historian)
 {
     struct recorder_rows *rows = &historian->waiting, *held = &historian->held;
@@ -398,7 +401,8 @@ static int apply_retention(struct historian *historian, int64_t mono_ns, int64_t
     return error;
 }
 
-/* Closes the file without recording the newest samples (held rows), so that recover() handles them as after a crash. */
+/* Closes the month's file but leaves the newest samples in it as held rows (samples not recorded yet), so that recover() handles them as
+   after a crash. */
 static int leave_file(struct historian *historian)
 {
     int error = month_file_tidy(historian->file);
@@ -407,7 +411,8 @@ static int leave_file(struct historian *historian)
     return error;
 }
 
-/* Writes the rows that the last run spooled to their month's file, before recover() determines when that run ended. */
+/* Writes the rows that the last run spooled (saved because history could not be written) to their month's file, before recover()
+   determines when that run ended. */
 static int write_spooled(struct historian *historian)
 {
     if (!historian->spool_path)
@@ -482,7 +487,7 @@ static struct now look_at_clocks(void)
     return now;
 }
 
-/* Returns the duration by which the wall clock was set since the last call; 0: not at all. */
+/* Returns by how much the wall clock was set since the last call, in nanoseconds; 0: it was not set. */
 static int64_t watch_clock(struct historian *historian, const struct now *now)
 {
     int64_t ahead_ns = now->utc_ns - now->mono_ns, step_ns = historian->utc_ahead_ns ? ahead_ns - historian->utc_ahead_ns : 0;
@@ -490,7 +495,7 @@ static int64_t watch_clock(struct historian *historian, const struct now *now)
     return llabs(step_ns) > STEP_NS ? step_ns : 0;
 }
 
-/* Records in the history's events that the clock was set, since the times of points alone do not show it. */
+/* Records an event in the month's file that the clock was set, because the times of points alone do not show it. */
 static void note_step(struct historian *historian, int64_t utc_ns, int64_t step_ns)
 {
     char *text = mem_printf(step_ns > 0 ? HISTORY_FORWARD_TEXT : HISTORY_BACK_TEXT, fabs((double)step_ns) / 1e9);
@@ -500,7 +505,8 @@ static void note_step(struct historian *historian, int64_t utc_ns, int64_t step_
     mem_free(text);
 }
 
-/* Ends every tag's line at its newest sample, which is recorded. Tags that the next plant lacks get a point without a value after it. */
+/* Ends the recorded line of every tag at its newest sample, which is recorded. A tag that the next plant lacks also gets a point without
+   a value, which marks the end of its data. */
 static void end_lines(struct historian *historian, int64_t utc_ns)
 {
     if (!historian->next)
@@ -522,7 +528,8 @@ static void tick(struct historian *historian, bool last)
     if (step_ns)
         note_step(historian, utc_ns, step_ns);
     if (historian->file && month_file_month(historian->file) != month_of(utc_ns / 1000))
-        recorder_end(historian->recorder, &historian->waiting); /* no line continues in memory across the end of a month */
+        recorder_end(historian->recorder, &historian->waiting); /* records the newest sample of every tag, because a recorded line must
+                                                                   not depend on memory across the end of a month */
     if (last)
         end_lines(historian, utc_ns);
     try_to_write(historian, mono_ns, utc_ns, last);
@@ -530,7 +537,8 @@ static void tick(struct historian *historian, bool last)
     measure_free(historian);
 }
 
-/* Ends the recorded lines of an earlier run whose spooled rows could not be written to its month's file. */
+/* Ends the recorded lines of the earlier run, whose spooled rows (saved when history could not be written) still cannot be written to
+   its month's file. */
 static void end_spooled_lines(struct spool_rows *rows)
 {
     struct recorder_rows *kept = &rows->kept;
@@ -543,11 +551,11 @@ static void end_spooled_lines(struct spool_rows *rows)
     rows->held.count = 0;
 }
 
-/* Saves the rows that cannot be written in a spool file for the next start, in the first of the possible folders that accepts it. */
+/* Saves the rows that cannot be written in a spool file for the next start. Tries possible folders until one accepts the file. */
 static void spool(struct historian *historian)
 {
     char **places = spool_places(historian->folder);
-    struct spool_rows *rows = &historian->spooled; /* rows of the earlier run come first, if it could not be written either */
+    struct spool_rows *rows = &historian->spooled; /* the earlier run's rows come first, if they could not be written either */
     end_spooled_lines(rows);
     size_t before = rows->kept.count;
     mem_grow(&rows->kept.at, &rows->kept.capacity, before + historian->waiting.count + 1, sizeof(*rows->kept.at));

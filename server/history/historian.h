@@ -17,35 +17,35 @@ struct historian_params {
     struct store *store; /* must outlive the historian */
     const char *folder;  /* created if it is missing */
     bool stands_by; /* true: samples come from another daemon (historian_mirror()) instead of the store, until historian_lead() is called */
-    bool follows;   /* true: this historian continues after one that ended with historian_end(): lines continue, and no gap is recorded */
-    /* time spans still to be read from the database, from historian_end(); copied by the call; NULL: none */
+    bool follows;   /* true: this historian continues after one that ended with historian_end(): recorded lines go on, and no gap is
+                       recorded */
+    /* time spans still to be read from PostgreSQL, as historian_end() returned them; copied by the call; NULL: none */
     const struct postgres_owed *owed;
 };
 
 struct historian;
 /* Starts recording. Returns NULL if the thread cannot be started (logged). */
 struct historian *historian_start(const struct historian_params *params);
-/* Announces a new connection to the leading daemon. Points that it recorded before, and which are missing here, are read from the
-   database. */
+/* Announces a new connection to the leading daemon. The points that the leader recorded before it and that are missing here are read
+   from PostgreSQL. */
 void historian_follow(struct historian *historian);
 /* Records samples that another daemon recorded, in the order in which it recorded them. Call it only while this daemon is a standby.
    Thread: one. */
 void historian_mirror(struct historian *historian, const struct sample_event *samples, size_t count);
-/* Records the store's samples from now on. Values between the last mirrored sample and now are unknown. */
+/* Makes this daemon record its own store's samples from now on. Values between the last mirrored sample and now are recorded as unknown. */
 void historian_lead(struct historian *historian);
-/* Call it when a standby connects: it may be the former leader, and may since have sent its remaining points to the database, which are
-   then read from there. */
+/* Call it when a standby connects. The standby may be the former leader, and may have sent its remaining points to PostgreSQL since;
+   these points are then read from there. */
 void historian_on_standby(struct historian *historian);
-/* Tells the historian of a standby that the leader has sent the database everything recorded until age_ns ago, which this daemon then need
-   not send. */
+/* For a standby: states that the leader has sent PostgreSQL everything recorded until age_ns ago. This daemon then need not send it. */
 void historian_sent_elsewhere(struct historian *historian, int64_t age_ns);
-/* Returns the age in nanoseconds of the newest time before which all recorded points are in the database; INT64_MAX: unknown, or no
-   database. */
+/* Returns the age in nanoseconds of the newest time T such that all points recorded before T are in PostgreSQL; INT64_MAX: unknown, or
+   no database is configured. */
 int64_t historian_sent_age_ns(struct historian *historian);
-/* Writes pending points and ends the historian, so that the historian of the next plant can continue. Tags missing in that plant have no
-   value from now on. *owed receives the time spans that must still be read from the database. Leaves NULL. */
+/* Writes pending points and ends the historian, so that the historian of the next plant can continue. Tags that the next plant lacks
+   have no value from now on. *owed receives the time spans that must still be read from PostgreSQL. Sets *historian to NULL. */
 void historian_end(struct historian **historian, const struct plant *next, struct postgres_owed *owed);
-/* Writes pending points and ends the historian. &NULL is fine; leaves NULL. */
+/* Writes pending points and ends the historian. &NULL is fine; sets it to NULL. */
 void historian_stop(struct historian **historian);
 
 #endif

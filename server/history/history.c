@@ -16,7 +16,7 @@ struct history_reader {
     char *folder;
     const struct plant *plant; /* converts the values to the units in which this plant shows its tags; may be NULL */
     struct month_file *files[OPEN_MONTHS];
-    int next; /* index in the array of open files of the one to close next */
+    int next; /* index in the array of open files of the file to close next */
 };
 
 struct history_reader *history_reader_create(struct log *log, const char *folder)
@@ -43,8 +43,8 @@ void history_reader_destroy(struct history_reader **reader)
     *reader = NULL;
 }
 
-/* Opens the file of a month, valid until another month is opened. Returns NULL if the month has no file (*error 0), or if it cannot be
-   read. */
+/* Opens the file of a month; it stays valid until another month is opened. Returns NULL with *error 0 if the month has no file, and NULL
+   with -errno if the file cannot be read. */
 static struct month_file *open_month(struct history_reader *reader, int month, int *error)
 {
     struct month_file **place = &reader->files[reader->next];
@@ -53,7 +53,7 @@ static struct month_file *open_month(struct history_reader *reader, int month, i
         if (reader->files[i] && month_file_month(reader->files[i]) == month) {
             if (month_file_is_there(reader->files[i]))
                 return reader->files[i];
-            place = &reader->files[i]; /* the month's file was deleted or set aside since it was opened; replace it */
+            place = &reader->files[i]; /* the month's file was deleted or renamed since it was opened: opens the new file in its place */
         }
     if (place == &reader->files[reader->next])
         reader->next = (reader->next + 1) % OPEN_MONTHS;
@@ -68,8 +68,8 @@ static struct month_file *open_month(struct history_reader *reader, int month, i
 
 /* --- series ------------------------------------------------------------------------------------------------------------------- */
 
-/* Returns the longest rollup level that is at most twice the wanted bucket length. Returns -1 if all levels are longer: use the points
-   themselves. */
+/* Returns the longest rollup level (bucket length) that is at most twice stretch_us, the wanted length. Returns -1 if all levels are
+   longer: the caller must use the points themselves. */
 static int level_for(int64_t stretch_us)
 {
     int level = -1;
@@ -86,7 +86,7 @@ static int64_t bucket_length(int64_t stretch_us, int level)
     return count > 1 ? count * unit_us : unit_us;
 }
 
-/* Merges buckets of one length into the longer buckets of the list `out`. */
+/* Merges buckets of one length into longer buckets, which are appended to `out`. */
 struct gather {
     struct history_series *out;
     int64_t length_us; /* length of the input buckets */
@@ -105,7 +105,7 @@ static struct history_bucket *bucket_of(struct history_series *out, int64_t t_us
     return bucket;
 }
 
-/* Adds a bucket. The line from the previous bucket to this one also counts in the longer buckets that it crosses. */
+/* Adds a bucket. The straight line from the previous bucket to this one also counts in every longer bucket that it crosses. */
 static void put_bucket(struct gather *gather, const struct history_bucket *bucket)
 {
     struct history_series *out = gather->out;
@@ -123,7 +123,8 @@ static void put_bucket(struct gather *gather, const struct history_bucket *bucke
     gather->has_last = true;
 }
 
-/* Adds points that are not in a rollup yet. Points up to done_us are in a rollup already; they only give the start of the line. */
+/* Adds points that no rollup contains yet. Points up to done_us are already in a rollup; of these only the last matters, as the start of
+   the line to the next point. */
 static void put_points(struct gather *gather, const struct history_points *points, int64_t done_us)
 {
     struct rollup rollup = { .length_us = gather->length_us, .step = points->step };
@@ -153,7 +154,8 @@ static int add_month(struct month_file *file, const char *tag, int level, int64_
     return error;
 }
 
-/* Drops points outside the range except one before and one after: each month's file added such points of its own. */
+/* Drops points outside the range except the last one before and the first one after: each month's file contributed such points of its
+   own. */
 static void drop_edges(struct history_points *points, int64_t from_us, int64_t to_us)
 {
     size_t first = 0, last = points->count;
@@ -203,7 +205,7 @@ int history_series(struct history_reader *reader, const char *tag, int64_t from_
     *out = (struct history_series){ .bucket_us = level < 0 ? 0 : bucket_length(stretch_us, level) };
     struct gather gather = { .out = out, .length_us = level < 0 ? 0 : history_level_us[level] };
     for (size_t i = 0; i < count && !error; i++) {
-        /* one month earlier, because the line that enters the range may begin there */
+        /* also reads one month before the range, because the line that enters the range may begin there, and one month after it */
         bool leads = i + 1 < count && months[i] < first && months[i + 1] >= first;
         bool follows = i > 0 && months[i] > last && months[i - 1] <= last;
         if ((months[i] >= first && months[i] <= last) || (level < 0 && (leads || follows)))
@@ -226,8 +228,8 @@ void history_series_finish(struct history_series *series)
 
 /* --- one instant -------------------------------------------------------------------------------------------------------------- */
 
-/* Returns whether the tag has no value at t_us because its newest sample is older than its Stale s: a running daemon would have recorded
-   a newer point. */
+/* Returns true if the tag has no value at t_us because its newest sample is older than the tag's Stale s. A running daemon would have
+   recorded a newer point. */
 static bool has_ended(const struct history_pair *pair, int64_t t_us, int64_t stale_us)
 {
     return pair->after.t_us == INT64_MIN && history_point_usable(&pair->before) && stale_us < INT64_MAX - HISTORY_SETTLED_US &&
@@ -244,7 +246,7 @@ static void read_pair(const struct history_pair *pair, int64_t t_us, int64_t sta
     out->value = isnan(before->value) ? 0 : before->value;
     out->received_utc_ns = t_us * 1000;
     out->age_ns = 0;
-    if (!quality_is_good(out->quality)) { /* no Good reading has arrived since `before`, so the value is as old as that point */
+    if (!quality_is_good(out->quality)) { /* no Good reading has arrived since the point `before`: the value is as old as that point */
         out->received_utc_ns = before->t_us * 1000;
         out->age_ns = (t_us - before->t_us) * 1000;
     } else if (pair->after.t_us != INT64_MIN && history_point_joined(before, &pair->after, pair->step)) {
@@ -270,7 +272,8 @@ int history_at(struct history_reader *reader, const struct history_tag *tags, in
     int month = month_of(t_us), error = 0;
     for (size_t i = 0; i < into->count; i++)
         pairs[i].before.t_us = pairs[i].after.t_us = INT64_MIN;
-    for (int i = 0; i < 3 && !error; i++) /* the month of t_us and the months before and after, because lines cross the ends of months */
+    for (int i = 0; i < 3 && !error; i++) /* reads the month of t_us and the months before and after, because lines between points cross
+                                             the ends of months */
         error = at_month(reader, month + (int[]){ 0, -1, 1 }[i], tags, t_us, into->count, pairs);
     for (size_t i = 0; i < into->count; i++)
         read_pair(&pairs[i], t_us, tags[i].stale_us, &into->readings[i]);
@@ -309,7 +312,7 @@ static int by_beginning(const void *a, const void *b)
     return (x->from_us > y->from_us) - (x->from_us < y->from_us);
 }
 
-/* Sorts gaps, keeps those that overlap from..to, and joins overlapping ones. */
+/* Sorts gaps, keeps those that overlap from_us..to_us, and joins overlapping ones. */
 static void tidy_gaps(struct history_gaps *gaps, int64_t from_us, int64_t to_us)
 {
     size_t kept = 0;
@@ -327,7 +330,7 @@ static void tidy_gaps(struct history_gaps *gaps, int64_t from_us, int64_t to_us)
     gaps->count = kept;
 }
 
-/* Also reads the newest file before from_us, for a gap that began before from_us. */
+/* also reads the newest file before from_us, because a gap may have begun before from_us */
 int history_gaps(struct history_reader *reader, int64_t from_us, int64_t to_us, struct history_gaps *out)
 {
     size_t count;

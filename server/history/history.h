@@ -7,7 +7,7 @@
 #include "plant/plant.h"
 #include "value/snapshot.h"
 
-static const int64_t HISTORY_SETTLED_US = 3 * 1000000; /* points newer than this may not be written completely yet */
+static const int64_t HISTORY_SETTLED_US = 3 * 1000000; /* microseconds; points newer than this may not be in the file completely yet */
 
 /* Returns the plant's tags as history files describe them; free with mem_free(); names belong to the plant. */
 struct history_tag *history_tags(const struct plant *plant);
@@ -20,15 +20,15 @@ struct history_reader *history_reader_create(struct log *log, const char *folder
 void history_reader_show_by(struct history_reader *reader, const struct plant *plant);
 void history_reader_destroy(struct history_reader **reader); /* Frees the reader. &NULL is fine; leaves NULL. */
 
-/* A series of one tag: its points or, if they are more than requested, buckets of equal length. Both show spikes in full. */
+/* A series of one tag: its points or, if there are more points than requested, buckets of equal length. Both show spikes in full. */
 struct history_series {
     bool step;
     struct history_points points; /* ascending; including the last point before and the first point after the requested time */
-    int64_t bucket_us;            /* length of a bucket; 0: the series has points */
+    int64_t bucket_us;            /* length of a bucket; 0: the series consists of points, not buckets */
     /* buckets, ascending; between two buckets that do not adjoin, the line is straight (for a step tag, the value holds) */
     struct history_buckets buckets;
 };
-/* Reads the series of a tag between two times. */
+/* Reads the series of a tag between two times: its points if they are at most max_points, else buckets. */
 int history_series(struct history_reader *reader, const char *tag, int64_t from_us, int64_t to_us, int max_points,
                    struct history_series *out);
 void history_series_finish(struct history_series *series);

@@ -31,25 +31,26 @@ enum {
 
 /* The samples of one tag. */
 struct import_series {
-    bool has_row;   /* the current pass over the file has read a row of this tag */
-    int64_t row_us; /* time of the tag's newest row in the current pass */
-    bool seen;      /* the first pass found samples of this tag */
+    bool has_row;   /* true: the current pass over the file has read a row of this tag */
+    int64_t row_us; /* time of the row of this tag that the current pass read last */
+    bool seen;      /* true: the first pass found samples of this tag */
     int64_t first_us, last_us;
     struct spacing spacing;
-    int64_t longest_us; /* longest time between two samples that does not count as a gap */
-    bool has_pending;   /* second pass: newest sample, recorded once the next one has a later time */
+    int64_t longest_us; /* longest time between two samples that does not count as a gap in the data */
+    bool has_pending;   /* second pass: the tag's newest sample waits; it is recorded once the next one has a later time */
     struct history_point pending;
-    struct history_points before; /* points that history had in the series' time span before the import */
-    size_t next;                  /* index in `before` of the next point */
+    struct history_points before; /* points that the history had in the time span of the series before the import */
+    size_t next;                  /* index in `before` of the next point to compare with */
 };
 
 struct history_import {
     const struct import_params *params;
     struct csv csv;
-    int time, tag, value, quality, unit; /* indices of columns; tag -1: the file has the wide form (one column per tag) */
-    int *tags;                           /* wide form: tag of each column; -1: ignored */
+    int time, tag, value, quality, unit; /* column indices in the CSV file; -1: no such column. tag -1: the file has the wide form (one
+                                            column per tag) */
+    int *tags;                           /* wide form: index of the tag of each column; -1: the column is ignored */
     struct import_series *series;        /* array by tag */
-    int64_t row_us;                      /* wide form: time of the last row; otherwise INT64_MIN */
+    int64_t row_us;                      /* wide form: time of the row read last; otherwise INT64_MIN */
     struct import_counts *counts;
 };
 
@@ -63,7 +64,7 @@ static int find_time(struct history_import *import)
     for (size_t i = 0; i < sizeof(names) / sizeof(names[0]); i++)
         if (csv_find(&import->csv, names[i]) >= 0)
             return csv_find(&import->csv, names[i]);
-    /* the first column is the time, whatever its name */
+    /* without a known name, the first column is the time unless it is named like a tag */
     return plant_find_tag(import->params->plant, import->csv.header.cells[0].text) < 0 ? 0 : -1;
 }
 
@@ -107,8 +108,8 @@ static bool find_columns(struct history_import *import)
 
 /* --- rows ----------------------------------------------------------------------------------------------------------------------- */
 
-/* Reads the time of a row. In the hour that occurs twice when clocks are set back, a row that is not later than the previous row belongs
-   to the second occurrence. */
+/* Reads the time of a row. In the hour that occurs twice when clocks are set back, a row that is not later than after_us, the previous
+   row, belongs to the second occurrence. */
 static bool take_time(struct history_import *import, int64_t after_us, int64_t *t_us)
 {
     const char *text = csv_text(&import->csv, import->time);
@@ -158,7 +159,7 @@ static bool take_quality(struct history_import *import, uint32_t *quality)
     return false;
 }
 
-/* Converts a value from the unit that the row states, else from the tag's own unit. */
+/* Converts a value from the unit that the row states; without a stated unit, from the tag's own unit. */
 static bool take_unit(struct history_import *import, int tag, double *value)
 {
     const struct plant_tag *of = &import->params->plant->tags[tag];
@@ -172,7 +173,7 @@ static bool take_unit(struct history_import *import, int tag, double *value)
     return true;
 }
 
-/* Reads one cell: a number, or a state word that means that there is no value. */
+/* Reads one cell: a number, or a state word (value/state_word.h) that means that there is no value. Passes the sample to `take`. */
 static bool take_cell(struct history_import *import, take_sample *take, void *arg, int tag, int column, int64_t t_us, uint32_t quality)
 {
     const char *text = csv_text(&import->csv, column);
@@ -221,7 +222,7 @@ static bool take_row(struct history_import *import, take_sample *take, void *arg
     return good;
 }
 
-/* Passes every sample to `take`. Returns false if there were errors, or `take` failed. */
+/* Reads the file and passes every sample to `take`. Returns false if the file has errors, or `take` failed. */
 static bool read_file(const struct import_params *params, struct diag *diag, struct import_counts *counts, struct import_series *series,
                       take_sample *take, void *arg)
 {
@@ -274,8 +275,8 @@ static int by_time(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Returns the median spacing of a typical series: the (lower) median over series with a rhythm (a spacing and at least three samples); 0 if
-   none has one. */
+/* Returns the median spacing of a typical series: the lower median over all series with a rhythm (at least three samples and a spacing);
+   0 if no series has a rhythm. */
 static int64_t typical_spacing(struct import_series *series, size_t count)
 {
     int64_t *medians = mem_array(count ? count : 1, sizeof(*medians)), typical_us = 0;
@@ -291,8 +292,9 @@ static int64_t typical_spacing(struct import_series *series, size_t count)
 }
 
 /* Returns the longest time between two samples that is not a gap. The tag's Stale s is used only if it fits the series: it is meant for
-   live readings, which may come faster. A series of two samples has no rhythm, since the time between them may itself be the gap; it gets
-   the value of a typical series. If no series has a rhythm, the longest time between two points of our own history is used. */
+   live readings, which may come faster. A series of two samples has no rhythm, since the time between them may itself be the gap; it
+   uses the value of a typical series. If no series has a rhythm, it uses the longest time that our own history leaves between two
+   points. */
 static int64_t longest_gap(const struct import_params *params, const struct plant_tag *tag, struct spacing *spacing, int64_t typical_us,
                            bool exported)
 {
@@ -311,7 +313,7 @@ static int64_t longest_gap(const struct import_params *params, const struct plan
     return is_least && longest_us < override_us ? override_us : longest_us;
 }
 
-/* Runs between the passes: sets the longest gap of each series, and resets the state for the second pass. */
+/* Runs between the two passes over the file: sets the longest gap-free time of each series, and resets the state for the second pass. */
 static void judge_series(const struct import_params *params, struct import_series *series, struct import_counts *counts)
 {
     int64_t typical_us = typical_spacing(series, params->plant->tag_count);
@@ -396,13 +398,14 @@ static void add_row(struct filling *filling, int tag, int64_t t_us, double value
     rows->at[rows->count++] = (struct history_row){ tag, { t_us, value, quality } };
 }
 
-/* Returns whether a point ends a line (it has no value): values after the preceding sample are unknown. */
+/* Returns true if a point marks the end of a line (it has no value): values after the preceding sample are unknown. */
 static bool is_end_of_line(const struct history_point *point)
 {
     return point->quality == QUALITY_BAD_NO_COMMUNICATION && isnan(point->value);
 }
 
-/* Returns whether an earlier import, or a stopped daemon, ended the line at that time. Call it with ascending times. */
+/* Returns true if the existing history has an end of a line at that time, from an earlier import or a stopped daemon. Call it with
+   ascending times. */
 static bool was_end_of_line(struct import_series *series, int64_t t_us)
 {
     while (series->next < series->before.count && series->before.at[series->next].t_us < t_us)
@@ -411,7 +414,8 @@ static bool was_end_of_line(struct import_series *series, int64_t t_us)
            is_end_of_line(&series->before.at[series->next]);
 }
 
-/* Records the pending sample, and ends its line if the next sample is too far away. next_us: time of the next sample; INT64_MAX: none. */
+/* Records the pending sample, and ends its line if the next sample is further away than the longest gap-free time. next_us: time of the
+   next sample; INT64_MAX: none. */
 static void record_pending(struct filling *filling, int tag, int64_t next_us)
 {
     struct import_series *series = &filling->series[tag];
@@ -423,7 +427,7 @@ static void record_pending(struct filling *filling, int tag, int64_t next_us)
     if (ends) {
         const struct history_point end = { sample->t_us + 1, NAN, QUALITY_BAD_NO_COMMUNICATION };
         recorder_put(filling->recorder, tag, &end, &filling->rows);
-        /* the recorded line continues: the new value replaces the point that had ended the line */
+        /* the recorded line continues here: overwrites the point without a value that had ended it */
     } else if (usable && was_end_of_line(series, sample->t_us + 1)) {
         recorder_end_tag(filling->recorder, tag, &filling->rows);
         add_row(filling, tag, sample->t_us + 1, sample->value, sample->quality);
@@ -445,7 +449,8 @@ static bool fill_sample(struct history_import *import, void *arg, int tag, const
 
 /* --- joining existing history -------------------------------------------------------------------------------------------------------- */
 
-/* Ends the recorded line that leads to the first sample of a series, or removes its end if the gap now counts as data. */
+/* Joins the first sample of a series to the recorded line before it: removes the end of that line, or sets one if the time between them
+   is a gap. */
 static void join_before(struct filling *filling, struct history_reader *reader, int tag)
 {
     struct import_series *series = &filling->series[tag];
@@ -465,7 +470,7 @@ static void join_before(struct filling *filling, struct history_reader *reader, 
     history_series_finish(&earlier);
 }
 
-/* Reads the existing points of history in the time span of each series. */
+/* Reads the existing points of history in the time span of each series into series->before. */
 static bool read_before(struct filling *filling)
 {
     const struct plant *plant = filling->params->plant;
@@ -488,7 +493,7 @@ static bool read_before(struct filling *filling)
     return good;
 }
 
-/* Records the last sample of each series and joins it to the recorded point that follows. */
+/* Records the last sample of each series and joins it to the recorded point that follows it. */
 static void record_last(struct filling *filling)
 {
     for (size_t i = 0; i < filling->params->plant->tag_count; i++) {
@@ -514,8 +519,8 @@ static bool fill(const struct import_params *params, struct import_series *serie
         .series = series,
         .counts = counts,
     };
-    struct diag again = { 0 };   /* separate findings for the second pass, which repeats those that `diag` already has */
-    mkdir(params->folder, 0777); /* no check here: if the folder cannot be created, opening a month reports the error */
+    struct diag again = { 0 };   /* discards the second pass's findings, which repeat those that `diag` already has */
+    mkdir(params->folder, 0777); /* result ignored: if the folder cannot be created, opening a month reports the error */
     bool good = read_before(&filling) && read_file(params, &again, counts, series, fill_sample, &filling);
     diag_finish(&again);
     if (good)

@@ -19,23 +19,24 @@ struct import_params {
 
 struct import_counts {
     long long samples, points;       /* samples read; points recorded */
-    long long bad, duplicates, gaps; /* counts: samples without a usable value; samples replaced by a later row of the same time; gaps */
+    long long bad, duplicates, gaps; /* number of samples without a usable value, of samples replaced by a later row with the same time,
+                                        and of gaps */
     int tags;
     struct charset_choice encoding;
-    bool exported; /* the file has the columns of `plantcast history export` */
+    bool exported; /* true: the file has the columns of `plantcast history export` */
     int64_t from_us, to_us;
-    int64_t longest_us[2]; /* smallest and largest value, over all series, of the longest time that is not a gap */
+    int64_t longest_us[2]; /* smallest and largest, over all series, of the longest time between samples that is not a gap */
 };
 
-/* Imports a file in one of two forms. Long: columns Tag, Time, Value and perhaps Quality (0x80050000, Good, Uncertain, Bad) and Unit;
-   without a unit, values are in the unit of the tag's row in the tag list (own_unit), as a device sends them. Wide: Time, then one
-   column per tag. A blank cell and a state word (value/state_word.h) are Bad samples. The rows of each tag ascend in time; of rows with
-   equal times the last one counts. After the last sample before a gap, and after the end of a series that no recorded point follows, a
-   point without a value (Bad_NoCommunication) is recorded. The longest time that is not a gap is longest_gap_us; if that is 0, the tag's
-   Stale s, if its row states it and the series is not slower than that; else ten times the median spacing of the series. A series of two
-   samples uses the median over all other series; if there are none, the tag's Stale s or twice override_s. In an exported file, where
-   lines replace samples, twice override_s is never a gap, and for a tag that is never stale no time is a gap. Findings go to diag; after
-   any error nothing is imported. Returns false on errors, or if the folder cannot be written (logged). */
+/* Imports a file in one of two forms. Long: columns Tag, Time, Value and perhaps Quality (0x80050000, Good, Uncertain, Bad) and Unit.
+   Without a unit, values are in the unit of the tag's row in the tag list (own_unit), as a device sends them. Wide: Time, then one
+   column per tag. A blank cell and a state word (value/state_word.h) are Bad samples. The rows of each tag must ascend in time; of rows
+   with equal times the last one counts. A point without a value (Bad_NoCommunication) is recorded after the last sample before a gap,
+   and after the end of a series that no recorded point follows. The longest time between samples that is not a gap is longest_gap_us. If
+   that is 0, it is the tag's Stale s, if its row states it and the series is not slower than that; else ten times the median spacing of
+   the series. A series of two samples uses the median over all other series; if there are none, the tag's Stale s or twice override_s.
+   In an exported file, where lines replace samples, twice override_s is never a gap, and for a tag that is never stale no time is a gap.
+   Findings go to diag; after any error nothing is imported. Returns false on errors, or if the folder cannot be written (logged). */
 bool history_import(const struct import_params *params, struct diag *diag, struct import_counts *counts);
 
 #endif

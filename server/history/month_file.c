@@ -24,7 +24,7 @@ static const char schema_1[] =
     "CREATE VIEW history AS SELECT name AS tag, strftime('%Y-%m-%dT%H:%M:%fZ', s.t / 1e6, 'unixepoch') AS utc, s.v AS value, unit,"
     " printf('0x%08X', s.q) AS quality FROM (SELECT * FROM sample UNION ALL SELECT * FROM recent UNION ALL SELECT * FROM held) s"
     " JOIN tag ON tag.id = s.tag;";
-/* The view excludes held samples (newest, kept for a crash) that are also recorded, so that it shows each point once. */
+/* The view excludes held samples (newest samples kept in case of a crash) that are also recorded, so that it shows each point once. */
 static const char schema_2[] =
     "DROP VIEW history;"
     "CREATE VIEW history AS SELECT name AS tag, strftime('%Y-%m-%dT%H:%M:%fZ', s.t / 1e6, 'unixepoch') AS utc, s.v AS value, unit,"
@@ -77,7 +77,7 @@ static const char *const sql[SQL_COUNT] = {
     [SQL_WAITING] = "SELECT count(*) FROM recent",
     [SQL_ADD_OUTBOX] = "INSERT INTO outbox(tag, t, v, q) VALUES(?, ?, ?, ?)",
     [SQL_HAS_OUTBOX] = "SELECT 1 FROM sqlite_master WHERE type = 'table' AND name = 'outbox'",
-    /* the deletion stops at the first row that is not too old, in order of insertion, because the outbox has no index on time */
+    /* the outbox has no index on time, so the deletion goes in order of insertion and stops at the first row that is not too old */
     [SQL_CUT_OUTBOX] = "DELETE FROM outbox WHERE seq < coalesce((SELECT seq FROM outbox WHERE t >= ?1 ORDER BY seq LIMIT 1),"
                        " (SELECT max(seq) + 1 FROM outbox))",
     [SQL_SPAN] = "SELECT min(a), max(b) FROM (SELECT min(t) AS a, max(t) AS b FROM recent UNION ALL SELECT min(t), max(t) FROM held"

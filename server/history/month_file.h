@@ -17,12 +17,12 @@ extern const int64_t history_level_us[LEVEL_COUNT];
 struct history_tag {
     const char *name, *unit;
     bool step;        /* true: the tag is a switch, whose values hold until the next point */
-    double within;    /* maximum deviation of the recorded line from any reading */
+    double within;    /* maximum deviation of the recorded line from any reading, in the tag's unit */
     int64_t stale_us; /* how long a reading may be used after it arrived; INT64_MAX: always */
 };
 
 struct history_row {
-    int tag; /* index of the tag in the array that was passed when opening the file */
+    int tag; /* index of the tag in the array `tags` passed to month_file_open() */
     struct history_point point;
 };
 
@@ -52,50 +52,52 @@ void month_file_close(struct month_file **file); /* Closes the file. &NULL is fi
 /* Closes a file that turned out to be damaged and renames it, as month_file_open() does. */
 void month_file_set_aside(struct month_file **file);
 int month_file_month(const struct month_file *file);
-/* Returns whether the open file is still the one of its name: not deleted, renamed or replaced meanwhile. */
+/* Returns true if the name of the open file still belongs to it: the file was not deleted, renamed or replaced since. */
 bool month_file_is_there(const struct month_file *file);
 
-/* Writes rows in one transaction, which is on disk when this returns. held: each tag's newest sample that is not recorded yet; each
-   replaces the held sample of its tag, other tags keep theirs. Returns -ENOSPC if the disk is full, -EROFS, or -EBADMSG if the file is
-   damaged (then open it again). */
+/* Writes rows in one transaction, which is on disk when this returns. held: newest samples that are not recorded yet, at most one per
+   tag; each replaces the held sample of its tag, other tags keep theirs. Returns -ENOSPC if the disk is full, -EROFS if it is read-only,
+   or -EBADMSG if the file is damaged (then open it again). */
 int month_file_write(struct month_file *file, const struct history_row *rows, size_t count, const struct history_row *held,
                      size_t held_count);
-/* Makes the file copy each recorded or imported point from now on, in the same transaction, to the outbox: the table of points that must
-   still be sent to another database (history/month_outbox.h). */
+/* Makes the file copy each point that is recorded or imported from now on to the outbox, in the same transaction. The outbox is the
+   table of points that must still be sent to PostgreSQL (history/month_outbox.h). */
 int month_file_use_outbox(struct month_file *file);
 /* Makes the next month_file_tidy() reload the rollups from the file, because another handle has imported points into it. */
 void month_file_forget_rollups(struct month_file *file);
-/* Moves the rows written since the last call into the table sorted by tag, and updates the rollups. month_file_waiting() returns the number
-   of rows not sorted yet. */
+/* Moves the rows written since the last call into the table sorted by tag, and updates the rollups. The sibling month_file_waiting()
+   returns the number of rows not sorted yet. */
 int month_file_tidy(struct month_file *file);
 size_t month_file_waiting(const struct month_file *file);
 /* Writes points of one tag, ascending, anywhere in the month, and updates the rollups. */
 int month_file_import(struct month_file *file, int tag, const struct history_point *points, size_t count);
-/* Deletes the points that mark a gap, by their quality, between two times. Used before importing points of that time. */
+/* Deletes the points between two times whose quality marks a gap. Used before points of that time are imported. */
 int month_file_forget_gaps(struct month_file *file, int64_t from_us, int64_t to_us, uint32_t gap_quality);
-/* Recovers after a writer that was killed: records its newest samples, each followed by a point that marks a gap. sends_gaps: also puts the
-   gaps into the outbox, if there is one; otherwise only samples go there, because another daemon records now and continues the lines.
-   *ended_us: when the writer ended. */
+/* Recovers after a writer that was killed: records the newest samples that the writer left, each followed by a point that marks a gap.
+   *ended_us receives the time when the writer ended. sends_gaps: also puts the gap points into the outbox, if there is one; otherwise
+   only samples go there, because another daemon records now and continues the lines. */
 int month_file_recover(struct month_file *file, uint32_t gap_quality, bool sends_gaps, int64_t *ended_us);
-/* Deletes the held rows (newest samples) of a month that is over: they are all recorded. */
+/* Deletes the held rows (newest samples, normally not recorded yet) of a month that is over: they are all recorded by then. */
 int month_file_clear_held(struct month_file *file);
 /* Deletes points older than a time, but only those that month_file_tidy() has sorted. The freed space stays in the file for new points;
-   with `shrink` it is returned to the disk, if the file was created with auto_vacuum (struct month_file_size, shrinks). Points of that age
-   in the outbox are deleted too; *unsent is increased by their number. */
+   with `shrink` it is returned to the disk, if the file was created with auto_vacuum (struct month_file_size: shrinks). Points of that
+   age in the outbox are deleted too; *unsent is increased by their number. */
 int month_file_cut(struct month_file *file, int64_t until_us, bool shrink, int64_t *unsent);
 struct month_file_size {
-    int64_t bytes, free_bytes; /* size on disk; size of the part of the file that is free for new points */
+    int64_t bytes, free_bytes; /* size on disk; size of the unused space in the file */
     bool shrinks;
 };
 int month_file_size(struct month_file *file, struct month_file_size *size);
 int month_file_note(struct month_file *file, int64_t t_us, const char *kind, const char *text); /* Writes a row to the table of events. */
 
-/* Begin and end a read transaction: all reads in between are consistent, even if another handle writes meanwhile. */
+/* Begins a read transaction, which month_file_end_read() ends: all reads in between are consistent, even if another handle writes
+   meanwhile. */
 int month_file_begin_read(struct month_file *file);
 void month_file_end_read(struct month_file *file);
-/* Appends the points of a tag between two times, ascending, with the last point before and the first point after if the file has them. */
+/* Appends the points of a tag between two times, ascending, with the last point before and the first point after that span if the file
+   has them. */
 int month_file_points(struct month_file *file, const char *tag, int64_t from_us, int64_t to_us, struct history_points *out);
-/* Appends the rollup buckets of a tag that overlap from..to; *until_us: end of the existing rollups. */
+/* Appends the rollup buckets of a tag that overlap from_us..to_us. *until_us receives the end of the last existing bucket. */
 int month_file_buckets(struct month_file *file, const char *tag, enum history_level level, int64_t from_us, int64_t to_us,
                        struct history_buckets *out, int64_t *until_us);
 /* A time span in which nothing was recorded: the daemon did not run, or the clock was set forward. */
@@ -110,14 +112,15 @@ struct history_gaps {
 int month_file_gaps(struct month_file *file, struct history_gaps *out);
 /* Finds the times of the first and the last point. Returns 0 and leaves both unchanged if the file has no points. */
 int month_file_span(struct month_file *file, int64_t *first_us, int64_t *last_us);
-/* The points of a tag around a time: the last one before or at it, and the first one after; t_us is INT64_MIN in a point not found yet. */
+/* The two points of a tag around a time: the last one before or at it, and the first one after it. t_us is INT64_MIN in a point that is
+   not found yet. */
 struct history_pair {
     struct history_point before, after;
     bool step;
     struct unit_change change; /* conversion from the unit in the file that was read last */
 };
-/* Finds the points of all tags around t_us. Searches only for points that are not found yet. So pass the file of t_us's month first, then
-   the months before and after. */
+/* Finds for all tags the points around t_us, but searches only for points that earlier calls have not found. So pass the file of t_us's
+   month first, then those of the months before and after. */
 int month_file_at(struct month_file *file, int64_t t_us, const struct history_tag *tags, size_t count, struct history_pair *pairs);
 
 #endif

@@ -27,21 +27,22 @@ struct month_file {
     int month;
     bool has_outbox; /* true: recorded points are copied to the outbox */
     ino_t inode;
-    const struct plant *shown_by; /* values are converted to this plant's units; NULL: not converted */
+    const struct plant *shown_by; /* plant whose units values are converted to; NULL: not converted */
     const struct history_tag *tags;
     size_t tag_count, waiting;
-    int64_t *ids;                  /* id in the file of each tag, by index; 0: not known yet */
+    int64_t *ids;                  /* id in the file of each tag, by index of the tag; 0: not known yet */
     struct month_rollups *rollups; /* rollups in progress, by tag */
 };
 
-/* Returns one of the statements above, ready to bind and step (base/files/database.h). */
+/* Returns a prepared statement of enum month_statement, ready to bind and step (base/files/database.h). */
 sqlite3_stmt *month_sql(struct month_file *file, enum month_statement which);
 /* Steps a statement to its end, and logs errors. Returns 0 or -errno. */
 int month_run(struct month_file *file, sqlite3_stmt *statement, const char *doing);
-/* Sets whether the file has an outbox, which another handle may have created. */
+/* *has receives whether the file has an outbox, which another handle may have created. Returns 0 or -errno. */
 int month_has_outbox(struct month_file *file, bool *has);
-struct history_point month_point(sqlite3_stmt *statement, int first_column); /* Reads a point from columns t, v, q. */
-/* Reads the row of SQL_BEFORE or SQL_AFTER; t_us INT64_MIN: no row. Returns 0 or -errno. */
+struct history_point month_point(sqlite3_stmt *statement, int first_column); /* Reads a point from the columns t, v, q of the current
+                                                                                row, the first of which is first_column. */
+/* Runs SQL_BEFORE or SQL_AFTER and reads its one row; out->t_us is INT64_MIN if there is none. Returns 0 or -errno. */
 int month_one_point(struct month_file *file, enum month_statement which, int64_t id, int64_t t_us, struct history_point *out);
 void history_points_add(struct history_points *points, const struct history_point *point);
 

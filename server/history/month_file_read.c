@@ -24,7 +24,7 @@ void month_file_show_by(struct month_file *file, const struct plant *plant)
     file->shown_by = plant;
 }
 
-/* Returns the unit in which the plant shows the tag now. NULL: keep the file's unit. */
+/* Returns the unit in which the plant shows the tag now. NULL: values keep the file's unit. */
 static const char *unit_shown(const struct month_file *file, const char *name)
 {
     int tag = file->shown_by ? plant_find_tag(file->shown_by, name) : -1;
@@ -78,7 +78,7 @@ static int by_time(const void *a, const void *b)
     return (x->t_us > y->t_us) - (x->t_us < y->t_us);
 }
 
-/* Adds points from the rows that are not sorted by tag yet: those within the range, the last before it and the first after it. */
+/* Adds points from the rows that are not sorted by tag yet: points within the range, the last one before it and the first one after it. */
 static int add_recent(struct month_file *file, int64_t id, int64_t from_us, int64_t to_us, struct history_points *out)
 {
     struct history_points recent = { 0 };
@@ -120,7 +120,8 @@ static int add_samples(struct month_file *file, int64_t id, int64_t from_us, int
     return error;
 }
 
-/* Keeps the last of several points before from_us; of several after to_us the first, and of two with equal times the newer row. */
+/* Removes surplus points: of several before from_us only the last stays, of several after to_us only the first, and of two with equal
+   times the newer row. */
 static void trim(struct history_points *points, size_t begin, int64_t from_us, int64_t to_us)
 {
     size_t kept = begin;
@@ -202,7 +203,8 @@ static void take(struct history_pair *pair, const struct history_point *there, i
         pair->after = point;
 }
 
-/* Returns an array that maps ids of the file to indices of tags, or -1. NULL: the file has none of the tags. */
+/* Returns an array that maps tag ids of the file to indices in `tags`; -1: not in `tags`. NULL: the file has none of the tags. Free with
+   mem_free(). */
 static int *index_by_id(struct month_file *file, const struct history_tag *tags, size_t count, struct history_pair *pairs, int64_t *most)
 {
     int64_t *ids = mem_array(count ? count : 1, sizeof(*ids));
@@ -267,7 +269,7 @@ int month_file_span(struct month_file *file, int64_t *first_us, int64_t *last_us
     return database_fail(&file->db, code, "cannot be read");
 }
 
-/* Parses the text of an event that the historian noted for a gap. */
+/* Parses the text of an event with which the historian recorded a gap. Returns false for other events. */
 static bool read_gap(const char *kind, const char *text, int64_t t_us, struct history_gap *out)
 {
     double seconds;

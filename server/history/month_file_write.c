@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes a month's file: rows are first written in order of time, later sorted by tag and rolled up. */
+/* Writes a month's file. Rows are first written in order of time; later they are sorted by tag and reduced to rollups. */
 #include <errno.h>
 #include <string.h>
 
@@ -15,7 +15,8 @@ static int begin(struct month_file *file)
     return month_run(file, month_sql(file, SQL_BEGIN), "cannot begin to write");
 }
 
-/* Commits if `error` is 0, otherwise rolls back. After a rollback, ids and rollups in memory differ from the file and are reset. */
+/* Commits the transaction if `error` is 0, otherwise rolls it back. After a rollback, tag ids and rollups in memory differ from the
+   file, so they are reset. */
 static int end(struct month_file *file, int error)
 {
     if (!error)
@@ -29,7 +30,7 @@ static int end(struct month_file *file, int error)
     return error;
 }
 
-/* Converts all values of a tag in this file, if the plant now shows the tag in another unit than when the file was created. */
+/* Converts all values of a tag in this file to the unit in which the plant shows the tag now, if that is not the file's unit. */
 static int convert_unit(struct month_file *file, const struct history_tag *of)
 {
     sqlite3_stmt *find = month_sql(file, SQL_FIND_TAG);
@@ -46,7 +47,7 @@ static int convert_unit(struct month_file *file, const struct history_tag *of)
     static const char *const columns[][2] = { { "sample", "v" },     { "recent", "v" },    { "held", "v" },
                                               { "rollup", "low" },   { "rollup", "high" }, { "rollup", "mean" },
                                               { "rollup", "first" }, { "rollup", "last" }, { "outbox", "v" } };
-    bool has_outbox; /* creates no outbox, but uses one that another run, with a database configured, may have created */
+    bool has_outbox; /* true: uses an outbox, which may exist because an earlier run had a database configured; none is created */
     int error = month_has_outbox(file, &has_outbox);
     size_t count = sizeof(columns) / sizeof(columns[0]) - !has_outbox;
     for (size_t i = 0; i < count && !error; i++) {
@@ -90,7 +91,7 @@ static int put(struct month_file *file, enum month_statement which, int64_t id, 
     return month_run(file, statement, "cannot write");
 }
 
-/* Writes a new point to the table and to the outbox. put() writes to the table alone, for points that are only moved. */
+/* Writes a new point to the table and to the outbox. To move an existing point, call put(), which writes to the table alone. */
 static int record(struct month_file *file, enum month_statement which, int64_t id, const struct history_point *point)
 {
     int error = put(file, which, id, point);
@@ -171,7 +172,8 @@ void month_file_forget_rollups(struct month_file *file)
     memset(file->rollups, 0, file->tag_count * sizeof(*file->rollups));
 }
 
-/* Rolls up the samples from the hour of from_us on, including the point before. Writes the buckets to disk if `store`. */
+/* Computes the rollups from the samples that follow the beginning of from_us's hour, and from the last sample before it. Writes the
+   buckets to disk if `store`. */
 static int roll_from(struct month_file *file, int64_t id, int64_t from_us, struct month_rollups *rollups, bool store)
 {
     sqlite3_stmt *samples = month_sql(file, SQL_SAMPLES_FROM);
@@ -190,7 +192,7 @@ static int roll_from(struct month_file *file, int64_t id, int64_t from_us, struc
     return error ? error : database_fail(&file->db, code, "cannot read samples");
 }
 
-/* Restores the incomplete rollup buckets from the samples that the previous writer left. */
+/* Restores the incomplete rollup buckets in memory from the samples that the previous writer left in the file. */
 static int load_rollups(struct month_file *file, int tag, int64_t id)
 {
     struct month_rollups *rollups = &file->rollups[tag];
@@ -284,7 +286,7 @@ static int roll_again(struct month_file *file, int tag, int64_t id, int64_t from
     struct month_rollups rollups;
     struct history_point before;
     int error = month_one_point(file, SQL_BEFORE, id, from_us - 1, &before);
-    if (before.t_us != INT64_MIN) /* recomputes from that point on, because its line now ends at a new point */
+    if (before.t_us != INT64_MIN) /* the line of the point before from_us now ends at a new point, so its buckets change too */
         from_us = before.t_us;
     from_us -= from_us % history_level_us[LEVEL_1_H];
     for (int level = 0; level < LEVEL_COUNT && !error; level++) {
@@ -337,13 +339,13 @@ int month_file_forget_gaps(struct month_file *file, int64_t from_us, int64_t to_
     error = forget(file, SQL_FORGET_GAPS, from_us, to_us, gap_quality);
     if (!error)
         error = forget(file, SQL_FORGET_GAP_NOTES, from_us, to_us, gap_quality);
-    if (!error && has_outbox) /* deletes the gap's point from the outbox too, so that it is not sent to the other database */
+    if (!error && has_outbox) /* deletes the gap's point from the outbox too, so that it is not sent to PostgreSQL */
         error = forget(file, SQL_FORGET_OUTBOX_GAPS, from_us, to_us, gap_quality);
     return end(file, error);
 }
 
-/* Records the held points, each followed by a point that marks a gap. Without sends_gaps the gap points are not sent to the other
-   database, where another daemon continues the lines. */
+/* Records the held points (newest samples), each followed by a point that marks a gap. Without sends_gaps the gap points are not sent to
+   PostgreSQL, where another daemon continues the lines. */
 static int end_lines(struct month_file *file, uint32_t gap_quality, bool sends_gaps, int64_t *ended_us)
 {
     sqlite3_stmt *held = month_sql(file, SQL_ALL_HELD);

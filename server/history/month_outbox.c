@@ -9,7 +9,7 @@
 #include "history/month.h"
 #include "history/month_file.h"
 
-enum { DELETE_ROWS = 20000 }; /* maximum number of rows deleted per transaction, during which the historian has to wait */
+enum { DELETE_ROWS = 20000 }; /* maximum number of rows deleted per transaction; the historian has to wait for each transaction */
 enum statement { BEGIN, COMMIT, THERE, SPAN, ROWS, HELD, TAGS, EVENTS, DELETE, STATEMENT_COUNT };
 
 static const char *const sql[STATEMENT_COUNT] = {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Outbox: the points in a month's file that must still be sent to another database. The historian writes them in the same transaction as
-   the points themselves (month_file_use_outbox()); the sender reads and deletes them through a handle of its own. Thread: one per
-   handle. Functions that return int return 0 or -errno, already logged. */
+/* Outbox: the points in a month's file that must still be sent to PostgreSQL. The historian writes them in the same transaction as the
+   points themselves (month_file_use_outbox()); the sender reads and deletes them through a handle of its own. Thread: one per handle.
+   Functions that return int return 0 or -errno, already logged. */
 #ifndef HISTORY_MONTH_OUTBOX_H
 #define HISTORY_MONTH_OUTBOX_H
 #include <stddef.h>
@@ -28,7 +28,8 @@ struct month_outbox_event {
 };
 /* One consistent read of the outbox; zero-initialise, free with month_outbox_batch_finish(). */
 struct month_outbox_batch {
-    struct month_outbox_row *rows, *held; /* rows: recorded points in order of insertion; held: newest samples that are not recorded yet */
+    struct month_outbox_row *rows, *held; /* rows: recorded points in order of insertion; held: newest samples of tags that are not
+                                             recorded yet */
     struct month_outbox_tag *tags;        /* all tags of the file */
     struct month_outbox_event *events;    /* all events of the file */
     size_t row_count, row_capacity, held_count, held_capacity, tag_count, tag_capacity, event_count, event_capacity;
@@ -38,14 +39,14 @@ struct month_outbox;
 /* Opens the outbox of a month. Returns NULL on failure, with *error; -ENOENT, not logged: no such file, or it has no outbox. */
 struct month_outbox *month_outbox_open(struct log *log, const char *folder, int month, int *error);
 void month_outbox_close(struct month_outbox **outbox); /* Closes the outbox. &NULL is fine; leaves NULL. */
-/* Estimates the number of points in the outbox as the difference of the last and the first sequence number. */
+/* *count receives an estimate of the number of points in the outbox: the difference between the last and the first sequence number. */
 int month_outbox_count(struct month_outbox *outbox, int64_t *count);
 /* Finds the sequence number of the newest point; 0: the outbox is empty. */
 int month_outbox_last(struct month_outbox *outbox, int64_t *seq);
-/* Reads the oldest points, at most `most`, and fills the other members of the batch; frees its previous content. */
+/* Reads the oldest points, at most `most`, and sets the other members of the batch. Frees the batch's previous content. */
 int month_outbox_read(struct month_outbox *outbox, size_t most, struct month_outbox_batch *batch);
 void month_outbox_batch_finish(struct month_outbox_batch *batch);
-/* Deletes the points up to a sequence number. */
+/* Deletes the points with sequence numbers up to `seq`. */
 int month_outbox_delete(struct month_outbox *outbox, int64_t seq);
 /* Deletes the oldest points so that at most `keep` remain. */
 int month_outbox_shorten(struct month_outbox *outbox, int64_t keep);

@@ -22,13 +22,13 @@ static inline double history_point_between(const struct history_point *a, const 
 {
     return a->value + (b->value - a->value) * ((double)(t_us - a->t_us) / (double)(b->t_us - a->t_us));
 }
-/* Returns whether a line joins `a` to `b`; otherwise the value of `a` holds until `b`. */
+/* Returns true if a straight line joins `a` to `b`; otherwise the value of `a` holds until `b`. */
 static inline bool history_point_joined(const struct history_point *a, const struct history_point *b, bool step)
 {
     return !step && history_point_usable(a) && history_point_usable(b) && a->quality == b->quality;
 }
 
-/* Formats of the texts of events in a month's file; the number is in seconds. */
+/* Formats of the text of a gap event in a month's file; the argument is a duration in seconds. */
 #define HISTORY_GAP_TEXT "not recorded for %.0f s"
 #define HISTORY_FORWARD_TEXT "the clock was set forward by %.1f s"
 #define HISTORY_BACK_TEXT "the clock was set back by %.1f s"

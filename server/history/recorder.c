@@ -57,7 +57,8 @@ struct recorder *recorder_create(const struct plant *plant)
         const struct history_tag *tag = &recorder->tags[i];
         recorder->lanes[i].quality = QUALITY_BAD_WAITING;
         recorder->lanes[i].params = (struct swinging_door_params){
-            /* with these fractions, 2 * 1/4 + 1/2 = 1: the bound in swinging_door.h equals the permitted deviation */
+            /* permits a recorded line to deviate by `within`: the bound in swinging_door.h is 2 deadband + deviation = 2 within/4 +
+               within/2 */
             .deadband = tag->step ? 0 : tag->within / 4,
             .deviation = tag->step ? 0 : tag->within / 2,
             .override_us = (int64_t)(plant->history.override_s * US_PER_S),
@@ -117,7 +118,8 @@ void recorder_held(struct recorder *recorder, struct recorder_rows *held)
     for (size_t i = 0; i < recorder->touched_count; i++) {
         struct recorder_lane *lane = &recorder->lanes[recorder->touched[i]];
         lane->touched = false;
-        /* A point that was just recorded becomes the held row too, so that the end of a killed writer's line is known. */
+        /* a point that was just recorded becomes the tag's held row (newest sample) too, so that the end of the line is known if the
+           writer is killed */
         if (!swinging_door_held(&lane->door, &point))
             point = lane->door.anchor;
         add(held, recorder->touched[i], &point, 1);

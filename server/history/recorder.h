@@ -13,16 +13,17 @@ struct recorder_rows { /* zero-initialise; free `at` with mem_free() */
 struct recorder;
 struct recorder *recorder_create(const struct plant *plant);
 void recorder_destroy(struct recorder **recorder); /* Frees the recorder. &NULL is fine; leaves NULL. */
-/* Adds a sample of a tag, and appends the rows that must be written because of the sample. */
+/* Adds a sample of a tag, and appends to `kept` the rows that must now be recorded because of the sample. */
 void recorder_put(struct recorder *recorder, int tag, const struct history_point *sample, struct recorder_rows *kept);
 /* Returns the quality of a tag's newest sample; Bad_WaitingForInitialData if it has none yet. */
 uint32_t recorder_quality(const struct recorder *recorder, int tag);
 /* Appends the held rows: the newest samples that are not recorded yet, of tags that had a sample since the last call. */
 void recorder_held(struct recorder *recorder, struct recorder_rows *held);
-/* Makes the next recorder_held() append the newest samples of all tags, because the last ones could not be written. */
+/* Makes the next recorder_held() append the newest samples of all tags. Call it after the held rows of the last call could not be
+   written. */
 void recorder_hold_again(struct recorder *recorder);
-/* Records the newest sample of a tag if it is not recorded yet, as if the maximum time between two points (override) were over. */
+/* Records the newest sample of a tag if it is not recorded yet, as if the override period (longest time between two points) were over. */
 void recorder_end_tag(struct recorder *recorder, int tag, struct recorder_rows *kept);
-void recorder_end(struct recorder *recorder, struct recorder_rows *kept); /* Does the same as recorder_end_tag() for all tags. */
+void recorder_end(struct recorder *recorder, struct recorder_rows *kept); /* calls recorder_end_tag() for all tags */
 
 #endif

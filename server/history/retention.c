@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Deletes months by age and size, or only the oldest part of a month if that suffices. */
+/* Deletes whole months by age and size, or only the oldest points of a month if that suffices. */
 #include "history/retention.h"
 
 #include <errno.h>
@@ -14,7 +14,7 @@
 #include "history/month_outbox.h"
 
 static const char *const parts[] = { "", "-wal", "-shm" };
-/* CUT_BYTES: bytes cut from a month in one call, limited because the recording thread waits for it */
+/* CUT_BYTES: most bytes deleted from a month in one call, because the recording thread waits for the call */
 enum { PARTS = sizeof(parts) / sizeof(parts[0]), CUT_BYTES = 16000000 };
 static const int64_t NEWEST_US = 600 * US_PER_S; /* the last ten minutes of history are never deleted by the size limit */
 #define CUT_BELOW 0.01 /* fraction of the size limit that is freed in addition, so that the limit is not reached again soon */
@@ -51,7 +51,8 @@ static bool delete_month(struct log *log, const char *folder, int month, const c
     return gone;
 }
 
-/* Returns the used bytes of a month's file; only the newest month's file has free space for new points. */
+/* Returns the used bytes of a month's file. Free space within the file counts as used except in the newest month, where new points will
+   fill it. */
 static int64_t used_bytes(struct log *log, const char *folder, int month, bool newest)
 {
     struct month_file_size size = { 0 };
@@ -63,7 +64,7 @@ static int64_t used_bytes(struct log *log, const char *folder, int month, bool n
     return size.bytes - size.free_bytes;
 }
 
-/* Deletes the oldest part of a month, at most CUT_BYTES. Returns false if the month's file does not allow that. */
+/* Deletes the oldest points of a month, at most CUT_BYTES. Returns false if the month's file does not allow that. */
 static bool cut_month(struct log *log, const char *folder, int month, bool newest, int64_t too_many, int64_t *unsent)
 {
     struct month_file_size size;
@@ -75,7 +76,7 @@ static bool cut_month(struct log *log, const char *folder, int month, bool newes
     month_file_close(&file);
     if (!can || first_us > last_us || !(file = month_file_open(log, folder, month, NULL, 0, &error)))
         return false;
-    if (!newest) /* free space in the file counts as freed, because deleting a part returns it to the disk in any case */
+    if (!newest) /* free space already in the file counts as freed, because deleting points also returns that space to the disk */
         too_many = too_many > size.free_bytes ? too_many - size.free_bytes : 0;
     double share = (double)(too_many < CUT_BYTES ? too_many : CUT_BYTES) / (double)(size.bytes - size.free_bytes);
     int64_t until_us = first_us + (int64_t)((double)(last_us - first_us) * share), latest_us = last_us - NEWEST_US;
@@ -84,7 +85,8 @@ static bool cut_month(struct log *log, const char *folder, int month, bool newes
     return good;
 }
 
-/* Returns the number of waiting points in a month's outbox; 1 if it cannot be read, so that the month is not deleted for its age. */
+/* Returns the number of points that wait in a month's outbox to be sent; 1 if it cannot be read, so that the month is not deleted for
+   its age. */
 static int64_t waiting_in(struct log *log, const char *folder, int month)
 {
     int error;
@@ -96,7 +98,7 @@ static int64_t waiting_in(struct log *log, const char *folder, int month)
     return count;
 }
 
-/* Returns the used size of all months' files, without SQLite's companion files (WAL), whose size is bounded. */
+/* Returns the used size in bytes of all months' files, without SQLite's companion files (WAL), whose size is bounded. */
 static int64_t all_used(struct log *log, const char *folder, const int *months, size_t count)
 {
     int64_t bytes = 0;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Retention of history: deletes whole months that are too old or exceed the size limit, or only the oldest part of a month. The last ten
-   minutes are always kept. Thread: the recording thread. */
+/* Retention of history: deletes whole months that are too old or exceed the size limit, or only the oldest points of a month. The last
+   ten minutes are always kept. Thread: the recording thread. */
 #ifndef HISTORY_RETENTION_H
 #define HISTORY_RETENTION_H
 #include <stdbool.h>
@@ -9,13 +9,12 @@
 #include "base/log/log.h"
 
 struct retention_limits {
-    double days, bytes; /* limits of age and size; 0: no limit */
-    /* true: the outboxes of the files are sent to another database (month_outbox.h), so a month with unsent points is not deleted for its
-       age */
+    double days, bytes; /* limits of age (days) and size (bytes); 0: no limit */
+    /* true: the outboxes are sent to PostgreSQL (month_outbox.h), so a month with unsent points is not deleted for its age */
     bool sends;
 };
 /* Deletes what exceeds the limits: whole months (logged), or up to 16 MB of a month per call. Call it every minute. Returns the
-   remaining size on disk in bytes. *unsent: number of deleted points that waited for another database (logged). */
+   remaining size on disk in bytes. *unsent receives the number of deleted points that had not been sent to PostgreSQL (logged). */
 int64_t retention_apply(struct log *log, const char *folder, const struct retention_limits *limits, int64_t now_us, int64_t *unsent);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Integrates the line through the points of one tag, segment by segment. */
+/* Computes rollups by integrating the line through the points of one tag, segment by segment. */
 #include "history/rollup.h"
 
 static int64_t floor_to(int64_t t_us, int64_t length_us)
@@ -27,7 +27,7 @@ static void take_value(struct history_bucket *bucket, double value)
     bucket->high = fmax(bucket->high, value);
 }
 
-/* Adds to the bucket the part from t0 to t1 of the line from `last` to `next`. next NULL: the last value holds. */
+/* Adds to the bucket the segment from t0 to t1 of the line from rollup->last to `next`. next NULL: the last value holds. */
 static void take_part(struct rollup *rollup, const struct history_point *next, int64_t t0_us, int64_t t1_us)
 {
     struct history_bucket *bucket = &rollup->bucket;
@@ -100,7 +100,7 @@ bool rollup_rest(const struct rollup *rollup, struct history_bucket *out)
     return rollup->open;
 }
 
-/* Adds a time of good_us microseconds with this mean value to the bucket. */
+/* Adds good_us microseconds with this mean value to the bucket. */
 static void add_time(struct history_bucket *bucket, double mean, int64_t good_us)
 {
     if (good_us <= 0)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rollups: minimum, maximum, mean and last value of a tag in intervals of equal length (buckets), and how long it had no value. Pure.
-   Only intervals that contain a recorded point make a bucket; between two buckets the line is straight, from `last` to `first`. */
+/* Rollups: minimum, maximum, mean and last value of a tag in intervals of equal length (buckets), and how long it had no value. Only
+   intervals that contain a recorded point make a bucket; between two buckets the line is straight, from `last` of the one to `first` of
+   the next. Pure. */
 #ifndef HISTORY_ROLLUP_H
 #define HISTORY_ROLLUP_H
 #include <stddef.h>
@@ -10,8 +11,9 @@
 struct history_bucket {
     int64_t t_us;     /* start time; a multiple of the bucket's length */
     double low, high; /* extremes of the line within the bucket, including where it enters and leaves; NaN: no usable value */
-    double mean;      /* mean over the time that had a value */
-    /* value at the bucket's start (if no line leads into the bucket, the first point's value), and at its end; NaN: none */
+    double mean;      /* mean over the time within the bucket that had a value */
+    /* first: value at the bucket's start, or of its first point if no line leads into the bucket; last: value at the bucket's end. NaN:
+       no value */
     double first, last;
     int64_t good_us;  /* microseconds with a value */
     int64_t bad_us;   /* microseconds without a value */
@@ -27,14 +29,15 @@ struct rollup { /* zero-initialise, then set length_us and step */
     double area; /* integral of value over microseconds */
 };
 
-/* Adds the next point in order of time; an older point counts as if it had the time of the last one. Returns true if this completes a
-   bucket, stored in *closed. */
+/* Adds the next point in order of time; a point older than the last one counts as if it had the last one's time. Returns true if the
+   point completes a bucket, which *closed receives. */
 bool rollup_put(struct rollup *rollup, const struct history_point *point, struct history_bucket *closed);
-/* Gets the incomplete bucket, up to the last point. Returns false if there is none. */
+/* *out receives the incomplete bucket, up to the last point. Returns false if there is none. */
 bool rollup_rest(const struct rollup *rollup, struct history_bucket *out);
-/* Adds bucket `b` to bucket `a`; `b` comes after `a` and within the same longer bucket. */
+/* Merges bucket `b` into bucket `a`. `b` comes after `a`, within the same longer bucket. */
 void rollup_merge(struct history_bucket *a, const struct history_bucket *b);
-/* Adds to `into` the part between from_us and to_us of the line from the end of `a`, at end_us, to the start of `b`. */
+/* Adds to `into` the line from the end of bucket `a` (at end_us) to the start of bucket `b`, as far as it lies between from_us and
+   to_us. */
 void rollup_bridge(struct history_bucket *into, const struct history_bucket *a, int64_t end_us, const struct history_bucket *b,
                    int64_t from_us, int64_t to_us);
 

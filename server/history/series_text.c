@@ -8,7 +8,7 @@
 #include "history/month.h"
 #include "base/text/timestamp.h"
 
-/* Appends a number with ten significant digits, more than any transmitter has. */
+/* Appends a number with ten significant digits, which is more than any transmitter has. none: text for a number that is not finite. */
 static void add_number(struct text *out, double value, const char *none)
 {
     if (isnan(value))

@@ -7,7 +7,7 @@
 
 /* Appends one JSON object: {"tag":...,"unit":...,"step":...,"bucket_s":...,"points":[...]} */
 void series_text_json(struct text *out, const char *tag, const char *unit, const struct history_series *series);
-/* Append the header line, for points or for buckets, and the rows of a series. */
+/* Appends the CSV header line for points or for buckets. series_text_csv() appends the rows of a series. */
 void series_text_csv_head(struct text *out, bool buckets);
 void series_text_csv(struct text *out, const char *tag, const char *unit, const struct history_series *series);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Stores at most MAX_SPACINGS times between samples: all of a short series, of a longer series every second one, then every fourth, and so
+/* Stores at most MAX_SPACINGS times between samples. For a longer series only every second one is stored, then only every fourth, and so
    on. */
 #include "history/spacing.h"
 

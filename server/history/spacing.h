@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Median time between the usable samples of a series, in bounded memory. Pure. Thread: one. */
+/* Computes the median time between the usable samples of a series, in bounded memory. Pure. Thread: one. */
 #ifndef HISTORY_SPACING_H
 #define HISTORY_SPACING_H
 #include <stddef.h>
@@ -11,17 +11,17 @@ struct spacing { /* zero-initialise */
     int64_t last_us;
     int64_t *at; /* every stride-th spacing */
     size_t count, capacity, stride, passed;
-    size_t between; /* count of intervals between neighbouring samples, including unusable samples */
+    size_t between; /* number of intervals between neighbouring samples, usable or not */
 };
 
-/* Adds the next sample in order of time. Only times between two usable samples count. */
+/* Adds the next sample in order of time. An interval counts only between two usable samples. */
 void spacing_put(struct spacing *spacing, const struct history_point *sample);
-/* Returns whether the series has a spacing and at least three samples: two alone do not show how often the series has samples. */
+/* Returns true if the series has a spacing and at least three samples: two alone do not show how often the series has samples. */
 static inline bool spacing_has_rhythm(const struct spacing *spacing)
 {
     return spacing->passed > 0 && spacing->between > 1;
 }
-/* Returns the median (the lower one of two) in microseconds; 0 if there is no spacing. Sorts the spacings. */
+/* Returns the median spacing in microseconds (the lower one of the two middle ones); 0 if there is no spacing. Sorts the spacings. */
 int64_t spacing_median(struct spacing *spacing);
 void spacing_finish(struct spacing *spacing);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Format of a spool file: one line for each row: recorded or held, time, value, quality, name of the tag. */
+/* Reads and writes spool files: one line for each row, with its kind (recorded or held), time, value, quality and name of the tag. */
 #include "history/spool.h"
 
 #include <errno.h>
@@ -21,7 +21,7 @@ static const char HEAD[] = "plantcast spool 1\n";
 enum {
     PLACES = 3,
     RESERVE_BYTES = 8 << 20,
-    PLENTY = 10 /* free disk space required before a reserve is made, as a multiple of the reserve's size */
+    PLENTY = 10 /* a reserve is made only if the free disk space is this many times its size */
 };
 
 char **spool_places(const char *folder)
@@ -50,7 +50,8 @@ static char *reserve_of(const char *folder, int length)
     return mem_printf("%.*s/spool.reserve", length, folder);
 }
 
-/* Creates the reserve file. It is renamed once all its blocks are allocated, so that a killed program leaves no partial reserve. */
+/* Creates the reserve file, which keeps disk space for a spool. It gets its name once all its blocks are allocated, so that a killed
+   program leaves no partial reserve. */
 static int make_reserve(const char *path)
 {
     char *made = mem_printf("%s.new", path);
@@ -151,7 +152,7 @@ static void add_line(const char *line, const struct plant *plant, struct spool_r
     to->at[to->count++] = (struct history_row){ tag, point };
 }
 
-/* Opens the spool file. Returns NULL with errno on failure. */
+/* Reads the spool file if it belongs to this user. Returns its text, free with mem_free(); NULL with errno on failure. */
 static char *read_own(const char *path)
 {
     struct stat st;

@@ -5,21 +5,21 @@
 #include "history/recorder.h"
 
 struct spool_rows {
-    struct recorder_rows kept, held; /* recorded and held rows, as for month_file_write() */
+    struct recorder_rows kept, held; /* kept: recorded rows; held: newest samples that are not recorded yet (month_file_write()) */
 };
 
 /* Returns possible paths for the spool of a history folder, best first: in the folder itself, RUNTIME_DIRECTORY, /var/tmp. The list ends
    with NULL; free with spool_places_free(). */
 char **spool_places(const char *folder);
 void spool_places_free(char **places);
-/* Reserves space in the folder while the disk has plenty, so that even a full disk can take a spool, which then survives a reboot. No-op
-   if the reserve exists. Returns 0 or -errno; -ENOSPC: the disk does not have plenty. */
+/* Reserves disk space in the folder while the disk has plenty, so that even a full disk can take a spool file, which then survives a
+   reboot. No-op if the reserve exists. Returns 0 or -errno; -ENOSPC: the disk does not have plenty. */
 int spool_reserve(const char *folder);
 /* Writes all rows to the file, readable by its owner only; if the disk is full, into the reserve in the same folder. Returns 0 or
    -errno. */
 int spool_write(const char *path, const struct plant *plant, const struct spool_rows *rows);
-/* Appends the rows of the file whose tags are still in the plant; *foreign receives the number of rows whose tags are not. A file of
-   another user is refused. Returns 0 or -errno; -ENOENT: no such file. */
+/* Appends the rows of the file whose tags are still in the plant. *foreign receives the number of rows whose tags are not in the plant.
+   Refuses a file of another user. Returns 0 or -errno; -ENOENT: no such file. */
 int spool_read(const char *path, const struct plant *plant, struct spool_rows *rows, size_t *foreign);
 
 #endif

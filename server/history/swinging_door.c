@@ -25,7 +25,8 @@ static bool passes(const struct swinging_door *door, const struct history_point 
     return slope >= door->slope_low && slope <= door->slope_high;
 }
 
-/* Processes a sample that passed the deadband, has the anchor's quality and is newer than the held point. */
+/* Passes a sample to the swinging door. The sample passed the deadband, has the anchor's quality and is newer than the held point.
+   Returns the number of points in `kept`. */
 static int swing(struct swinging_door *door, const struct swinging_door_params *params, const struct history_point *sample,
                  struct history_point *kept, int count)
 {
@@ -75,7 +76,7 @@ int swinging_door_put(struct swinging_door *door, const struct swinging_door_par
     bool usable = history_point_usable(sample), due = sample->t_us - door->anchor.t_us >= params->override_us;
     const struct history_point *passed = door->has_held ? &door->held : &door->anchor;
     if (!usable || fabs(sample->value - passed->value) <= params->deadband) {
-        /* Records the held point first: otherwise a reader of the current state would see a ramp instead of a step. */
+        /* the sample is outside the door: records the held point, or a reader of the current state would see a ramp instead of a step */
         if (usable && door->has_held && !passes(door, sample)) {
             struct history_point held = door->held;
             count = keep(door, &held, kept, count);
@@ -84,7 +85,7 @@ int swinging_door_put(struct swinging_door *door, const struct swinging_door_par
         door->has_skipped = true;
         return due ? keep_last(door, params, kept, count) : count;
     }
-    if (door->has_skipped) { /* processes the skipped sample first, so that the recorded line does not rise before the values did */
+    if (door->has_skipped) { /* passes the skipped sample first, so that the recorded line does not rise before the values did */
         struct history_point skipped = door->skipped;
         count = params->step ? 0 : swing(door, params, &skipped, kept, count);
     }

@@ -10,16 +10,17 @@
 struct swinging_door_params {
     double deadband, deviation; /* engineering units, >= 0 */
     int64_t override_us;        /* maximum time between two recorded points while samples arrive */
-    bool step;                  /* a switch: values hold until the next point, and every change beyond the deadband is recorded */
+    bool step;                  /* true: the tag is a switch: values hold until the next point, and every change beyond the deadband is
+                                   recorded */
 };
 
 struct swinging_door { /* zero-initialise */
     bool open, has_skipped, has_held;
     struct history_point anchor;  /* point recorded last */
-    struct history_point held;    /* newest sample that passed the deadband; recorded when the swinging door closes */
-    struct history_point skipped; /* newest sample, which stayed within the deadband around the last sample that passed */
-    /* range of slopes, per microsecond, of those lines from the anchor (last recorded point) that pass all later samples within the
-       deviation */
+    struct history_point held;    /* newest sample that passed the deadband; recorded when a later sample does not fit the swinging door */
+    struct history_point skipped; /* newest sample, if it stayed within the deadband around the last sample that passed the deadband */
+    /* range of slopes, per microsecond, of the lines from the anchor (last recorded point) that pass within the deviation of all later
+       samples */
     double slope_low, slope_high;
 };
 
@@ -31,8 +32,8 @@ int swinging_door_put(struct swinging_door *door, const struct swinging_door_par
 /* Records the newest sample now, as if override_us had passed. Returns the number of points in `kept`. */
 int swinging_door_end(struct swinging_door *door, const struct swinging_door_params *params,
                       struct history_point kept[SWINGING_DOOR_MAX_POINTS]);
-/* Returns whether the newest sample is not recorded yet, and that sample in the out parameter. Readers end the line at that sample, and it
-   must survive a crash. */
+/* *out receives the newest sample if it is not recorded yet. Returns false if it is recorded. Readers end the line at that sample, and
+   it must survive a crash. */
 bool swinging_door_held(const struct swinging_door *door, struct history_point *out);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The thread that sends the outboxes of the months to PostgreSQL. */
+/* The thread that sends the points in the outboxes of the months' files to PostgreSQL. */
 #include "history/postgres/postgres.h"
 
 #include <errno.h>
@@ -20,9 +20,10 @@
 
 enum { BATCH_ROWS = 20000, ROUND_MS = 1000 };
 enum { NOTES = 128, SPANS = POSTGRES_SPANS };
-/* start of a read without a known last sample: this long before the newest line end, because the lines of tags end at different times */
+/* lines of tags end at different times, so a read that knows no last sample starts this long before the newest end of a line */
 static const int64_t LINE_END_SPREAD_US = 60 * INT64_C(1000000);
-/* longer than a sample takes until its point is in the file; leader and standby both keep points for this long */
+/* longer than a sample takes until its point is in the file of leader or standby; waited before points are deleted as sent, or missing
+   ones are read from the database */
 static const int64_t OVERLAP_NS = 10 * NS_PER_S;
 static const int64_t LOOK_NS = 30 * NS_PER_S, NEWEST_NS = 5 * NS_PER_S, SAY_LOST_NS = 60 * NS_PER_S;
 
@@ -31,7 +32,8 @@ struct waiting_month {
     int64_t count;
 };
 
-/* For a standby: newest sequence number that a month's outbox had at a certain time. */
+/* For a standby: the newest sequence number in a month's outbox at a certain time. When the leader has sent that time, the standby
+   deletes up to this number. */
 struct outbox_note {
     int64_t at_ns, seq;
     int month;
@@ -51,9 +53,9 @@ struct postgres {
     pthread_mutex_t lock;
     /* --- below: under `lock` */
     bool leads, ends_lines;
-    int64_t sent_ns; /* monotonic; the leader has sent the points recorded before this time to the database; INT64_MIN: unknown */
+    int64_t sent_ns; /* monotonic time; all points recorded before it are in the database; INT64_MIN: unknown */
     struct postgres_owed owed;
-    /* --- below: used by this thread only */
+    /* --- below: used by the sending thread only */
     struct postgres_link *link; /* connection; NULL: none */
     struct postgres_tables tables;
     struct postgres_restore restore;
@@ -61,9 +63,9 @@ struct postgres {
     struct waiting_month *months;
     size_t month_count;
     int64_t looked_ns, newest_ns, retry_ns, say_lost_ns;
-    int64_t lost;                  /* lost points that are not logged yet */
-    char said[POSTGRES_WHY_BYTES]; /* text of the last error that was logged; "": no error */
-    /* alone: only this daemon writes to the database; flushed: all points that an earlier run had left in the outboxes are sent */
+    int64_t lost;                  /* number of points that were deleted unsent and are not logged yet */
+    char said[POSTGRES_WHY_BYTES]; /* text of the last error that was logged; empty: no error */
+    /* alone: only this daemon writes to the database; flushed: all points that an earlier run left in the outboxes are sent */
     bool alone, flushed;
     struct outbox_note notes[NOTES];
     size_t note_count;
@@ -116,8 +118,8 @@ static void connect_now(struct postgres *postgres)
     postgres->newest_ns = 0;
 }
 
-/* Resets the error state; call it only after a successful write. A mere connection proves nothing, since a server with a full disk accepts
-   connections. */
+/* Resets the error state. Call it only after a successful write: a mere connection proves nothing, since a server with a full disk
+   accepts connections. */
 static void is_well(struct postgres *postgres)
 {
     postgres->backoff = (struct backoff){ 0 };
@@ -142,7 +144,7 @@ static void restore(struct postgres *postgres)
         postgres->params.restored(postgres->params.arg);
 }
 
-/* Reconnects as the only writer after this daemon has become the leader, and ends those lines in the database that no daemon continues. */
+/* Reconnects as the only writer after this daemon has become the leader, and ends the lines in the database that no daemon continues. */
 static void take_lead(struct postgres *postgres)
 {
     pthread_mutex_lock(&postgres->lock);
@@ -172,8 +174,8 @@ static bool is_due(const struct postgres *postgres, const struct postgres_span *
     return clock_mono_ns() >= span->at_ns + OVERLAP_NS && postgres->sent_ns >= span->at_ns;
 }
 
-/* Reads from the database the points of a time span in which another daemon recorded. A former leader may have continued after the
-   connection was lost and sent later points: then its line in the database ends later than the mark written here. */
+/* Reads from the database the points that another daemon recorded in a time span. leads: the span is the time before this daemon led.
+   The former leader may then have sent points after the end that this daemon marked; the marks are corrected first. */
 static bool fill_span(struct postgres *postgres, const struct postgres_span *span, bool leads, int64_t *points,
                       char why[POSTGRES_WHY_BYTES])
 {
@@ -181,8 +183,8 @@ static bool fill_span(struct postgres *postgres, const struct postgres_span *spa
            postgres_restore_span(&postgres->restore, &postgres->tables, span->from_us, span->to_us, points, why);
 }
 
-/* Reads from the database the points of the oldest owed time span, once the daemon that recorded it has had time to send them and our own
-   points are sent. */
+/* Reads the points of the oldest owed time span (recorded by another daemon, still missing here) from the database. It first waits until
+   that daemon has had time to send them and our own points are sent. */
 static void fill(struct postgres *postgres)
 {
     pthread_mutex_lock(&postgres->lock);
@@ -218,8 +220,8 @@ static void count_month(struct postgres *postgres, struct waiting_month *month)
     month_outbox_close(&outbox);
 }
 
-/* Counts the waiting points. Checks the newest month each time, other months rarely: only imports and changes of the clock add points
-   there. */
+/* Counts the points in the outboxes. Checks the newest month each time, other months rarely: only imports and changes of the clock add
+   points there. */
 static void look_for_points(struct postgres *postgres)
 {
     size_t count;
@@ -276,7 +278,7 @@ static void drop_oldest(struct postgres *postgres)
 
 /* --- sending ------------------------------------------------------------------------------------------------------------------ */
 
-/* Sends one batch. *more: true if another batch follows. Returns false if no more can be sent now. */
+/* Sends one batch of points. *more receives true if another batch follows. Returns false if no more can be sent now. */
 static bool send_batch(struct postgres *postgres, struct month_outbox *outbox, struct waiting_month *month, bool newest, bool *more)
 {
     struct month_outbox_batch batch = { 0 };
@@ -312,7 +314,7 @@ static bool send_month(struct postgres *postgres, struct waiting_month *month, b
     return good;
 }
 
-/* Deletes points that the leader has sent. Both daemons keep points for OVERLAP_NS first. */
+/* Deletes from the outbox the points that the leader has sent to the database, OVERLAP_NS after they were recorded. */
 static void forget_sent(struct postgres *postgres)
 {
     pthread_mutex_lock(&postgres->lock);
@@ -333,8 +335,8 @@ static void forget_sent(struct postgres *postgres)
     }
 }
 
-/* Notes the newest sequence number of the newest month. At the turn of the month, points of the older month may be sent twice, which does
-   no harm. */
+/* Notes the newest sequence number in the newest month's outbox. At the turn of the month, points of the older month may be sent twice,
+   which does no harm: the database replaces them. */
 static void note_outbox(struct postgres *postgres)
 {
     int error, month = postgres->month_count ? postgres->months[postgres->month_count - 1].month : 0;
@@ -346,7 +348,8 @@ static void note_outbox(struct postgres *postgres)
     month_outbox_close(&outbox);
 }
 
-/* Sends all outboxes. The newest samples are sent with the newest month every few seconds, and when the program ends. */
+/* Sends the points in all outboxes. The newest samples, which are not recorded yet, are sent every few seconds with the newest month,
+   and when the program ends. */
 static void send_all(struct postgres *postgres)
 {
     int64_t now_ns = clock_mono_ns();
@@ -360,7 +363,7 @@ static void send_all(struct postgres *postgres)
     postgres->flushed = true;
     if (postgres->alone) {
         pthread_mutex_lock(&postgres->lock);
-        /* one round is subtracted because the historian may have added points meanwhile */
+        /* the historian may have added points while this round sent the others, so one round is subtracted */
         postgres->sent_ns = now_ns - ROUND_MS * NS_PER_MS;
         pthread_mutex_unlock(&postgres->lock);
     }
@@ -372,7 +375,8 @@ static void *run(void *arg)
     struct pollfd fd = { .fd = postgres->stop_fd, .events = POLLIN };
     bool last;
     do {
-        last = poll(&fd, 1, ROUND_MS) > 0; /* after the stop signal, one more round sends the points that were written before the signal */
+        last = poll(&fd, 1, ROUND_MS) > 0; /* after the stop signal, one more round of sending covers the points written before the
+                                              signal */
         if (!last || !*postgres->said)
             connect_now(postgres);
         take_lead(postgres);
@@ -384,7 +388,7 @@ static void *run(void *arg)
         drop_oldest(postgres);
         counter_set(postgres->counters.waiting, waiting(postgres));
         if (postgres->alone || !postgres->flushed) {
-            /* sends nothing before the lines of earlier recordings in the database are ended */
+            /* the lines of earlier recordings in the database must be ended before anything is sent */
             if (!postgres->restore.wanted || postgres->restore.next_month != INT_MAX)
                 send_all(postgres);
         } else {
@@ -429,7 +433,7 @@ int64_t postgres_sent_age_ns(struct postgres *postgres)
     return sent_ns == INT64_MIN ? INT64_MAX : clock_mono_ns() - sent_ns;
 }
 
-/* Returns the time of the last point in the files; without files, the oldest time that retention keeps. */
+/* Returns the time of the last point in the files. Without files, returns the oldest time that retention keeps. */
 static int64_t end_of_files_us(struct postgres *postgres)
 {
     const int64_t day_us = INT64_C(86400000000);
@@ -450,7 +454,7 @@ static int64_t end_of_files_us(struct postgres *postgres)
 static void add_span(struct postgres *postgres, const struct postgres_span *span)
 {
     struct postgres_span *last = &postgres->owed.spans[SPANS - 1];
-    /* the list of owed time spans is full, as with an unstable connection: extends the last span instead */
+    /* the list of time spans is full, as with an unstable connection: extends its last span instead */
     if (postgres->owed.span_count == SPANS)
         *last = (struct postgres_span){ last->from_us, span->to_us, span->at_ns };
     else
@@ -481,8 +485,8 @@ void postgres_lead(struct postgres *postgres, int64_t from_us, int64_t to_us)
     pthread_mutex_unlock(&postgres->lock);
 }
 
-/* Queues another read of the time before this daemon led; at most two such reads wait. The first keeps its place in the queue however often
-   a standby reconnects. The second is read after the points of the newest connection have arrived. */
+/* Queues another read of the time before this daemon led; at most two such reads wait in the queue. The first keeps its place however
+   often a standby reconnects. The second runs after the points of the newest connection have arrived. */
 void postgres_fill_again(struct postgres *postgres)
 {
     struct postgres_span *newest = NULL;

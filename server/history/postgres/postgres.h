@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sends recorded history to PostgreSQL, on a thread of its own: the points in the outboxes of the months, in batches, each point once.
-   While the server is unreachable the points stay there, up to a limit. Neither the historian nor live pictures wait for it. */
+/* Sends recorded history to PostgreSQL, on a thread of its own. It sends the points in the outboxes of the months' files in batches,
+   each point once. While the server is unreachable the points stay in the outboxes, up to a limit. Neither the historian nor live
+   pictures wait for it. */
 #ifndef HISTORY_POSTGRES_POSTGRES_H
 #define HISTORY_POSTGRES_POSTGRES_H
 #include "base/log/log.h"
@@ -8,15 +9,15 @@
 #include "plant/plant.h"
 
 enum { POSTGRES_SPANS = 16 };
-/* A time span in which another daemon led: the points of that daemon are to be read from the database, if they were sent there at at_ns
+/* A time span in which another daemon led. Its points must be read from the database, once that daemon has sent them: at at_ns
    (monotonic) or later. */
 struct postgres_span {
     int64_t from_us, to_us, at_ns;
 };
-struct postgres_owed { /* time spans whose points must still be read from the database */
+struct postgres_owed { /* the time spans whose points must still be read from the database */
     struct postgres_span spans[POSTGRES_SPANS];
     size_t span_count;
-    struct postgres_span led; /* the time span before this daemon led; to_us 0: this daemon has not become the leader */
+    struct postgres_span led; /* the time span just before this daemon became the leader; to_us 0: it has not become the leader */
 };
 
 struct postgres_params {
@@ -24,35 +25,35 @@ struct postgres_params {
     struct counters *counters;
     const struct plant *plant; /* must outlive it */
     const char *folder;        /* folder of the months' files */
-    /* true: another daemon writes to the database, until postgres_lead() is called: only points left by an earlier run are sent */
+    /* true: until postgres_lead() is called, another daemon writes to the database, and only points left by an earlier run are sent */
     bool stands_by;
-    /* owed time spans from postgres_stop() of the previous instance for the same folder, copied by the call; NULL: none */
+    /* time spans still to be read, from postgres_stop() of the previous instance for the same folder; copied by the call; NULL: none */
     const struct postgres_owed *owed;
-    /* callback; the thread calls it after older points were read from the database into the files of a machine that lacked them */
+    /* called by the thread after it has read older points from the database into files of a machine that lacked them */
     void (*restored)(void *arg);
     void *arg;
 };
 
 struct postgres;
-/* Starts the thread. Call it before anything is recorded in the folder. Returns NULL if the thread cannot be started (logged). */
+/* Starts the sending thread. Call it before anything is recorded in the folder. Returns NULL if the thread cannot be started (logged). */
 struct postgres *postgres_start(const struct postgres_params *params);
-/* Counts points that were deleted from the files before they were sent. Thread: any. */
+/* Adds to the count of points that were deleted from the files before they were sent. Thread: any. */
 void postgres_count_lost(struct postgres *postgres, int64_t points);
 /* Makes this daemon the only writer from to_us on. from_us: time of the last sample mirrored from the former leader; 0: none, so the
-   leader's lines are ended at their last points. Later points of the former leader are read as by postgres_fill(). Any thread. */
+   leader's lines are ended at their last points. Later points of the former leader are read as by postgres_fill(). Thread: any. */
 void postgres_lead(struct postgres *postgres, int64_t from_us, int64_t to_us);
-/* Reads the time before this daemon led from the database once more, because the former leader may have sent more points of that time. Any
-   thread. */
+/* Reads the time before this daemon led from the database once more, because the former leader may have sent more points of that time.
+   Thread: any. */
 void postgres_fill_again(struct postgres *postgres);
-/* For a standby: records that the leader has sent everything recorded until age_ns ago. Any thread. */
+/* For a standby: states that the leader has sent to the database everything recorded until age_ns ago. Thread: any. */
 void postgres_sent_elsewhere(struct postgres *postgres, int64_t age_ns);
-/* Returns the age in nanoseconds of the newest time before which all recorded points are sent; INT64_MAX: unknown. Any thread. */
+/* Returns the age in nanoseconds of the newest time T such that all points recorded before T are sent; INT64_MAX: unknown. Thread: any. */
 int64_t postgres_sent_age_ns(struct postgres *postgres);
-/* Replaces a gap in the files by the points that another daemon recorded between two times, once that daemon has sent them. from_us 0:
-   from the last point in the files. Any thread. */
+/* Replaces a gap in the files by the points that another daemon recorded between two times, once that daemon has sent them to the
+   database. from_us 0: from the last point in the files. Thread: any. */
 void postgres_fill(struct postgres *postgres, int64_t from_us, int64_t to_us);
-/* Sends pending points for at most two seconds, and ends the thread. owed: receives the time spans whose points must still be read from the
-   database; NULL: not wanted. &NULL is fine and leaves *owed unchanged; leaves NULL. */
+/* Sends pending points for at most two seconds, and ends the thread. *owed receives the time spans whose points must still be read from
+   the database; owed NULL: not wanted. *postgres NULL is fine and leaves *owed unchanged. Sets *postgres to NULL. */
 void postgres_stop(struct postgres **postgres, struct postgres_owed *owed);
 
 #endif

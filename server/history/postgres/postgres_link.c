@@ -24,7 +24,7 @@ struct postgres_link {
     PGconn *library;
     int stop_fd;
     int64_t stop_by_ns;            /* monotonic deadline for all calls after the stop signal; 0: the program is not ending */
-    int64_t connect_ns, answer_ns; /* time limits in nanoseconds: for connecting, and for an answer */
+    int64_t connect_ns, answer_ns; /* time limits in nanoseconds, for connecting and for each answer */
     struct {
         char *at;
         size_t length, capacity;
@@ -73,7 +73,7 @@ static bool flush(struct postgres_link *link)
     return true;
 }
 
-/* Returns the next result of a query. NULL with *good true: there are no more results; NULL with *good false: failure. */
+/* Returns the next result of a query. NULL with *good true: no more results; NULL with *good false: the connection failed. */
 static PGresult *next_result(struct postgres_link *link, bool *good)
 {
     const int64_t until_ns = clock_mono_ns() + link->answer_ns;
@@ -92,7 +92,7 @@ static bool is_good(const PGresult *result)
     return status == PGRES_COMMAND_OK || status == PGRES_TUPLES_OK || status == PGRES_COPY_IN || status == PGRES_EMPTY_QUERY;
 }
 
-/* Reads all results of a query. Returns the last one if all are good. */
+/* Reads all results of a query. Returns the last result, or NULL if any of the results is an error. */
 static PGresult *last_result(struct postgres_link *link)
 {
     PGresult *last = NULL;
@@ -239,7 +239,7 @@ static void put_int64(struct postgres_link *link, int64_t value)
 
 bool postgres_copy_begin(struct postgres_link *link, const char *table)
 {
-    /* header of COPY BINARY; flags and the length of an extension, both 0, complete it */
+    /* file header of COPY BINARY; two zero words (flags, length of the extension) follow */
     static const char head[19] = "PGCOPY\n\377\r\n\0";
     link->copy.length = 0;
     put(link, head, sizeof(head));

@@ -21,7 +21,7 @@ struct postgres_link *postgres_link_open_within(const struct plant_postgres *pos
                                                 char why[POSTGRES_WHY_BYTES]);
 void postgres_link_set_patience(struct postgres_link *link, int64_t patience_ns); /* Sets the time limit for each following answer. */
 void postgres_link_close(struct postgres_link **link);                            /* Closes the connection. &NULL is fine; leaves NULL. */
-const char *postgres_link_why(const struct postgres_link *link);                  /* Returns the reason of the last failure. */
+const char *postgres_link_why(const struct postgres_link *link);                  /* Returns the reason of the last failure as text. */
 
 /* Runs statements. Returns false on failure. */
 bool postgres_link_run(struct postgres_link *link, const char *sql);
@@ -30,7 +30,7 @@ bool postgres_link_runf(struct postgres_link *link, const char *fmt, ...) __attr
 /* Runs one statement with parameters as text. Returns its rows in binary format, for PQclear(); NULL on failure. */
 PGresult *postgres_link_ask(struct postgres_link *link, const char *sql, int count, const char *const *parameters);
 
-/* COPY ... FROM STDIN (FORMAT binary): begin, add rows column by column, end. */
+/* Begins COPY table FROM STDIN (FORMAT binary). The functions below add rows column by column, and end the copy. */
 bool postgres_copy_begin(struct postgres_link *link, const char *table);
 void postgres_copy_row(struct postgres_link *link, int columns);
 void postgres_copy_int32(struct postgres_link *link, int32_t value);

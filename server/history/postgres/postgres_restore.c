@@ -71,8 +71,8 @@ static void end(struct postgres_restore *restore)
 
 /* --- in the database ---------------------------------------------------------------------------------------------------------- */
 
-/* Ends the lines in the database at their last points, as month_file_recover() does. The newest samples are recorded even if later
-   points exist: a standby may have sent its first points already. */
+/* Ends the lines in the database at their last points, as month_file_recover() does in files. The newest samples become recorded points
+   even if later points exist: a standby may have sent its first points already. */
 bool postgres_restore_end_lines(struct postgres_tables *tables, int64_t now_us)
 {
     static const char sql[] =
@@ -89,7 +89,7 @@ bool postgres_restore_end_lines(struct postgres_tables *tables, int64_t now_us)
     return postgres_link_runf(tables->link, sql, tables->plant, QUALITY_BAD_NO_COMMUNICATION, (long long)(now_us / US_PER_S));
 }
 
-/* Corrects the ends of lines within a span. This daemon wrote a gap mark after the last point that it knew of. If the former leader
+/* Corrects the ends of lines within a time span. This daemon wrote a gap mark after the last point that it knew of. If the former leader
    continued the line, that mark is deleted, and a mark is written after the true end. */
 bool postgres_restore_end_span(struct postgres_tables *tables, int64_t from_us, int64_t to_us)
 {
@@ -111,7 +111,8 @@ bool postgres_restore_end_span(struct postgres_tables *tables, int64_t from_us, 
     return postgres_link_runf(tables->link, sql, tables->plant, QUALITY_BAD_NO_COMMUNICATION, (long long)from_us, (long long)to_us);
 }
 
-/* Finds the first and last month with points; *any is set to false if the database has no points. Returns false on failure. */
+/* *first and *last receive the first and last month with points; *any is false if the database has no points. Returns false if the query
+   failed. */
 static bool find_months(struct postgres_tables *tables, int *first, int *last, bool *any)
 {
     char plant[NUMBER_BYTES];
@@ -147,7 +148,7 @@ static bool fail(char why[POSTGRES_WHY_BYTES], int error)
     return false;
 }
 
-/* Reads the points of one tag up to the end of a month, at most POINTS_AT_ONCE per query, to bound the memory. */
+/* Reads the points of one tag up to the end of a month. Each query returns at most POINTS_AT_ONCE points, to bound the memory. */
 static bool restore_tag(struct postgres_tables *tables, const struct tag_there *there, struct month_file *file, int64_t after_us,
                         int64_t end_us, int64_t *points, char why[POSTGRES_WHY_BYTES])
 {

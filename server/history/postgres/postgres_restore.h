@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Restores the history of a plant from PostgreSQL on a machine that has none, one month at a time, the newest first. Its progress is
-   stored in a file of the folder, so that it continues after a restart. Thread: one. */
+/* Restores the history of a plant from PostgreSQL on a machine that has none: one month at a time, the newest first. The progress is
+   stored in a file of the folder, so that the restore continues after a restart. Thread: one. */
 #ifndef HISTORY_POSTGRES_POSTGRES_RESTORE_H
 #define HISTORY_POSTGRES_POSTGRES_RESTORE_H
 #include "history/month_file.h"
@@ -12,20 +12,22 @@ struct postgres_restore {
     const struct history_tag *tags; /* tags of the plant */
     const char *folder;
     bool wanted;    /* a restore is in progress */
-    int next_month; /* number of the month to restore next (months since January 1970); INT_MAX: the restore has not begun */
+    int next_month; /* month to restore next (months since January 1970); INT_MAX: the restore has not begun */
     int64_t points; /* points restored so far */
-    bool begins;    /* true: the lines of earlier recordings in the database have been ended, or another daemon continues them */
+    bool begins;    /* true: the lines of earlier recordings in the database are ended, or another daemon continues them */
 };
 
-/* Returns whether the folder needs a restore: it has no months' files, or an earlier restore is unfinished. Creates the folder. */
+/* Decides whether the folder needs a restore (restore->wanted): it has no months' files, or an earlier restore is unfinished. Creates
+   the folder. */
 void postgres_restore_init(struct postgres_restore *restore, struct log *log, const struct plant *plant, const struct history_tag *tags,
                            const char *folder);
 /* Ends the lines in the database at their last points. Returns false if the server fails. */
 bool postgres_restore_end_lines(struct postgres_tables *tables, int64_t now_us);
-/* Corrects line ends between the last sample received from the former leader and our own first sample: lines that it continued after the
-   connection was lost end at their last points. Returns false if the server fails. */
+/* Corrects line ends between the last sample received from the former leader and our own first sample. Lines that the former leader
+   continued after the connection was lost then end at their true last points. Returns false if the server fails. */
 bool postgres_restore_end_span(struct postgres_tables *tables, int64_t from_us, int64_t to_us);
-/* Reads the points of all tags between two times, replacing the gap in the files. Returns false on failure, as postgres_restore_step(). */
+/* Reads the points of all tags between two times from the database, replacing the gap in the files. Returns false if the server fails or
+   the files cannot be written (logged, reason in `why`). */
 bool postgres_restore_span(struct postgres_restore *restore, struct postgres_tables *tables, int64_t from_us, int64_t to_us,
                            int64_t *points, char why[POSTGRES_WHY_BYTES]);
 /* Restores one more month; *points receives the number of its points. Returns false if the server fails, or the files cannot be written

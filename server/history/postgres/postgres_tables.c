@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* SQL for writing. A batch is first copied into temporary tables, so that a point that is sent twice is stored once. */
+/* SQL that writes points to PostgreSQL. A batch is first copied into temporary tables, so that a point that is sent twice is stored
+   once. */
 #include "history/postgres/postgres_tables.h"
 
 #include <stdio.h>
@@ -30,7 +31,7 @@ static const char make_temporary[] =
 
 /* --- opening ------------------------------------------------------------------------------------------------------------------ */
 
-/* Runs a query that returns a number. Returns -1 if the server fails. */
+/* Runs a query that returns a number, and returns the number. Returns -1 if the server fails. */
 static int64_t ask_number(struct postgres_link *link, const char *sql, const char *parameter)
 {
     PGresult *result = postgres_link_ask(link, sql, parameter != NULL, &parameter);
