@@ -54,7 +54,7 @@ bool access_host_name(const char *host, char *out, size_t size)
         out[i] = (char)tolower(c);
     }
     out[n] = 0;
-    if (n > 1 && out[n - 1] == '.') /* a host name may end with the dot of the DNS root */
+    if (n > 1 && out[n - 1] == '.') /* drops the dot of the DNS root, with which a host name may end */
         out[n - 1] = 0;
     return true;
 }
@@ -111,7 +111,7 @@ char *access_content_policy(const struct access_params *params)
 
 /* --- lists in headers ---------------------------------------------------------------------------------------------------------- */
 
-/* Returns the next word of a comma-separated list, with its length in *n, and advances *at. NULL: no more words. */
+/* Returns the next word of a comma-separated list and advances *at behind it; *n receives the word's length. NULL: no more words. */
 static const char *next_word(const char **at, size_t *n)
 {
     *at += strspn(*at, " ,\t");
@@ -153,7 +153,7 @@ bool access_forwarded(const char *list, char *out, size_t size)
             continue;
         memcpy(word, at, n);
         word[n] = 0;
-        /* An IPv6 address has colons, with or without brackets; an IPv4 address may have a port. */
+        /* an IPv6 address may come without brackets, and an IPv4 address with a port: tries the whole word first, then the host part */
         bool bare = access_name_is_address(word) && n < size;
         if (bare)
             strcpy(out, word);

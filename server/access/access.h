@@ -11,22 +11,22 @@ enum { ACCESS_MAX_NAMES = 16 };
 
 struct access_params {
     bool open_viewers; /* true: clients without a token get pictures and nothing else */
-    /* true: a proxy on this machine forwards other clients' connections, so a loopback address does not prove that a client is local */
+    /* true: a proxy on this machine forwards connections of other clients, so a loopback address does not prove that a client is local */
     bool behind_proxy;
     bool trust_local;                         /* true: clients on this machine need no token, although others do */
     const char *tokens_path;                  /* file of tokens; NULL: tokens are not used */
-    const char *openid_path;                  /* file of --openid; NULL: no sign-in with OpenID Connect */
+    const char *openid_path;                  /* path of the file of --openid; NULL: no sign-in with OpenID Connect */
     const char *tls_cert_path, *tls_key_path; /* NULL: no TLS */
     const char *hosts[ACCESS_MAX_NAMES];      /* additional host names that clients may use in the Host header */
-    const char *origins[ACCESS_MAX_NAMES];    /* origins of other hosts' pages that may connect, as SCHEME://HOST[:PORT] */
+    const char *origins[ACCESS_MAX_NAMES];    /* origins of pages on other hosts that may connect, as SCHEME://HOST[:PORT] */
     int host_count, origin_count;
-    const char *notice_path; /* file of a text shown before users sign in; NULL: none */
+    const char *notice_path; /* path of a text file that is shown before users sign in; NULL: none */
     double lock_min;         /* minutes without user activity after which the user must sign in again; 0: never */
     struct quotas quotas;
 };
 
-/* Returns whether the daemon may listen with these parameters on a loopback address, or on another one. If not, *why (static text) names
-   the broken rule. */
+/* Returns true if the daemon may listen with these parameters. loopback: whether the address to listen at is a loopback address. If not,
+   *why (static text) names the broken rule. */
 bool access_allowed_at(const struct access_params *params, bool loopback, const char **why);
 
 /* Writes the host name of a Host header ("name", "name:80", "[::1]:80") to out, in lower case and without brackets. Returns false if it
@@ -44,14 +44,14 @@ char *access_notice_read(struct log *log, const char *path);
 /* Returns the Content-Security-Policy of the daemon's pages: they load from this server only, and only the named origins may show them
    in a frame. The caller frees it with mem_free. */
 char *access_content_policy(const struct access_params *params);
-/* Returns whether a header's comma-separated list has that word. */
+/* Returns true if a header's comma-separated list has that word. */
 bool access_list_has(const char *list, const char *word);
 /* Finds the word of a comma-separated list that begins with the prefix and writes the rest of that word to out. Returns false if there
    is none. */
 bool access_list_rest(const char *list, const char *prefix, char *out, size_t size);
 /* Writes the last address of an X-Forwarded-For header, which the nearest proxy added, to out. Returns false if there is none. */
 bool access_forwarded(const char *list, char *out, size_t size);
-/* Returns whether a query argument is a token. Tokens are refused there, because logs and browser histories keep URLs. */
+/* Returns true if a query argument is a token. Tokens are refused in URLs, because logs and browser histories keep URLs. */
 bool access_argument_is_token(const char *argument);
 
 #endif

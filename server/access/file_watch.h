@@ -6,7 +6,7 @@
 #include <stdint.h>
 #include <sys/stat.h>
 
-struct file_stamp { /* state of the file when it was read; all 0: the file does not exist */
+struct file_stamp { /* state of the file when it was read; all 0: the file did not exist */
     int64_t seconds, nanoseconds, bytes;
     uint64_t inode;
     unsigned mode, owner;
@@ -16,10 +16,10 @@ struct file_watch { /* zero-initialise */
     struct file_stamp seen, read;
 };
 
-/* Notes the state of the file that was just read; st NULL: the file does not exist. */
+/* Stores the state of the file that the caller has just read; st NULL: the file does not exist. */
 void file_watch_read(struct file_watch *watch, const struct stat *st);
-/* Returns true if the file differs from the one read and has not changed since the last call: a file that is still being written may be
-   incomplete. */
+/* Returns true if the file differs from the one read and has not changed since the last call: a file that changes between two calls is
+   still being written and may be incomplete. */
 bool file_watch_changed(struct file_watch *watch, const char *path);
 
 #endif

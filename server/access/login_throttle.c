@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Slows addresses that send wrong tokens. */
+/* Delays clients whose addresses send wrong tokens. */
 #include "access/login_throttle.h"
 
 #include <string.h>
@@ -19,7 +19,7 @@ struct throttle_entry {
     uint8_t address[16];
     int64_t heard_ns;
     int64_t failed_ns[LOGIN_FAILURES]; /* ring buffer of the times of the last failures */
-    int64_t failures;                  /* number of all failures; also the position in the ring */
+    int64_t failures;                  /* number of all failures of the address; modulo LOGIN_FAILURES, the next index in failed_ns */
     int64_t slowed_until_ns, next_try_ns;
     struct known_token known[MAX_KNOWN_TOKENS]; /* ring buffer of the last accepted tokens */
     int known_count;
@@ -114,7 +114,7 @@ static enum login fail(struct throttle_entry *entry, int64_t now_ns)
     return was_slowed ? LOGIN_WRONG : LOGIN_WRONG_SLOWS;
 }
 
-/* Returns whether this attempt comes too soon at a slowed address. */
+/* Returns true if the address is slowed and this attempt comes before the next permitted one. */
 static bool holds(struct throttle_entry *entry, int64_t now_ns)
 {
     bool slowed = now_ns < entry->slowed_until_ns, too_soon = now_ns < entry->next_try_ns;

@@ -15,25 +15,25 @@ enum { LOGIN_FAILURES = 10, LOGIN_WAIT_S = 5, LOGIN_ADDRESSES = 1024 };
 enum login {
     LOGIN_NONE, /* no token was given */
     LOGIN_GOOD,
-    LOGIN_GOOD_NEW, /* LOGIN_GOOD for a token that was not seen from this address within ten minutes, so that it is worth a log line */
+    LOGIN_GOOD_NEW, /* the token is valid and was not seen from this address within ten minutes, so it is worth a log line */
     LOGIN_WRONG,
-    LOGIN_WRONG_SLOWS, /* LOGIN_WRONG for the failure by which the address becomes slowed */
+    LOGIN_WRONG_SLOWS, /* the token is wrong, and by this failure the address becomes slowed */
     LOGIN_HELD,        /* the address is slowed: the token was not checked */
 };
 
 struct login_throttle;
 struct login_throttle *login_throttle_create(void);
 void login_throttle_destroy(struct login_throttle **throttle); /* &NULL is allowed; sets *throttle to NULL */
-/* Returns the verdict on a token from that address (as in struct address_usage) and counts it. hash: hash of the token if it is valid;
-   NULL: the token is wrong. */
+/* Judges and counts a token from an address (as in struct address_usage): wrong, valid, or not checked because the address is slowed.
+   hash: hash of the token if it is valid; NULL: the token is wrong. */
 enum login login_throttle_judge(struct login_throttle *throttle, const uint8_t address[16], const uint8_t *hash, int64_t now_ns);
-/* login_throttle_begin() returns LOGIN_HELD if an attempt that is verified elsewhere and later must be refused, otherwise LOGIN_NONE.
-   login_throttle_fail() counts the failure of such an attempt and returns LOGIN_WRONG or LOGIN_WRONG_SLOWS. */
+/* For attempts that are verified elsewhere and later, such as sign-ins: returns LOGIN_HELD if the attempt must be refused, otherwise
+   LOGIN_NONE. When such an attempt fails, login_throttle_fail() counts the failure and returns LOGIN_WRONG or LOGIN_WRONG_SLOWS. */
 enum login login_throttle_begin(struct login_throttle *throttle, const uint8_t address[16], int64_t now_ns);
 enum login login_throttle_fail(struct login_throttle *throttle, const uint8_t address[16], int64_t now_ns);
 /* Returns the number of failures of the address within the last minute, 10 at most. */
 int login_throttle_failures(const struct login_throttle *throttle, const uint8_t address[16], int64_t now_ns);
-/* Returns the number of addresses that are slowed now. */
+/* Returns the number of addresses that are slowed at now_ns. */
 int login_throttle_slowed(const struct login_throttle *throttle, int64_t now_ns);
 
 /* Returns true if the verdict admits the client. */

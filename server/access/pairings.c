@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Pairing of wall displays. Devices that wait are kept in memory only: after a restart a device gets new digits. */
+/* Pairing of wall displays. Waiting devices (with digits, not approved yet) are kept in memory only: after a restart a device gets new
+   digits. */
 #include "access/pairings.h"
 
 #include <openssl/crypto.h>
@@ -24,11 +25,11 @@ struct pending_pairing {
 };
 
 struct pairings {
-    struct kept_list kept; /* list in devices.json: { id, hash, wall, display, from, by, time_us } */
+    struct kept_list kept; /* paired devices as in devices.json: { id, hash, wall, display, from, by, time_us } */
     struct pending_pairing waiting[PAIRINGS];
     size_t count;
-    uint64_t number;  /* sequence number of the last change of the list of waiting devices */
-    int64_t wrong_ns; /* monotonic: when the first wrong digits of this minute came */
+    uint64_t number;  /* counts changes of the list of waiting devices */
+    int64_t wrong_ns; /* monotonic time of the first wrong digits of the current minute */
     int wrong;
 };
 
@@ -84,7 +85,7 @@ enum refusal_code pairings_refusal(const struct pairings *pairings)
 
 /* --- paired devices ------------------------------------------------------------------------------------------------------------- */
 
-/* Finds a paired device by hash; takes the same time for every hash. */
+/* Finds a paired device by hash; takes the same time for every hash, so that timing reveals nothing. */
 static const json_t *find_device(const struct pairings *pairings, const uint8_t hash[TOKEN_HASH_BYTES])
 {
     char text[HASH_CHARS + 1];
@@ -156,7 +157,7 @@ static struct pending_pairing *find_digits(struct pairings *pairings, const char
     return NULL;
 }
 
-/* Returns the index of the waiting device with that secret's hash and display; pairings->count if there is none. */
+/* Returns the index of the waiting device with that display and hash of its secret; pairings->count if there is none. */
 static size_t find_waiting(const struct pairings *pairings, const uint8_t hash[TOKEN_HASH_BYTES], const struct wall_place *place)
 {
     size_t i = 0;
@@ -169,7 +170,7 @@ static size_t find_waiting(const struct pairings *pairings, const uint8_t hash[T
     return i;
 }
 
-/* Draws unused digits. Returns false if the system has no randomness. */
+/* Draws six digits that no waiting device has. Returns false if the system has no randomness. */
 static bool draw_digits(struct pairings *pairings, char digits[PAIRING_DIGITS + 1])
 {
     do {
@@ -189,9 +190,9 @@ static size_t count_from(const struct pairings *pairings, const uint8_t address[
     return from;
 }
 
-/* Frees a place when all are taken: drops the newest waiting device of the address with the most waiting devices, if that address has at
-   least two more of these than the requesting address, which has `from`. So a few addresses cannot keep others out. Returns false if no
-   address has that many. */
+/* Frees an entry when all entries for waiting devices are taken. Drops the newest waiting device of the address with the most of them,
+   if that address has at least two more than `from`, the number of devices of the requesting address. So a few addresses cannot keep
+   others out. Returns false if no address has that many. */
 static bool make_room(struct pairings *pairings, size_t from)
 {
     size_t most = from + 1, victim = pairings->count;
@@ -230,8 +231,8 @@ static struct pending_pairing *begin(struct pairings *pairings, const uint8_t ha
     return &pairings->waiting[pairings->count++];
 }
 
-/* Returns PAIRING_DONE or PAIRING_OTHER for a paired device: paired with the requested display, or with another one; otherwise
-   PAIRING_WAITS. */
+/* Returns PAIRING_DONE for a device paired with the requested display, PAIRING_OTHER for one paired with another display, PAIRING_WAITS
+   for a device that is not paired. */
 static enum pairing find_paired(const struct pairings *pairings, const uint8_t hash[TOKEN_HASH_BYTES], const struct wall_place *place)
 {
     struct token_holder paired;
@@ -246,7 +247,7 @@ static void tell_digits(const struct pending_pairing *waiting, int64_t now_ns, c
     *left_s = (int)((waiting->begun_ns + PAIRING_S * NS_PER_S - now_ns) / NS_PER_S);
 }
 
-/* Answers a request; the secret in the request is not used, only its hash. */
+/* Answers a device's request; uses only the hash of the device's secret, not the secret in the request. */
 static enum pairing ask(struct pairings *pairings, const uint8_t hash[TOKEN_HASH_BYTES], const struct pairing_request *request,
                         int64_t now_ns, char digits[PAIRING_DIGITS + 1], int *left_s)
 {
@@ -285,7 +286,8 @@ static enum refusal_code keep(struct pairings *pairings, const struct pending_pa
     return kept_list_put(&pairings->kept, list);
 }
 
-/* Returns false once a minute had ten wrong attempts. With a million possibilities, guessing then takes weeks. */
+/* Returns false if this minute already had ten wrong attempts to enter digits. With a million possible digits, guessing then takes
+   weeks. */
 static bool may_try(struct pairings *pairings, int64_t now_ns)
 {
     if (now_ns - pairings->wrong_ns >= WRONG_NS)
@@ -353,7 +355,7 @@ json_t *pairings_told(const struct pairings *pairings, int64_t now_ns)
         int left_s;
         hex_print(one->hash, TOKEN_HASH_BYTES, hash);
         tell_digits(one, now_ns, digits, &left_s);
-        if (left_s <= 0) /* this waiting device has expired; it is removed at the next request */
+        if (left_s <= 0) /* expired; the entry is removed at the next request */
             continue;
         json_array_append_new(waiting, json_pack("{s:s,s:s,s:s,s:i,s:i}", "hash", hash, "digits", digits, "wall", one->place.wall,
                                                  "display", one->place.display, "left_s", left_s));

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Devices that show a wall's display without a token being typed in there. A device makes a secret of its own and shows six digits. An
-   engineer who reads the digits approves the device, and the secret's hash is stored in devices.json in the folder of the history until
-   it is revoked. The secret then grants the role viewer, for that display only. Thread: the event loop. */
+/* Pairing of devices that show a wall's display, without a token being typed in there. A device makes a secret of its own and shows six
+   digits. An engineer who reads the digits approves the device, and the secret's hash is stored in devices.json in the folder of the
+   history until it is revoked. The secret then grants the role viewer, for that display only. Thread: the event loop. */
 #ifndef ACCESS_PAIRINGS_H
 #define ACCESS_PAIRINGS_H
 #include <jansson.h>
@@ -12,11 +12,11 @@
 
 enum {
     PAIRING_DIGITS = 6,
-    PAIRING_S = 300,      /* maximum number of seconds for which digits are valid, */
-    PAIRING_QUIET_S = 60, /* and the number of seconds without a request of the device after which they expire earlier */
-    PAIRINGS = 64,        /* maximum number of waiting devices, shared equally among addresses */
+    PAIRING_S = 300,      /* seconds for which a device's digits are valid */
+    PAIRING_QUIET_S = 60, /* seconds without a request of the device after which its digits expire earlier */
+    PAIRINGS = 64,        /* maximum number of waiting devices of all addresses */
     PAIRINGS_FROM = 8,    /* maximum number of waiting devices of one address */
-    PAIRING_WRONG = 10,   /* maximum number of wrong digits within a minute */
+    PAIRING_WRONG = 10,   /* maximum number of wrong digits within a minute, in total */
     PAIRED_DEVICES = 256,
 };
 #define PAIRINGS_FILE "devices.json"
@@ -24,50 +24,51 @@ enum {
 enum pairing { PAIRING_WAITS, PAIRING_DONE, PAIRING_FULL, PAIRING_OTHER };
 
 struct pairing_request {
-    const char *secret;      /* secret of the device; see pairings_secret_valid() */
-    struct wall_place place; /* display that the device shows; without an area */
+    const char *secret;      /* secret of the device; must pass pairings_secret_valid() */
+    struct wall_place place; /* display that the device shows; its area is not used */
     const uint8_t *address;  /* address of the device, as in struct address_usage */
     const char *from;        /* the same address as text */
 };
 
 struct pairings;
-/* Reads the paired devices. folder: of the history, must outlive the result; NULL: no device can be paired. If the file cannot be read
-   (logged), no device is accepted, and the file is not overwritten. Never returns NULL. */
+/* Reads the paired devices. folder: folder of the history, must outlive the result; NULL: no device can be paired. If the file cannot be
+   read (logged), no device is accepted, and the file is not overwritten. Never returns NULL. */
 struct pairings *pairings_open(struct log *log, const char *folder);
 void pairings_close(struct pairings **pairings); /* &NULL is allowed; sets *pairings to NULL */
-/* Returns whether a device may have that secret: it must have the form of a token (tokens_make), with 256 bits. */
+/* Returns true if the secret has the form of a token (tokens_make) with 256 bits. */
 bool pairings_secret_valid(const char *secret);
-/* Returns the reason why no device can be paired, or REFUSAL_NONE. */
+/* Returns the reason why no device can be paired with this daemon, or REFUSAL_NONE. */
 enum refusal_code pairings_refusal(const struct pairings *pairings);
-/* Returns whether the device is paired; if it waits, writes its digits and the seconds left. PAIRING_FULL: too many devices wait.
-   PAIRING_OTHER: the device is paired with another display, and a secret works for one display only. now_ns: monotonic. */
+/* Returns the state of a device. PAIRING_DONE: it is paired. PAIRING_WAITS: it waits; the digits and their remaining seconds are
+   returned. PAIRING_FULL: too many devices wait. PAIRING_OTHER: it is paired with another display, and a secret works for one display
+   only. now_ns: monotonic. */
 enum pairing pairings_ask(struct pairings *pairings, const struct pairing_request *request, int64_t now_ns, char digits[PAIRING_DIGITS + 1],
                           int *left_s);
-/* Pairs the device that shows those digits. who: the approving engineer; now_us: UTC. Returns REFUSAL_NONE with the device's id, or why
-   it was refused. */
+/* Pairs the waiting device that shows those digits. who: the approving engineer; now_us: UTC. Returns REFUSAL_NONE with the device's id,
+   or why it was refused. */
 enum refusal_code pairings_approve(struct pairings *pairings, const char *digits, const char *who, int64_t now_ns, int64_t now_us,
                                    char id[TOKEN_NAME_BYTES]);
-/* Revokes a device. Returns REFUSAL_NONE, or why it was refused. */
+/* Revokes a paired device. Returns REFUSAL_NONE, or why it was refused. */
 enum refusal_code pairings_revoke(struct pairings *pairings, const char *id);
-/* Finds a paired device by the hash of its secret, for tokens_set_pairings(). pairings: a struct pairings. Returns false if there is
-   none. */
+/* Finds a paired device by the hash of its secret; a tokens_find_device for tokens_set_pairings(). pairings: a struct pairings. Returns
+   false if there is none. */
 bool pairings_find(const void *pairings, const uint8_t hash[TOKEN_HASH_BYTES], struct token_holder *out);
 /* Returns the paired devices as JSON, without their hashes; the caller frees the text with mem_free. */
 char *pairings_text(const struct pairings *pairings);
 
 /* --- for a renderer, whose core approves devices --------------------------------------------------------------------------------- */
 
-/* Returns a sequence number that increases with each change of the paired or waiting devices. */
+/* Returns a sequence number that increases with each change of the lists of paired and waiting devices. */
 uint64_t pairings_number(const struct pairings *pairings);
 /* Returns the paired and the waiting devices as JSON for renderers: { devices, waiting }, with hashes; the caller owns it. */
 json_t *pairings_told(const struct pairings *pairings, int64_t now_ns);
 /* Replaces the devices on a renderer or a standby core by those of the core. Returns false if the JSON is invalid. */
 bool pairings_mirror(struct pairings *pairings, const json_t *told, int64_t now_ns);
-/* Like pairings_ask(), on a renderer, with the list of devices that the core sent; digits "" until the core has sent that list. */
+/* Like pairings_ask(), but on a renderer, from the lists that its core sent. Until the core has sent them, the digits are empty. */
 enum pairing pairings_look(const struct pairings *pairings, const struct pairing_request *request, int64_t now_ns,
                            char digits[PAIRING_DIGITS + 1], int *left_s);
-/* pairings_request_text() returns the request that a renderer sends its core for a device: JSON without the secret; the caller frees it
-   with mem_free. pairings_ask_for() carries out such a request on the core. */
+/* Returns the request that a renderer sends its core for a device: JSON without the secret; the caller frees it with mem_free. On the
+   core, pairings_ask_for() carries out such a request. */
 char *pairings_request_text(const struct pairing_request *request);
 void pairings_ask_for(struct pairings *pairings, const json_t *request, int64_t now_ns);
 

@@ -35,14 +35,15 @@ enum quota {
 
 struct quotas {
     int64_t at[QUOTA_COUNT];
-    bool given[QUOTA_COUNT]; /* true for a limit set on the command line; limits per address then also apply to addresses of this machine */
+    bool given[QUOTA_COUNT]; /* true for a limit set on the command line; a limit per address that is set also applies to addresses of
+                                this machine */
 };
 
 /* Returns the default limits. */
 struct quotas quotas_default(void);
 /* Sets one limit from "NAME=N". Returns false if there is no such limit, or N is out of range. */
 bool quotas_parse(struct quotas *quotas, const char *text);
-/* Prints names, defaults and descriptions of all limits, for --help. */
+/* Prints name, default and description of each limit, for --help. */
 void quotas_print(FILE *out);
 
 #endif

@@ -26,7 +26,7 @@ enum { MAX_FILE_BYTES = 1024 * 1024, RANDOM_BYTES = 32 };
 
 struct tokens {
     struct log *log;
-    char *path, *plant; /* plant: name of this plant; NULL: not known */
+    char *path, *plant; /* path of the file of tokens; plant: name of this plant, NULL if not known */
     struct token_holder *holders;
     size_t count, capacity;
     struct file_watch watch;
@@ -99,7 +99,7 @@ bool tokens_may_see(const struct token_holder *holder, const char *view)
     size_t length = strlen(view);
     for (const char *at = holder->views; *at; at += at[strcspn(at, ",")] ? strcspn(at, ",") + 1 : strlen(at))
         if (!strncmp(at, view, length) && (at[length] == ',' || !at[length]))
-            return named_view_id_valid(view); /* refuses a list: the view is a single id */
+            return named_view_id_valid(view); /* the view is a single id: a list is refused */
     return !holder->views[0];
 }
 
@@ -112,10 +112,10 @@ bool tokens_parse_day(const char *text, int64_t *until_utc_ns)
         return false;
     int64_t begin_s = timegm(&day);
     *until_utc_ns = (begin_s + 24 * 3600) * NS_PER_S;
-    return day.tm_mday == said; /* strptime accepts dates such as 30 February; the day then differs */
+    return day.tm_mday == said; /* strptime accepts dates such as 30 February but then changes the day */
 }
 
-/* Cuts the last part, `plant NAME`, off a line; the name may contain blanks. Returns false if the name is invalid. */
+/* Cuts the last part of a line, `plant NAME`, off; the name may contain blanks. Returns false if the name is invalid. */
 static bool take_plant(char *line, char plant[TOKEN_PLANT_BYTES])
 {
     static const char key[] = " plant ";
@@ -124,7 +124,7 @@ static bool take_plant(char *line, char plant[TOKEN_PLANT_BYTES])
     while (n > 0 && strchr(" \t", line[n - 1]))
         line[--n] = 0;
     for (char *next = line; (next = strstr(next, key)); next++)
-        /* searched only after the hash, because the holder's name may contain the word */
+        /* looks for the keyword behind the hash only, because the holder's name before the hash may contain it */
         at = next > line + 2 * TOKEN_HASH_BYTES && !at ? next : at;
     if (!at)
         return true;
@@ -249,7 +249,8 @@ static void take_lines(struct tokens *tokens, char *text)
         take_line(tokens, line, ++number);
 }
 
-/* Reads the file; checks the same descriptor from which it reads. Returns false on failure, logged. */
+/* Reads the file. Checks owner and mode on the descriptor from which it reads, so that the file cannot be exchanged in between. Returns
+   false on failure, logged. */
 static bool read_file(struct tokens *tokens)
 {
     struct stat st = { 0 };
@@ -332,7 +333,7 @@ static bool is_for_us(const struct tokens *tokens, const struct token_holder *ho
     return !holder->plant[0] || !tokens->plant || !strcmp(holder->plant, tokens->plant);
 }
 
-/* Finds the holder of a hash, preferring a token that has not expired. Takes the same time for every hash. */
+/* Finds the holder of a hash; if the hash occurs twice, the holder whose token has not expired. Takes the same time for every hash. */
 static const struct token_holder *find(const struct tokens *tokens, const uint8_t hash[TOKEN_HASH_BYTES], int64_t now_utc_ns)
 {
     const struct token_holder *found = NULL;

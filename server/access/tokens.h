@@ -16,13 +16,13 @@ struct token_holder {
     char name[TOKEN_NAME_BYTES];
     uint8_t hash[TOKEN_HASH_BYTES]; /* SHA-256 of the token; all 0: no holder */
     int64_t until_utc_ns;           /* expiry; INT64_MAX: never */
-    char plant[TOKEN_PLANT_BYTES];  /* name of the only plant for which the token is valid; "": any plant */
-    /* comma-separated ids: the token is only for pictures of these views of the plant file; "": not restricted */
+    char plant[TOKEN_PLANT_BYTES];  /* name of the only plant for which the token is valid; empty: any plant */
+    /* comma-separated ids of views: the token is only for pictures of these; empty: not restricted */
     char views[TOKEN_VIEWS_BYTES];
     bool unattended;                /* token of a wall or a program: not locked when there is no user activity */
-    bool signed_in;                 /* a person signed in at the identity provider; the hash is that of the session cookie */
-    char wall[NAMED_VIEW_ID_BYTES]; /* wall of the only display for which the token is valid; "": not restricted */
-    int display;                    /* number of that display; 0: not restricted */
+    bool signed_in;                 /* true: a person signed in at the identity provider; `hash` is that of the session cookie */
+    char wall[NAMED_VIEW_ID_BYTES]; /* id of the wall whose display is the only one for which the token is valid; empty: not restricted */
+    int display;                    /* number of that display, from 1; 0: not restricted */
 };
 
 struct tokens;
@@ -31,11 +31,12 @@ struct tokens;
 struct tokens *tokens_create(struct log *log, const char *path);
 /* Sets the name of this plant, which is copied: tokens for other plants are refused. */
 void tokens_set_plant(struct tokens *tokens, const char *plant);
-/* Makes paired devices valid as well: find(pairings, ...) is pairings_find(). pairings must stay valid until the next call. */
+/* Makes tokens_find() also accept paired devices, which it looks up with find(pairings, ...): pairings_find() and its struct pairings.
+   pairings must stay valid until the next call. */
 typedef bool tokens_find_device(const void *pairings, const uint8_t hash[TOKEN_HASH_BYTES], struct token_holder *out);
 void tokens_set_pairings(struct tokens *tokens, tokens_find_device *find, const void *pairings);
 void tokens_destroy(struct tokens **tokens); /* &NULL is allowed; sets *tokens to NULL */
-/* Reads the file again if it changed and has stopped changing. Returns whether it was read. */
+/* Reads the file again if it changed and has stopped changing. Returns true if it was read. */
 bool tokens_look(struct tokens *tokens);
 /* Returns the number of valid tokens. */
 size_t tokens_count(const struct tokens *tokens);
@@ -45,28 +46,29 @@ bool tokens_has_name(const struct tokens *tokens, const char *name);
 /* Looks a token up in the file and among paired devices, and writes its holder to *out. Returns false if it is in neither (then
    out->role is ROLE_NOBODY), or has expired. */
 bool tokens_find(const struct tokens *tokens, const char *token, int64_t now_utc_ns, struct token_holder *out);
-/* Returns the present role of a token's holder; ROLE_NOBODY: the token was revoked, has expired, or is now restricted to other views or
-   another display. */
+/* Returns the role that a token's holder has now; ROLE_NOBODY: the token was revoked, has expired, or is now restricted to other views
+   or another display. */
 enum role tokens_role(const struct tokens *tokens, const struct token_holder *holder, int64_t now_utc_ns);
 
 /* --- for `plantcast token` --- */
-/* Parses a line of the file into *out. Returns 1; 0 for an empty line or a comment; -1 with *why (static text). */
+/* Parses a line of the file into *out. Returns 1 on success, 0 for an empty line or a comment, -1 with *why (static text) for an invalid
+   line. */
 int tokens_parse_line(const char *line, struct token_holder *out, const char **why);
 /* Writes the SHA-256 of a token. */
 void tokens_hash(const char *token, uint8_t hash[TOKEN_HASH_BYTES]);
 /* Makes a token of 256 random bits. Returns false if the system has no randomness. */
 bool tokens_make(char token[TOKEN_MAX_CHARS + 1]);
-/* Appends the file's line for a holder. */
+/* Appends the line that the file needs for a holder. */
 void tokens_print_line(struct text *out, const struct token_holder *holder);
 /* Returns whether a holder may have that name. */
 bool tokens_name_valid(const char *name);
-/* Returns whether a token may be restricted to a plant of that name: the name must fit into one line. */
+/* Returns true if a token may be restricted to a plant of that name: the name must fit into one line of the file. */
 bool tokens_plant_valid(const char *plant);
 /* Returns whether the text is a valid list of views: ids separated by commas. */
 bool tokens_views_valid(const char *views);
-/* Parses WALL:NUMBER, the display to which a token is restricted, into *out. Returns false if it is invalid. */
+/* Parses WALL:NUMBER, the display to which a token is restricted, into *out. Returns false if the text is invalid. */
 bool tokens_parse_display(const char *text, struct token_holder *out);
-/* Returns the holder's effective role: ROLE_OPEN (pictures only) if the token is restricted to views. */
+/* Returns the role that the holder effectively has: ROLE_OPEN (pictures only) if the token is restricted to views. */
 enum role tokens_role_of(const struct token_holder *holder);
 /* Returns whether the holder may see that view. */
 bool tokens_may_see(const struct token_holder *holder, const char *view);

@@ -38,7 +38,8 @@ static bool is_for(const json_t *key, const char *alg, const char *kid)
            (!kid || (its_kid && !strcmp(its_kid, kid)));
 }
 
-/* Imports a public key. Private and foreign members are left out, because libcjose would require them to be complete. */
+/* Imports a public key. Leaves out its private members and those of other standards, because libcjose would require such members to be
+   complete. */
 static cjose_jwk_t *import_key(const json_t *key)
 {
     static const char *const members[] = { "kty", "kid", "n", "e", "crv", "x", "y" };
@@ -144,7 +145,8 @@ enum id_token_fault id_token_verify(const char *token, const struct id_token_exp
 
 static const json_t *at_path(const json_t *claims, const char *path)
 {
-    const json_t *whole = json_object_get(claims, path); /* a claim's name may be a URL, which contains dots */
+    const json_t *whole = json_object_get(claims, path); /* tries the whole path as one claim first: a claim's name may be a URL, which
+                                                            contains dots */
     char *copy = mem_strdup(path), *rest = copy;
     const json_t *found = claims;
     for (char *part; !whole && (part = strsep(&rest, "."));)
@@ -171,7 +173,7 @@ enum role id_token_role(const struct openid_config *config, const json_t *claims
     return best;
 }
 
-/* Copies a name. Returns false for invalid UTF-8 and control characters, which would break or hide in a line of text. */
+/* Copies a name. Returns false if it is invalid UTF-8 or has control characters, which would break a line of text or hide in it. */
 static bool copy_name(const char *text, char *out, size_t size)
 {
     size_t at = 0;

@@ -21,10 +21,10 @@ struct id_token_expected {
 enum id_token_fault {
     ID_TOKEN_GOOD,
     ID_TOKEN_BAD,
-    ID_TOKEN_NO_KEY, /* the key that signed the token is not among the provider's known keys: the provider may have a new one */
+    ID_TOKEN_NO_KEY, /* the token's key is not among the provider's known keys: the provider may have a new key */
 };
 
-/* Verifies a token. If it is good, writes its claims to *claims (json_decref); otherwise *why (static text) says what is wrong. */
+/* Verifies a token. If it is good, *claims receives its claims (json_decref); otherwise *why (static text) says what is wrong. */
 enum id_token_fault id_token_verify(const char *token, const struct id_token_expected *expected, json_t **claims, const char **why);
 /* Returns the highest role that the claims' groups give; the name of the groups claim may be a path with dots. */
 enum role id_token_role(const struct openid_config *config, const json_t *claims);

@@ -57,7 +57,7 @@ char *openid_begin(struct openid *openid, const uint8_t address[16], const char 
     return url;
 }
 
-/* Returns true if the answer comes from a provider other than the configured one (RFC 9207). */
+/* Returns true if the answer comes from another provider than the configured one (RFC 9207). */
 static bool is_other_issuer(const struct openid *openid, const char *iss)
 {
     if (iss)
@@ -65,8 +65,8 @@ static bool is_other_issuer(const struct openid *openid, const char *iss)
     return json_is_true(json_object_get(openid->metadata, "authorization_response_iss_parameter_supported"));
 }
 
-/* Returns whether one more answer may be queued. Queued answers are limited per address, so that one address cannot use all places. The
-   caller holds the lock. */
+/* Returns true if one more browser's answer may be queued for its code to be exchanged. Queued answers are limited in total and per
+   address, so that one address cannot fill the queue. The caller holds the lock. */
 static bool has_room(const struct openid *openid, const uint8_t address[16])
 {
     int of_address = 0;
@@ -75,8 +75,9 @@ static bool has_room(const struct openid *openid, const uint8_t address[16])
     return openid->codes.count < OPENID_CODES && of_address < OPENID_CODES_OF_ADDRESS;
 }
 
-/* Decides how to treat an error that a browser brought from the provider (a refused sign-in, or the provider's own failure). Such an error
-   is no guess at a secret. Anyone can send any number of errors, so only one in ERROR_EVERY_NS is recorded. The caller holds the lock. */
+/* Decides how to treat an error that a browser brought from the provider (a refused sign-in, or the provider's own failure): such an
+   error is no guess at a secret. Anyone can send any number of errors, so only one in ERROR_EVERY_NS is recorded. The caller holds the
+   lock. */
 static enum openid_result judge_error(struct openid *openid, int64_t now_ns)
 {
     if (openid->error_ns && now_ns - openid->error_ns < ERROR_EVERY_NS)

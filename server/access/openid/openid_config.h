@@ -12,7 +12,7 @@ struct openid_group {
 };
 
 struct openid_config {
-    char *issuer, *client_id, *client_secret_file; /* client_secret_file NULL: a public client without a secret */
+    char *issuer, *client_id, *client_secret_file; /* client_secret_file NULL: this server is a public client without a secret */
     char *url;                                     /* URL of this server's page as browsers see it, with a trailing slash */
     char *redirect_uri;                            /* derived from url */
     char *ca_file;                                 /* NULL: the machine's trusted certificates */
@@ -28,7 +28,7 @@ struct openid_config {
 /* Reads the file. Returns NULL on failure, already logged. */
 struct openid_config *openid_config_read(struct log *log, const char *path);
 void openid_config_free(struct openid_config **config); /* &NULL is allowed; sets *config to NULL */
-/* Returns the highest role that a group gives; ROLE_NOBODY: the group gives none. */
+/* Returns the highest role that a group gives; ROLE_NOBODY: the group gives no role. */
 enum role openid_config_role(const struct openid_config *config, const char *group);
 
 #endif

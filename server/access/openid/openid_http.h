@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* HTTP requests to the identity provider. They block for 7 s at most. Any thread. */
+/* HTTP requests to the identity provider. Each blocks for 7 s at most. Thread: any. */
 #ifndef OPENID_OPENID_HTTP_H
 #define OPENID_OPENID_HTTP_H
 #include <jansson.h>
@@ -13,12 +13,12 @@ struct openid_reply {
     char why[256]; /* reason why the provider gave no answer */
 };
 
-/* Both functions return true if there was an answer, even one with an error status; free it with openid_reply_finish(). stop: the request
-   is abandoned when it becomes true. */
+/* openid_get() and openid_post() return true if the provider answered, even with an error status; free the answer with
+   openid_reply_finish(). stop: a flag; when it becomes true, the request is abandoned. */
 /* Requests a URL with GET and reads the JSON answer. bearer: an access token; NULL: none. */
 bool openid_get(const struct openid_config *config, const char *url, const char *bearer, const _Atomic bool *stop,
                 struct openid_reply *reply);
-/* Posts a form. Authenticates this server with the client secret, by HTTP Basic or, if in_form, as a field of the form. */
+/* Sends a form with POST. Authenticates this server with the client secret, by HTTP Basic or, if in_form, as a field of the form. */
 bool openid_post(const struct openid_config *config, const char *url, const char *form, bool in_form, const _Atomic bool *stop,
                  struct openid_reply *reply);
 void openid_reply_finish(struct openid_reply *reply);

@@ -9,13 +9,13 @@
 #include "access/openid/id_token.h"
 #include "access/openid/openid.h"
 
-/* maximum number of codes that wait to be exchanged for tokens: in total, and per address */
+/* maximum numbers of codes that wait to be exchanged for tokens: in total, and of one address */
 enum { OPENID_CODES = 64, OPENID_CODES_OF_ADDRESS = 16 };
 
-struct openid_job { /* job: a code that a browser brought back, or a token to revoke */
+struct openid_job { /* a code that a browser brought back, or a token to revoke */
     uint64_t request;
     struct sign_in sign_in;
-    char *code, *from, *revoke; /* revoke: a refresh token to revoke; NULL: redeem `code` */
+    char *code, *from, *revoke; /* revoke: the refresh token to revoke; NULL: the job is to redeem `code` */
     struct openid_job *next;
 };
 
@@ -33,11 +33,12 @@ struct openid {
     pthread_t thread; /* starts tasks that are due */
     bool started;
     counter *good, *people, *refused, *foreign;
-    /* changed: rights changed since the last openid_take_changed(); failing: it was logged that the provider fails */
+    /* changed: a user's rights changed since the last openid_take_changed(); failing: the log already has a line that the provider fails */
     _Atomic bool stopping, changed, failing;
-    pthread_mutex_t asking; /* held while metadata and keys are requested; never taken while `lock` is held */
+    pthread_mutex_t asking; /* held while metadata and keys are requested from the provider; must not be locked by a thread that holds
+                               `lock` */
     /* --- below: protected by `asking` */
-    int64_t jwks_ns, discovered_ns; /* monotonic: when keys and metadata were last requested; 0: never */
+    int64_t jwks_ns, discovered_ns; /* monotonic time when keys (jwks) and metadata (discovered) were last requested; 0: never */
     /* --- below: protected by `lock` */
     pthread_mutex_t lock;
     pthread_cond_t wake;
@@ -45,9 +46,9 @@ struct openid {
     struct sign_ins *table;
     struct openid_jobs codes, revocations;
     int running[OPENID_TASKS];
-    int64_t discover_ns; /* monotonic: when metadata and keys are due to be checked */
+    int64_t discover_ns; /* monotonic time when metadata and keys must be checked again */
     struct openid_answer *answers;
-    int64_t error_ns; /* monotonic: when an error of the provider was last recorded; 0: never */
+    int64_t error_ns; /* monotonic time when an error of the provider was last recorded; 0: never */
 };
 
 /* --- openid_work.c --- */
@@ -58,39 +59,41 @@ void *openid_run(void *arg);
 /* Queues a job; takes its texts. The caller holds the lock. */
 void openid_add_job(struct openid *openid, struct openid_jobs *jobs, const struct openid_job *job);
 void openid_free_jobs(struct openid_jobs *jobs);
-/* Queues the revocation of a copy of a refresh token, if the provider supports that; NULL: does nothing. The caller holds the lock. */
+/* Queues the revocation of a refresh token, which is copied, if the provider supports revocation. NULL is a no-op. The caller holds the
+   lock. */
 void openid_revoke_later(struct openid *openid, const char *refresh_token);
 /* Queues an answer; takes ownership of the text `why`. The caller holds the lock. */
 void openid_add_answer(struct openid *openid, const struct openid_job *job, enum openid_result result, const char *cookie, char *why);
-/* Write an entry to the audit trail; openid_say_refused() also logs and counts it. */
+/* openid_record() writes an entry to the audit trail; openid_say_refused() also logs and counts the refusal. */
 void openid_record(struct openid *openid, const char *event, const char *result, const struct token_holder *holder, const char *from,
                    const char *what, const char *why);
 void openid_say_refused(struct openid *openid, const char *from, const char *why);
 
 /* --- openid_provider.c; any thread, without the lock --- */
 
-/* Returns whether metadata and keys are known. */
+/* Returns true if the provider's metadata and keys are known. */
 bool openid_knows(struct openid *openid);
-/* Requests metadata and keys if they are unknown or old. Returns whether they are known. */
+/* Requests the provider's metadata and keys if they are unknown or old. Returns true if they are known. */
 bool openid_discover(struct openid *openid);
 /* Reports in the log and the metrics whether the provider answers. why NULL: the provider answers. */
 void openid_say(struct openid *openid, const char *why);
-/* Returns an endpoint URL from the metadata (mem_free); NULL: there is none. */
+/* Returns the provider's URL for an endpoint from its metadata (mem_free); NULL: the provider has no such endpoint. */
 char *openid_endpoint(struct openid *openid, const char *name);
-/* Verifies an ID token, fetching new keys if needed. Returns its claims (json_decref); NULL with *why (static text). *unsure: the
-   token's key is unknown, and the provider's present keys could not be fetched. */
+/* Verifies an ID token; fetches the provider's keys if the token's key is unknown. Returns its claims (json_decref); NULL with *why
+   (static text). *unsure true: the token may be good, but its key is unknown and the keys could not be fetched. */
 json_t *openid_verify(struct openid *openid, const char *token, const char *nonce, const char *sub, bool *unsure, const char **why);
-/* Adds claims from the provider's UserInfo endpoint if groups or name are missing. Returns false if the provider refuses. *told: the
-   claims are now complete; otherwise groups may be missing only because the provider was not asked or did not answer. */
+/* Adds claims from the provider's UserInfo endpoint if groups or name are missing. Returns false if the provider refuses. *told true:
+   the claims are complete now. *told false: groups may be missing only because the provider was not asked or did not answer. */
 bool openid_complete(struct openid *openid, json_t *claims, const char *access_token, bool *told);
 
 /* --- openid_tokens.c; any thread, without the lock --- */
 
-/* Redeems a code. Returns the person, not yet in the table; NULL with *result and *why (mem_free). */
+/* Redeems a code at the provider. Returns the person, who is not in the table of signed-in people yet; NULL with *result and *why
+   (mem_free) if the log-in failed. */
 struct person *openid_redeem(struct openid *openid, const struct openid_job *job, enum openid_result *result, char **why);
 enum openid_rights { RIGHTS_UNKNOWN, RIGHTS_GONE, RIGHTS_SAME };
-/* Checks a person's rights again; updates role and tokens of `person`, a copy that owns its texts. RIGHTS_UNKNOWN: the provider does not
-   answer. *why: static text. */
+/* Checks a person's rights again at the provider. Updates role and tokens of `person`, a copy that owns its texts. Returns
+   RIGHTS_UNKNOWN if the provider does not answer. *why: static text. */
 enum openid_rights openid_check(struct openid *openid, struct person *person, const char **why);
 /* Revokes a refresh token, if the provider supports that. */
 void openid_revoke(struct openid *openid, const char *token);

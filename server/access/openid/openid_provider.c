@@ -9,7 +9,8 @@
 #include "base/mem.h"
 
 static const int64_t MAX_AGE_NS = 3600 * NS_PER_S, RETRY_NS = 5 * NS_PER_S;
-/* minimum time between two requests for keys, even if tokens name unknown keys: outsiders can send any token */
+/* minimum time between two requests for keys. Without it, outsiders could cause any number of requests with tokens that name unknown
+   keys */
 static const int64_t KEYS_INTERVAL_NS = 10 * NS_PER_S;
 
 void openid_say(struct openid *openid, const char *why)
@@ -118,12 +119,12 @@ static json_t *take_keys(struct openid *openid)
     return keys;
 }
 
-/* Fetches keys other than `keys`, unless keys were fetched a moment ago. Returns false if the provider's present keys could not be
-   fetched. */
+/* Fetches the provider's keys, unless they were fetched within KEYS_INTERVAL_NS or another thread has already replaced `keys`. Returns
+   false if newer keys than `keys` are not available. */
 static bool renew_keys(struct openid *openid, const json_t *keys)
 {
     pthread_mutex_lock(&openid->asking);
-    bool renewed = openid->jwks != keys; /* another thread has fetched new keys meanwhile, so no request is needed */
+    bool renewed = openid->jwks != keys; /* true: another thread has already fetched new keys, so no request is needed */
     if (!renewed && clock_mono_ns() - openid->jwks_ns > KEYS_INTERVAL_NS)
         renewed = ask_keys(openid);
     pthread_mutex_unlock(&openid->asking);
@@ -154,7 +155,8 @@ bool openid_complete(struct openid *openid, json_t *claims, const char *access_t
     bool lacks = !id_token_has_groups(openid->config, claims) || !json_object_get(claims, openid->config->name_claim) ||
                  !id_token_name(openid->config, claims, name, sizeof(name));
     bool asks = url && access_token && lacks;
-    *told = !asks && json_object_get(claims, "iss"); /* the claims come from an ID token */
+    *told = !asks && json_object_get(claims, "iss"); /* no request is made: claims that come from an ID token (they have `iss`) count as
+                                                        complete */
     if (asks && openid_get(openid->config, url, access_token, &openid->stopping, &reply) && reply.status == 200) {
         const char *sub = json_string_value(json_object_get(claims, "sub")), *its = json_string_value(json_object_get(reply.json, "sub"));
         *told = sub && its && !strcmp(sub, its);

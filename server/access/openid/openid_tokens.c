@@ -24,8 +24,8 @@ static void replace(char **text, const char *by)
     *text = mem_strdup(by);
 }
 
-/* Returns true if the client secret must be sent in the form: the provider lists its authentication methods, and HTTP Basic is not among
-   them. */
+/* Returns true if the client secret must be sent as a field of the form, because HTTP Basic is not among the authentication methods that
+   the provider lists. */
 static bool secret_in_form(struct openid *openid)
 {
     pthread_mutex_lock(&openid->lock);
@@ -59,7 +59,7 @@ static void keep_tokens(struct person *person, const json_t *json)
 
 /* --- redeeming a code --------------------------------------------------------------------------------------------------------- */
 
-/* Makes a person from valid claims. NULL with *why (mem_free). */
+/* Makes a person from valid claims. Returns NULL with *why (mem_free) if the claims give no role or no usable name. */
 static struct person *make_person(struct openid *openid, json_t *claims, const json_t *tokens, char **why)
 {
     struct token_holder holder = { .signed_in = true, .until_utc_ns = clock_utc_ns() + (int64_t)(openid->config->hours * 3600e9) };
@@ -93,8 +93,8 @@ static struct person *take_tokens(struct openid *openid, const struct openid_job
     return person;
 }
 
-/* Only invalid_grant means that the code is wrong (RFC 6749, 5.2). Every other error concerns the provider and this server, not the user:
-   the client secret has expired, or the provider is busy. */
+/* Returns OPENID_GUESSED only for invalid_grant, which means that the code is wrong (RFC 6749, 5.2). Every other error concerns the
+   provider and this server, not the user: the client secret has expired, or the provider is busy. */
 static enum openid_result judge_code(const struct openid_reply *reply, const char *error)
 {
     if (reply->status == 200)
@@ -121,7 +121,8 @@ struct person *openid_redeem(struct openid *openid, const struct openid_job *job
                           error ? error : "it does not say why", reply.status);
     else
         person = take_tokens(openid, job, reply.json, why);
-    if (!person && reply.status == 200) { /* revokes the refresh token: one that is not used here should not stay valid at the provider */
+    if (!person && reply.status == 200) { /* the log-in failed, so the refresh token that came with it is revoked: it should not stay
+                                             valid at the provider unused */
         pthread_mutex_lock(&openid->lock);
         openid_revoke_later(openid, text_of(reply.json, "refresh_token"));
         pthread_mutex_unlock(&openid->lock);
@@ -184,7 +185,7 @@ static enum openid_rights refresh(struct openid *openid, struct person *person, 
     return rights;
 }
 
-/* Checks a person's rights without a refresh token, while the access token is valid. */
+/* Checks a person's rights with the access token, while that is valid, for want of a refresh token. */
 static enum openid_rights ask_again(struct openid *openid, struct person *person, const char **why)
 {
     char *url = openid_endpoint(openid, "userinfo_endpoint");

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Requests to the identity provider: one thread starts the tasks that are due, and each request runs in a thread of its own, so that
-   neither a slow answer nor a burst of log-ins delays the end of rights. */
+/* Does the requests to the identity provider. One thread starts the tasks that are due. Each request runs in a thread of its own, so
+   that neither a slow answer nor a burst of log-ins delays the check that ends expired rights. */
 #include <string.h>
 
 #include "access/openid/openid_impl.h"
@@ -8,7 +8,7 @@
 #include "base/mem.h"
 #include "message/names.h"
 
-/* interval until an unknown provider, and a known one, is checked again */
+/* intervals at which the provider's metadata are requested: while they are unknown, and once they are known */
 static const int64_t RETRY_DELAY_NS = 5 * NS_PER_S, CHECK_INTERVAL_NS = 3600 * NS_PER_S;
 static const int at_once[OPENID_TASKS] = {
     [OPENID_TASK_CODE] = 4, [OPENID_TASK_CHECK] = 16, [OPENID_TASK_REVOKE] = 1, [OPENID_TASK_DISCOVER] = 1
@@ -17,8 +17,8 @@ static const int at_once[OPENID_TASKS] = {
 struct task {
     struct openid *openid;
     enum openid_task kind;
-    struct openid_job *job; /* job of a code or of a revocation; NULL for the other kinds */
-    struct person person;   /* for a check of rights: a copy of the person, which owns its texts */
+    struct openid_job *job; /* job of a code or a revocation; NULL for the other kinds of tasks */
+    struct person person;   /* for a check of rights: a copy of the person, with its own texts */
     int64_t began_ns;
 };
 
@@ -106,7 +106,8 @@ static struct openid_job *take_job(struct openid_jobs *jobs)
     return job;
 }
 
-/* Drops the oldest queued revocation if too many wait because the provider accepts none; that token expires at the provider by itself. */
+/* Drops the oldest queued revocation if too many wait because the provider accepts none; the token of the dropped one stays valid until
+   it expires. */
 void openid_revoke_later(struct openid *openid, const char *refresh_token)
 {
     if (!refresh_token || !json_object_get(openid->metadata, "revocation_endpoint"))
@@ -177,7 +178,7 @@ static void do_revoke(struct task *task)
 
 /* --- rights --------------------------------------------------------------------------------------------------------------- */
 
-/* Copies a person, to be used without the lock. */
+/* Copies a person and its texts, so that the copy can be used without the lock. */
 static void copy_person(struct person *out, const struct person *person)
 {
     *out = *person;
@@ -203,8 +204,8 @@ static void end_person(struct openid *openid, struct person *person, const char 
     tell_loop(openid);
 }
 
-/* Applies the result of a check. If the person has signed out meanwhile, or the rights ended, a newly received refresh token is revoked.
-   The caller holds the lock. */
+/* Applies the result of a rights check to the table of signed-in people. If the person has signed out since the check began, or the
+   rights ended, a newly received refresh token is revoked. The caller holds the lock. */
 static void settle(struct openid *openid, struct task *task, enum openid_rights rights, const char *why)
 {
     struct person *person = sign_ins_numbered(openid->table, task->person.number), *copy = &task->person;
@@ -290,7 +291,8 @@ static bool may_start(const struct openid *openid, enum openid_task kind)
     return openid->running[kind] < at_once[kind];
 }
 
-/* Returns the task to do now; NULL: none is due before *next_ns (monotonic). The caller holds the lock. */
+/* Returns the task to do now. NULL: none is due; *next_ns receives the monotonic time at which the next one is. The caller holds the
+   lock. */
 static struct task *take_task(struct openid *openid, int64_t *next_ns)
 {
     struct person *person = may_start(openid, OPENID_TASK_CHECK) ? sign_ins_next_check(openid->table) : NULL;
@@ -322,8 +324,8 @@ static struct task *take_task(struct openid *openid, int64_t *next_ns)
     return copy;
 }
 
-/* Starts a task in a thread of its own, or runs it here if no thread can be created. The caller holds the lock, which is released
-   meanwhile. */
+/* Starts a task in a thread of its own, or runs it in this thread if none can be created. The caller holds the lock, which is released
+   during the call. */
 static void start_task(struct openid *openid, struct task *task)
 {
     pthread_t thread;

@@ -87,7 +87,8 @@ void sign_ins_destroy(struct sign_ins **pointer)
     *pointer = NULL;
 }
 
-/* Returns the entry for a new log-in of that address: a free one, or the oldest that may be replaced. */
+/* Returns the entry for a new log-in of that address: an unused one or, if the address has too many or all are used, the oldest entry
+   that may be replaced. */
 static struct sign_in *find_place(struct sign_ins *table, const uint8_t address[16], int64_t now_ns)
 {
     struct sign_in *oldest = NULL, *own = NULL, *unused = NULL;
@@ -154,7 +155,8 @@ void sign_ins_remove(struct sign_ins *table, struct person *person)
     memmove(person, person + 1, (table->count - i) * sizeof(*person));
 }
 
-/* Limits the number of sessions per person and in total: removes the oldest session if there are too many. */
+/* Makes room for one more session: removes the oldest session of the person, or of all people, if there are too many. *left receives its
+   refresh token. */
 static void make_room(struct sign_ins *table, const char *sub, char **left)
 {
     struct person *same = NULL;
