@@ -172,7 +172,7 @@ static bool on_resize(struct session *session, const struct message *message, st
     if (session_is_tile(session))
         session_tile_fit(session, &session->tile.place, message->width_px, message->height_px, &session->view, &session->tile.layout);
     session_scope_fit(session, &session->view);
-    /* the view's author may have given no camera: it then depends on the picture's size */
+    /* a view of the plant file may give no camera. The camera then depends on the picture's size, so the view is set again */
     if (session->scope.named[0] && session->identity.holder.views[0])
         return session_look(session, session->scope.named, &session->view, error);
     if (message->pixel_ratio > 0)
@@ -418,7 +418,8 @@ void session_too_fast(struct session *session, int64_t count, const char *whose)
     session_reply_error(session, &error);
 }
 
-/* Limits the rate of messages: those read beyond the limit of one second count against the following seconds. */
+/* Starts the next second of the message rate. Messages that were read beyond the limit of one second count against the following seconds.
+   most: limit per second. */
 static void begin_second(struct message_rate *rate, int64_t most, int64_t now_ns)
 {
     int64_t seconds = (now_ns - rate->begin_ns) / NS_PER_S, allowed = seconds * most;
@@ -503,7 +504,7 @@ static void tell_token(struct session *session, int64_t now_ns)
     mem_free(token);
 }
 
-/* Returns whether a picture is wanted, requested, in flight or ready to send. */
+/* Returns whether the client still has to get a picture: one is wanted, requested, in flight or ready to send. */
 static bool is_owed(const struct session *session)
 {
     const struct frame_demand *demand = &session->demand;

@@ -16,7 +16,7 @@
 
 /* Makes the session of a new connection. Never NULL. */
 struct session *session_create(const struct session_context *context, uint64_t id, int64_t now_ns);
-void session_destroy(struct session **session); /* &NULL is allowed; sets *session to NULL */
+void session_destroy(struct session **session); /* destroys the session and sets *session to NULL; accepts a pointer to NULL */
 /* Tells the session who connected. Copies `client`; client->share must outlive the session. A session without an introduction has all
    rights. After the introduction the first frame waits for session_begin(), for a second at most. */
 void session_introduce(struct session *session, const struct session_client *client);
@@ -25,12 +25,14 @@ void session_introduce(struct session *session, const struct session_client *cli
 void session_leave(struct session *session, bool keep, int64_t now_ns);
 /* Records the end of the session in the audit trail. why: static text; NULL: the client left by itself. */
 void session_record_leave(const struct session *session, const char *why);
-/* Queues the answers to actions that are on disk by now or can never be written. Returns whether it queued any. */
+/* Queues the answers to actions whose journal and audit entries are on disk by now, or can never be written. Returns whether it queued
+   any. */
 bool session_settle(struct session *session);
-/* Destroys a session whose client has gone. While the disk has not decided on an action on alarms, the session stays in the list `gone` of
-   its context, so that a failure is still recorded in the audit trail. */
+/* Destroys a session whose client has gone. While it is open whether an action on alarms is on disk, the session stays in the list `gone`
+   of its context, so that a failure is still recorded in the audit trail. */
 void session_retire(struct session **session);
-/* Records the disk's decisions for the sessions in the context's list `gone`, and destroys those with no action left to decide. */
+/* For the sessions in the context's list `gone`: records in the audit trail which actions on alarms failed to reach the disk, and destroys
+   the sessions that have no open action left. */
 void session_settle_gone(struct kept_answers *answers);
 /* Asks the event loop to close the connection once all queued texts are sent. text: static. If called more than once, the first reason
    counts. */
@@ -182,7 +184,7 @@ void session_tile_tell(struct session *session, const bool *there, const int64_t
 
 /* Redraws the session's trial sensor positions once distances for them were computed. */
 void session_on_placed(struct session *session, int64_t now_ns);
-/* Takes out the tag list that is to be put in force; the caller owns it. NULL: none. */
+/* Takes out the tag list that a reload is to activate; the caller owns it. NULL: none. */
 struct tag_save *session_take_save(struct session *session);
 /* Queues the answer to the message `gaps` (sensor coverage). */
 void session_on_coverage(struct session *session, const struct sensor_coverage_answer *answer);

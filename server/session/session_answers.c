@@ -16,7 +16,7 @@ void session_close(struct session *session, int code, const char *text)
 
 void session_reply(struct session *session, char *text)
 {
-    /* the queue is full because the client reads nothing: drops the oldest answer */
+    /* the queue is full because the client reads nothing, so the oldest answer is dropped */
     if (session->owed.reply_count == SESSION_MAX_REPLIES) {
         mem_free(session->owed.replies[0]);
         memmove(session->owed.replies, session->owed.replies + 1, sizeof(session->owed.replies) - sizeof(session->owed.replies[0]));

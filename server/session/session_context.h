@@ -8,15 +8,15 @@
 #include "scene/scene.h"
 #include "session/session_state.h"
 
-/* The event loop sets the members; sessions change only those whose comments say so. */
+/* Members of struct session_context are set by the event loop. Sessions change only members whose comments say so. */
 struct view_token_keys;
 
 enum audience_lists { LISTS_NAMED, LISTS_OPEN, LISTS_VIEWS, LISTS };
 
 /* State that all sessions share about answers that wait until the disk has their actions (session_kept.c). */
 struct kept_answers {
-    bool waiting;         /* an answer waits: call session_settle() and session_settle_gone() soon */
-    struct session *gone; /* sessions without a client, kept until the disk has decided on their actions */
+    bool waiting;         /* an answer waits for the disk: call session_settle() and session_settle_gone() soon */
+    struct session *gone; /* sessions whose client has gone, kept until it is known whether their actions reached the disk */
 };
 
 struct session_context {
@@ -26,7 +26,7 @@ struct session_context {
     struct baselines *baselines;
     struct snapshot_cache *snapshot_cache; /* readings of past instants; NULL: nothing is recorded */
     int64_t history_first_us;              /* UTC microseconds at which recorded history begins; 0: nothing is recorded yet */
-    int64_t changed_ns;                    /* monotonic: when a snapshot last differed from the one before */
+    int64_t changed_ns;                    /* monotonic time when a snapshot last differed from its predecessor */
     struct alarm_service *alarm_service;   /* NULL: no alarms */
     struct alarm_text_cache *alarm_texts;  /* cache of alarm texts; NULL: no caching */
     struct placing *placing;               /* NULL: sensors cannot be placed */
@@ -59,9 +59,10 @@ struct session_context {
     const struct tokens *tokens;           /* NULL: none are configured */
     struct openid *openid;                 /* sign-in with OpenID Connect; NULL: off */
     int64_t lock_ns;                       /* monotonic duration without user activity after which the user must sign in again; 0: never */
-    struct login_throttle *login_throttle; /* counter that hello changes; NULL: wrong tokens are not counted */
+    struct login_throttle *login_throttle; /* counts wrong tokens in `hello` messages; NULL: not counted */
     struct audit *audit;                   /* the audit trail; NULL: nothing is recorded */
-    struct kept_answers *kept_answers; /* list of waiting answers, shared by all sessions; NULL: session_destroy() drops waiting answers */
+    /* list of answers that wait for the disk, shared by all sessions; NULL: session_destroy() drops such answers */
+    struct kept_answers *kept_answers;
     struct resumes *resumes;           /* changed by hello */
     struct admission *admission;       /* admission budget; its pixel counts are changed by hello, resize and visible */
     struct tag_text_cache *tag_texts;  /* cache of `tags` messages; NULL: no caching */

@@ -4,17 +4,17 @@
 #include "session/reply/reply.h"
 #include "session/session_impl.h"
 
-static const int64_t STILL_NS = 200 * NS_PER_MS; /* a refined frame is due after this long without movement */
-/* a refined frame is due after this long without movement while the render thread is overloaded */
+static const int64_t STILL_NS = 200 * NS_PER_MS; /* a refined frame is due after this long without movement of the camera */
+/* a refined frame is due after this long without movement of the camera while the render thread is overloaded */
 static const int64_t LOADED_STILL_NS = 1000 * NS_PER_MS;
-/* while overloaded: a refined frame is due after this long without one, even if readings keep changing */
+/* while the render thread is overloaded: a refined frame is due if the last one is this old, even if readings keep changing */
 static const int64_t LOADED_SHARE_NS = 3 * NS_PER_S;
 static const int64_t MAX_POSTPONE_NS = 10 * NS_PER_S; /* a refined frame is postponed for at most this long while other cameras move */
 /* a refined frame for which the network needs longer than this is sent in two stages: draft, then full quality */
 static const int64_t SLOW_STILL_NS = 500 * NS_PER_MS;
 static const int64_t FULL_QUALITY_DELAY_NS = 1000 * NS_PER_MS; /* delay before the second stage */
 static const int64_t MAX_START_WAIT_NS = 1000 * NS_PER_MS;     /* maximum wait for the first bandwidth measurement */
-/* a refined frame whose view has changed is cut short if its remaining bytes would take longer than this */
+/* a refined frame whose view has changed is cut short if the bytes not sent yet would take longer than this */
 static const int64_t GIVE_UP_NS = 100 * NS_PER_MS;
 static const int64_t RETRY_DELAY_NS = 2000 * NS_PER_MS; /* delay before a frame that failed for lack of memory is requested again */
 /* assumed size of a refined frame divided by that of a preview, until a refined frame was sent */
@@ -178,9 +178,9 @@ static void make_still(const struct session *session, struct frame_request *requ
     request->quality = request->draft ? DRAFT : STILL;
 }
 
-/* Requests a refined frame for changed readings, if drawing it is as quick as a preview; otherwise a preview (or_moving: moving quality). A
-   refined frame can take a minute, for example while lighting is baked; render_thread_next.c shows a preview once readings have waited too
-   long. */
+/* Requests a refined frame for changed readings. or_moving: while the render thread cannot refine the frames of all sessions, or a frame is
+   requested already, the render service draws a preview instead, unless refining is as quick. A refined frame can take a minute, for
+   example while lighting is baked; render_thread_next.c shows a preview once readings have waited too long. */
 static void make_refreshed(const struct session *session, int64_t now_ns, struct frame_request *request)
 {
     const struct quality_ladder *ladder = &session->delivery.pacer.ladder;
@@ -206,7 +206,7 @@ static bool wants(const struct session *session, int64_t now_ns, struct frame_re
         make_moving(session, request);
     } else if (refine_due(session, now_ns)) {
         request->view.input_ns = now_ns;
-        /* the frame is sent even if it shows what the client already has, because its quality is better */
+        /* the frame is sent even if its content equals the picture that the client shows, because its quality is better */
         request->always = session->demand.refined == REFINED_DRAFT || session->demand.lost;
         request->alone = session->demand.lost;
         make_still(session, request);

@@ -42,7 +42,8 @@ void session_record_refusal(const struct session *session, const struct message_
 struct kept_action {
     struct settling_ticket journal, audit;
 };
-/* Call it before an action is carried out and recorded. */
+/* Notes the ends of journal and audit trail; call this before carrying out and recording an action. Pass the result to
+   session_kept_reply(). */
 struct kept_action session_kept_begin(const struct session *session);
 /* Queues the answer once journal and audit trail have the action on disk. If they cannot be written, or are not written within a second,
    the answer's members `not_kept` and `unaudited` say so. Takes ownership of the answer. alarm_what: description of an action on alarms,
@@ -63,8 +64,8 @@ bool session_apply_params(const struct session *session, const struct message *m
 
 /* Returns whether the token allows the client to send that message. If not, *error says why. */
 bool session_scope_allows(const struct session *session, const struct message *message, struct message_error *error);
-/* For a paired device: restricts the session to what the plant file shows on that display. Call it at hello, and again after a plant
-   reload. */
+/* For a paired device: restricts the session to the panes that the plant file shows on that display. Call it at hello, and again after a
+   plant reload. */
 void session_scope_begin(struct session *session);
 void session_scope_end(struct session *session);
 /* Sets the view to the one with this id in the plant file, at its present size. Returns false with *error if the token does not allow
@@ -72,7 +73,7 @@ void session_scope_end(struct session *session);
 bool session_look(struct session *session, const char *id, struct view *view, struct message_error *error);
 /* Like session_look(), for a token narrowed to views; id "": the first allowed view. Closes the session if the view cannot be set. */
 bool session_scope_view(struct session *session, const char *id, struct view *view, struct message_error *error);
-/* Shrinks the view of a paired display that has no pane of pictures. */
+/* Shrinks the view of a paired display that shows no picture of the plant. */
 void session_scope_fit(const struct session *session, struct view *view);
 /* Takes ownership of a text to be sent (mem_free), and returns the part that the client may read. */
 char *session_scope_text(const struct session *session, char *text);
@@ -145,7 +146,7 @@ void session_ask_lead(struct session *session, const struct message *message);
 
 /* --- session_plant.c -------------------------------------------------------------------------------------------------- */
 
-/* Returns a description of the view by names, for session_look_again(); the caller frees it with mem_free. */
+/* Returns a description of the view as text, by names of tags and assets, for session_look_again(); the caller frees it with mem_free. */
 char *session_carried_text(const struct session_context *context, const struct view *view);
 /* Restores a view after a plant reload: size and camera from `before`, everything else from `carried` as far as the new plant has it. */
 void session_look_again(struct session *session, const struct view *before, const char *carried);

@@ -14,7 +14,7 @@ struct kept_answer {
     char *text, *what; /* description of an action on alarms, for the audit trail; NULL: no alarm action */
     /* alarm service that carried out the action; NULL: the journal's decision is in `journal`, or there was no alarm action */
     const struct alarm_service *alarms;
-    int journal_error; /* the journal's decision: 0 or -errno */
+    int journal_error; /* 0: the action is in the journal on disk; -errno: writing failed */
     struct settling_ticket journal, audit;
     struct kept_answer *next;
 };

@@ -165,12 +165,14 @@ void session_take_plant(struct session *session, const char *carried)
     if (!session->hello)
         return;
     session->owed.following |= session->following.left != 0;
-    session->following.left = 0; /* if the leader has gone: the last view, still shown, belongs to the old plant */
+    /* if the leader has gone, its last view is still shown; it belongs to the old plant, so the session returns to its own view */
+    session->following.left = 0;
     session_look_again(session, &before, carried);
     const bool had_pictures = !session->scope.tags;
     session_scope_begin(session);
     if (had_pictures != !session->scope.tags)
-        session_close(session, 1012, "the display has other panes now"); /* the client's picture would get another size */
+        /* the display now shows pictures and did not before, or the reverse; the client must connect again to get the right size */
+        session_close(session, 1012, "the display has other panes now");
     struct message_error error = { 0 };
     if (session->identity.holder.views[0] && !session_scope_view(session, session->scope.named, &session->view, &error))
         session_reply_error(session, &error);

@@ -64,7 +64,7 @@ struct session_room {
 struct session_codec {
     struct codec_list list; /* codecs that the client decodes */
     enum wire_codec current;
-    struct codec_choice choice; /* state of the server's choice of the codec, if the client leaves the choice to the server */
+    struct codec_choice choice; /* state of the automatic choice of the codec, used if the client leaves the choice to the server */
     enum signed_frames signed_frames;
     bool unsigned_said; /* the client was told why its frames are unsigned; reset by the next signed frame */
 };
@@ -91,7 +91,7 @@ struct frame_demand {
 /* Frames between the render service and the client (session_frames.c). */
 struct frame_delivery {
     struct pacer pacer;
-    uint64_t newest_number;          /* number of the newest frame received from the render service */
+    uint64_t newest_number;          /* sequence number of the newest frame received from the render service */
     bool newest_refined;             /* that frame is refined */
     struct encoded_frame *ready;     /* frames to be sent next, oldest first; a frame that decodes on its own replaces all before it */
     bool measured;                   /* pacer.acked is new (session_take_shown) */
@@ -136,17 +136,17 @@ struct travel {
 
 /* Texts that are still to be sent to the client (session_texts.c). */
 struct owed_texts {
-    /* loop_checks: send the complete list of loop checks next */
+    /* true: this text is due. loop_checks: the complete list of loop checks */
     bool welcome, params, following, tags_all, tags, status, time, loop_checks;
     uint32_t params_seq;    /* sequence number of the client's message that the next `params` answers */
     int64_t tags_ns;        /* monotonic: when tags were last sent */
     uint32_t *tag_changes;  /* reading.changes as last sent, by tag */
     bool alarms_sent;       /* true: `alarms` was sent at least once */
-    uint64_t alarms_number; /* number of the last change of alarms that was sent */
-    /* numbers of the last changes that were sent: named views, notes, desks' messages to walls, pointers */
+    uint64_t alarms_number; /* sequence number of the last change of alarms that was sent */
+    /* sequence numbers of the last changes that were sent: of named views, notes, desks' messages to walls, and pointers */
     uint64_t views_sent, notes_sent, walls_sent, pointers_sent;
     int64_t notes_at_us;                /* instant for which notes were last sent, UTC microseconds; 0: the present */
-    uint64_t loop_checks_sent;          /* number of the newest loop check that was sent */
+    uint64_t loop_checks_sent;          /* sequence number of the newest loop check that was sent */
     int64_t told_at_us;                 /* shown instant as last sent, UTC microseconds; 0: the present */
     bool told_beginning;                /* the last `time` message included the beginning of recorded history */
     char *replies[SESSION_MAX_REPLIES]; /* answers to be sent, oldest first */
@@ -176,7 +176,8 @@ struct session_tile {
     } held[TILE_HELD];    /* frames sent and not yet shown at the wall's common instant, oldest first */
     int held_count;
     bool moved; /* the burn-in shift changed since a picture was requested: the next picture is sent even if its content is the same */
-    uint64_t unchanged; /* number of a wall's picture whose content equals a frame still under way to this client; 0: none */
+    /* id of a wall's picture in which this tile has the same content as a frame still under way to its client; 0: none */
+    uint64_t unchanged;
     uint32_t presented_seq;
     int64_t made_ns; /* time from request to encoded preview, smoothed; 0: not known */
     int64_t late_us; /* UTC microseconds since when the tile is dropped from the wall; 0: it takes part */

@@ -92,7 +92,7 @@ const char *admission_refuses_pixels(const struct admission *admission, const st
 
 /* --- whether the render thread can serve one more moving camera ------------------------------------------------------------ */
 
-/* Returns one figure of the drawing statistics of an address; 0: not known. */
+/* A function that returns one figure of the drawing statistics of an address; 0: not known. */
 typedef int64_t of_share(const struct address_share *share);
 
 static int64_t cost_of(const struct address_share *share)

@@ -11,7 +11,7 @@ enum { ADMISSION_WINDOWS = 3, ADMISSION_RETRY_S = 10 };
 
 struct admission_window { /* figures about one second of drawing */
     int64_t drawing_ns;   /* render time of frames that a client waits for; excludes refined frames, which yield to others */
-    int64_t moving_ns;    /* the part of drawing_ns spent on frames of moving cameras */
+    int64_t moving_ns;    /* part of drawing_ns that was spent on frames of moving cameras */
     int64_t drawn;        /* number of frames in moving_ns; a frame shared by several sessions counts once */
     int64_t moving;       /* number of frames delivered to sessions with a moving camera */
     /* longest time from a changed reading to the frame that shows it; 0: no frame of this second showed a changed reading */
@@ -30,7 +30,8 @@ struct address_share {  /* use of the server by one client address (its share); 
 
 struct admission {
     const struct quotas *quotas;
-    struct admission_window windows[ADMISSION_WINDOWS], now; /* finished windows, newest last; `now`: the current one */
+    /* figures of the last finished seconds, newest last; `now`: figures of the current second */
+    struct admission_window windows[ADMISSION_WINDOWS], now;
     int64_t begin_ns;                                        /* monotonic start of `now` */
     /* content id of the last counted frame: clients that share a frame report it one after the other, and it counts once */
     uint64_t last_content;
@@ -38,19 +39,21 @@ struct admission {
     struct address_share *shares; /* linked list of the addresses that have sessions */
 };
 
-/* admission_join() adds a session to an address's share, admission_leave() removes one. The share must outlive its sessions. */
+/* admission_join() counts a session as one of the client address `share`, admission_leave() removes it. The share must outlive its
+   sessions. */
 void admission_join(struct admission *admission, struct address_share *share);
 void admission_leave(struct admission *admission, struct address_share *share);
-/* Counts the cost of a frame. share: the share of the client's address; NULL: no address is charged. */
+/* Counts the cost of a frame. share: figures of the client's address; NULL: no address is charged. */
 void admission_on_frame(struct admission *admission, struct address_share *share, const struct encoded_frame *encoded);
 /* Starts a new measuring window if the current one is at least a second old. */
 void admission_on_tick(struct admission *admission, int64_t now_ns);
 /* Returns the percentage of the render thread's time spent on awaited frames, in the least busy of the last ADMISSION_WINDOWS seconds. */
 int admission_busy_percent(const struct admission *admission);
-/* Returns NULL if a view may grow from `before` to `pixels` pixels; otherwise the reason (static text). share NULL: only the total limit
-   applies. */
+/* Returns NULL if a view may grow from `before` to `pixels` pixels; otherwise the reason (static text). share: figures of the client's
+   address; NULL: only the limit for all addresses together applies. */
 const char *admission_refuses_pixels(const struct admission *admission, const struct address_share *share, int64_t before, int64_t pixels);
-/* Returns NULL if a session with a view of `pixels` pixels can be added; otherwise the reason (static text). */
+/* Returns NULL if a session with a view of `pixels` pixels can be added; otherwise the reason (static text). share: figures of the client's
+   address. */
 const char *admission_refuses(const struct admission *admission, const struct address_share *share, int64_t pixels);
 
 #endif

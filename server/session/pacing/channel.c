@@ -9,7 +9,7 @@ static const int64_t RTT_WINDOW_NS =
 /* a longer round trip is caused by a queue somewhere, not by the network's delay: the sample is ignored */
 static const int64_t MAX_RTT_NS = 1 * NS_PER_S;
 static const int64_t MIN_TRANSFER_NS = NS_PER_MS / 4; /* faster transfers are not measured: they show only that bandwidth is plentiful */
-/* if decoding began this soon after the previous acknowledgement, the frame had waited for the decoder */
+/* if decoding of a frame began within this time after the acknowledgement of the frame before, the frame had waited for the decoder */
 static const int64_t WAITED_NS = 1 * NS_PER_MS;
 static const size_t SMALL_BYTES = 4096;   /* smaller frames may only raise the bandwidth estimate, not lower it */
 static const double SAMPLE_WEIGHT = 0.25; /* weight of a new sample in smoothed values */
@@ -24,7 +24,8 @@ static void smooth(double *value, double sample)
 static void add_sample(double *value, struct channel_last *last, int most, double sample)
 {
     last->at[last->count % CHANNEL_LAST] = sample;
-    /* keeps the count small and above CHANNEL_LAST; the ring index stays right */
+    /* reduces the count before it can overflow: it stays above CHANNEL_LAST, and count % CHANNEL_LAST still is the index of the next
+       sample */
     last->count = last->count < 2 * CHANNEL_LAST ? last->count + 1 : CHANNEL_LAST + 1;
     double least = sample;
     for (int back = 1; back <= most && back <= last->count; back++) {
@@ -94,7 +95,7 @@ void channel_on_ack(struct channel *channel, const struct channel_ack *ack)
 void channel_on_bytes(struct channel *channel, size_t bytes, int64_t took_ns)
 {
     int64_t transfer_ns = more(took_ns - channel_rtt_ns(channel), MIN_TRANSFER_NS);
-    /* only a rough initial value: later frames measure the bandwidth better */
+    /* only a rough initial value: the frames that follow measure the bandwidth better */
     channel->ns_per_byte = (double)transfer_ns / (double)(bytes + 1);
 }
 

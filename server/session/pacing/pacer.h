@@ -45,11 +45,11 @@ void pacer_init(struct pacer *pacer);
 bool pacer_may_ask(const struct pacer *pacer, int64_t now_ns);
 /* Counts a frame that was requested. */
 void pacer_asked(struct pacer *pacer);
-/* Counts a requested frame that will not be sent: it never arrives, or is dropped. */
+/* Counts a requested frame that will not be sent, because the render service does not deliver it or the session drops it. */
 void pacer_dropped(struct pacer *pacer);
 /* Counts a frame whose first byte is being sent. Returns the frame's sequence number in the session. */
 uint32_t pacer_sent(struct pacer *pacer, size_t bytes, const struct pacer_note *note, int64_t now_ns);
-/* Notes that the socket accepted a part of the newest frame; all: it was the last part. */
+/* Notes that the socket accepted a part of the newest frame; all: it was the frame's last part. */
 void pacer_wrote(struct pacer *pacer, bool all, int64_t now_ns);
 /* Notes that the newest frame was cut short: the client will not acknowledge it. */
 void pacer_gave_up(struct pacer *pacer);

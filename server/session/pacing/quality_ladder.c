@@ -9,7 +9,7 @@ static const int64_t SLOW_NS = 80 * NS_PER_MS;
 /* the ladder steps up if a frame of the better step is expected to take the network less than this */
 static const int64_t FAST_NS = 40 * NS_PER_MS;
 static const int64_t MIN_UP_DELAY_NS = 1 * NS_PER_S, MAX_UP_DELAY_NS = 30 * NS_PER_S;
-static const int64_t LASTED_NS = 5 * NS_PER_S; /* a step up that lasted this long before the next step down counts as right */
+static const int64_t LASTED_NS = 5 * NS_PER_S; /* a step up counts as right if it lasted this long before the next step down */
 /* minimum delay between two steps down: the measured lag falls only some frames after a step */
 static const int64_t SETTLE_NS = 500 * NS_PER_MS;
 static const int64_t SLOW_DECODE_NS = 40 * NS_PER_MS; /* decoding that takes longer cannot keep up with 25 frames a second */
@@ -19,10 +19,11 @@ static const int64_t SLOW_MADE_NS = 130 * NS_PER_MS;
 static const int64_t FAST_MADE_NS = 90 * NS_PER_MS;
 static const int64_t HARD_FOR_NS = 500 * NS_PER_MS, EASY_FOR_NS = 3 * NS_PER_S;
 static const double SAMPLE_WEIGHT = 0.25;
-/* if one frame is sent to all viewers of a view, their copies together may have this many bytes: the event loop sends that in some tens of
-   ms */
+/* if one frame is sent to all viewers of a view, the bytes of all their copies must stay below this: the event loop sends that much in some
+   tens of ms */
 static const double CROWD_BYTES = 30e6;
-/* MIN_VIEWERS: viewers needed to share a step; MAX_STEPS_WORSE: how much worse a viewer's own step may be than the common one */
+/* MIN_VIEWERS: viewers needed to share one step; MAX_STEPS_WORSE: a viewer whose own step is worse than the common one by more than this
+   leaves the common step */
 enum { MIN_VIEWERS = 3, MAX_STEPS_WORSE = 2 };
 static const double BYTES_PER_PIXEL = 0.08; /* expected size of a frame at step 0 before any was sent */
 
@@ -123,7 +124,7 @@ static void follow_network(struct quality_ladder *ladder, const struct channel *
     } else if (up >= ladder->step || channel->lag_ns > SLOW_NS) {
         ladder->good_since_ns = 0;
     } else if (!ladder->known) {
-        go_up(ladder, up, now_ns); /* no delay yet: the initial step was only a guess */
+        go_up(ladder, up, now_ns); /* no delay here: the initial step was only a guess */
     } else if (!ladder->good_since_ns) {
         ladder->good_since_ns = now_ns;
     } else if (now_ns - ladder->good_since_ns >= ladder->patience_ns) {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Pixels that a session's view holds of the admission budget: reserved with its size, returned while its page is hidden. */
+/* The pixels that a session's view takes from the admission budget: reserved when the view gets its size, returned while the page is
+   hidden. */
 #include <string.h>
 
 #include "base/clock.h"
@@ -18,8 +19,8 @@ static void hold(struct session *session, int64_t pixels)
     session->room.pixels = pixels;
 }
 
-/* Returns the pixels that the session occupies. A tile (one display's part of a picture over many displays) occupies only the pixels of its
-   own display, because all tiles share one picture. */
+/* Returns the pixels that the session takes from the admission budget. A tile (one display's part of a picture over many displays) takes
+   only the pixels of its own display, because all tiles share one picture. */
 static int64_t pixels_of(const struct session *session)
 {
     const int *display_px = session->tile.layout.display_px;

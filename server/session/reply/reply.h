@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Builds the texts that the server sends: JSON messages of PROTOCOL.md and the bodies of /api. Each function returns the message after
-   which it is named; the caller frees it with mem_free. Pure. Thread: the event loop. */
+/* Builds the texts that the server sends: JSON messages of PROTOCOL.md and the bodies of /api. Each function returns the message that its
+   name contains; the caller frees the text with mem_free. Pure. Thread: the event loop. */
 #ifndef SESSION_REPLY_REPLY_H
 #define SESSION_REPLY_REPLY_H
 #include "session/session_context.h"
@@ -18,9 +18,10 @@ char *reply_tags_text(const struct plant *plant, const struct snapshot *snapshot
 char *reply_status_text(const struct session_context *context, int64_t now_utc_ns);
 char *reply_pong_text(const struct snapshot *snapshot, double t, int64_t now_utc_ns);
 char *reply_time_text(const struct session *session);
-/* reply_present_text tells a tile at which instant to show its frame seq; `picture`: id of the wall's picture. reply_tiles_text says which
-   displays of the wall are connected, since when (late_us, UTC) some are dropped, and which part of the picture is this display's; there,
-   late_us: arrays indexed by display - 1. */
+/* reply_present_text tells a tile (one display of a wall's picture) at which instant, UTC microseconds, to show its frame number seq;
+   `picture`: id of the wall's picture. reply_tiles_text lists which displays of the wall are connected, since when some are dropped, and
+   which part of the picture this display shows. there, late_us: arrays indexed by display - 1; late_us: UTC microseconds, 0: not
+   dropped. */
 char *reply_present_text(uint32_t seq, uint64_t picture, int64_t at_us);
 char *reply_tiles_text(const struct wall *wall, const struct wall_place *place, const struct tile_layout *layout, const bool *there,
                        const int64_t *late_us, bool leads);

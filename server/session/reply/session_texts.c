@@ -57,8 +57,8 @@ static bool views_due(const struct session *session)
            named_views_number(session->context->named_views) > session->owed.views_sent;
 }
 
-/* Returns whether the list of notes is to be sent: after changes, and when a session that shows the past moves to an instant with other
-   notes. */
+/* Returns whether the list of notes must be sent: after a change of the notes, and when a session that shows the past moves to an instant
+   at which other notes existed. */
 static bool notes_due(const struct session *session)
 {
     const struct notes *notes = session->context->notes;

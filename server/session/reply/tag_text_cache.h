@@ -6,7 +6,7 @@
 #include "session/session.h"
 
 struct tag_text_cache { /* zero-initialise */
-    uint32_t *before;   /* reading.changes, by tag, as the message's receivers had it before this message */
+    uint32_t *before;   /* reading.changes, by tag, as the message's receivers knew it before this message */
     int64_t taken_ns;   /* time of the snapshot that `text` shows */
     bool all;
     char *text; /* the cached message; NULL: none yet */

@@ -40,7 +40,7 @@ void session_tile_move(struct session *session, struct burn_shift shift, int64_t
     session->tile.moved = true;
     if (!session->demand.data)
         session->demand.data_ns = now_ns;
-    session->demand.data = true; /* the next picture has the same content, but the tile's part is cut out at a shifted position */
+    session->demand.data = true; /* requests a picture although its content is the same: the tile shows another part than before */
 }
 
 void session_tile_sent(struct session *session, uint64_t picture, uint32_t seq)

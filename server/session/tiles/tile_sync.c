@@ -28,7 +28,7 @@ static bool goes_first(const struct frame_request *a, const struct frame_request
     return a->urgency < b->urgency;
 }
 
-/* Returns the worst quality that any member needs: tiles of different quality would look like two pictures. */
+/* Returns the worst quality that any of the wall's tiles needs: tiles of different quality would not look like one picture. */
 static struct rung worst_rung(const struct session_tiles *tiles, int *step)
 {
     struct quality_ladder worst = tiles->members[0]->delivery.pacer.ladder;
@@ -99,7 +99,8 @@ bool session_tiles_next_request(const struct session_tiles *tiles, uint64_t numb
         requests[i].codec = member->codec.current;
         requests[i].account = member->room.share ? member->room.share->account : 0;
         requests[i].view.camera_seq = member->view.camera_seq;
-        /* the params_seq that the message `following` reported to the client */
+        /* members show the leader's parameters, so their frames carry the leader's params_seq, which the message `following` told the
+           client */
         requests[i].view.params_seq = tiles->leader->view.params_seq;
         requests[i].part = tile_layout_part(&layout, member->tile.place.display);
     }
@@ -108,8 +109,8 @@ bool session_tiles_next_request(const struct session_tiles *tiles, uint64_t numb
 
 /* --- which tile has received which picture of the wall ----------------------------------------------------------------------- */
 
-/* Returns the sequence number of the session's frame that holds its part of the wall's picture number `picture`, once the client has
-   acknowledged it; otherwise 0. */
+/* Returns the sequence number of the session's frame that holds its part of the wall's picture with the id `picture`, once the client has
+   acknowledged the frame; otherwise 0. */
 static uint32_t seq_of(const struct session *session, uint64_t picture)
 {
     for (int i = session->tile.held_count - 1; i >= 0; i--)
@@ -127,7 +128,7 @@ static void drop_to(struct session_tile *tile, uint64_t picture)
     tile->held_count = kept;
 }
 
-/* Returns the number of the newest picture that all members have; 0: none. */
+/* Returns the id of the newest picture that all members have; 0: none. */
 static uint64_t common(const struct session_tiles *tiles, uint64_t presented)
 {
     const struct session_tile *first = tiles->count > 0 ? &tiles->members[0]->tile : NULL;

@@ -23,7 +23,7 @@ struct resumed {
     struct codec_list codecs;
     double pixel_ratio;
     uint64_t called;      /* number by which other sessions follow the resumed session */
-    double speed;         /* playback speed, where view.at_us is an instant */
+    double speed;         /* playback speed, recorded seconds per second, if view.at_us is a past instant */
     struct session *live; /* session that is still connected and must be closed now; NULL: its connection is lost */
 };
 /* Finds the view that a secret resumes. Returns false if there is none, it has expired, or it belongs to another token than the

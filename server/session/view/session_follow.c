@@ -9,7 +9,7 @@
 
 void session_ask_follow(struct session *session, const struct message *message)
 {
-    if (session_is_tile(session)) /* a tile always follows its wall's leader */
+    if (session_is_tile(session)) /* a tile always follows its wall's leader, so the message is ignored */
         return;
     session->following.wanted = message->follow;
     session->following.asked = true;
@@ -56,7 +56,7 @@ void session_follow(struct session *session, struct session *leader, int64_t now
 
 void session_ask_lead(struct session *session, const struct message *message)
 {
-    if (!session_is_tile(session)) /* the wall's leader follows from the displays' positions, so a tile cannot choose it */
+    if (!session_is_tile(session)) /* the positions of a wall's displays decide which tile leads, so the message is ignored for tiles */
         session->following.heir_wanted = message->follow;
 }
 

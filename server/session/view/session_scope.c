@@ -180,7 +180,8 @@ static bool shows_note(const struct session *session, const json_t *item)
     return !session->scope.tags;
 }
 
-/* Messages whose list items are filtered: message type, name of the list, and the test that an item must pass. */
+/* Messages whose lists are filtered for a narrowed token: message type, name of the list, and the test that an item must pass to be
+   sent. */
 static const struct {
     const char *type, *list;
     bool (*keeps)(const struct session *session, const json_t *item);
