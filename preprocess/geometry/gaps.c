@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Closes hair gaps with the code that also closes them in the surface for distance computations. */
+/* Closes hair gaps in the drawn mesh with repair_join_points(), which also closes them in the surface on which distances are computed. */
 #include "preprocess/geometry/gaps.h"
 
 #include "base/math/gap_split.h"
@@ -17,7 +17,7 @@ static double widest_m(const float (*positions_m)[3], const uint32_t *indices, s
     return tolerance_m > 0 ? min_of(most_m, tolerance_m) : most_m;
 }
 
-/* Moves vertices to the merged position of their point. */
+/* Moves each vertex to the position of the mesh point into which its own mesh point was merged (target[point]). */
 static void move(float (*positions_m)[3], size_t vertex_count, const uint32_t *point_of, const struct trimesh *mesh, const uint32_t *target)
 {
     for (size_t v = 0; v < vertex_count; v++)
@@ -25,7 +25,7 @@ static void move(float (*positions_m)[3], size_t vertex_count, const uint32_t *p
             positions_m[v][axis] = (float)mesh->points[target[point_of[v]]][axis];
 }
 
-/* Closes gaps once. Returns the number of positions moved, or -1 if out of memory. */
+/* Closes gaps in one round. Returns the number of positions moved, or -1 if out of memory. */
 static int64_t close_once(float (*positions_m)[3], size_t vertex_count, const uint32_t *indices, size_t index_count, double within_m,
                           uint32_t *point_of)
 {

@@ -17,7 +17,8 @@
 /* size in metres of a large model, whose origin is the median of its vertices; single-precision positions at its ends are only accurate to
  * half a millimetre */
 #define COARSE_SIZE_M 1e4
-#define SAME_PLACE_M 1e-3 /* metres; nodes of one name that are at most this far apart give a sensor one unambiguous position */
+/* metres; several nodes of the name that a sensor states give an unambiguous position if they are at most this far apart */
+#define SAME_PLACE_M 1e-3
 #define SHOWN_NODES 6
 /* minimum size of a model in metres; a smaller model certainly has a wrong unit, and fourth powers of its lengths would underflow */
 #define MIN_SIZE_M 1e-6
@@ -41,8 +42,8 @@ static struct model_node *nodes_of(const struct gltf_model *model)
     return nodes;
 }
 
-/* Returns which nodes belong to the asset; the caller frees the array with mem_free. NULL: a pattern matches no node, and why says
- * which. */
+/* Returns, for each node of the model, whether it belongs to the asset; the caller frees the array with mem_free. Returns NULL with the
+ * reason in why if a pattern matches no node. */
 static bool *taken_nodes(const struct gltf_model *model, const char *patterns, char *why)
 {
     struct model_node *nodes = nodes_of(model);
@@ -303,7 +304,7 @@ bool geometry_node_place(const struct gltf_model *model, const struct geometry_p
 
 /* --- putting parts together ------------------------------------------------------------------------------------------------ */
 
-struct geometry_room { /* capacities of a geometry's arrays, and flags, while the arrays are filled */
+struct geometry_room { /* state while a geometry's arrays are filled: capacities of the arrays, and flags */
     size_t positions, normals, texcoords, second_texcoords, colors, indices, primitives;
     float (*all_texcoords)[2], (*all_second_texcoords)[2];
     uint8_t (*all_colors)[4];
@@ -364,8 +365,8 @@ static const struct asset_material plain_material = {
     .double_sided = 1,
 };
 
-/* Returns the asset's index of a material. Primitives are sorted by material, so the asset's index is that of the last material, or a new
- * one. */
+/* Returns the index of a model's material in the asset. Primitives are sorted by material, so a material is either the one added last,
+ * whose index is returned, or a new one, which is added. */
 static uint32_t material_number(struct geometry *geometry, const struct gltf_model *model, int material, int *last)
 {
     if (geometry->material_count && *last == material)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The mesh of one asset, cut out of a model: the subtrees of the nodes that patterns select, in the asset frame, ready to draw. Thread:
- * any; only one thread may change a geometry at a time. */
+/* The mesh of one asset, cut out of a model: the subtrees of the nodes that patterns select, in the asset frame (metres, Z up), ready to
+ * draw. Thread: any; only one thread may change a geometry at a time. */
 #ifndef PREPROCESS_GEOMETRY_H
 #define PREPROCESS_GEOMETRY_H
 #include "base/text/text.h"
@@ -31,7 +31,7 @@ struct geometry_params {
     const char *nodes; /* patterns of the nodes to cut out (plant/models/nodes.h); NULL: all nodes */
     double unit_m;
     enum axis up;
-    /* width in metres of the widest gap that is closed, in the drawn mesh and in distance computations; 0: chosen from the model */
+    /* widest gap that is closed, in metres, both in the drawn mesh and in the surface for distances; 0: chosen from the model's size */
     double tolerance_m;
 };
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shared by the files that cut an asset's mesh out of a model (geometry*.c). */
+/* Declarations shared by the files that cut an asset's mesh out of a model (geometry*.c). */
 #ifndef PREPROCESS_GEOMETRY_IMPL_H
 #define PREPROCESS_GEOMETRY_IMPL_H
 #include "preprocess/geometry/geometry.h"
@@ -12,11 +12,11 @@ struct node_primitive { /* one primitive of one node */
 };
 
 struct node_primitives {
-    struct node_primitive *at; /* primitives sorted by material, blended materials last */
+    struct node_primitive *at; /* primitives sorted by material; those with transparent materials come last */
     size_t count, capacity;
 };
-/* Lists the glTF primitives of the nodes that params select. Adds the numbers of nodes and of skipped lines and points to geometry. Returns
- * false with the reason in why. The caller frees parts->at (mem_free) in both cases. */
+/* Lists the glTF primitives of the nodes that params select. Adds to geometry the counts of nodes, and of line and point primitives, which
+ * are skipped. Returns false with the reason in why. The caller frees parts->at (mem_free) in both cases. */
 bool node_primitives_find(struct node_primitives *parts, struct geometry *geometry, const struct gltf_model *model,
                           const struct geometry_params *params, char *why);
 

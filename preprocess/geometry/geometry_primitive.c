@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Builds the mesh of one primitive of one node. */
+/* Builds the triangle mesh of one primitive of one node. */
 #include <math.h>
 #include <meshoptimizer.h>
 #include <string.h>
@@ -45,7 +45,8 @@ static double determinant(const double m[16])
     return m[0] * (m[5] * m[10] - m[9] * m[6]) - m[4] * (m[1] * m[10] - m[9] * m[2]) + m[8] * (m[1] * m[6] - m[5] * m[2]);
 }
 
-/* Computes rows of the inverse transpose up to a positive factor: the cofactors, negated if the transform mirrors. */
+/* Computes the matrix that transforms normals: the inverse transpose of m up to a positive factor, which is the cofactors of m, negated if
+ * m mirrors. */
 static void normal_matrix(const double m[16], double out[9])
 {
     double sign = determinant(m) < 0 ? -1 : 1;
@@ -77,8 +78,8 @@ static bool has_area(const float (*p)[3], const uint32_t v[3])
     return vec_dot(n, n) > 0;
 }
 
-/* Lists the indices of triangles that have an area. If the transform mirrors, reverses their winding so that the outside stays outside.
- * Returns the number of indices. */
+/* Lists in the output the indices of all triangles that have an area. If the node's transform mirrors, reverses their winding so that the
+ * outside stays outside. Returns the number of indices. */
 static size_t take_triangles(const struct gltf_primitive *primitive, const float (*positions)[3], bool mirrored, uint32_t *out,
                              uint32_t *degenerate)
 {
@@ -96,8 +97,8 @@ static size_t take_triangles(const struct gltf_primitive *primitive, const float
     return count;
 }
 
-/* Flips a normal that contradicts the winding, which defines the outside; some exporters write such normals. Normals that merely lean over
- * an edge are kept. */
+/* Flips a normal that contradicts the winding, which defines the outside; some exporters write such normals. Normals that only lean towards
+ * a neighbouring face are kept. */
 static void turn_outward(const float outward[3], float normal[3])
 {
     if (vecf_dot(normal, outward) < -0.2f)

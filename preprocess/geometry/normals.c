@@ -32,8 +32,8 @@ static double corner_angle(const float at[3], const float b[3], const float c[3]
     return acos(fmin(fmax(vec_dot(ab, ac), -1), 1));
 }
 
-struct around {      /* by position: the triangle corners that meet there */
-    unsigned *place; /* by vertex: the first vertex at the same position */
+struct around {      /* by position: the triangle corners that are at the position */
+    unsigned *place; /* by vertex: lowest index of a vertex at the same position */
     uint32_t *first, *corners;
     double (*faces)[3];
     double *angles; /* by corner: its angle */
@@ -73,9 +73,9 @@ static bool around_init(struct around *a, const float (*positions)[3], size_t ve
     return true;
 }
 
-/* --- sum over the faces at one position -------------------------------------------------------------------------------------- */
+/* --- mean normal of the faces at one position -------------------------------------------------------------------------------- */
 
-/* Adds the corner's face, weighted by its angle, if its normal is within the crease angle of `own`. */
+/* Adds the normal of the corner's face to the sum, weighted by the corner's angle, if it is within the crease angle of the normal `own`. */
 static void add_face(const struct around *a, uint32_t corner, const double own[3], double sum[3])
 {
     const double *face = a->faces[corner / 3];
@@ -85,7 +85,7 @@ static void add_face(const struct around *a, uint32_t corner, const double own[3
         sum[axis] += a->angles[corner] * face[axis];
 }
 
-/* Writes the direction of the sum, or the face's own normal if the sum is zero. */
+/* Writes the unit vector along the sum of normals, or the face's own normal if the sum is zero. */
 static void take_direction(double sum[3], const double own[3], float out[3])
 {
     if (!(vec_normalize(sum) > 0))
@@ -94,10 +94,11 @@ static void take_direction(double sum[3], const double own[3], float out[3])
         out[axis] = (float)sum[axis];
 }
 
-/* Accelerates positions where very many faces meet: recursively halves the set of normals; a half that is wholly inside or wholly outside
- * the crease angle is added or skipped as a whole. The binary tree is stored implicitly. */
+/* Node of a binary tree over the normals of the faces at one position, for positions where very many faces meet. Each node halves the
+ * normals of its parent. A node wholly inside or outside the crease angle is added or skipped without visiting its children. Nodes are
+ * stored as in a binary heap. */
 struct normals_half {
-    double low[3], high[3], sum[3]; /* bounding box of the normals, and their sum weighted by angles */
+    double low[3], high[3], sum[3]; /* bounding box of the node's normals, and their sum weighted by angles */
 };
 
 struct halves {
@@ -166,7 +167,8 @@ static void halves_sum(const struct halves *halves, size_t node, size_t begin, s
 
 static bool sum_of_many(const struct around *a, uint32_t first, size_t count, float (*corner_normals)[3])
 {
-    /* the halves differ by at most one in size, so tree indices stay below twice the smallest power of 2 above count / LEAF */
+    /* the two halves of a node differ by at most one normal, so indices of nodes stay below twice the smallest power of 2 above count /
+     * LEAF */
     size_t node_count = 4;
     while (node_count < 4 * (count / LEAF + 1))
         node_count *= 2;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds the rigid motion between two sets of points. Pure. Thread: any. */
+/* Finds the rigid motion (rotation and translation) that maps one set of points to another. Thread: any. */
 #ifndef PREPROCESS_RIGID_FIT_H
 #define PREPROCESS_RIGID_FIT_H
 #include <stddef.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds stray triangles and vertices of an asset and the node they belong to. */
+/* Finds triangles and vertices that lie far from the rest of an asset, and the node they belong to. */
 #include "preprocess/geometry/stray.h"
 
 #include <math.h>
@@ -12,7 +12,7 @@
 #include "preprocess/geometry/geometry_impl.h"
 
 struct farthest {
-    struct extent main; /* bounding box of the asset's main part, in the asset frame */
+    struct extent main; /* bounding box, in the asset frame, of the asset's main part (base/math/gap_split.h) */
     double away_m, at_m[3];
     const struct gltf_node *node;
 };
@@ -71,7 +71,7 @@ void stray_text(const struct geometry *geometry, const struct gltf_model *model,
         for (size_t i = 0; i < parts.count; i++)
             look_at(&farthest, &parts.at[i], params);
     mem_free(parts.at);
-    /* ignore distances due to rounding, and vertices of triangles without area close to the main part */
+    /* ignore distances that are mere rounding, and vertices of triangles without area that are close to the main part */
     if (stray == 0 && !(farthest.away_m > main_m))
         return;
     if (stray > 0)

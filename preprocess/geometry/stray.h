@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reports pieces of an asset that lie far from its main part. Thread: any. */
+/* Reports pieces of an asset that lie far from its main part, often by mistake in the CAD model. Thread: any. */
 #ifndef PREPROCESS_GEOMETRY_STRAY_H
 #define PREPROCESS_GEOMETRY_STRAY_H
 #include "preprocess/geometry/geometry.h"
 
 #define STRAY_TEXT_BYTES 240
 
-/* Writes, for the report, the node with pieces outside the asset's main part (gap_split.h), their position in the asset frame and their
- * distance; "" if there are none. A vertex used only by triangles without area is reported if it is farther away than the main part's size.
- * model and params must be those that the geometry was cut with. */
+/* Writes, for the report, the node with pieces outside the asset's main part (base/math/gap_split.h), their position in the asset frame and
+ * their distance; "" if there are none. A vertex used only by triangles without area is reported if it is farther away than the main part's
+ * size. model and params must be those that the geometry was cut with. */
 void stray_text(const struct geometry *geometry, const struct gltf_model *model, const struct geometry_params *params,
                 char text[STRAY_TEXT_BYTES]);
 

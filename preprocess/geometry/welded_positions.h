@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Maps vertices to distinct positions: vertices with bitwise equal positions share one, regardless of other attributes. */
+/* Maps vertices to distinct positions: vertices with bitwise equal positions get the same index, whatever their normals or texture
+ * coordinates. */
 #ifndef PREPROCESS_GEOMETRY_WELDED_POSITIONS_H
 #define PREPROCESS_GEOMETRY_WELDED_POSITIONS_H
 #include <stdbool.h>

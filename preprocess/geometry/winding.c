@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Determines each triangle's orientation relative to its neighbours and turns the minority. */
+/* Determines each triangle's orientation relative to its neighbours, and reverses the orientation that covers less area. */
 #include "preprocess/geometry/winding.h"
 
 #include "base/math/vec.h"
@@ -7,17 +7,19 @@
 #include "preprocess/geometry/welded_positions.h"
 #include "surface/mesh/tri_edges.h"
 
-#define MAX_TURNED 0.25 /* maximum share of a connected group's area that flipped triangles may have; with more, none are turned */
+/* largest share of a connected group's area that triangles of the minority orientation may cover; above it, no triangle of the group is
+ * turned */
+#define MAX_TURNED 0.25
 
 struct winding {
     const float (*positions)[3];
     size_t tri_count;
     uint32_t (*places)[3]; /* by triangle: the position index of each corner */
-    signed char *facing;   /* orientation of each triangle: 1 or -1; 0: not known yet */
+    signed char *facing;   /* by triangle: orientation relative to the first triangle of its group, 1 or -1; 0: not known yet */
     uint32_t *joined;
 };
 
-/* Adds up the area of the triangles of each orientation, -1 first. */
+/* Adds up the areas of the triangles of orientation -1 and of orientation 1 in one group: sums for -1 first. */
 static void sum_area(const struct winding *w, const uint32_t *indices, size_t count, double area_m2[2])
 {
     area_m2[0] = area_m2[1] = 0;
@@ -29,7 +31,7 @@ static void sum_area(const struct winding *w, const uint32_t *indices, size_t co
     }
 }
 
-/* Turns the triangles of the orientation with less area. Returns their number. */
+/* Reverses the triangles of the orientation that covers less area. Returns the number of these triangles. */
 static uint32_t turn_smaller(const struct winding *w, uint32_t *indices, size_t count)
 {
     double area_m2[2];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Turns flipped triangles, which are wound against their neighbours and would look like holes from outside. Thread: any. */
+/* Finds triangles wound against their neighbours, which would look like holes from outside, and reverses them. Thread: any. */
 #ifndef PREPROCESS_GEOMETRY_WINDING_H
 #define PREPROCESS_GEOMETRY_WINDING_H
 #include <stdbool.h>

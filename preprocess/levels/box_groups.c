@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Halves space recursively until the boxes in a cell are few, are one group already, or include a box that fills the cell and so meets all
- * others. The usual method, a sweep along one axis would compare all pairs of boxes along a plate perpendicular to that axis. */
+/* Groups boxes by recursive halving of space. The recursion ends in a cell with few boxes, or with boxes that are one group already, or
+ * with a box that fills the cell and so overlaps all others. A sweep along one axis, the usual method, would compare all pairs of boxes
+ * along a plate perpendicular to that axis. */
 #include "preprocess/levels/box_groups.h"
 
 #include <math.h>
@@ -10,8 +11,8 @@
 #include "base/mem.h"
 #include "surface/mesh/trimesh.h"
 
-#define FEW 24       /* number of boxes up to which all pairs are compared */
-#define MAX_DEPTH 96 /* maximum depth of halvings: 24 bits of precision on each of three axes, plus a margin */
+#define FEW 24       /* maximum number of boxes in a cell for which all pairs are compared */
+#define MAX_DEPTH 96 /* maximum recursion depth: 24 bits of precision on each of three axes, plus a margin */
 
 struct box_cell {
     float low_m[3], high_m[3];
@@ -42,7 +43,7 @@ static bool are_one_group(const struct part_box *boxes, const uint32_t *list, si
     return true;
 }
 
-/* Shrinks the cell to the boxes in it. */
+/* Shrinks the cell to the bounding box of the boxes in it. */
 static void tighten(const struct part_box *boxes, const uint32_t *list, size_t count, struct box_cell *cell)
 {
     for (int axis = 0; axis < 3; axis++) {
@@ -64,8 +65,8 @@ static bool holds(const struct part_box *box, const float low_m[3], const float 
     return true;
 }
 
-/* Joins boxes without comparing pairs. If one box fills the cell, joins all boxes of the cell, otherwise only those that contain the cell's
- * centre. Returns whether all boxes were joined. */
+/* Joins boxes that certainly overlap, without comparing pairs. If one box fills the cell, joins all boxes of the cell; otherwise joins
+ * those that contain the cell's centre. Returns whether all boxes were joined. */
 static bool join_some(const struct part_box *boxes, const uint32_t *list, size_t count, const struct box_cell *cell, uint32_t *parent)
 {
     float middle_m[3];
@@ -117,7 +118,8 @@ static void join_half(const struct part_box *boxes, const uint32_t *list, size_t
     mem_free(inside);
 }
 
-/* Joins the boxes of a cell by recursive halving. Two boxes that overlap share a point, so both are in the half that contains the point. */
+/* Joins the boxes of a cell by recursive halving of the cell. Two overlapping boxes have a common point, so both are in the half that
+ * contains this point, and are found there. */
 static void join_in(const struct part_box *boxes, uint32_t *list, size_t count, struct box_cell cell, int depth, uint32_t *parent)
 {
     if (count < 2 || are_one_group(boxes, list, count, parent))

@@ -16,10 +16,10 @@ struct clusters_making {
     struct level level; /* borrows the caller's arrays */
     float (*positions_m)[3];
     uint32_t vertex_count;
-    struct clusters made; /* clusters with indices relative to the level */
+    struct clusters made; /* clusters with index offsets relative to the level */
 };
 
-/* The vertices of one primitive, numbered from 0: meshoptimizer's run time depends on the number of vertices it is given. */
+/* A primitive whose vertices are renumbered from 0, because meshoptimizer's run time depends on the number of vertices it is given. */
 struct local {
     uint32_t *of; /* by vertex of the geometry: its index in the current primitive + 1; 0: the primitive does not use the vertex */
     uint32_t *indices, *vertices;

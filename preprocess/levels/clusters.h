@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Partitions each primitive into clusters: adjacent triangles that face about the same way, so that they can be culled together. */
+/* Partitions each primitive into clusters: groups of adjacent triangles that face about the same way, so that the renderer can cull them
+ * together. */
 #ifndef PREPROCESS_LEVELS_CLUSTERS_H
 #define PREPROCESS_LEVELS_CLUSTERS_H
 #include "base/workers.h"
@@ -8,19 +9,19 @@
 #define CLUSTERS_MAX_TRIANGLES 256 /* triangles per cluster */
 
 struct clusters {
-    struct asset_cluster *at; /* clusters, in the order of the primitives */
+    struct asset_cluster *at; /* clusters, sorted by primitive */
     uint32_t count;
     size_t capacity;
 };
 
 struct clusters_making;
-/* Starts, on an idle worker, partitioning a level's primitives; reorders the indices of each by cluster, and within a cluster for the
-   vertex cache. Positions are copied; the level's arrays must stay in place until clusters_end(). workers NULL: does the work at once.
-   Returns the job for clusters_end(). */
+/* Starts partitioning a level's primitives on an idle worker. The job sorts the indices of each primitive by cluster, and within a cluster
+ * in an order that suits the GPU's vertex cache. Positions are copied; the level's arrays must stay in place until clusters_end(). workers
+ * NULL: does the work before it returns. Returns the job for clusters_end(). */
 struct clusters_making *clusters_begin(struct workers *workers, const struct level *level, const float (*positions_m)[3],
                                        uint32_t vertex_count);
-/* Waits for the job and appends the clusters to *clusters. first_index: position of the level's indices in the asset file, added to each
- * cluster's index offset. Frees the job and sets *making to NULL. */
+/* Waits for the job and appends the clusters to *clusters. first_index: index in the asset file's index array at which the level's indices
+ * begin, added to each cluster's index offset. Frees the job and sets *making to NULL. */
 void clusters_end(struct clusters_making **making, uint32_t first_index, struct clusters *clusters);
 /* Frees the array. */
 void clusters_finish(struct clusters *clusters);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes the largest distance between two surfaces by probing points of one against the other. */
+/* Computes the largest distance between two surfaces by measuring the distances of points on one surface ("probes") from the other. */
 #include "preprocess/levels/deviation.h"
 
 #include <math.h>
@@ -10,11 +10,13 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-#define SMALL 4.0 /* in expected distances; a triangle whose longest edge is at most this long is probed only at its centre */
-/* in expected distances; a triangle with a longer edge is probed at twelve inner points, one between SMALL and LARGE at edge midpoints */
+/* in multiples of the expected distance; a triangle whose longest edge is at most this long is probed only at its centre */
+#define SMALL 4.0
+/* in multiples of the expected distance; a triangle whose longest edge is longer is probed at twelve inner points, and one between SMALL
+ * and LARGE at the midpoints of its edges */
 #define LARGE 16.0
 
-/* Returns a hash that does not depend on the order of the corners and is never 0. */
+/* Returns a hash of the three vertex indices that does not depend on their order and is never 0. */
 static uint64_t triangle_hash(const uint32_t v[3])
 {
     uint32_t low = v[0], middle = v[1], high = v[2], swap;
@@ -54,9 +56,10 @@ static bool know_triangle(struct deviation *surface, const uint32_t v[3])
 }
 
 struct deviation_part {
-    /* the part's triangles, sharing the arrays of the whole surface; tri_count 0: this surface has no triangle of the part */
+    /* triangles of one part (connected component), in the arrays of the whole surface; tri_count 0: this surface has no triangle of the
+     * part */
     struct trimesh mesh;
-    struct bvh *bvh; /* hierarchy of the part's triangles; NULL: the part is not measured */
+    struct bvh *bvh; /* bounding volume hierarchy of the part's triangles; NULL: the part is not measured */
 };
 
 /* Returns the triangle indices grouped by part. The caller frees them with mem_free. */
@@ -73,7 +76,7 @@ static size_t *sort_by_part(const struct deviation_params *params, const uint32_
     return order;
 }
 
-/* Records the range of each part in the mesh, whose triangles are grouped by part. */
+/* Records for each part the range of its triangles in the mesh, which is sorted by part. */
 static void list_parts(struct deviation *surface)
 {
     const struct trimesh *mesh = &surface->mesh;
@@ -164,22 +167,23 @@ static bool shares_triangle(const struct deviation *surface, const uint32_t indi
 
 struct probing {
     const struct deviation *from, *to;
-    const char *only; /* by part: whether it is probed; NULL: all */
+    const char *only; /* by part: nonzero if it is probed; NULL: all parts are */
     bool anywhere;    /* true: measure the distance to any part of `to`; false: to the same part of `to` */
     double expected_m;
-    const float *known_m; /* by part: largest distance found so far; smaller distances need not be exact */
-    float *found_m;       /* measured distance of each point or triangle */
+    const float *known_m; /* by part: largest distance found before this pass; smaller distances need not be exact */
+    float *found_m;       /* by point, or by triangle in the second pass: its measured distance */
 };
 
 #define RECENT 4
 struct near { /* cache of one thread */
-    /* triangles of this part of `to` that were nearest to recent points, latest first; TRIMESH_NONE: empty entry */
+    /* indices of the triangles of part `part` of surface `to` that were nearest to recent points, latest first; TRIMESH_NONE: empty
+     * entry */
     uint32_t part, tris[RECENT];
     double known_m; /* largest distance of the part found so far */
 };
 
-struct deviation_probe {   /* a probed point and the surface it is measured against */
-    const struct bvh *bvh; /* hierarchy to measure against; NULL: `to` has no triangle of the part */
+struct deviation_probe {   /* state of one probe: a point, and the surface from which its distance is measured */
+    const struct bvh *bvh; /* bounding volume hierarchy of the surface; NULL: `to` has no triangle of the part */
     const struct trimesh *mesh;
     double point[3];
     struct near *near;
@@ -210,8 +214,8 @@ static void keep_first(struct near *near, int place, uint32_t tri)
     near->tris[0] = tri;
 }
 
-/* Returns whether a recently found triangle is within the known distance of the point. Neighbouring points often have the same nearest
- * triangle. */
+/* Returns whether a triangle of the cache (near->tris) is closer to the probed point than the largest known distance, so that no search is
+ * needed. Neighbouring points often have the same nearest triangle. */
 static bool is_known(const struct deviation_probe *probe)
 {
     struct near *near = probe->near;
@@ -235,8 +239,8 @@ static void forget(struct near *near)
         near->tris[i] = TRIMESH_NONE;
 }
 
-/* Returns the point's distance, or 0 if it is not larger than the largest distance found so far. Searches within the expected distance
- * first, which is enough for most points. */
+/* Returns the distance of the probed point from the surface, or 0 if it is not larger than the largest distance found so far. Searches
+ * within the expected distance first, which is enough for most points. */
 static double distance_of(const struct deviation_probe *probe, double expected_m)
 {
     struct bvh_place place;
@@ -292,8 +296,8 @@ static double probe_at(const struct probing *probing, size_t t, const double w[3
     return distance_of(&probe, probing->expected_m);
 }
 
-/* Returns whether a single triangle is within the known distance of a whole triangle. The distance to a triangle is a convex function, so
- * its maximum over another triangle is at a corner. */
+/* Returns whether one triangle of the cache is within the largest known distance of all of triangle t, so that t needs no probes. The
+ * distance from a triangle is a convex function, so its maximum over t is at a corner of t. */
 static bool is_covered(const struct probing *probing, size_t t, struct near *near)
 {
     const struct trimesh *mesh = &probing->from->mesh;
@@ -323,8 +327,8 @@ static double probe_inside(const struct probing *probing, size_t t, int cuts, st
     return most_m;
 }
 
-/* Probes the inside of a triangle; its corners are probed separately. In a triangle no larger than the expected distance, inner points
- * cannot be much farther away than the corners. */
+/* Probes points inside a triangle; its corners are probed separately. A triangle no larger than the expected distance is probed at one
+ * point, because no inner point can be much farther away than the corners. */
 static void probe_triangle(const struct probing *probing, size_t t, struct near *near)
 {
     const struct deviation *from = probing->from;
@@ -371,7 +375,8 @@ static void raise_to(float *most_m, float found_m)
     *most_m = *most_m < found_m ? found_m : *most_m;
 }
 
-/* Measures corners first, so that their distances are known when triangles are probed. */
+/* Measures the corners of all triangles first, so that a triangle can be skipped if its corners show that its inside cannot raise the
+ * result. */
 static void measure(const struct deviation *from, const struct deviation *to, const char *only, bool anywhere, double expected_m,
                     float *apart_m, struct workers *workers)
 {

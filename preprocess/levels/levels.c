@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Assembles levels of detail from versions (successively simplified copies of the asset). A level takes each part in the coarsest version
- * that the level's error allows. Near levels are drawn large; far levels are drawn small, often many instances at once. */
+/* Assembles levels of detail from versions (successively simplified copies of the asset). A level contains each part (connected component)
+ * in the coarsest version that the level's error allows. Near levels are for assets drawn large. Far levels are for assets drawn small,
+ * often with many instances in one picture. */
 #include "preprocess/levels/levels.h"
 
 #include <math.h>
@@ -13,16 +14,19 @@
 
 #define NEAR_WORTH 0.5     /* a near level is made only if it has at most this share of the previous level's triangles */
 #define FAR LEVELS_FILLING /* minimum error of a far level, relative to the asset's size */
-/* maximum triangle count of a far level; far levels may follow each other more closely, because many instances are drawn in one picture */
+/* maximum triangle count of a far level; far levels may have similar triangle counts (FAR_WORTH), because many instances are drawn in one
+ * picture */
 #define FAR_TRIANGLES 16000
 #define FAR_WORTH 0.9  /* a far level is made only if it has at most this share of the previous level's triangles */
-#define STEP 1.4       /* minimum factor by which the error grows from level to level */
-#define STEP_SMALL 1.7 /* minimum factor by which the error grows after levels with errors above LEVELS_SMALL */
-/* factor on a level's error: a near level also includes events up to this error, and after a rejected level the next attempt has at least
- * this error */
+#define STEP 1.4       /* minimum factor by which the error grows from one level to the next coarser one */
+#define STEP_SMALL 1.7 /* the same minimum factor after a level whose error is above LEVELS_SMALL */
+/* factor on a level's error. A near level also includes events (changes of parts) with errors up to this product, so that the next level
+ * differs more. After a rejected level, the next attempt has at least this error. */
 #define WAIT 1.1
-#define MISSED 1.05f /* maximum error caused by omitting a part, relative to the level's error; a part with more is restored */
-/* attempts to move corners of flattened faces: first in all parts, then only in parts whose error stays within the limit */
+/* maximum error that omitting a part may cause, as a multiple of the level's error; a part whose omission causes more is restored */
+#define MISSED 1.05f
+/* attempts to move corners of flattened faces (levels_facing.c): first in all parts, then only in parts whose error stays within the
+ * limit */
 #define MAX_TRIES 2
 
 struct levels_making {
@@ -30,20 +34,20 @@ struct levels_making {
     struct welds welds;
     struct versions versions;
     struct omission *omissions;
-    char *used;     /* by vertex: the previous level uses the vertex */
+    char *used;     /* by vertex: nonzero if the previous level uses the vertex */
     char *contrary; /* by part: see levels_find_contrary() */
     /* Current state: */
-    uint32_t *version; /* by part: its version; ABSENT: the part is omitted */
-    uint32_t *shown;   /* by part: its version in the last level; ABSENT: the part is omitted */
+    uint32_t *version; /* by part: index of its version in the level being chosen; ABSENT: the part is omitted */
+    uint32_t *shown;   /* by part: index of its version in the last level added; ABSENT: the part is omitted */
     size_t tri_count;
 };
 
 #define ABSENT VERSIONS_MAX
 
-/* --- events, by growing error: a part changes to a coarser version or is omitted ---------------------------------------- */
+/* --- events, sorted by error: one part changes to a coarser version or is omitted --------------------------------------- */
 
 struct event {
-    float error_m; /* level error from which on this event is allowed, metres */
+    float error_m; /* smallest error of a level in which this event may have happened, metres */
     uint32_t part, version;
 };
 
@@ -84,7 +88,7 @@ static void let_happen(struct levels_making *making, const struct event *event)
     making->tri_count += tris_of(making, event->part);
 }
 
-/* Applies all events from events[i] on that the error allows. Returns the index of the next event. */
+/* Applies events[i] and later events while their error is at most error_m. Returns the index of the first event not applied. */
 static size_t let_all_happen(struct levels_making *making, const struct event *events, size_t i, size_t count, float error_m)
 {
     for (; i < count && events[i].error_m <= error_m; i++)
@@ -94,7 +98,7 @@ static size_t let_all_happen(struct levels_making *making, const struct event *e
 
 /* --- one level ------------------------------------------------------------------------------------------------------------ */
 
-/* Converts welds to vertices and writes the level, primitive by primitive in the geometry's order. */
+/* Replaces welds (groups of equal vertices) by vertices and writes the level, primitive by primitive in the geometry's order. */
 static void write_level(struct levels_making *making, struct level *level, const uint32_t *welds, size_t count)
 {
     const struct geometry *g = making->welds.geometry;
@@ -128,8 +132,8 @@ static void write_level(struct levels_making *making, struct level *level, const
     mem_free(fill);
 }
 
-/* Measures the error caused by omitted parts that lay on others: the distance from the omitted surface to what is visible in its place.
- * Raises apart_m of these parts. */
+/* Measures the error caused by omitted parts that lay on other parts: the largest distance from the omitted surface to the surface that is
+ * visible in its place. Raises apart_m of these parts to that distance. */
 static void measure_lost(const struct levels_making *making, const uint32_t *welds, size_t count, double expected_m, float *apart_m)
 {
     const struct welds *of = &making->welds;
@@ -151,7 +155,8 @@ static void measure_lost(const struct levels_making *making, const uint32_t *wel
     mem_free(lost);
 }
 
-/* Returns the largest error of all parts, metres. Excludes omitted parts that lay on others; measure_lost() measures these. */
+/* Returns the largest error of any part in its current version, in metres. Excludes omitted parts that lay on other parts, which
+ * measure_lost() measures. */
 static float error_of_parts(const struct levels_making *making)
 {
     float most_m = 0;
@@ -163,8 +168,8 @@ static float error_of_parts(const struct levels_making *making)
     return most_m;
 }
 
-/* Moves corners of flattened faces. Sets most_m to 0 for parts whose error then exceeds the limit, so that the next attempt skips them.
- * Returns whether there is any such part. */
+/* Moves corners of flattened faces (levels_facing.c). Sets most_m[part] to 0 if the part's error then exceeds limit_m, so that the next
+ * attempt skips the part. Returns whether any part was marked. */
 static bool try_facing(const struct levels_making *making, uint32_t *welds, size_t count, float limit_m, float *most_m)
 {
     const struct welds *of = &making->welds;
@@ -188,7 +193,7 @@ static bool try_facing(const struct levels_making *making, uint32_t *welds, size
     return any;
 }
 
-/* Moves corners of flattened faces, but only in parts whose error stays within limit_m. */
+/* Moves corners of flattened faces (levels_facing.c), but only in parts whose error stays within limit_m. */
 static void face_parts(const struct levels_making *making, uint32_t *welds, size_t count, float limit_m)
 {
     float *most_m = mem_array(making->welds.part_count, sizeof(*most_m));
@@ -202,7 +207,8 @@ static void face_parts(const struct levels_making *making, uint32_t *welds, size
     mem_free(before);
 }
 
-/* Returns the triangles of all parts, each in its current version. */
+/* Returns the triangles of all parts, each in its current version: three welds per triangle, *count in total. The caller frees the
+ * array. */
 static uint32_t *list_welds(const struct levels_making *making, size_t *count)
 {
     uint32_t *welds = mem_array(3 * making->tri_count, sizeof(*welds));
@@ -218,7 +224,8 @@ static uint32_t *list_welds(const struct levels_making *making, size_t *count)
     return welds;
 }
 
-/* Returns the index of the coarsest version of a part whose error is at most error_m, but never one finer than in the last level. */
+/* Returns the index of the coarsest version of a part whose error is at most error_m. The result is never finer than the part's version in
+ * the last level. */
 static uint32_t version_within(const struct levels_making *making, uint32_t part, float error_m)
 {
     uint32_t best = making->shown[part];
@@ -228,8 +235,8 @@ static uint32_t version_within(const struct levels_making *making, uint32_t part
     return best;
 }
 
-/* Restores omitted parts whose omission exceeds the error of the level, because the surface under them has moved away. Marks the restored
- * parts in `back`. Returns whether any part was restored. */
+/* Restores omitted parts whose omission causes more than MISSED times the level's error (apart_m), because the surface under them has moved
+ * away. Sets back[part] for restored parts. Returns whether any part was restored. */
 static bool bring_back(struct levels_making *making, const float *apart_m, float error_m, char *back)
 {
     bool any = false;
@@ -243,7 +250,7 @@ static bool bring_back(struct levels_making *making, const float *apart_m, float
     return any;
 }
 
-/* Returns the minimum error of the level after `last`. */
+/* Returns the minimum error in metres that the level after `last` must have. */
 static double step_m(const struct levels_making *making, const struct level *last)
 {
     double last_m = (double)last->error_m;
@@ -255,15 +262,15 @@ static bool is_far(const struct levels_making *making, const struct level *last,
     return making->tri_count <= FAR_TRIANGLES && fmax((double)error_m, step_m(making, last)) >= FAR * making->welds.whole_m;
 }
 
-/* Returns whether the current state has few enough triangles to be worth a level after `last`. */
+/* Returns whether the parts in their current versions have few enough triangles to be worth another level after `last`. */
 static bool is_worth(const struct levels_making *making, const struct level *last, float error_m)
 {
     double before = (double)(last->index_count / 3), now = (double)making->tri_count;
     return now <= (is_far(making, last, error_m) ? FAR_WORTH : NEAR_WORTH) * before;
 }
 
-/* Adds a level in the current state. Writes the level's error. Returns false without adding the level if restored parts make its triangle
- * count too large. */
+/* Adds a level with the parts in their current versions. *error_out_m receives the level's error. Returns false without adding the level if
+ * its triangle count is too large because omitted parts had to be restored. */
 static bool add_level(struct levels_making *making, struct levels *levels, float *error_out_m)
 {
     size_t count, parts = making->welds.part_count;
@@ -312,7 +319,8 @@ static void make_coarse(struct levels_making *making, struct levels *levels)
 {
     struct event *events = mem_array(making->welds.part_count * (making->versions.count + 1), sizeof(*events));
     size_t count = list_events(making, events);
-    float error_m, waited_m = 0; /* waited_m: minimum error of the next attempt after a rejected level, metres; 0: no level was rejected */
+    /* waited_m: minimum error in metres of the next attempt after a rejected level; 0: the last attempt was accepted */
+    float error_m, waited_m = 0;
     making->used = mem_array(making->welds.geometry->vertex_count, 1);
     making->version = mem_array(making->welds.part_count, sizeof(*making->version));
     making->shown = mem_array(making->welds.part_count, sizeof(*making->shown));

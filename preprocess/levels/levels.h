@@ -7,22 +7,23 @@
 
 #define LEVELS_MAX 24
 
-/* Reasons why an edge stays unsplit although the field has an interpolation error along it: the level's triangle limit; pieces would be too
- * short; the distance along the surface jumps there. */
+/* Reasons why an edge stays unsplit although linear interpolation along it has an error: the level's triangle limit is reached; the pieces
+ * would be too short; the distance along the surface jumps there, which no split fixes. */
 enum level_limit { LEVEL_LIMIT_TRIANGLES, LEVEL_LIMIT_LENGTH, LEVEL_LIMIT_JUMP, LEVEL_LIMITS };
 
-/* Edges that still have a field error above one colour step after subdivision: their count, and the largest error in colour steps. In
- * coarser levels, the count of short edges is extrapolated from a sample. */
+/* Edges that still have an interpolation error above one colour step after subdivision: their count, and the largest error in colour steps.
+ * In coarser levels, the count of edges too short to split is extrapolated from a sample. */
 struct level_left {
     uint32_t edges;
     float steps;
 };
 
 struct level {
-    uint32_t *indices;                  /* vertex indices of the geometry */
-    struct asset_primitive *primitives; /* first_index is relative to this level; primitives without triangles are omitted */
+    uint32_t *indices; /* vertex indices of the geometry */
+    /* material groups of the level's triangles; first_index is relative to this level; primitives without triangles are omitted */
+    struct asset_primitive *primitives;
     uint32_t index_count, primitive_count;
-    uint32_t whole_count; /* index count before subdivision */
+    uint32_t whole_count; /* index_count before subdivision added triangles */
     float error_m; /* metres; largest distance between this level's surface and the finest one, in either direction; 0 for the finest */
     struct level_left left[LEVEL_LIMITS];
 };
@@ -30,16 +31,18 @@ struct level {
 struct levels {
     struct level at[LEVELS_MAX]; /* finest first */
     size_t count;
-    size_t given_up; /* levels dropped during subdivision, because they would need as many triangles as the next finer one */
-    size_t repeated; /* number of duplicate triangles in the finest level; 0 for levels from the build cache */
+    /* number of levels dropped during subdivision, because they would need about as many triangles as the next finer level */
+    size_t given_up;
+    /* number of duplicate triangles in the finest level; 0 if the levels come from the build cache, which does not store the number */
+    size_t repeated;
 };
 
 /* Simplifies the geometry into levels, finest first. Each level has at most half the triangles of the one before. Far levels, used to draw
- * many instances, are closer together: each has 1.4 times the error of the one before if that gives at most 0.9 of its triangles, else the
- * smallest error that does. Borders between materials, texture seams and vertex colours stay in place within the error. Parts on much
- * larger ones (bolts on a flange) are omitted from levels whose error exceeds their height by a tenth, unless the surface under them has
- * moved so much that the omission exceeds the error. Small isolated parts are omitted from levels whose error is at least their size.
- * Returns false if out of memory; then levels_finish() need not be called. workers may be NULL. */
+ * many instances, are closer together. Each has 1.4 times the error of the level before, or a larger error if that is needed to get at most
+ * 0.9 of the triangles. Borders between materials, texture seams and vertex colours stay in place within the error. Parts that lie on much
+ * larger parts (bolts on a flange) are omitted from levels whose error exceeds the part's height by a tenth. They stay if the surface under
+ * them has moved so far that the omission would exceed the level's error. Small isolated parts are omitted from levels whose error is at
+ * least their size. Returns false if out of memory; then levels_finish() need not be called. workers may be NULL. */
 bool levels_make(struct levels *levels, const struct geometry *geometry, struct workers *workers);
 /* Frees one level's arrays. */
 void level_finish(struct level *level);

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Collapses edges ("points" are removed by merging them into a neighbour) in order of how far this moves the surface. Each triangle keeps a
- * list of the original vertices ("places") nearest to it (Ciampalini et al., Multiresolution decimation based on global error, The Visual
- * Computer 1997). The error of a collapse is the distance from these places to the new triangles, and from the new triangles to the
- * original surface. It is computed only when the collapse reaches the top of the heap; until then a lower bound is used. */
+/* Simplifies a part by edge collapses: a mesh point is removed by merging it into a neighbour. The collapse that moves the surface least
+ * comes first. Each triangle keeps a list of the original vertices ("places") nearest to it (Ciampalini et al., Multiresolution decimation
+ * based on global error, The Visual Computer 1997). The error of a collapse is the distance from these places to the new triangles, and
+ * from the new triangles to the original surface. It is computed only when the collapse reaches the top of the heap. Until then, the heap
+ * orders the collapse by a lower bound. */
 #include "preprocess/levels/levels_bounded.h"
 
 #include <string.h>
@@ -10,22 +11,23 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-#define RING 48    /* maximum number of triangles around a point; points with more are not removed */
-#define TURN 0.4   /* minimum cosine between a triangle's old and new normal */
+#define RING 48    /* maximum number of triangles around a point that may be removed */
+#define TURN 0.4   /* minimum cosine between the normals of a triangle before and after a collapse */
 #define BORDER 0.5 /* maximum movement of open borders and seams, as a share of the allowed error */
-/* factor from the elongation of an edge to the error added for it; longer edges cost triangles later, in subdivision */
+/* factor from the growth of a triangle's longest edge to the error added for it, because subdivision must split long edges later */
 #define STRETCH 0.05
 #define NONE UINT32_MAX
 
 struct bounded_face {
-    uint32_t point[3], weld[3]; /* points and welds of the corners; all NONE: the face was removed */
-    uint32_t first;             /* first original vertex ("place") in the face's list; next_place links the others */
-    uint32_t near;              /* triangle of the original surface that was nearest last, tested first */
-    double normal[3], length;   /* normal, not of unit length; length: its length, twice the triangle's area */
-    double longest_m;           /* longest edge */
+    uint32_t point[3], weld[3]; /* mesh points and welds (groups of equal vertices) of the corners; all NONE: the face was removed */
+    uint32_t first;             /* index of the first original vertex ("place") in the face's list; next_place[] links the others */
+    /* index of the triangle of the original surface that was nearest to this face at the last test; tested first */
+    uint32_t near;
+    double normal[3], length; /* normal, not of unit length; length: its length, twice the triangle's area */
+    double longest_m;         /* longest edge */
 };
 
-struct removal_candidate { /* heap entry: a point that may be removed */
+struct removal_candidate { /* heap entry: a point that may be removed by merging it into the point `target` */
     float error_m;         /* error of the collapse: exact if is_known, else a lower bound */
     uint32_t point, stamp, target;
     bool is_known; /* error_m is exact */
@@ -35,11 +37,11 @@ struct bounded {
     const struct welds *welds;
     const struct bvh *first;
     double (*points)[3];
-    float *moved_m; /* by point: distance by which the borders and seams at it have moved */
-    /* by point: first corner in its list of face corners (3 per face); next: by corner, the next corner of the same point */
+    float *moved_m; /* by point: distance by which the open borders and seams at the point have moved so far */
+    /* corner: by point, head of the list of face corners at the point (3 * face + 0 to 2); next: by corner, the next corner in the list */
     uint32_t *corner;
     uint32_t *next;
-    uint32_t *stamp; /* by point: counter of changes to the triangles around it; candidates with an older counter are outdated */
+    uint32_t *stamp; /* by point: incremented when the triangles around it change; a heap entry with an older value is outdated */
     struct bounded_face *faces;
     size_t point_count, face_count, left;
     double (*places)[3];
@@ -78,21 +80,22 @@ static struct removal_candidate pop(struct bounded *b)
     return top;
 }
 
-/* --- triangles around a point ---------------------------------------------------------------------------------------------------- */
+/* --- ring: triangles around a point ---------------------------------------------------------------------------------------------- */
 
 struct ring_wedge {               /* one triangle around a point */
-    uint32_t face, at;            /* at: index of the corner (0 to 2) that is at the point */
-    uint32_t weld;                /* weld of the corner at the point */
-    uint32_t points[2], welds[2]; /* points and welds of the other two corners, in winding order */
+    uint32_t face, at;            /* at: index (0 to 2) of the face's corner that is at the point */
+    uint32_t weld;                /* weld (group of equal vertices) of that corner */
+    uint32_t points[2], welds[2]; /* points and welds of the face's other two corners, in winding order */
 };
 
 struct point_ring {
     uint32_t point;
     struct ring_wedge wedges[RING];
     int count; /* number of wedges; RING + 1: the point has too many triangles */
-    /* by edge from the point: the point at its other end, and the welds of both ends in one of the edge's triangles */
+    /* by edge from the point: the point at the edge's other end, and, in one of the edge's triangles, the welds at this end (here) and the
+     * other end (there) */
     uint32_t ends[2 * RING], weld_here[2 * RING], weld_there[2 * RING];
-    bool is_feature[2 * RING]; /* by edge: it is an open border or a seam */
+    bool is_feature[2 * RING]; /* by edge: whether it is an open border or a seam of material or texture */
     int end_count, feature_count;
     double longest_m; /* longest edge of all triangles */
 };
@@ -115,7 +118,7 @@ static void list_ring(struct bounded *b, uint32_t point, struct point_ring *ring
     while (*link != NONE && ring->count <= RING) {
         uint32_t corner = *link;
         const struct bounded_face *face = &b->faces[corner / 3];
-        if (face->point[corner % 3] != point) { /* unlink a corner that was moved to another point or removed */
+        if (face->point[corner % 3] != point) { /* unlink a corner whose point was merged into another point, or whose face was removed */
             *link = b->next[corner];
             continue;
         }
@@ -177,8 +180,8 @@ static bool has_end(const struct ring_wedge *wedge, uint32_t end)
     return wedge->points[0] == end || wedge->points[1] == end;
 }
 
-/* Returns the new weld of a corner when its point is merged into the target: the target's weld in a triangle that contains both. NONE: no
- * weld fits, or several do. */
+/* Returns the new weld of a corner at the ring's point when that point is merged into the target: the target's weld in a triangle that
+ * contains both points. NONE: no weld fits, or several do. */
 static uint32_t weld_after(const struct point_ring *ring, int target, uint32_t weld)
 {
     uint32_t found = NONE;
@@ -194,7 +197,7 @@ static uint32_t weld_after(const struct point_ring *ring, int target, uint32_t w
     return found;
 }
 
-/* Writes the corner positions of a triangle of the ring after its point has moved to the target. */
+/* Writes the positions of the corners that a triangle around the point will have when the point has moved to the target. */
 static void moved_face(const struct bounded *b, const struct ring_wedge *wedge, uint32_t target, const double *at[3])
 {
     at[wedge->at] = b->points[target];
@@ -202,8 +205,8 @@ static void moved_face(const struct bounded *b, const struct ring_wedge *wedge, 
     at[(wedge->at + 2) % 3] = b->points[wedge->points[1]];
 }
 
-/* Returns how far borders and seams would have moved after a collapse, metres: 0 if the point is on none, INFINITY if the collapse would
- * break one. */
+/* Returns how far open borders and seams would have moved after a collapse, in metres. 0: the point is on none; INFINITY: the collapse
+ * would break a border or seam, so it is not allowed. */
 static double border_of(const struct bounded *b, const struct point_ring *ring, int target)
 {
     int other = -1;
@@ -223,7 +226,7 @@ static double longest_edge(const double *const at[3])
     return sqrt(max_of(vec_distance2(at[0], at[1]), max_of(vec_distance2(at[1], at[2]), vec_distance2(at[2], at[0]))));
 }
 
-/* Returns a lower bound of the error of a collapse. INFINITY: the collapse is not allowed, or its error is at least most_m. */
+/* Returns a lower bound of the error of a collapse, in metres. INFINITY: the collapse is not allowed, or its error is at least most_m. */
 static double bound_of(const struct bounded *b, const struct point_ring *ring, int target, double most_m)
 {
     uint32_t to = ring->ends[target];
@@ -249,7 +252,8 @@ static double bound_of(const struct bounded *b, const struct point_ring *ring, i
     return max_of(nearest_m, border_m) + STRETCH * longer_m;
 }
 
-/* Returns the larger of error_m and the distance of the point from the original surface. Starts with the triangle *near. */
+/* Returns the larger of error_m and the distance of the point from the original surface. Tests triangle *near first, and writes the nearest
+ * triangle to *near. */
 static double raise(const struct bounded *b, const double point[3], double error_m, uint32_t *near)
 {
     struct bvh_place place;
@@ -264,8 +268,8 @@ struct moved { /* a triangle after the collapse */
     const struct ring_wedge *wedge;
 };
 
-/* Returns the distance from a place to the nearest of the moved triangles, or any value up to enough_m once a triangle is that near. Tests
- * the place's own triangle first. */
+/* Returns the distance from an original vertex ("place") to the nearest of the moved triangles; once a triangle within enough_m is found,
+ * any value up to enough_m. Tests the place's own triangle first. */
 static double distance_to_any(const double place[3], const struct moved *moved, int count, int own, double enough_m)
 {
     double nearest_m = INFINITY;
@@ -294,7 +298,7 @@ static double error_of(struct bounded *b, const struct point_ring *ring, uint32_
     for (int c = 0; c < ring->count && error_m <= enough_m; c++)
         for (uint32_t s = b->faces[ring->wedges[c].face].first; s != NONE && error_m <= enough_m; s = b->next_place[s])
             error_m = max_of(error_m, distance_to_any(b->places[s], moved, count, own[c] < count ? own[c] : 0, error_m));
-    /* probe each new triangle at its centre, and at the midpoint of the edge that the next new triangle does not share */
+    /* probe each new triangle at its centre, and at the midpoint of the edge that it does not share with the next new triangle */
     for (int f = 0; f < count && error_m <= enough_m; f++) {
         const double *const *at = moved[f].at;
         uint32_t m = moved[f].wedge->at, *near = &b->faces[moved[f].wedge->face].near;
@@ -311,7 +315,8 @@ static double error_of(struct bounded *b, const struct point_ring *ring, uint32_
 
 /* --- collapsing ------------------------------------------------------------------------------------------------------------------ */
 
-/* Pushes the cheapest collapse of a point, by its lower bound, onto the heap. */
+/* Finds the neighbour into which a point can be merged with the smallest lower bound of the error, and pushes this collapse onto the
+ * heap. */
 static void offer(struct bounded *b, uint32_t point)
 {
     struct point_ring ring;
@@ -345,8 +350,8 @@ static void measure_face(const struct bounded *b, struct bounded_face *face)
     face->longest_m = longest_edge(at);
 }
 
-/* Assigns a place to the nearest of the faces (the first of equally near ones). Returns the index of that face in the list. Tests the face
- * `last` first, because successive places are close together. */
+/* Assigns an original vertex ("place") to the nearest of the faces. Of equally near faces, the first one is taken. Returns its index in the
+ * list. Tests the face `last` first, because successive places are close together. */
 static int rehome(struct bounded *b, const uint32_t *faces, int count, int last, uint32_t place)
 {
     double nearest_m = INFINITY;
@@ -434,7 +439,8 @@ static bool would_touch(struct bounded *b, const struct point_ring *ring, int ta
     return common > shared;
 }
 
-/* Processes the cheapest heap entry: collapses it if its exact error is known to be the smallest, else computes the exact error. */
+/* Takes the first entry from the heap and drops it if it is outdated. If its exact error is known, and therefore the smallest of all,
+ * collapses the edge; otherwise computes the exact error and puts the entry back unless it is still the first one. */
 static void take_turn(struct bounded *b, double error_m)
 {
     struct removal_candidate turn = pop(b);
@@ -470,9 +476,9 @@ static void place_of(const struct welds *welds, uint32_t weld, double place[3])
         place[axis] = (double)welds->positions_m[weld][axis];
 }
 
-/* Map from welds to the points of one part. */
+/* map from welds (groups of equal vertices) to the mesh points of one part */
 struct point_numbers {
-    /* by weld, of[weld - low]: index of the weld's point + 1; 0: none; low and high: range of welds that the map covers */
+    /* by weld - low: index of the weld's point + 1; 0: none; low and high: range of welds that the map covers */
     uint32_t *of, low, high;
 };
 
@@ -499,7 +505,7 @@ static struct point_numbers number_points(struct bounded *b, const uint32_t *cor
     return numbers;
 }
 
-/* Removes degenerate triangles, which are invisible. */
+/* Removes triangles without area, which are invisible. */
 static void drop_empty(struct bounded *b)
 {
     size_t kept = 0;
@@ -530,7 +536,7 @@ static void measure_faces(struct bounded *b)
     }
 }
 
-/* Assigns the places that are not points of the part's triangles to the nearest triangle. */
+/* Assigns those original vertices ("places") that are not points of the part's triangles to the nearest triangle. */
 static void take_far_places(struct bounded *b, const uint32_t *places, size_t count)
 {
     struct trimesh mesh = { .points = b->points, .point_count = b->point_count, .tri_count = b->face_count };

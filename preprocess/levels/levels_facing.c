@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Repairs faces of thin parts that have lost their thickness: such a face may use only vertices of the opposite side, whose normals point
- * away and give it wrong lighting. Moves its corners to vertices of its own side. */
+/* Repairs faces of thin parts that simplification has flattened to zero thickness. Such a face may have only vertices of the opposite side,
+ * whose normals point away from it and give it wrong lighting. Its corners are moved to vertices of its own side. */
 #include <math.h>
 #include <string.h>
 
@@ -8,19 +8,20 @@
 #include "base/mem.h"
 #include "preprocess/levels/levels_impl.h"
 
-/* a corner needs a repair if the cosine between the face normal and the best vertex normal of its weld is below this */
+/* maximum cosine between the face normal and the closest vertex normal in the corner's weld (group of vertices) for which the corner is
+ * repaired */
 #define AWAY (-0.5f)
-#define ALONG 0.7f /* minimum cosine between the face normal and the normal of a vertex that replaces the corner */
+#define ALONG 0.7f /* minimum cosine between the face normal and the normal of a vertex to which the corner is moved */
 /* maximum distance of a move, in multiples of the allowed error; above 1, because the thickness of a slanted sheet exceeds its error */
 #define BESIDE 1.25f
 #define NONE UINT32_MAX
 
-struct corner_need { /* a face corner that needs a vertex whose normal points to the face's side */
+struct corner_need { /* a face corner to repair: it needs a vertex whose normal points to the face's side */
     size_t corner;
     float normal[3]; /* normal of the corner's face */
-    float score;     /* score of the best candidate so far */
-    uint32_t weld;   /* weld of the best candidate; NONE: none yet */
-    size_t next;     /* next entry with the same weld; SIZE_MAX: none */
+    float score;     /* score of the best candidate so far: 2 - distance / maximum distance */
+    uint32_t weld;   /* weld (group of equal vertices) of the best candidate; NONE: none yet */
+    size_t next;     /* index in `needs` of the next corner with the same weld; SIZE_MAX: none */
 };
 
 struct facing_pass {
@@ -29,7 +30,7 @@ struct facing_pass {
     const float *most_m;
     struct corner_need *needs;
     size_t count, capacity;
-    size_t *first; /* by weld: its first entry in `needs` */
+    size_t *first; /* by weld: index in `needs` of its first corner; SIZE_MAX: none */
 };
 
 void levels_normal(const struct welds *welds, const uint32_t corners[3], float n[3])
@@ -65,7 +66,8 @@ uint32_t levels_vertex(const struct welds *welds, const char *used, uint32_t wel
     return best;
 }
 
-/* Returns the cosine between a face normal and the best used vertex of a weld; -1: no vertex is used. */
+/* Returns the cosine between face normal n and the normal of the weld's vertex chosen by levels_vertex(); -1: no vertex of the weld is
+ * used. */
 static float look(const struct facing_pass *facing, uint32_t weld, const float n[3], bool one_side)
 {
     uint32_t vertex = levels_vertex(facing->welds, facing->used, weld, n, one_side);
@@ -105,8 +107,8 @@ static void find_needs(struct facing_pass *facing, const uint32_t *corners, size
     }
 }
 
-/* Offers weld `to` as a replacement to all corners at weld `from`, if they share an edge in the model. The nearest weld that faces the
- * right way wins. */
+/* Offers weld `to` as a replacement to all corners in need that are at weld `from`. The welds are the ends of an edge of the model. The
+ * nearest weld that has a vertex facing the corner's side wins. */
 static void offer(struct facing_pass *facing, uint32_t from, uint32_t to)
 {
     if (facing->first[from] == SIZE_MAX || facing->welds->primitive[from] != facing->welds->primitive[to])
@@ -122,7 +124,7 @@ static void offer(struct facing_pass *facing, uint32_t from, uint32_t to)
     }
 }
 
-/* Applies the replacements, except in faces that would flip or degenerate. */
+/* Moves corners to their replacement welds, except in faces that would flip or lose their area. */
 static void move_faces(const struct facing_pass *facing, uint32_t *corners)
 {
     for (size_t i = 0; i < facing->count;) {
@@ -141,8 +143,8 @@ static void move_faces(const struct facing_pass *facing, uint32_t *corners)
     }
 }
 
-/* Restores each face that used a weld before the repair which no face uses any more, because coarser levels need all welds of this
- * level. */
+/* Undoes the repair of faces if it left a weld unused by all faces, because the next coarser levels may only use welds that this level
+ * uses. */
 static void keep_knots(const struct facing_pass *facing, const uint32_t *before, uint32_t *corners, size_t count)
 {
     char *kept = mem_array(facing->welds->count, 1);

@@ -1,20 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shared by the files that simplify an asset into levels (levels*.c). */
+/* Declarations shared by the files that simplify an asset into levels (levels*.c). */
 #ifndef PREPROCESS_LEVELS_IMPL_H
 #define PREPROCESS_LEVELS_IMPL_H
 #include "preprocess/levels/deviation.h"
 #include "preprocess/levels/levels.h"
 
-#define LEVELS_FILLING 0.001 /* error relative to the asset's size that covers one pixel when the asset fills the picture */
-#define LEVELS_SMALL 0.012   /* error relative to the asset's size that covers one pixel when the asset spans a twelfth of the picture */
+#define LEVELS_FILLING 0.001 /* error, relative to the asset's size, that is one pixel when the asset fills the picture */
+#define LEVELS_SMALL 0.012   /* error, relative to the asset's size, that is one pixel when the asset spans a twelfth of the picture */
 /* largest error of a level, relative to the asset's size: a coarser level would be drawn only where the asset is smaller than about a dozen
  * pixels */
 #define LEVELS_FARTHEST 0.08
 
 /* --- welds and parts (levels_welds.c) --- */
 
-/* A weld is a group of vertices that the simplifier treats as one: equal in all attributes that must be kept. A part is a connected
- * component of triangles; welds at the same position count as connected. */
+/* A weld is a group of vertices that the simplifier treats as one vertex: at one position, and equal in all attributes that must be kept. A
+ * part is a connected component of triangles; welds at the same position count as connected. */
 struct welds {
     const struct geometry *geometry;
     size_t count, part_count;
@@ -23,9 +23,9 @@ struct welds {
     uint32_t *primitive;                      /* primitive of each weld */
     uint32_t *first, *vertices;               /* vertices grouped by weld */
     uint32_t *part;                           /* part of each weld */
-    uint32_t *first_there;                    /* by weld: the first weld at the same position */
-    float (*low_m)[3], (*high_m)[3], *size_m; /* bounding box of each part, and the diagonal of that box */
-    double whole_m;                           /* size of the asset's main part (gap_split.h), metres */
+    uint32_t *first_there;                    /* by weld: lowest index of a weld at the same position */
+    float (*low_m)[3], (*high_m)[3], *size_m; /* by part: its bounding box, and the length of the box's diagonal */
+    double whole_m;                           /* size of the asset's main part (base/math/gap_split.h), metres */
 };
 
 /* Groups the geometry's vertices into welds and parts. Returns false if out of memory; call welds_finish() in both cases. */
@@ -35,24 +35,27 @@ void welds_finish(struct welds *welds);
 
 /* --- versions (levels_versions.c) --- */
 
-/* The asset's triangles after some simplification; each version is made from the one before. */
+/* The asset's triangles after some simplification; each version is made from the version before. */
 struct version {
     uint32_t *welds; /* three weld indices per triangle */
     size_t count;    /* number of weld indices, three per triangle */
-    float *error_m;  /* by part: largest distance to the part in the first version, in either direction; INFINITY: the part is gone */
-    uint32_t *tris;  /* by part: number of triangles */
+    /* by part: largest distance between this version and the first one, in either direction, metres; INFINITY: the part has no triangle
+     * left */
+    float *error_m;
+    uint32_t *tris; /* by part: number of triangles */
 };
 
 #define VERSIONS_MAX 24
 struct versions {
-    struct version at[VERSIONS_MAX]; /* the first is the original model */
+    struct version at[VERSIONS_MAX]; /* versions, each coarser than the one before; at[0] is the original model */
     size_t count;
     struct deviation first; /* surface of the first version */
 };
 
-/* Simplifies the asset step by step, each version from the one before, and measures the error of each part. workers may be NULL. */
+/* Makes the versions, each by simplifying the version before, and measures the error of each part in each version. workers may be NULL. */
 void versions_make(struct versions *versions, const struct welds *welds, struct workers *workers);
-/* Builds a surface for measuring from triangles (`count` welds, three each). only: parts to include (NULL: all). */
+/* Prepares a surface for measuring distances from triangles: `count` welds, three per triangle. only: by part, nonzero if it is included;
+ * NULL: all parts. */
 void levels_surface(struct deviation *surface, const struct welds *welds, const char *only, const uint32_t *corners, size_t count);
 /* Frees all versions. */
 void versions_finish(struct versions *versions);
@@ -60,26 +63,28 @@ void versions_finish(struct versions *versions);
 /* --- omitted parts (levels_omissions.c) --- */
 
 struct omission {
-    float from_m; /* the part is omitted from levels with at least this error, metres; INFINITY: the part is never omitted */
-    bool alone;   /* no larger part is near: the part and the small parts around it are together at most from_m large */
+    float from_m; /* minimum error in metres of a level that omits the part; INFINITY: no level omits it */
+    /* no larger part is near. The part then belongs to a group of small neighbouring parts, and from_m is the size of the group. */
+    bool alone;
 };
 
-/* Writes for each part the level error from which the part may be omitted: because it lies on much larger parts, or because the part and
- * the small parts around it are together smaller than a pixel. workers may be NULL. */
+/* Writes for each part the minimum error of a level that may omit it: because the part lies on much larger parts, or because it and the
+ * small parts around it are together no larger than the error. workers may be NULL. */
 void omissions_find(struct omission *omissions, const struct welds *welds, struct workers *workers);
 
 /* --- flattened parts (levels_facing.c) --- */
 
-/* Writes the unit normal of the triangle of three welds, or the zero vector if it has no area. */
+/* Writes the unit normal of the triangle whose corners are the three welds, or the zero vector if it has no area. */
 void levels_normal(const struct welds *welds, const uint32_t corners[3], float n[3]);
-/* Returns the vertex of a weld, among those marked in `used`, whose normal fits the face normal n best, ignoring the normal's sign; with
- * one_side, the one whose normal is closest to n. Returns UINT32_MAX if none is marked. */
+/* Returns, among the vertices of a weld that are marked in `used`, the one whose normal is closest to the face normal n. Without one_side,
+ * a normal that points the opposite way counts as equally close. Returns UINT32_MAX if none is marked. */
 uint32_t levels_vertex(const struct welds *welds, const char *used, uint32_t weld, const float n[3], bool one_side);
-/* Marks in contrary[part] the parts in which, already in the model, the winding of a face contradicts its vertex normals. */
+/* Sets contrary[part] for each part in which a face's winding contradicts its vertex normals in the model already, so that its shading
+ * cannot be repaired. */
 void levels_find_contrary(const struct welds *welds, char *contrary);
-/* Repairs the shading of thin parts that have lost their thickness: if a face's corner (welds, three each) has no used vertex facing its
- * side, moves it to a neighbouring weld that has one, at most about most_m (by part) away. Marks changed parts in `moved`. Returns false if
- * nothing was moved. */
+/* Repairs the shading of thin parts that simplification has flattened. corners: three welds per face. If no vertex marked in `used` at a
+ * corner's weld faces the face's side, moves the corner to a neighbouring weld that has such a vertex, at most about most_m[part] away.
+ * Sets moved[part] for changed parts. Returns false if no corner was moved. */
 bool levels_face(const struct welds *welds, const char *used, const char *contrary, const float *most_m, uint32_t *corners, size_t count,
                  char *moved);
 

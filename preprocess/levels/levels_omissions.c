@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decides which parts far levels may omit: small parts on larger ones, and groups smaller than a pixel. */
+/* Decides which parts a far level may omit: small parts that lie on larger parts, and groups of parts that are together smaller than a
+ * pixel. */
 #include <math.h>
 #include <string.h>
 
@@ -9,19 +10,20 @@
 #include "preprocess/levels/levels_impl.h"
 #include "surface/mesh/bvh.h"
 
-#define MUCH_LARGER 4.0f /* minimum size ratio of a larger part to a small part lying on it */
-#define MAX_PX 8.0f      /* largest size in pixels at which a part lying on another one may be omitted */
-/* factor from the distance between the parts to the expected error of the omission, because the larger parts are simplified too */
+#define MUCH_LARGER 4.0f /* minimum ratio between the size of a larger part and the size of a small part that lies on it */
+#define MAX_PX 8.0f      /* maximum size, in pixels when the level is drawn, of a part that is omitted because it lies on another part */
+/* factor from the part's distance from the larger parts to the expected error of the omission; above 1, because the larger parts are
+ * simplified too */
 #define OVER 1.1f
-#define SMALL 0.1   /* maximum size of an omitted part, relative to the whole asset */
-#define AROUND 4.0f /* small parts nearer to each other than this many times their size form a group, which is omitted as one */
+#define SMALL 0.1   /* maximum size of a part that is omitted because it lies on others, relative to the whole asset */
+#define AROUND 4.0f /* small parts whose distance is less than this many times their size form a group, whose parts are omitted together */
 #define PROBES 4    /* number of probed points on each edge of a part's triangles */
 
 #define CLASSES_MAX 20
-#define FEWER 0.75 /* a size class is made only if it has at most this share of the previous class's triangles */
+#define FEWER 0.75 /* a class of parts by size is made only if it has at most this share of the triangles of the class before */
 
-/* Size class: the triangles of all parts larger than than_m, with a hierarchy of their own. A search for larger parts in a hierarchy of all
- * triangles would first meet the small part itself and its neighbours at every probe. */
+/* Size class: the triangles of all parts larger than than_m, with a bounding volume hierarchy of their own. In a hierarchy of all
+ * triangles, each search for a larger part would first meet the small part itself and its neighbours. */
 struct size_class {
     float than_m;
     struct trimesh mesh; /* triangles of the class; shares the points of the whole mesh */
@@ -61,7 +63,7 @@ static void list_tris(struct omission_search *search)
         search->tris[search->first[search->part[t] + 1]++] = t;
 }
 
-/* --- parts on larger ones ------------------------------------------------------------------------------------------------- */
+/* --- small parts that lie on larger ones ---------------------------------------------------------------------------------- */
 
 static bool may_lie_on_others(const struct welds *welds, size_t part)
 {
@@ -91,7 +93,7 @@ static void add_class(struct omission_search *search, float than_m, size_t count
     class->bvh = bvh_create(&class->mesh);
 }
 
-/* Builds the size classes. To search for parts larger than a limit, the last class with than_m up to that limit is used. */
+/* Builds the size classes. A search for parts larger than a limit uses the class with the largest than_m that does not exceed the limit. */
 static void make_classes(struct omission_search *search)
 {
     const struct welds *welds = search->welds;
@@ -124,7 +126,7 @@ struct larger {
     const struct omission_search *search;
     const struct size_class *class;
     float than_m;
-    uint32_t near; /* triangle found near the previous point, tested first; TRIMESH_NONE: none */
+    uint32_t near; /* triangle that was found for the previous point, tested first; TRIMESH_NONE: none */
 };
 
 static bool is_larger(const void *arg, uint32_t tri)
@@ -133,8 +135,8 @@ static bool is_larger(const void *arg, uint32_t tri)
     return larger->search->welds->size_m[larger->search->part[larger->class->mesh.tri_source[tri]]] > larger->than_m;
 }
 
-/* Returns the larger of apart_m and the largest distance of points on a triangle's edges from larger parts; INFINITY if that distance
- * exceeds limit_m. */
+/* Returns the larger of apart_m and the largest distance between points on a triangle's edges and the larger parts; INFINITY if that
+ * distance exceeds limit_m. */
 static float look_from(struct larger *larger, uint32_t tri, double limit_m, float apart_m)
 {
     const struct trimesh *mesh = &larger->search->mesh;
@@ -172,7 +174,8 @@ static void look_for_larger(void *arg, size_t begin, size_t end)
 
 /* --- isolated parts ------------------------------------------------------------------------------------------------------- */
 
-/* Lists the boxes of small parts that no larger part hides, enlarged by the distance up to which another part counts as near. */
+/* Lists the bounding boxes of small parts near which no larger part is, enlarged by the distance up to which another part counts as
+ * near. */
 static size_t list_boxes(const struct omission_search *search, struct part_box *boxes)
 {
     const struct welds *welds = search->welds;
@@ -191,7 +194,8 @@ static size_t list_boxes(const struct omission_search *search, struct part_box *
     return count;
 }
 
-/* Groups neighbouring small parts. The size of the whole group is the level error from which its parts are omitted. */
+/* Groups neighbouring small parts that have no larger part near them. Each part of a group may be omitted from levels whose error is at
+ * least the group's size. */
 static void look_for_lonely(const struct omission_search *search)
 {
     const struct welds *welds = search->welds;

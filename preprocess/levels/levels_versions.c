@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Simplifies an asset step by step into versions, and measures the error of each part in each version. Large assets are first halved as a
- * whole, smaller ones simplified by edge collapses. */
+/* Simplifies an asset step by step into versions, and measures the error of each part in each version. Assets with many triangles are first
+ * simplified as a whole (meshoptimizer), to about half the triangles each time; then part by part, by edge collapses. */
 #include <math.h>
 #include <meshoptimizer.h>
 #include <string.h>
@@ -10,20 +10,20 @@
 #include "preprocess/levels/levels_impl.h"
 
 #define SHRINK 0.55 /* requested share of the previous version's triangles */
-#define STUCK 0.9   /* halving stops at a version with more than this share of the previous version's triangles */
-/* triangle count above which versions are halved as a whole, which is fast; below it they are simplified edge by edge */
+#define STUCK 0.9   /* simplification of the whole asset stops at a version with more than this share of the previous version's triangles */
+/* number of triangles above which the asset is simplified as a whole, which is fast; with fewer, part by part (levels_bounded.c) */
 #define HALVE_ABOVE 40000
-/* maximum triangle count for edge-by-edge simplification, which is also used if halving makes no more progress */
+/* maximum number of triangles for simplification part by part, also if simplification of the whole makes no more progress */
 #define MAX_COLLAPSED 100000
 #define LEAST 0.00025 /* allowed error of the first version made by edge collapses, relative to the asset's size */
-#define STEP 1.3      /* factor between the errors of successive versions in the range of far levels (levels.c) */
-/* the same factor in the range of near levels; larger, so that fewer versions must be measured */
+#define STEP 1.3      /* factor from the allowed error of one version to that of the next, in the range of far levels (levels.c) */
+/* the same factor in the range of near levels; larger, because each version must be measured and near levels need fewer versions */
 #define STEP_ELSE 1.7
 #define ALIKE 0.85       /* a version with more than this share of the previous version's triangles is dropped */
 #define MIN_TRIANGLES 60 /* smaller assets are not simplified */
 /* versions with a smaller error, relative to the asset's size, keep open borders, so that no hair gaps open between patches */
 #define NEAR 0.01
-#define BEYOND 3.0 /* factor from the simplifier's own error, a mean over planes, to the expected real error */
+#define BEYOND 3.0 /* factor from meshoptimizer's error estimate, a mean over planes, to the largest distance that is probably measured */
 
 static size_t triangles_of(const struct versions *versions)
 {
@@ -52,7 +52,7 @@ static size_t simplify(const struct welds *welds, const struct version *from, ui
                             options, error);
 }
 
-/* Halves the last version. Returns the simplifier's own error estimate in metres. */
+/* Simplifies the version `from` to about half its triangles. Returns meshoptimizer's error estimate in metres. */
 static double halve(struct version *to, const struct version *from, const struct welds *welds)
 {
     float error = 0;
@@ -104,10 +104,10 @@ struct collapsing {
     const struct welds *welds;
     const struct deviation *first;
     const struct version *from;
-    struct bounded **parts; /* by part: its simplifier; NULL: the part has no triangle left */
-    size_t *first_corner;   /* triangles of `from` in `corners`, grouped by part */
+    struct bounded **parts; /* by part: its edge collapser (levels_bounded.h); NULL: the part has no triangle left */
+    size_t *first_corner;   /* by part: index in `corners` of its first triangle of the version `from` */
     uint32_t *corners;
-    size_t *first_place; /* vertices of the model in `places`, grouped by part */
+    size_t *first_place; /* by part: index in `places` of its first vertex of the original model */
     uint32_t *places;
     double error_m; /* allowed error */
 };
@@ -179,8 +179,8 @@ static void read_parts(const struct collapsing *collapsing, struct version *vers
         }
 }
 
-/* Lists allowed errors from the largest useful one down to the smallest, but at most `room` errors. Returns the count of errors; sorts the
- * list in ascending order. */
+/* Lists the errors allowed for the versions made by edge collapses, from the largest useful error down to the smallest, at most `room`.
+ * Returns their number, and sorts the list in ascending order. */
 static size_t list_errors(double whole_m, size_t room, double errors_m[VERSIONS_MAX])
 {
     size_t count = 0;
@@ -196,7 +196,7 @@ static size_t list_errors(double whole_m, size_t room, double errors_m[VERSIONS_
     return count;
 }
 
-/* Makes versions edge by edge, one for each allowed error. */
+/* Makes versions by edge collapses, one for each allowed error. */
 static void make_collapsed(struct versions *versions, const struct welds *welds, struct workers *workers)
 {
     struct collapsing collapsing = { .welds = welds, .first = &versions->first, .from = &versions->at[versions->count - 1] };

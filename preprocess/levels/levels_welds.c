@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Welds vertices for the simplifier, which split normals would block, and finds the connected parts of a model. */
+/* Groups vertices into welds for the simplifier, which could not collapse edges where vertices are split by their normals. Finds the
+ * connected parts of a model. */
 #include <math.h>
 #include <meshoptimizer.h>
 #include <string.h>

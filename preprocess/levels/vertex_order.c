@@ -8,8 +8,8 @@
 
 #define BINS (2 * LEVELS_MAX)
 
-/* bins[vertex]: coarsest level that uses the vertex, counted from the coarsest; times two, plus one for vertices added by subdivision. The
- * value BINS marks an added vertex that only dropped levels used. */
+/* bins[vertex]: twice the index of the coarsest level that uses the vertex, where the coarsest level has index 0; plus one for vertices
+ * added by subdivision. The value BINS marks an added vertex that only dropped levels used. */
 static void find_bins(const struct levels *levels, uint32_t vertex_count, uint32_t first_added, uint8_t *bins)
 {
     for (uint32_t v = 0; v < vertex_count; v++)

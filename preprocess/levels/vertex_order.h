@@ -5,9 +5,10 @@
 #include "preprocess/levels/levels.h"
 #include "surface/mesh/trimesh.h" /* TRIMESH_NONE */
 
-/* Renumbers the geometry's vertices, drops unused ones from first_added on, and replaces the geometry's indices and primitives by those of
- * all levels, finest first. The levels themselves keep the old numbers. Fills out[level] and *new_of (new number of each old vertex, or
- * TRIMESH_NONE), which the caller frees (mem_free). Returns false if out of memory, with the geometry unchanged. */
+/* Renumbers the geometry's vertices, drops unused vertices with index first_added or higher, and replaces the geometry's indices and
+ * primitives by those of all levels, finest first. The levels themselves keep the old numbers. Fills out[level]. *new_of receives the new
+ * index of each old vertex, or TRIMESH_NONE; the caller frees it (mem_free). Returns false if out of memory, with the geometry
+ * unchanged. */
 bool vertex_order_apply(struct geometry *geometry, const struct levels *levels, uint32_t first_added, struct asset_level out[LEVELS_MAX],
                         uint32_t **new_of);
 

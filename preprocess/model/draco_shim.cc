@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Wraps Draco in plain C. Checks the header's counts against the size of the data before the library allocates memory for them. */
+/* Wraps Draco in plain C. Checks the counts in the file's header against the size of the data before the library allocates memory for
+ * them. */
 #include "preprocess/model/draco_shim.h"
 
 #include <draco/compression/decode.h>
@@ -35,7 +36,8 @@ bool read_varint(draco::DecoderBuffer *buffer, uint64_t *out)
     return false;
 }
 
-/* Checks the header's counts, for version 2.2 of the bit stream, the version that every glTF exporter writes. */
+/* Checks the counts in the header against limits, for version 2.2 of the bit stream, which every glTF exporter writes. Returns false with
+ * the reason in why. */
 bool claims_good(const char *bytes, size_t size, char *why)
 {
     draco::DecoderBuffer buffer;

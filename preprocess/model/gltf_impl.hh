@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shared by the files of the glTF shim (gltf_*.cc). */
+/* Declarations shared by the files of the glTF shim (gltf_*.cc). */
 #pragma once
 #include <cstring>
 #include <new>
@@ -39,7 +39,7 @@ struct gltf_work { /* a model being read */
     uint64_t elements_left; /* remaining elements that may be read; limits small files that refer to the same data over and over */
 };
 
-/* Location of numbers in memory, already checked to be within their buffer. */
+/* a strided range of numbers in memory, already checked to be within its buffer */
 struct byte_span {
     const unsigned char *bytes;
     size_t stride, count;
@@ -84,22 +84,24 @@ double number_in(const tinygltf::Value &value, const char *key, size_t index, do
 struct uv_transform {
     double offset[2] = { 0, 0 }, scale[2] = { 1, 1 }, rotation = 0;
     int set = 0;          /* n of TEXCOORD_n */
-    bool bounded = false; /* the mapping is valid only inside 0..1, because the continuation cannot be drawn */
+    bool bounded = false; /* the mapping is valid only for coordinates in 0..1, because the wrapping outside cannot be drawn */
 };
-enum { BASE_COLOR, METALLIC_ROUGHNESS, NORMAL, OCCLUSION, EMISSIVE, USE_COUNT }; /* the ways in which a material uses textures */
+enum { BASE_COLOR, METALLIC_ROUGHNESS, NORMAL, OCCLUSION, EMISSIVE, USE_COUNT }; /* uses of a texture by a material */
 
-/* The distinct mappings of a material's textures, at most two, because a vertex stores two texture coordinates. */
+/* The distinct mappings (texture transforms) of a material's textures: at most two, because a vertex stores two texture coordinates. */
 struct uv_lays {
     uv_transform at[2];
     size_t count = 0;
-    size_t of[USE_COUNT] = {}; /* by use: index of its mapping; 2: the texture is ignored; 0 also if there is no texture */
+    /* by use of a texture: index of its mapping in at[]; 2: the texture is ignored; 0 if the material has no such texture */
+    size_t of[USE_COUNT] = {};
 };
 uv_lays lays_of(const tinygltf::Model &m, int material);
 
-/* Records the text about ignored content. read_materials() must have allocated the list. */
+/* Appends a text about ignored content to the model's left_out. read_materials() must have allocated the list. */
 void leave_out(gltf_work *w, const std::string &text);
 void read_materials(gltf_work *w);
-/* Removes from a material the textures of a mapping that cannot be drawn outside 0..1, and records that. */
+/* Removes from a material the textures with mapping `lay` (uv_lays) that cannot be drawn outside 0..1, and appends a text about each to the
+ * model's left_out. */
 void leave_out_bounded(gltf_work *w, int material, size_t lay);
 void read_nodes(gltf_work *w);
 void read_meshes(gltf_work *w);

@@ -115,7 +115,7 @@ std::string material_what(const gltf_work &w, int number)
 
 const char *const use_names[USE_COUNT] = { "base colour", "metallic-roughness", "normal", "occlusion", "emissive" };
 
-/* Returns the member of the material that holds the texture index for each use of a texture. */
+/* Returns, for each use of a texture, a pointer to the material's member that holds the texture's index. */
 std::array<uint32_t *, USE_COUNT> places_of(asset_material *m)
 {
     return { &m->base_color_texture, &m->metallic_roughness_texture, &m->normal_texture, &m->occlusion_texture, &m->emissive_texture };

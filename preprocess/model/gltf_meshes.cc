@@ -138,7 +138,7 @@ float (*read_vectors(const attribute_reader &reader, const std::string &name))[3
 }
 
 /* Reads a set of texture coordinates; *out stays NULL if the primitive has none. Returns true if coordinates lie outside 0..1 although the
- * mapping is valid only inside. */
+ * texture's mapping is valid only inside. */
 bool read_texcoords(const attribute_reader &reader, const uv_transform &uv, float (**out)[2])
 {
     std::string name = "TEXCOORD_" + std::to_string(uv.set);
@@ -193,7 +193,7 @@ void check_morphing(const std::vector<double> &weights, const std::string &what)
             refuse("%s: its shape is morphed, which is not supported", what.c_str());
 }
 
-/* Reads a primitive. Returns false if it has nothing to draw: lines, points or no triangle. */
+/* Reads a primitive. Returns false if it has no triangle to draw, for example because it consists of lines or points. */
 bool read_primitive(gltf_work *w, const tinygltf::Primitive &p, gltf_primitive *out, gltf_mesh *mesh, const std::string &what)
 {
     int mode = p.mode;

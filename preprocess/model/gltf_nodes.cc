@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads the nodes of the default scene, depth first, with world transforms; each instance becomes a separate node. */
+/* Reads the nodes of the default scene, depth first, with world transforms; each instance of EXT_mesh_gpu_instancing becomes a separate
+ * node. */
 #include "preprocess/model/gltf_impl.hh"
 
 #include <cmath>
@@ -166,7 +167,7 @@ std::vector<int> roots_of(const tinygltf::Model &m)
     return roots;
 }
 
-/* Records in the remarks how many nodes with a mesh are not part of the scene. */
+/* Appends to the model's left_out how many nodes with a mesh are not part of the default scene. */
 void note_unreached(const node_order &tree)
 {
     size_t count = 0;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Wraps tinygltf in plain C: it parses a normalised document, and the result is decoded into plain arrays. */
+/* Wraps tinygltf in plain C: tinygltf parses a normalised document (model_document.h), and this file decodes the result into plain
+ * arrays. */
 #include "preprocess/model/gltf_shim.h"
 
 #include <exception>
@@ -40,7 +41,7 @@ bool file_unwritten(std::string *, const std::string &, const std::vector<unsign
     return false;
 }
 
-/* Sets a callback that exists since tinygltf 2.9. */
+/* Sets a callback that exists only in tinygltf 2.9 and later. */
 template <typename Callbacks> auto set_measure(Callbacks *files, int) -> decltype(files->GetFileSizeInBytes = file_unmeasured, void())
 {
     files->GetFileSizeInBytes = file_unmeasured;
@@ -72,7 +73,7 @@ void parse(gltf::gltf_work *w)
         loader.LoadASCIIFromString(&w->parsed, &error, &warning, w->document->json, static_cast<unsigned>(w->document->json_bytes), "");
     while (!error.empty() && error.back() == '\n')
         error.pop_back();
-    if (!good || !error.empty()) /* tinygltf reports here what it could not read and left out */
+    if (!good || !error.empty()) /* tinygltf reports content that it could not read in `error`, also if it returns true */
         refuse("%s", error.empty() ? "not a glTF file" : error.c_str());
 }
 

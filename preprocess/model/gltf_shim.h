@@ -14,7 +14,7 @@ struct gltf_primitive { /* triangles of one material, in model units and the mes
     float (*positions)[3];
     float (*normals)[3];          /* NULL: the primitive has no normals */
     float (*texcoords)[2];        /* coordinates for the material's first texture mapping; NULL: none */
-    float (*second_texcoords)[2]; /* coordinates for the textures that the material's `second` mask names; NULL: none */
+    float (*second_texcoords)[2]; /* coordinates for the textures that the mask `second` of the material names; NULL: none */
     uint8_t (*colors)[4];         /* vertex colours; NULL: none */
     uint32_t *indices;            /* triangle list, converted from strips and fans */
     int material;                 /* index of the material; -1: none */
@@ -27,7 +27,7 @@ struct gltf_mesh {
     uint32_t skipped_lines, skipped_points;    /* primitives skipped because they are not triangles */
 };
 
-struct gltf_node {    /* depth first: the subtree of node i is the range [i, end) */
+struct gltf_node {    /* nodes are in depth-first order: the subtree of node i is the range [i, end) */
     char *name;       /* name of the node; "": it has none */
     int parent, mesh; /* indices; -1: none */
     uint32_t end;

@@ -186,7 +186,7 @@ static void move_member(json_t *to, const char *as, json_t *from, const char *na
         json_object_set(to, as, value);
 }
 
-/* Converts the diffuse colour of specular-glossiness materials to a base colour, unless the material has one. */
+/* Converts the diffuse colour of specular-glossiness materials to a glTF base colour, unless the material already has a base colour. */
 static void take_diffuse_colors(json_t *root)
 {
     const json_t *materials = json_object_get(root, "materials");

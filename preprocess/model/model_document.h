@@ -16,18 +16,18 @@ struct document_bytes {
 };
 
 struct document_image {
-    char *name, *missing;        /* missing: reason why the image could not be read; NULL: it was read */
+    char *name, *missing;        /* name: for messages; missing: reason why the image could not be read, NULL if it was read */
     struct document_bytes bytes; /* bytes of the image as stored in the file: PNG, JPEG or WebP */
 };
 
 struct model_document {
-    char *json; /* JSON text without buffers, images, skins and animations; every buffer view lies within its buffer in buffers[] */
+    char *json; /* JSON text without buffers, images, skins and animations; every buffer view in it lies within its buffer in buffers[] */
     size_t json_bytes;
     struct document_bytes *buffers;
     struct document_image *images;
-    char **looks; /* a text for each ignored extension */
+    char **looks; /* one text for the report about each ignored extension */
     size_t buffer_count, image_count, look_count;
-    size_t total_bytes; /* total size of all buffers except all-zero ones */
+    size_t total_bytes; /* total size in bytes of all buffers, except those that contain only zeros */
 };
 
 /* Normalises a source file, which must outlive the document. Returns false with the reason in why; then model_document_finish() need not be

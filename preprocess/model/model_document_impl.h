@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shared by the files that normalise a glTF document (model_document*.c). */
+/* Declarations shared by the files that normalise a glTF document (model_document*.c). */
 #ifndef PREPROCESS_MODEL_DOCUMENT_IMPL_H
 #define PREPROCESS_MODEL_DOCUMENT_IMPL_H
 #include "preprocess/model/model_document.h"
@@ -22,9 +22,9 @@ static inline uint64_t document_number(const json_t *object, const char *key)
 
 /* Appends a buffer and takes ownership of bytes.own, also on failure. Returns the buffer's index. */
 size_t document_add_buffer(struct document_work *work, struct document_bytes bytes);
-/* Appends a buffer view that covers a whole buffer and makes the accessor read from it. */
+/* Appends a buffer view that covers the whole buffer, and makes the accessor read from that view. */
 void document_point_accessor(struct document_work *work, json_t *accessor, size_t buffer);
-/* Finds `length` bytes at `offset` of a buffer and writes their position to *out. Returns false if the buffer is too short; `what` begins
+/* Finds `length` bytes at `offset` of a buffer and writes their address to *out. Returns false if the buffer is too short; `what` begins
  * the error text in work->why. */
 bool document_range(const struct document_work *work, size_t buffer, uint64_t offset, uint64_t length, const char *what,
                     struct model_bytes *out);

@@ -13,8 +13,8 @@ enum meshopt_filter { NONE, OCTAHEDRAL, QUATERNION, EXPONENTIAL };
 static const char *const modes[] = { "ATTRIBUTES", "TRIANGLES", "INDICES" };
 static const char *const filters[] = { "NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL" };
 
-/* largest plausible ratio of decoded to compressed bytes: 64 bytes of vertex data need at least 1 byte, an index at least a third of a
- * byte */
+/* maximum plausible ratio of decoded to compressed bytes: 64 bytes of vertex data take at least 1 byte, an index of up to 4 bytes at least
+ * a third of a byte */
 #define BYTES_PER_BYTE 128u
 
 struct meshopt_view {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The distinct model files of a plant: all files are hashed first; a file is parsed and in memory only while its assets are extracted.
- * Thread: one. */
+/* The distinct model files of a plant. All files are hashed first. A file is parsed, and kept in memory, only while its assets are
+ * extracted. Thread: one. */
 #ifndef PREPROCESS_MODEL_FILES_H
 #define PREPROCESS_MODEL_FILES_H
 #include "plant/plant.h"
@@ -8,7 +8,7 @@
 
 struct model_file {
     const char *path; /* path; belongs to the plant */
-    int line;         /* line in the plant file of the first asset with this model */
+    int line;         /* line in the plant file of the first asset that uses this model */
     bool good;        /* the file can be read; false: `why` has the reason */
     char why[MODEL_WHY_BYTES];
     uint64_t hash;            /* hash of the file and of the files that its URIs name */
@@ -17,7 +17,8 @@ struct model_file {
     bool is_parsed, was_parsed;
     double parse_s;
     uint32_t skipped_lines, skipped_points, scaled_rotations, left_out_textures; /* counts of the last parse; valid if was_parsed */
-    char **left_out;                                                             /* texts, one for each ignored texture use and extension */
+    /* texts for the report, one for each ignored texture use and each ignored extension */
+    char **left_out;
 };
 
 struct model_files {

@@ -6,7 +6,7 @@
 
 #include "base/mem.h"
 
-#define MAX_LEVELS 64 /* maximum nesting of arrays and objects; glTF needs about ten levels, extras a few more */
+#define MAX_LEVELS 64 /* maximum nesting depth of arrays and objects; glTF needs about ten levels, the free-form `extras` a few more */
 
 static uint32_t read_u32(const unsigned char *at)
 {
@@ -38,7 +38,7 @@ static bool glb_good(struct model_bytes file, struct model_bytes *json, struct m
     return true;
 }
 
-/* Returns whether the nesting depth is within MAX_LEVELS, because JSON parsers are recursive. */
+/* Returns whether the nesting depth is within MAX_LEVELS, because the JSON parser is recursive and could overflow the stack. */
 static bool depth_good(struct model_bytes json, char *why)
 {
     int depth = 0;
@@ -93,7 +93,7 @@ static const json_t *meshopt_of(const json_t *object)
     return json_object_get(json_object_get(object, "extensions"), "EXT_meshopt_compression");
 }
 
-/* Returns the buffer index of an object, or `count` if there is no such buffer. */
+/* Returns the object's member "buffer", an index below `count`, or `count` if there is no such buffer. */
 static size_t number_in(const json_t *object, size_t count)
 {
     const json_t *number = json_object_get(object, "buffer");

@@ -12,10 +12,12 @@ enum rule_kind { OBJECT, LIST, TEXT, FLAG, NUMBER, NUMBERS, SIZE, COUNT, INDEX, 
 enum rule_need { MAY, MUST }; /* MUST: the property is required if its parent object exists */
 
 struct model_rule {
-    const char *list, *path; /* path: dots separate nested objects, which earlier rules check */
+    /* list: name of the glTF array that contains the object; path: property of the object; dots separate nested objects, for which earlier
+     * rules exist */
+    const char *list, *path;
     enum rule_kind kind;
     enum rule_need need;
-    /* INDEX, INDICES, ATTRIBUTES: name of the list that the index refers to; NULL for ATTRIBUTES: any number is allowed */
+    /* kinds INDEX, INDICES, ATTRIBUTES: name of the glTF array that the index refers to; NULL for ATTRIBUTES: any number is allowed */
     const char *target;
     size_t length;      /* NUMBERS: length of the array */
 };
@@ -87,13 +89,13 @@ static const struct model_rule rules[] = {
 };
 /* clang-format on */
 
-/* Extensions that this program implements; a file may require them. */
+/* extensions that this program implements, so a file may list them as required */
 static const char *const known_extensions[] = {
     "KHR_mesh_quantization", "EXT_meshopt_compression", "KHR_draco_mesh_compression", "KHR_texture_transform", "EXT_mesh_gpu_instancing",
     "EXT_texture_webp",
 };
 
-/* Name prefixes of extensions that change neither shape nor position, and are ignored. */
+/* name prefixes of extensions that change neither shape nor position of a model; they are ignored */
 static const char *const look_extensions[] = {
     "KHR_materials_", "EXT_materials_",     "ADOBE_materials_",        "KHR_texture_", "EXT_texture_",           "MSFT_texture_",
     "KHR_lights_",    "EXT_lights_",        "KHR_xmp",                 "KHR_audio",    "KHR_techniques_webgl",   "KHR_animation_pointer",
@@ -103,7 +105,7 @@ static const char *const look_extensions[] = {
 
 struct rule_check { /* the object being checked */
     json_t *root;
-    const char *list; /* name of the list that contains the object; NULL: the object is the document itself */
+    const char *list; /* name of the glTF array that contains the object; NULL: the object is the whole document */
     size_t number;
     int primitive; /* index of the primitive in mesh `number`; -1: the object is no primitive */
     char *why;
@@ -144,7 +146,7 @@ static bool object_wrong(const struct rule_check *c, const char *fmt, ...)
     return wrong(c->why, "%s: %s", what, text);
 }
 
-/* Reads a whole number, also if it is written as 3.0. */
+/* Writes the whole number that `value` holds, written as 3 or as 3.0, to *out. Returns false if there is none. */
 static bool whole(const json_t *value, json_int_t *out)
 {
     double real = json_real_value(value);

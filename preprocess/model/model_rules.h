@@ -10,7 +10,7 @@
    object. Rewrites whole numbers written as 3.0 to 3. Returns false with the reason in why. */
 bool model_rules_check(json_t *root, char why[MODEL_WHY_BYTES]);
 
-/* Writes the name of an object for messages, such as "mesh 3 'pump', primitive 0"; without the primitive if it is negative. */
+/* Writes the name of an object for messages, such as "mesh 3 'pump', primitive 0"; without the primitive if `primitive` is negative. */
 void model_rules_name(const json_t *root, const char *list, size_t number, int primitive, char *out, size_t bytes);
 
 /* Returns whether this program implements an extension. */

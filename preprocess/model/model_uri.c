@@ -60,8 +60,8 @@ static const char *find_inside(const char *folder, const char *name, char **real
     return NULL;
 }
 
-/* Resolves a name. If no such file exists, tries other spellings: percent signs taken literally, composed or decomposed accents (macOS),
- * and backslashes as separators. */
+/* Resolves a name in a folder. If no such file exists, tries other spellings: percent signs taken literally, composed or decomposed accents
+ * (macOS), and backslashes as separators. */
 static const char *find_any_form(const char *folder, const char *uri, const char *name, char **real)
 {
     const utf8proc_uint8_t *bytes = (const utf8proc_uint8_t *)name;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Error texts for rejected models: one line that names the object and the numbers. Thread: any. */
+/* Formats error texts for rejected models: one line that names the object and the numbers. Thread: any. */
 #ifndef PREPROCESS_MODEL_REFUSAL_H
 #define PREPROCESS_MODEL_REFUSAL_H
 #include <stdbool.h>
@@ -10,7 +10,7 @@ extern "C" {
 
 #define MODEL_WHY_BYTES 400
 
-/* Formats the reason into why. Always returns false, so that callers can write `return wrong(why, ...)`. */
+/* Formats the error text into why. Always returns false, so that callers can write `return wrong(why, ...)`. */
 bool wrong(char why[MODEL_WHY_BYTES], const char *fmt, ...) __attribute__((format(printf, 2, 3)));
 
 #ifdef __cplusplus
