@@ -10,9 +10,9 @@
 
 struct address_limits {
     const struct quotas *quotas;
-    struct address_usage **all; /* addresses that are known at one time: a few thousand at most; searched once per connection */
+    struct address_usage **all; /* the addresses known now: a few thousand at most; searched only when a connection opens */
     size_t count, capacity;
-    uint64_t payers; /* counter from which address ids (account) are given out */
+    uint64_t payers; /* the newest address id (address_share.account) that was given to an address */
     bool exempt;
 };
 

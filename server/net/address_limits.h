@@ -20,12 +20,12 @@ struct address_limits;
 /* exempt: true: loopback addresses have no limits of their own unless the user set one; the server's total limits still apply. Never
    returns NULL. */
 struct address_limits *address_limits_create(const struct quotas *quotas, bool exempt);
-void address_limits_destroy(struct address_limits **limits); /* &NULL is allowed; sets *limits to NULL */
+void address_limits_destroy(struct address_limits **limits); /* destroys the limits and sets *limits to NULL; accepts a pointer to NULL */
 
 /* Returns the usage of a numeric address, created if needed, with a reference that the caller must release. Texts that are not an address
    all share one usage struct. */
 struct address_usage *address_limits_ref(struct address_limits *limits, const char *address);
-/* Releases a reference. &NULL is allowed; sets *usage to NULL. */
+/* Releases a reference and sets *usage to NULL; accepts a pointer to NULL. */
 void address_limits_unref(struct address_limits *limits, struct address_usage **usage);
 
 /* Return whether the address may have one more: connection; stream; connection of a proxy; history query; HTTP answer of `count` bytes;

@@ -11,7 +11,7 @@
 #include "message/names.h"
 #include "net/tls.h"
 
-static const char LOCAL[] = "local";            /* name in journals of a user on this machine who needs no token */
+static const char LOCAL[] = "local";            /* name that journals show for a user on this machine who needs no token */
 static const char SIGNED_IN[] = " (signed in)"; /* suffix added to a signed-in user's name if a token has the same name */
 
 static const struct http_refusal NO_HOST = { 400, "HTTP/1.1 requires the header Host\n" };
@@ -274,7 +274,7 @@ static const struct http_refusal *judge_token(struct server_context *server, str
     return login_is_good(login) ? NULL : login == LOGIN_HELD ? &HELD : &BAD_TOKEN;
 }
 
-/* Appends a suffix with characters that no token's name can have. */
+/* Appends a suffix with characters that no token's name can have, so that a signed-in user and a token never look alike in journals. */
 void connection_tell_apart(const struct server_context *server, struct token_holder *person)
 {
     size_t length = strlen(person->name), most = sizeof(person->name) - sizeof(SIGNED_IN);

@@ -26,9 +26,9 @@
 #include "session/view/resume.h"
 
 static const int64_t SETTLE_NS = 5 * NS_PER_MS; /* interval between checks whether an action is on disk */
-/* longest wait at shutdown until actions are on disk: settling_end() gives each action a second */
+/* longest wait at shutdown until actions are on disk. settling_end() gives each action at most a second, so this wait suffices */
 static const int64_t SETTLED_NS = 1500 * NS_PER_MS;
-/* interval between ticks; REST_NS: interval while no session waits for anything */
+/* interval between ticks; REST_NS: interval while no session has timed work within the next second */
 static const int64_t TICK_NS = 100 * NS_PER_MS, REST_NS = NS_PER_S;
 static const int64_t GOODBYE_NS = 500 * NS_PER_MS;       /* time for close frames and answers to be sent at shutdown */
 static const int64_t RECORD_INTERVAL_NS = 60 * NS_PER_S; /* minimum time between two audit entries about tokens not checked */
@@ -72,7 +72,8 @@ static void look_at_files(struct net *net, int64_t now_ns)
         tls_look(server->tls);
     if (server->tokens) {
         tokens_look(server->tokens);
-        /* also ends sessions of signed-in users whose rights ended; called only if tokens are configured, which sign-in requires */
+        /* also ends sessions of signed-in users whose rights ended. Sign-in with OpenID Connect requires tokens, so this branch covers all
+           users */
         streams_check_tokens(server, clock_utc_ns());
     }
 }
@@ -516,7 +517,8 @@ void net_destroy(struct net **net_ptr)
     if (!net)
         return;
     lws_sul_cancel(&net->timer);
-    history_queries_destroy(&net->server.history_queries); /* stopped first, because the threads of this object wake the event loop */
+    /* destroyed first: its threads wake the event loop, so they must not outlive it */
+    history_queries_destroy(&net->server.history_queries);
     picture_signer_destroy(&net->server.picture_signer);
     history_loader_destroy(&net->server.history_loader);
     openid_stop(&net->server.openid);
@@ -552,7 +554,7 @@ int net_port(const struct net *net)
     return net->server.params.socket_fd >= 0 ? net->server.params.port : lws_get_vhost_listen_port(net->vhost);
 }
 
-/* Continues serving until the disk has decided on the actions of clients, and renderers have the answers. */
+/* At shutdown, continues serving until the clients' actions are on disk (or can never be) and renderers have the answers. */
 static void finish_actions(struct net *net)
 {
     for (int64_t now_ns = clock_mono_ns(), end_ns = now_ns + SETTLED_NS;

@@ -12,7 +12,7 @@ bool net_port_free(struct log *log, const char *address, int port);
 bool net_access_good(struct log *log, const struct access_params *access);
 /* Binds the port. Returns NULL on failure, already logged. Everything to which params point must outlive the loop. */
 struct net *net_create(const struct net_params *params);
-/* Closes all connections and frees the event loop. &NULL is allowed; sets *net to NULL. */
+/* Closes all connections, frees the event loop and sets *net to NULL; accepts a pointer to NULL. */
 void net_destroy(struct net **net);
 /* Returns the port that is bound. */
 int net_port(const struct net *net);
@@ -43,8 +43,8 @@ void net_lead(struct net *net, const struct net_plant *plant);
 /* Switches to another plant; sessions keep showing what the new plant has under the same names. Returns false if history cannot be read
    any more, already logged. */
 bool net_take_plant(struct net *net, const struct net_plant *plant);
-/* Writes to `out` the distinct views that sessions will have in the next plant, `most` at most. Returns how many. next->render_service
-   may be NULL. */
+/* Writes to `out` the distinct views, `most` at most, that the sessions will have in the next plant. Returns their number.
+   next->render_service may be NULL. */
 size_t net_views(struct net *net, const struct net_plant *next, struct view *out, size_t most);
 /* Answers all requests for a reload with its result. */
 void net_report_reload(struct net *net, bool good, const char *text);

@@ -44,7 +44,8 @@ void net_calls_run(struct net *net)
     pthread_mutex_unlock(&net->call.lock);
     if (!what)
         return;
-    what(arg); /* the function is called without holding the lock: its caller waits meanwhile, so `call` does not change */
+    /* the lock is not held during the call. `call` cannot change meanwhile, because the thread that asked for this call waits for it */
+    what(arg);
     pthread_mutex_lock(&net->call.lock);
     net->call.what = NULL;
     pthread_cond_signal(&net->call.done);

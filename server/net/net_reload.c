@@ -51,7 +51,7 @@ void net_release_recording(struct net *net)
 void net_release_plant(struct net *net)
 {
     struct server_context *server = &net->server;
-    net_settle_answers(net); /* takes the decision of the old journal, which by now has written all actions to disk */
+    net_settle_answers(net); /* answers the actions in the old journal, which by now has written these actions to disk */
     for (struct stream *stream = server->streams; stream; stream = stream->next)
         stream->carried = session_carry(stream->session);
     http_release_plant(server);

@@ -18,7 +18,7 @@ struct picture_signer;
 /* Starts the thread; it calls notify(arg) when a picture is signed. Returns NULL if it cannot start, already logged. key must outlive
    it. */
 struct picture_signer *picture_signer_create(struct log *log, const struct signing_key *key, void (*notify)(void *arg), void *arg);
-/* Ends the thread. &NULL is allowed; sets *signer to NULL. */
+/* Ends the thread and sets *signer to NULL; accepts a pointer to NULL. */
 void picture_signer_destroy(struct picture_signer **signer);
 /* Queues a frame that has a record of its inputs; takes the frame and copies the args. origin->scene must stay valid until
    picture_signer_settle(). */

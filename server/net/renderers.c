@@ -28,7 +28,7 @@ struct lists_seen {
 };
 
 struct deed {
-    struct session *session; /* session that carries the action out (session_proxy.h) */
+    struct session *session; /* session that carries out the action (session_proxy.h) */
     json_t *id;              /* id of the renderer's message, repeated in the answer */
     struct deed *next;
 };
@@ -39,20 +39,22 @@ struct renderer_peer {
     char name[64];                /* name of the renderer's node, as the renderer reports it */
     char lease[LEASE_NODE_BYTES]; /* on a standby's connection: lease id, which distinguishes two nodes with the same name */
     struct text in, out;          /* in: message being received; out: message being built, after LWS_PRE spare bytes */
-    /* RENDERER_VOTES: a voting core: it may not follow this core, but its lease promises count */
+    /* RENDERER_VOTES: a core that only votes: it may not follow this core, for example because its version differs, but its promises not to
+       lead count (corelink/lease.h) */
     enum { RENDERER_NEW, RENDERER_TAKEN, RENDERER_VOTES, RENDERER_REFUSED } state;
     char *refusal;     /* why the peer is refused; NULL: the peer is not refused */
     bool refusal_sent; /* true: the voting core has been sent the reason of its refusal */
     struct core_sent sent;
     bool alarms_sent, lists_sent, links_sent;
     bool stands_by;               /* a standby: a core that follows this one and can take over */
-    bool samples_sent;            /* samples not sent yet: all since the last readings message */
-    bool asks;                    /* true: the peer is to be asked for its promise not to lead (lease) */
+    /* the last samples message took all samples that waited, so readings are sent next; reset when they are sent */
+    bool samples_sent;
+    bool asks;                    /* true: the peer must be asked for its promise not to lead (corelink/lease.h) */
     struct core_samples *samples; /* samples for the peer's history, to be sent; NULL: none */
-    int64_t journal_utc_ns;       /* standby: UTC time of the newest change in the standby's journal */
-    uint64_t told;                /* standby: number of the newest notifier state that was sent to it */
-    uint64_t rows;                /* standby: number of the last journal row that was sent to it */
-    uint64_t alarms;              /* number of the last change of alarms that was sent */
+    int64_t journal_utc_ns;       /* standby: UTC time of the newest change in the standby's own alarm journal */
+    uint64_t told;                /* standby: sequence number of the newest notifier state that was sent to it */
+    uint64_t rows;                /* standby: sequence number of the last journal row that was sent to it */
+    uint64_t alarms;              /* sequence number of the last change of alarms that was sent */
     struct lists_seen lists;
     bool *links;            /* connection state of each source, as last sent; by source index */
     json_t *hello;          /* this core's introduction, to be sent first; NULL: already sent */
@@ -217,7 +219,7 @@ void renderers_close(struct server_context *server, const char *why)
 {
     for (struct renderer_peer *renderer = server->renderers; renderer; renderer = renderer->next) {
         renderer->close_text = why;
-        core_samples_end(&renderer->samples); /* closes the connection: the store of these samples is about to be destroyed */
+        core_samples_end(&renderer->samples); /* the store from which these samples come is about to be destroyed */
         lws_callback_on_writable(renderer->wsi);
     }
 }
@@ -658,7 +660,8 @@ static int on_writeable(struct server_context *server, struct renderer_peer *ren
 {
     if (!renderer->close_text)
         return send_next(server, renderer) ? 0 : -1;
-    if (renderer->deeds) /* settle() later asks for the next callback */
+    /* the connection stays open until these actions are answered; settle() then asks libwebsockets for the next callback */
+    if (renderer->deeds)
         return 0;
     if (json_array_size(renderer->answers) > 0 && !server->goes_down) {
         lws_callback_on_writable(renderer->wsi);

@@ -43,7 +43,7 @@ struct wall_displays {
 struct tile_wall {
     char wall[NAMED_VIEW_ID_BYTES]; /* id of the wall; "": entry is free */
     uint64_t leader;                /* id of the leading session; 0: none */
-    uint64_t asked, presented;      /* numbers of the wall's picture requested last, and of the one presented last */
+    uint64_t asked, presented;      /* ids of the wall's pictures: of the one requested last, and of the one presented last */
     struct quality_ladder made;     /* ladder of the wall; its picture size follows how long the server takes to make pictures */
 };
 
@@ -70,14 +70,15 @@ struct server_context {
     char renderer_refused[300];                  /* the last refusal of a renderer, as logged */
     struct renderer_peer *renderers;             /* list of all connections to /core (renderers.c) */
     struct http_exchange *snapshots;             /* list of HTTP requests that wait for a frame, a pick or a reload */
-    /* picture_count, question_count: HTTP requests for pictures and history that are being answered */
+    /* picture_count, question_count: numbers of HTTP requests for pictures and for history that are being answered */
     int stream_count, picture_count, question_count;
     int64_t answer_bytes; /* total bytes of HTTP answers that clients have not read yet */
     int64_t upload_bytes; /* total size of all files that are being uploaded, counted at their full size from the start */
     int uploads;          /* number of uploads in progress */
     const struct quotas *quotas;
     struct address_limits *limits;
-    int connection_count, unanswered_count; /* unanswered_count: connections that wait for an answer or have not sent a request yet */
+    /* unanswered_count: number of connections that wait for an answer or have not sent a request yet */
+    int connection_count, unanswered_count;
     bool goes_down;                         /* the server shuts down: connections are closed after their answer */
     struct tokens *tokens;                  /* NULL: none are configured */
     struct openid *openid;                  /* sign-in with OpenID Connect; NULL: off */
@@ -105,8 +106,8 @@ struct server_context {
     struct tag_text_cache tag_texts;
     char *lists_said[LISTS];
     struct alarm_text_cache alarm_texts;
-    uint64_t told_number;                  /* number of the last notifier state that a standby was sent */
-    uint64_t alarms_number;                /* number of the last change of alarms that sessions were sent */
+    uint64_t told_number;                  /* sequence number of the last notifier state that was sent to a standby */
+    uint64_t alarms_number;                /* sequence number of the last change of alarms that was sent to sessions */
     struct marker_text_cache marker_lists; /* alarm markers of the frame that was sent last */
     struct neighbour_text_cache neighbour_texts;
     struct {
@@ -148,7 +149,7 @@ void net_refresh_readings(struct server_context *server);
 int stream_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t len);
 /* Returns whether the client with that id is a connected stream and not an HTTP request. */
 bool stream_owns(const struct server_context *server, uint64_t client);
-/* Pass an answer to the stream that asked, which must be connected. stream_on_frame() takes ownership of the frame. */
+/* Pass an answer to the stream whose client asked; the stream must be connected. stream_on_frame() takes ownership of the frame. */
 void stream_on_frame(struct server_context *server, struct encoded_frame *encoded);
 void stream_on_pick(struct server_context *server, const struct pick_answer *answer);
 /* Sends a frame, signed if that was possible; takes ownership of signing->encoded; the caller frees the rest of the struct. */

@@ -404,8 +404,8 @@ static void note_login(struct server_context *server, struct stream *stream, boo
         return;
     if (good)
         holder.role = session->identity.role;
-    if (!good)
-        counter_inc(server->counters.refused, session->identity.login != LOGIN_HELD); /* refusals with 1013 are counted elsewhere */
+    if (!good) /* pump() counts streams that are refused with 1013 (try again later) */
+        counter_inc(server->counters.refused, session->identity.login != LOGIN_HELD);
     if (!good || session->identity.role > ROLE_OPEN || holder.name[0])
         connection_log_login(server, stream->wsi, "stream", &holder, good ? LOGIN_GOOD_NEW : session->identity.login);
 }
@@ -462,8 +462,8 @@ static bool is_utf8(const struct text *text)
     return length > 0;
 }
 
-/* Checks that a text is UTF-8. libwebsockets' own check would also reject a pong that follows a text, although its bytes need not be
-   UTF-8. */
+/* Receives a part of a message. A complete text is checked to be UTF-8 here, because libwebsockets' own check would also reject a pong that
+   follows the text, whose bytes need not be UTF-8. */
 static void on_receive(struct server_context *server, struct stream *stream, const void *bytes, size_t len)
 {
     if (stream->in_count == 0)

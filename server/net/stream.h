@@ -19,7 +19,7 @@ struct stream {
     int packet, part;      /* which packet of the frame is being sent, and which part of that packet (indexes from 0) */
     size_t sent, sent_all; /* sent: bytes of that part; sent_all: bytes of the whole frame */
     bool cut;              /* the frame was cut short: only the end of its message is still to be sent */
-    uint64_t ping, pong;   /* numbers of the last ping sent and the last pong received */
+    uint64_t ping, pong;   /* sequence numbers of the last ping sent and of the last pong received */
     int64_t ping_ns;       /* monotonic: when the last ping was sent */
     enum {
         FIRST_TEXTS,

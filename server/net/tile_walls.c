@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds the sessions that are tiles of one wall; session/tiles/tile_sync.h makes them show pictures together. */
+/* Finds the sessions that are tiles of one wall (each shows its display's part of one picture); session/tiles/tile_sync.h makes them show
+   pictures together. */
 #include <string.h>
 
 #include "base/clock.h"

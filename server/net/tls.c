@@ -20,7 +20,7 @@ struct tls {
     struct log *log;
     char *cert_path, *key_path;
     struct file_watch cert_watch, key_watch;
-    SSL_CTX *checked; /* certificate: the newest one that can be served */
+    SSL_CTX *checked; /* newest certificate that passed the checks; NULL: none yet */
     SSL_CTX *served;  /* the context of libwebsockets */
     time_t warned_s;  /* seconds of UTC: when the last warning about the expiry was logged; 0: none yet */
 };

@@ -11,7 +11,7 @@
 struct tls;
 /* Reads both PEM files. Returns NULL if they cannot be served; the reason is logged. */
 struct tls *tls_create(struct log *log, const char *cert_path, const char *key_path);
-void tls_destroy(struct tls **tls); /* &NULL is allowed; sets *tls to NULL */
+void tls_destroy(struct tls **tls); /* frees the certificate and sets *tls to NULL; accepts a pointer to NULL */
 /* Makes the OpenSSL context use the certificate, now and after each change. */
 void tls_serve(struct tls *tls, SSL_CTX *context);
 /* Reads the files again if they changed. If the new certificate cannot be served, the old one stays in force; logged. Warns about a

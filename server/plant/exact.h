@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Fields that pictures show exactly: few sensors by straight-line distance are evaluated at each pixel (field/pixel_field.h).
-   plantcast-prep cuts no triangles for them. Thread: any. */
+/* Fields that pictures show exactly: if a group has few sensors on an asset and uses straight-line distances, the field is evaluated at
+   each pixel (field/pixel_field.h). plantcast-prep does not subdivide triangles for such fields. Thread: any. */
 #ifndef PLANT_EXACT_H
 #define PLANT_EXACT_H
 #include "plant/influence.h"
 #include "plant/plant.h"
 
-enum { EXACT_SENSORS = 8 }; /* most sensors of a group on an asset that each pixel sums */
+enum { EXACT_SENSORS = 8 }; /* largest number of sensors that a group may have on an asset for its field to be evaluated at each pixel */
 
 /* Returns whether an interpolation of that many sensors by this kind of distance is evaluated at each pixel. */
 static inline bool plant_is_exact(enum interpolation interpolation, enum distance_mode distance, size_t sensor_count)
@@ -14,7 +14,7 @@ static inline bool plant_is_exact(enum interpolation interpolation, enum distanc
     bool by_distance = interpolation == INTERPOLATION_SHEPARD || interpolation == INTERPOLATION_PAPER;
     return by_distance && distance == DISTANCE_EUCLIDEAN && sensor_count <= EXACT_SENSORS;
 }
-/* Returns whether a group, with the settings of the plant file, needs no cut triangles on an asset with that many of its sensors. */
+/* Returns whether a field from that many sensors, with this interpolation and kind of distance, is evaluated at each pixel. */
 static inline bool plant_group_is_exact(const struct plant_group *group, size_t sensor_count)
 {
     return plant_is_exact(group->interpolation, group->distance, sensor_count) && !plant_prepares_any(group);

@@ -31,7 +31,8 @@ static inline bool plant_prepares_any(const struct plant_group *group)
 {
     return group->prepared >> INTERPOLATION_HARMONIC != 0 || group->heat || group->directed;
 }
-/* Returns the decay length sqrt(k t / h) of an asset's wall in metres. The wall's thickness must be stated. */
+/* Returns the decay length of heat along an asset's wall in metres: sqrt(k t / h), with the conductivity k, the wall thickness t and the
+   heat transfer coefficient h. The wall's thickness must be stated. */
 double plant_decay_m(const struct plant_asset *asset);
 
 #endif

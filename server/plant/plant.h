@@ -20,13 +20,13 @@ enum interpolation {
     INTERPOLATION_GP,
     INTERPOLATIONS
 };
-/* heat: geodesic distances by the heat method, as in the paper */
+/* DISTANCE_HEAT: geodesic distances by the heat method (Crane et al., 2013), as in Kim & Suh, Electronics 2025, 14(15), 2938 */
 enum distance_mode { DISTANCE_GEODESIC, DISTANCE_EUCLIDEAN, DISTANCE_HEAT, DISTANCES };
-enum fill_mode { FILL_NONE, FILL_NEIGHBOURS }; /* whether neighbours' readings replace those of a lost sensor */
-/* display at the start of a client: values, or values relative to their limits */
+enum fill_mode { FILL_NONE, FILL_NEIGHBOURS }; /* whether a sensor without usable reading gets an estimate from its neighbours' readings */
+/* display with which a client begins: values, or values relative to their alarm limits */
 enum plant_show { PLANT_SHOW_VALUE, PLANT_SHOW_OPERATOR };
 enum plant_start { PLANT_START_SHOWN, PLANT_START_GHOST, PLANT_START_HIDDEN }; /* initial display state of an asset */
-enum { PLANT_STARTS = 4096 }; /* the first assets of the plant, as many as this, can be hidden one by one; the others cannot */
+enum { PLANT_STARTS = 4096 }; /* number of assets, from the first in the plant file on, that can be hidden one by one */
 enum axis { AXIS_Y, AXIS_Z }; /* upward axis */
 enum data_type {
     DATA_BIT,
@@ -44,7 +44,8 @@ enum data_type {
 /* Order in which the bytes of a value A B C D (A most significant) arrive. For 64 bits: CDAB reverses the registers, BADC swaps the
    bytes of each register, DCBA does both. NONE: not stated. */
 enum byte_order { BYTE_ORDER_NONE, BYTE_ORDER_ABCD, BYTE_ORDER_CDAB, BYTE_ORDER_BADC, BYTE_ORDER_DCBA };
-enum register_table { TABLE_COIL, TABLE_DISCRETE, TABLE_INPUT, TABLE_HOLDING }; /* in this order: Modbus function codes 1, 2, 4, 3 */
+/* Modbus tables; their function codes are, in this order, 1, 2, 4, 3 */
+enum register_table { TABLE_COIL, TABLE_DISCRETE, TABLE_INPUT, TABLE_HOLDING };
 enum scaling { SCALING_NONE, SCALING_LINEAR, SCALING_SQUARE_ROOT };
 enum limit { LIMIT_LL, LIMIT_L, LIMIT_H, LIMIT_HH, LIMIT_COUNT };
 enum alarm_mode { /* which system manages the alarms */
@@ -101,7 +102,9 @@ struct plant_mirror {  /* meaning of a tag that is an alarm bit of another syste
 };
 
 struct plant_gp {                     /* parameters of the interpolation `gp` */
-    double range_m, noise, deviation; /* length in metres, then noise and deviation in the group's unit; NaN: to be fitted to readings */
+    /* range_m: correlation length in metres; noise, deviation: standard deviations of a reading's noise and of the field, in the group's
+       unit; NaN: to be fitted to readings */
+    double range_m, noise, deviation;
     char *fit;                        /* path of a file with readings to fit the parameters to; NULL: no fitting */
 };
 
@@ -115,13 +118,13 @@ struct plant_group {
     enum interpolation interpolation;
     enum distance_mode distance;
     double strength, decay, power;
-    double radius_m;   /* radius R of Algorithm 1 in metres; 0: the largest distance on the asset */
+    double radius_m;   /* radius R of Algorithm 1 of Kim & Suh (field/field.h), metres; 0: the largest distance on the asset */
     double reach_m;    /* metres beyond which a sensor has no influence; INFINITY: no limit */
     unsigned prepared; /* bit mask of the interpolations that plantcast-prep computes (plant/influence.h), including the group's own */
     double disc_m;     /* radius in metres of the disc that represents a sensor in the interpolations harmonic, fin and gp */
     double ambient;    /* temperature of the surroundings for `fin`, in the group's unit; NaN: not stated */
     bool directed;     /* true: some tags of the group have a direction, which is shown with arrows */
-    bool heat;         /* `geodesic: heat`: plantcast-prep also computes the heat-method distances of the paper */
+    bool heat;         /* `geodesic: heat`: plantcast-prep also computes distances by the heat method, as in Kim & Suh */
     struct plant_gp gp;
     /* radius in metres of the hot spots for `show: blind`: distance at which the spot's excess has fallen by a factor exp(-1/2) */
     double hot_spot_m;
@@ -283,7 +286,7 @@ struct plant_tag {
     bool has_position;             /* true: position_m is set; false: see `node` */
     double position_m[3];          /* position in metres, in the frame that the asset states */
     char *node;                    /* name of the model node that gives the position, or NULL */
-    double strength, decay;        /* the tag's own values; otherwise the group's */
+    double strength, decay;        /* s and o of Algorithm 1 of Kim & Suh (field/field.h): the tag's own values, otherwise the group's */
     double stale_s;                /* age in seconds from which the reading is stale; default: three poll intervals, at least 5 s */
     double flatline_s;             /* seconds without a change after which the value is uncertain; 0: never */
     bool states_stale;             /* the row states stale_s */
@@ -351,7 +354,8 @@ struct plant {
     size_t asset_count, group_count, source_count, tag_count;
     struct plant_colormap colormaps[PLANT_COLORMAPS];
     size_t colormap_count;
-    int *assets_by_id, *tags_by_name; /* indices sorted by id and by name; assets_by_id is NULL until the whole file is read */
+    /* indices of assets sorted by id, and of tags sorted by name; assets_by_id is NULL until the whole file is read */
+    int *assets_by_id, *tags_by_name;
     int *derived;                     /* indices of the derived tags, in an order in which each follows the tags in its expression */
     size_t derived_count;
 };
@@ -363,7 +367,7 @@ struct plant *plant_load_or_print(const char *path); /* Does the same as plant_l
 struct plant *plant_load_without_models(const char *path);
 /* Does the same as plant_load(), but accepts tags whose asset does not exist: such tags get no asset, and their lost_asset is set. */
 struct plant *plant_load_with_orphans(const char *path, struct diag *diag);
-void plant_destroy(struct plant **plant); /* Frees a plant. &NULL is fine; leaves NULL. */
+void plant_destroy(struct plant **plant); /* Frees a plant and sets *plant to NULL; accepts a pointer to NULL. */
 
 int plant_find_asset(const struct plant *plant, const char *id); /* All plant_find functions return an index, or -1. */
 int plant_find_group(const struct plant *plant, const char *id);

@@ -122,7 +122,7 @@ static int put_elsewhere(const char *from, const char *to)
 static int move_into_place(const struct revision_record *record, const char *folder, const char *from, const char *name)
 {
     char *source = revision_version_of(record->path, from, name), *target = plant_folder_file(folder, name);
-    /* this version does not exist: the file was moved already, or the revision does not change it */
+    /* no file of this version exists: it was moved already, or the revision does not change it */
     int status = access(source, F_OK) != 0 ? 0 : *name == '/' ? put_elsewhere(source, target) : move(source, target);
     mem_free(source);
     mem_free(target);
@@ -151,7 +151,8 @@ int revision_go_on_undoing(const char *folder)
     struct revision_record record;
     char *last = plant_folder_file(folder, undone);
     int status = revision_record_read(&record, folder, REVISION_UNDOING);
-    if (status == -ENOENT) /* no record: all files were put back, and the removal of the revision's folder had begun */
+    /* no record: all files were put back, and the removal of the revision's folder had begun before the program was killed */
+    if (status == -ENOENT)
         status = 0;
     for (size_t i = record.count; i-- > 0 && status == 0;) {
         char *path = plant_folder_file(folder, record.entries[i].name);

@@ -21,7 +21,7 @@ struct plant_folder_params {
     const char *own; /* path of a work folder in the plant's folder that must not be removed; NULL: none */
     int lent;        /* descriptor with which the parent process has locked the folder; 0: none */
     int wait_ms;     /* milliseconds to wait for another program to finish; 0: no waiting */
-    /* receives what was finished for a killed program: "an import", "the undoing of an import"; NULL: not wanted */
+    /* receives the name of the work that was finished for a killed program: "an import", "the undoing of an import"; NULL: not wanted */
     const char **finished;
 };
 
@@ -29,8 +29,8 @@ struct plant_folder_params {
    descriptor, or -errno with a one-line reason in *why (mem_free), which does not name the folder. */
 int plant_folder_lock(const struct plant_folder_params *params, char **why);
 /* Call this before reading files: waits for a revision in progress, finishes the revision of a killed program, and removes what killed
-   programs left, unless another program has locked the folder. Returns true once no revision is in progress. If false, *why has the reason
-   as above. Sets *params->finished. */
+   programs left, unless another program has locked the folder. Returns true once no revision is in progress; false: *why has a one-line
+   reason (mem_free). Sets *params->finished. */
 bool plant_folder_settle(const struct plant_folder_params *params, char **why);
 /* Returns true if a revision is in progress, or its program was killed. The files in the folder are then neither the old plant nor the new
    one. */

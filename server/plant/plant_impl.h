@@ -17,7 +17,7 @@ void plant_conversions_read(struct yaml_reader *reader, yaml_node_t *node, struc
 void plant_links_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
 /* Reads the key `notify`. */
 void plant_notify_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
-void plant_notify_free(struct plant_notify **notify); /* Frees the recipients. &NULL is fine; leaves NULL. */
+void plant_notify_free(struct plant_notify **notify); /* Frees the recipients and sets *notify to NULL; accepts a pointer to NULL. */
 /* Reads a time span such as 22:00-06:00. Returns false after an error, which is reported for the key `name`. */
 bool plant_day_span_read(struct yaml_reader *reader, yaml_node_t *node, const char *name, int *from_min, int *to_min);
 /* Read the lists `views`, `tours`, `other_plants` and `walls`. */
@@ -56,7 +56,7 @@ void plant_postgres_check(struct yaml_reader *reader, const struct yaml_map *map
 void plant_postgres_finish(struct plant_postgres *postgres);
 /* Reads the key `publish`. */
 void plant_publish_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
-void plant_publish_free(struct plant_publish **publish); /* Frees the settings. &NULL is fine; leaves NULL. */
+void plant_publish_free(struct plant_publish **publish); /* Frees the settings and sets *publish to NULL; accepts a pointer to NULL. */
 /* Reads the list `sources`. */
 void plant_sources_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
 
@@ -65,7 +65,7 @@ void plant_mqtt_read_tls(struct yaml_reader *reader, yaml_node_t *node, void *so
 /* Checks the keys of an MQTT source, and sets defaults. */
 void plant_mqtt_check(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant, struct plant_source *source);
 void plant_mqtt_finish(struct plant_mqtt *mqtt);
-/* The same functions for OPC UA: read the key `security`, check all keys, free the settings. */
+/* Functions for OPC UA: read the key `security`, check all keys of a source, free its settings. */
 void plant_opcua_read_security(struct yaml_reader *reader, yaml_node_t *node, void *source);
 void plant_opcua_check(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant, struct plant_source *source);
 void plant_opcua_finish(struct plant_opcua *opcua);
@@ -73,8 +73,8 @@ void plant_opcua_finish(struct plant_opcua *opcua);
    error, since a user who only prepares the plant may lack the right. */
 void plant_secret_check(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant, const char *key, char **path);
 
-/* For lists of records that begin with `char *id`: allocates records for the items of a list and sets *count. Returns NULL if the node
-   is no list, or too long (reported). */
+/* For a list of records that begin with `char *id`: allocates a record for each item of the list and sets *count. Reports a list with fewer
+   than `least` items. Returns NULL, reported, if the node is no list or memory runs out. */
 void *plant_list_make(struct yaml_reader *reader, yaml_node_t *node, const char *name, int least, size_t bytes_each, int *count);
 /* Reports an id that occurs twice; call it after reading each record. */
 void plant_list_check_id(struct yaml_reader *reader, const struct yaml_map *map, const char *what, const void *things, size_t count,

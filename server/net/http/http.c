@@ -34,10 +34,11 @@ static int ready(struct server_context *server, struct http_exchange *request)
 
 #define NGINX_LINES "proxy_http_version 1.1; proxy_set_header Upgrade $http_upgrade; proxy_set_header Connection \"upgrade\";"
 
-static const int64_t REFUSED_NS = 15 * NS_PER_S; /* time within which the page asks for the reason after a failed handshake */
+/* time after a failed handshake within which the page may ask for the reason of the refusal */
+static const int64_t REFUSED_NS = 15 * NS_PER_S;
 
-/* Logs a request for the stream without the header Upgrade. Proxies drop Upgrade and Connection, because these apply to one connection
-   only, and keep the other headers of a handshake. */
+/* Logs a request to the stream's path without the header Upgrade, which a wrongly configured proxy sends: proxies drop Upgrade and
+   Connection, because these apply to one connection only, and keep the other headers of a handshake. */
 static void log_without_upgrade(struct server_context *server, struct lws *wsi, int64_t now_ns)
 {
     char more[LOG_PACE_BYTES], via[100], shown[48];
@@ -86,7 +87,7 @@ static int file(struct server_context *server, struct http_exchange *request, co
         return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "not found\n");
     if (lws_hdr_copy(request->wsi, seen, sizeof(seen), WSI_TOKEN_HTTP_IF_NONE_MATCH) > 0 && !strcmp(seen, found->etag))
         return request_answer(request, HTTP_STATUS_NOT_MODIFIED, found->type, NULL, 0, "etag:", found->etag);
-    char *bytes = mem_array(found->count + 1, 1); /* libwebsockets' static answer must be copied, because the request frees its answer */
+    char *bytes = mem_array(found->count + 1, 1); /* a copy: the site keeps its bytes, and the request frees those of its answer */
     memcpy(bytes, found->bytes, found->count);
     return request_answer(request, HTTP_STATUS_OK, found->type, bytes, found->count, "etag:", found->etag);
 }
@@ -97,7 +98,8 @@ static const struct {
     const char *path;
     int (*serve)(struct server_context *server, struct http_exchange *request);
     enum role least;
-    /* bit mask of the kinds of narrowed token that may use this path: limited to views, to one display, or to renderers */
+    /* bit mask (VIEWS, DISPLAY, NODE) of the kinds of narrowed token that may use this path: limited to views, to one display, or to
+       renderers */
     unsigned narrowed;
 } routes[] = {
     { "/healthz", alive, ROLE_NOBODY, 0 },

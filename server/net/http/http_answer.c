@@ -209,7 +209,7 @@ void request_await(struct server_context *server, struct http_exchange *request)
     request->next = server->snapshots;
     server->snapshots = request;
     request->usage = connection_of(request->wsi)->client;
-    int64_t wait_s = server->quotas->at[QUOTA_ANSWER_WAIT_S]; /* maximum wait for a picture, past readings or a reload */
+    int64_t wait_s = server->quotas->at[QUOTA_ANSWER_WAIT_S]; /* seconds that a picture, past readings or a reload may take */
     request->until_ns = clock_mono_ns() + wait_s * NS_PER_S;
     lws_set_timeout(request->wsi, PENDING_TIMEOUT_HTTP_CONTENT, (int)wait_s + 15);
 }

@@ -142,7 +142,8 @@ void http_on_history_answer(struct server_context *server, struct history_answer
         return;
     }
     request_forget(server, request);
-    if (!answer->text) /* an answer that has begun cannot be replaced by an error; closing the connection shows that it is incomplete */
+    /* once an answer in pieces has begun, it cannot be replaced by an error; closing the connection shows that the answer is incomplete */
+    if (!answer->text)
         request_answered(request, answer->first ? request_answer_unreadable(server, request) : -1);
     else
         request_answered(request, whole ? answer_whole(request, answer, type) : chunked_begin(request, type));

@@ -40,7 +40,7 @@ struct http_exchange {
     int64_t until_ns;            /* monotonic time at which a waiting request is answered with "not ready" */
     bool reloads;                /* the request waits for a reload of the plant */
     struct upload_body *body_in; /* upload in progress; NULL: none */
-    const char *step;            /* path of a request to import a plant (static text), for the audit trail */
+    const char *step;            /* path of a POST request that imports a plant (static text), for the audit trail */
     struct asked *asked;         /* frame or pick for which the request waits; NULL: none */
     struct http_exchange *next;  /* next in server->snapshots */
 };
@@ -63,7 +63,7 @@ int request_answer(struct http_exchange *request, int status, const char *type, 
 int request_answer_text(struct http_exchange *request, int status, const char *text);
 /* Sends the headers of an answer whose body comes in pieces (http_chunked.c). */
 int chunked_begin(struct http_exchange *request, const char *type);
-/* Adds a piece of the body Call it only after the previous piece was sent. Takes ownership of body (mem_free). */
+/* Adds a piece of the body. Call it only after the previous piece was sent. Takes ownership of body (mem_free). */
 void chunked_append(struct http_exchange *request, char *body, size_t count, bool last);
 /* Writes as much of the current piece as one write takes. */
 int chunked_write(struct server_context *server, struct http_exchange *request);
@@ -77,8 +77,8 @@ int request_answer_unreadable(const struct server_context *server, struct http_e
 int request_answer_json(struct http_exchange *request, char *text);
 /* Answers 400 with the error's text. */
 int request_answer_error(struct http_exchange *request, const struct message_error *error);
-/* Sets the body of the request's answer (NULL: none) and frees the last one; takes ownership. Counts its bytes in the totals of the server
-   and of the address. */
+/* Sets the body of the request's answer (NULL: none) and frees its previous body; takes ownership. Counts the bytes in the totals of the
+   server and of the address. */
 void request_hold(struct http_exchange *request, char *body, size_t count);
 /* Writes status line and headers. Returns false if the connection is gone. */
 bool request_write_head(struct http_exchange *request, int status, const char *type, const char *extra_name, const char *extra);

@@ -301,7 +301,7 @@ void import_abandon_body(struct http_exchange *request)
 static const struct {
     const char *path;
     int (*take)(struct server_context *server, struct http_exchange *request, const struct args *args);
-    bool always; /* true: the path may also be used while an import runs */
+    bool always; /* true: the path may be used even while an import runs */
 } posts[] = {
     { "/api/v1/import/upload", begin_upload, false }, { "/api/v1/import/remove", remove_file, false },
     { "/api/v1/import/run", order_all, false },       { "/api/v1/import/decide", begin_decisions, false },

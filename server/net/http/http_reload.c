@@ -16,7 +16,7 @@ bool request_may_change(struct server_context *server, struct http_exchange *req
 
 int ask_reload(struct server_context *server, struct http_exchange *request)
 {
-    request->close = true; /* the client may send a body that nobody will read */
+    request->close = true; /* closes the connection after the answer, because the client may send a body that nobody will read */
     if (!request_may_change(server, request))
         return request_answer_text(request, HTTP_STATUS_FORBIDDEN, "pages of other sites may not do this\n");
     if (!server->params.reload)
@@ -35,7 +35,7 @@ static void answer_all(struct server_context *server, bool reloads, int status, 
             continue;
         request_forget(server, request);
         request->reloads = false;
-        /* closing the connection shows that the answer in pieces is incomplete, because the rest will not come */
+        /* closing the connection shows the client that an answer in pieces, of which the rest will not come, is incomplete */
         bool begun = request->pieces != PIECES_NONE;
         request_answered(request, begun ? -1 : request_answer(request, status, type, mem_strdup(text), strlen(text), NULL, NULL));
     }

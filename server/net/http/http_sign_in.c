@@ -10,7 +10,7 @@
 #include "net/connection.h"
 #include "net/http/http_impl.h"
 
-enum { COOKIE_S = 600 }; /* seconds that a log-in waits for the identity provider's answer */
+enum { COOKIE_S = 600 }; /* lifetime in seconds of the cookie of a log-in: the identity provider's answer must arrive within this time */
 
 static int answer_redirect(struct http_exchange *request, const char *to)
 {

@@ -130,7 +130,7 @@ static void add_file(struct web_site *site, struct log *log, const char *full, c
     site->files[site->count++] = file;
 }
 
-/* path: path of the folder within the site, without a trailing slash. */
+/* Adds the files of a folder and of the folders inside. path: path of the folder within the site, without a trailing slash. */
 static void add_folder(struct web_site *site, struct log *log, const char *path)
 {
     char *full = mem_printf("%s%s", site->folder, path);

@@ -20,7 +20,7 @@ struct web_site;
 /* Reads all files of known types in the folder and below; strips comment lines from the page's scripts. folder NULL: a site without
    files. */
 struct web_site *site_create(struct log *log, const char *folder);
-void site_destroy(struct web_site **site); /* &NULL is allowed; sets *site to NULL */
+void site_destroy(struct web_site **site); /* destroys the site and sets *site to NULL; accepts a pointer to NULL */
 /* Returns the file of a decoded path that starts with '/', or NULL. The file lives as long as the site. */
 const struct site_file *site_find(const struct web_site *site, const char *path);
 

@@ -100,7 +100,8 @@ static bool is_instance(const struct model_node *nodes, int node)
     return nodes[node].parent >= 0 && nodes[nodes[node].parent].number == nodes[node].number;
 }
 
-/* Returns whether the first `left` segments of the pattern match the path to this node (-1: the scene). */
+/* Returns whether the first `left` segments of the pattern match the names on the path from the root to this node (-1: the scene
+   itself). */
 static bool path_matches(const struct pattern *pattern, size_t left, const struct model_node *nodes, int node)
 {
     if (left == 0)
@@ -195,7 +196,7 @@ static bool mark(const struct pattern *pattern, const struct node_list *model, b
     return any;
 }
 
-/* Applies either all patterns that include nodes, or all that exclude nodes (with !). */
+/* Applies to `taken` either the patterns that include nodes, or those that exclude nodes (with !). */
 static bool mark_all(const char *patterns, bool excludes, const struct node_list *model, bool *taken, size_t *done, char *why, size_t bytes)
 {
     bool good = true;

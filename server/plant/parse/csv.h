@@ -31,7 +31,7 @@ struct csv { /* state of the reader; callers may read the members but not change
 /* Reads the file and its header row. Returns false after errors, which go to diag; csv_close() is then not needed. The path is copied;
    diag must outlive the reader. */
 bool csv_open(struct csv *csv, const char *path, struct diag *diag);
-/* Does the same as csv_open() for a file of another program in any encoding: see input_read_foreign(). */
+/* Opens a file of another program, in any encoding, like csv_open(). encoding, choice: see input_read_foreign(). */
 bool csv_open_foreign(struct csv *csv, const char *path, const char *encoding, struct diag *diag, struct charset_choice *choice);
 void csv_close(struct csv *csv);
 /* Reads the next row that is not blank. Returns false after the last row. Rows with faulty quotes, or with another count of cells than the

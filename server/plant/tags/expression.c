@@ -18,7 +18,8 @@ enum operation { OP_NUMBER, OP_INPUT, OP_ADD, OP_SUBTRACT, OP_MULTIPLY, OP_DIVID
 struct expression_step {
     enum operation operation;
     double number;
-    int index, arguments; /* index: index of the input or of the function, depending on the step */
+    /* index: by operation: index of an input in expression_inputs(), or of a function; arguments: number of arguments of a function */
+    int index, arguments;
 };
 
 struct expression {
@@ -85,7 +86,7 @@ static double approach_of(const double *v, int count)
     return fmin(v[0] - v[3], v[1] - v[2]);
 }
 
-/* Returns the logarithmic mean temperature difference of the same four inputs. */
+/* Returns the logarithmic mean temperature difference of a counterflow heat exchanger. Inputs: hot in, hot out, cold in, cold out. */
 static double lmtd_of(const double *v, int count)
 {
     double a = v[0] - v[3], b = v[1] - v[2];

@@ -47,7 +47,7 @@ static bool is_lost(const struct tag_list *list)
     return *id && plant_find_asset(list->plant, id) < 0;
 }
 
-/* Reads group and asset of a row. If the plant file has no groups or assets at all, that was reported already, not once per row. */
+/* Reads group and asset of a row. A plant file without any groups or assets is reported once elsewhere, so not for each row. */
 static void read_group_and_asset(struct tag_list *list)
 {
     const struct plant *plant = list->plant;

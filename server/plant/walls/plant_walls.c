@@ -78,7 +78,7 @@ static int word_count(const char *row)
     return count;
 }
 
-/* Returns the word in a column of a row; the row must have that many. */
+/* Returns the word in a column (from 0) of a row; the row must have that many columns. */
 static const char *word_at(const char *row, int column, size_t *length)
 {
     const char *at = row + strspn(row, " ");
@@ -398,7 +398,8 @@ static void check_items(const struct plant *plant, const struct wall_pane *pane,
     }
 }
 
-/* Returns the number of displays of the tiled picture to skip: every display has the same panes, so checking one suffices. */
+/* Returns how many displays of the tiled picture a check may skip. All displays of the picture have the same panes, so checking one
+   suffices. */
 static size_t tiles_but_one(const struct wall *wall)
 {
     int count = wall->tile.columns * wall->tile.rows;

@@ -49,7 +49,9 @@ extern const char *const pane_kind_names[]; /* names of pane kinds, by enum pane
 struct wall_pane {
     char *area, *title; /* area: name of the pane's area in the grid; title NULL: no title */
     enum pane_kind kind;
-    char *items[PANE_ITEMS]; /* names of views, shown in turn; tags of a trend or of tiles; the text; a tour; or another plant */
+    /* by `kind`: names of views, shown in turn; names of tags of a trend or of tiles; the text; the name of a tour; or the name of another
+       plant */
+    char *items[PANE_ITEMS];
     size_t item_count;
     int item_lines[PANE_ITEMS], item_columns[PANE_ITEMS];
     double every_s; /* seconds for which each view is shown */
@@ -102,7 +104,7 @@ const struct wall_display *wall_display_find(const struct plant *plant, const ch
 bool wall_display_has_pictures(const struct wall_display *display);
 bool wall_display_shows_tag(const struct wall_display *display, const char *tag);
 bool wall_display_shows_view(const struct plant *plant, const struct wall_display *display, const char *id);
-/* Returns whether a display has a pane of that kind with that item; item NULL: with any item. */
+/* Returns whether a display has a pane of that kind that contains the item `item`; NULL: any item. */
 bool wall_display_has(const struct wall_display *display, enum pane_kind kind, const char *item);
 /* Returns a message (static) that says what is wrong with a title or a view address, or NULL. */
 const char *named_view_title_wrong(const char *title);
