@@ -105,7 +105,7 @@ static bool next_chunk(const uint8_t *png, size_t count, size_t *at, struct png_
     return true;
 }
 
-/* A chunk that our writer emits. `bytes`: its exact data; NULL: any data of at least one byte. */
+/* A kind of chunk that our PNG writer emits. `bytes`: exact content of the chunk; NULL: any content of at least one byte. */
 struct plain_chunk {
     char type[5];
     bool required, repeats;
@@ -113,8 +113,8 @@ struct plain_chunk {
     size_t length;
 };
 
-/* sRGB with perceptual intent, and the values of gAMA and cHRM that match it (PNG, third edition, 11.3.2.5). Our writer emits sRGB
-   alone. */
+/* sRGB with perceptual intent; gAMA and cHRM with the values that match it (PNG, third edition, 11.3.2.5). Of these three, our writer emits
+   only sRGB. */
 static const struct plain_chunk plain[] = {
     { "sRGB", true, false, "\0", 1 },
     { "gAMA", false, false, "\0\0\xb1\x8f", 4 },

@@ -34,8 +34,8 @@ enum { SIGNED_PICTURE_WHY_BYTES = 256 };
    readings; the caller drops it (json_decref). Otherwise returns NULL with the reason in `why`. */
 json_t *signed_picture_verify(const struct signing_key *key, const uint8_t *png, size_t count, char why[SIGNED_PICTURE_WHY_BYTES]);
 
-/* Does the same as signed_picture_verify() for a statement outside a picture, without checking pixels. `signature`: in the form used in
-   pictures. */
+/* Verifies a statement outside a picture, without checking pixels; result and `why` as for signed_picture_verify(). `signature`: in the
+   form used in pictures. */
 json_t *signed_statement_verify(const struct signing_key *key, const char *text, size_t length, const char *signature,
                                 char why[SIGNED_PICTURE_WHY_BYTES]);
 /* Returns whether a verified statement belongs to these pixels: red, green, blue, rows from the top. If not, the reason is in `why`. */

@@ -27,7 +27,7 @@ static bool find_id(struct signing_key *key)
     return true;
 }
 
-/* Passphrase callback: fails, because nobody is there to type a passphrase. */
+/* Passphrase callback: fails, because a daemon has nobody to type a passphrase. */
 static int no_passphrase(char *out, int bytes, int writes, void *arg)
 {
     (void)out, (void)bytes, (void)writes, (void)arg;

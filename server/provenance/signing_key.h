@@ -14,7 +14,7 @@ struct signing_key;
 struct signing_key *signing_key_load(const char *path, char why[SIGNING_KEY_WHY_BYTES]);
 /* Reads a public key. Returns NULL with the reason in `why` if the file cannot be read or has no key. */
 struct signing_key *signing_key_load_public(const char *path, char why[SIGNING_KEY_WHY_BYTES]);
-void signing_key_destroy(struct signing_key **key); /* Frees the key. &NULL is fine; leaves NULL. */
+void signing_key_destroy(struct signing_key **key); /* Frees the key and sets *key to NULL; accepts a pointer to NULL. */
 
 /* Signs the bytes with a private key. Returns false if the library fails. */
 bool signing_key_sign(const struct signing_key *key, const void *bytes, size_t count, uint8_t signature[SIGNATURE_BYTES]);

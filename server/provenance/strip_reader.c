@@ -221,8 +221,8 @@ static double to_segment(const double p[3], const double a[3], const double b[3]
     return sqrt(square);
 }
 
-/* Returns the distance of a colour from a legend column. Lighting moves a colour along the line through the three shades in which the
-   legend shows that colour. */
+/* Returns the CIELAB distance of a colour from a legend column. Lighting moves a colour along the line through the three shades in which
+   the legend shows that colour. */
 static double off_of(const struct strip_found *found, int column, const double lab[3])
 {
     return fmin(to_segment(lab, found->ramp[0][column], found->ramp[1][column]),
@@ -267,8 +267,8 @@ bool strip_read(const struct strip_picture *picture, const struct strip_found *f
     else if (best >= STRIP_BEYOND + STRIP_RAMP)
         out->state = STRIP_ABOVE;
     else {
-        /* Colours at both ends of the scale may be similar: then the mean of their positions on the scale would be meaningless, and no
-           value is returned. */
+        /* Colours at both ends of the scale may be similar. The mean of their positions on the scale would then be meaningless, so the
+           position of the best match is used. */
         double place = abs(high - low) > STRIP_RAMP / 4 ? best - STRIP_BEYOND + 0.5 : sum / total;
         out->value = value_of(&found->strip, place / STRIP_RAMP);
         out->low = value_of(&found->strip, (double)(low - STRIP_BEYOND - 1) / STRIP_RAMP);

@@ -30,7 +30,7 @@ bool asset_open_influence(struct log *log, struct asset *asset);
 /* Returns a placeholder for an asset that could not be prepared: one invisibly small triangle, no sensors. */
 struct asset *asset_stand_in(void);
 struct asset *asset_ref(struct asset *asset);
-void asset_unref(struct asset **asset);        /* &NULL is fine; sets it to NULL */
+void asset_unref(struct asset **asset);        /* releases the asset and sets *asset to NULL; accepts a pointer to NULL */
 void asset_forget_closed(struct asset *asset); /* frees the closed bodies; pointers from asset_closed() are then invalid */
 /* Returns the closed bodies of a level. The first call computes them, in a few milliseconds per 100,000 triangles. Owned by the asset. */
 const struct closed_bodies *asset_closed(const struct asset *asset, uint32_t level);

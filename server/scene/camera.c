@@ -8,9 +8,9 @@
 #include "base/math/vec.h"
 
 #define FIT_MARGIN 1.06  /* margin: a fitted box fills 1/1.06 of the picture */
-#define LEAST_BOX_M 1e-4 /* smallest box that is framed; a smaller or empty box is framed as if it had this size */
+#define LEAST_BOX_M 1e-4 /* side in metres of the smallest box that is framed; a smaller or empty box is framed as if it had this size */
 #define LEAST_NEAR_M 1e-6
-#define LEAST_HEIGHT_M 1e-5 /* smallest height of an orthographic picture */
+#define LEAST_HEIGHT_M 1e-5 /* smallest height of an orthographic picture, metres */
 
 /* --- axes of the camera ----------------------------------------------------------------------------------------------------- */
 
@@ -78,9 +78,10 @@ static void safe_box(const double min_m[3], const double max_m[3], double safe_m
     }
 }
 
-/* Fits a box along one axis of the picture. from, to: range of the picture to fill, as tangents of the bounding planes; in an orthographic
- * view, as positions in half pictures. The planes touch the box where low = max(-x + z from) and high = max(x - z to), with z forward. The
- * eye is between the planes. */
+/* Fits a box along one axis of the picture. from, to: range of the picture to fill, as tangents of its two bounding planes; in an
+   orthographic view, as positions in units of half a picture. low, high: maxima over the box's corners of -x + z from and of x - z to,
+   where x is a corner's coordinate along this axis and z that along the view, both relative to the box's centre. The planes then touch the
+   box, with the eye between them. */
 struct clip_side {
     double from, to, low, high;
 };
@@ -232,7 +233,7 @@ static void depth_range(const struct camera *camera, const struct basis *basis, 
         *far_m = farthest + margin_m;
         return;
     }
-    /* if the box is behind the camera, nothing is visible, and any valid range will do */
+    /* if the box is behind the camera, nothing is visible, and the range only has to be valid */
     *far_m = fmax(farthest * 1.001, 2 * LEAST_NEAR_M);
     *near_m = fmax(fmax(nearest * 0.999, *far_m * CAMERA_NEAR_TO_FAR), LEAST_NEAR_M);
     if (*near_m >= *far_m) /* a box without depth */

@@ -20,13 +20,14 @@ struct edge_count {
 struct bodies {
     const struct asset_view *view;
     const struct asset_level *level;
-    /* place: by vertex: the first vertex at its position; root: by that first vertex: parent in the union-find forest of bodies */
+    /* place: by vertex: index of the first vertex at its position; root: by that first vertex: parent in the union-find forest of connected
+       vertices */
     uint32_t *place, *root;
-    uint32_t *table; /* hash table by grid cell: index of the vertex at the position + 1; 0: free slot */
+    uint32_t *table; /* hash table by grid cell: 1 + index of the vertex at a welded position; 0: free slot */
     float apart_m;
     size_t table_mask, edge_mask;
     struct edge_count *edges;
-    uint8_t *open; /* by root of a body: 1 if the body is open */
+    uint8_t *open; /* by root of a body in the union-find forest: 1 if the body is open */
 };
 
 static size_t power_above(size_t count)
@@ -64,7 +65,8 @@ static size_t slot_of(const struct bodies *bodies, const int32_t cell[3])
     return XXH3_64bits(cell, 3 * sizeof(*cell)) & bodies->table_mask;
 }
 
-/* Finds a welded position in a cell, or returns UINT32_MAX. Cells are four times as wide as the welding distance. */
+/* Returns the vertex at a welded position (vertices nearer than the welding distance share one) in a grid cell; UINT32_MAX: none. Cells are
+   four times as wide as the welding distance. */
 static uint32_t find_place(const struct bodies *bodies, const int32_t cell[3], const float at[3])
 {
     for (size_t slot = slot_of(bodies, cell); bodies->table[slot]; slot = (slot + 1) & bodies->table_mask) {
@@ -76,7 +78,8 @@ static uint32_t find_place(const struct bodies *bodies, const int32_t cell[3], c
     return UINT32_MAX;
 }
 
-/* Finds a welded position in the point's cell, or in an adjacent cell whose border is within the welding distance. */
+/* Returns the vertex at a welded position in the point's own grid cell, or in an adjacent cell whose border is within the welding distance.
+   UINT32_MAX: none. */
 static uint32_t find_place_near(const struct bodies *bodies, const float at[3], int32_t own[3])
 {
     int32_t beside[3];
@@ -87,7 +90,7 @@ static uint32_t find_place_near(const struct bodies *bodies, const float at[3], 
     }
     for (int k = 0; k < 8; k++) {
         int32_t cell[3];
-        bool again = false; /* true if the cell equals one already searched for a lower k */
+        bool again = false; /* true: the same cell was searched for a lower k already */
         for (int i = 0; i < 3; i++) {
             cell[i] = k >> i & 1 ? beside[i] : own[i];
             again |= (k >> i & 1) && beside[i] == own[i];

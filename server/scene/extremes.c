@@ -93,7 +93,8 @@ void extremes_find(struct scene *scene)
         memcpy(directions[d], (double[]){ flat * cos(turn), flat * sin(turn), z }, sizeof(directions[d]));
         most[d] = -INFINITY;
     }
-    /* tries until a vertex is found: first without the ground, then with it, then also with assets hidden at start */
+    /* searches again with more assets until a vertex is found: first all but the ground and assets hidden at start, then also the ground,
+       then all */
     for (int round = 0; round < 3 && !isfinite(most[0]); round++)
         for (size_t i = 0; i < scene->asset_count; i++)
             if (!scene->assets[i].missing && (round > 0 || !is_ground(scene, &scene->assets[i])) &&

@@ -142,8 +142,8 @@ static void find_normal(const struct scene *scene, const struct ray *ray, struct
         hit->normal[i] *= turn / length;
 }
 
-/* Converts t of a hit on the asset at its true position to t on the asset as drawn, shifted towards the viewer (coincident_forward).
- * brought_back() is the inverse. */
+/* Converts t of a hit on the asset at its true position to t on the asset as drawn, which is shifted towards the viewer
+   (coincident_forward). t: parameter of the ray, origin + t direction. brought_back() is the inverse. */
 static double brought_forward(const struct ray *ray, const struct scene_asset *asset, double t)
 {
     double forward = coincident_forward(asset);
@@ -175,7 +175,8 @@ static bool aim_at(struct raycast_search *search, const struct scene_asset *asse
     return true;
 }
 
-/* Returns the number of the asset's closed bodies that contain the ray's point at search->low: exits minus entries beyond that point. */
+/* Returns how many of the asset's closed bodies contain the point of the ray at t = search->low: beyond that point, each crossing out of a
+   body counts 1 and each crossing into one -1. */
 static int count_bodies(const struct raycast_search *search, const struct asset *file)
 {
     const struct closed_bodies *closed = asset_closed(file, 0);
@@ -194,7 +195,8 @@ static bool hits_cap(const struct scene *scene, const struct visibility *visibil
                      struct raycast_hit *hit)
 {
     int bodies = 0;
-    if (!(low > ray->low)) /* the ray starts in the space that is not cut away, so it passes no section plane from outside */
+    /* the ray starts in the space that is not cut away, so it enters that space through no section plane and meets no cap */
+    if (!(low > ray->low))
         return false;
     for (size_t i = 0; i < scene->asset_count; i++) {
         const struct scene_asset *asset = &scene->assets[i];

@@ -22,7 +22,8 @@ struct raycast_hit {
     double normal[3];    /* unit vector in the plant frame, towards the ray's origin */
 };
 
-/* Sets up a ray through a point of the picture: x and y from -1 to 1, right and up. t is in metres along the view direction. */
+/* Sets up the ray through a point of the picture: x and y from -1 to 1, to the right and up. The ray's parameter t counts metres along the
+   view direction. */
 void ray_init(struct ray *ray, const struct camera *camera, double aspect, double x, double y);
 void raycast(const struct scene *scene, const struct visibility *visibility, const struct ray *ray, struct raycast_hit *hit);
 

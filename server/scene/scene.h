@@ -38,12 +38,12 @@ struct scene {
     struct scene_asset *assets; /* by index in plant->assets */
     size_t asset_count;
     double bounds_min_m[3], bounds_max_m[3]; /* of the main part: scene/main_part.h */
-    /* box of all assets including stray pieces; min equal to max: the same box as bounds_min_m, bounds_max_m */
+    /* box of all assets including stray pieces (scene/main_part.h); min equal to max: the same box as bounds_min_m, bounds_max_m */
     double whole_min_m[3], whole_max_m[3];
     struct scene_outside {
         size_t triangles; /* outside the main part */
         int assets;       /* assets with such triangles */
-        double away_m;    /* distance of the farthest such triangle from the main part */
+        double away_m;    /* distance from the main part of the farthest triangle outside it */
     } outside;
     double (*extremes_m)[3]; /* outermost points that a view of the whole plant has to contain (scene/extremes.h) */
     size_t extreme_count;    /* 0: unknown */

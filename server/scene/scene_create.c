@@ -389,7 +389,7 @@ void scene_home(const struct scene *scene, double aspect, struct camera *camera)
     memcpy(camera->eye_m, view->eye_m, sizeof(camera->eye_m));
     memcpy(camera->target_m, view->target_m, sizeof(camera->target_m));
     camera->fov_deg = view->fov_deg;
-    if (!camera_valid(camera)) /* invalid if the view looks straight down; then up is north, as in a plan */
+    if (!camera_valid(camera)) /* the camera is invalid if the view is straight down along `up`; `up` is then north, as on a map */
         memcpy(camera->up, scene->plant->up == AXIS_Y ? (double[]){ 0, 0, -1 } : (double[]){ 0, 1, 0 }, sizeof(camera->up));
 }
 

@@ -9,7 +9,7 @@
    not match the plant and logs asset and reason. An asset that plantcast-prep could not prepare is missing, with a warning. `plant` must
    outlive the scene. Returns NULL on failure, all errors logged. */
 struct scene *scene_create(struct log *log, const struct plant *plant, const char *prepared_folder);
-void scene_destroy(struct scene **scene); /* &NULL is fine; sets it to NULL */
+void scene_destroy(struct scene **scene); /* destroys the scene and sets *scene to NULL; accepts a pointer to NULL */
 /* Sets the initial camera: the view in the plant file, else one of the whole plant from a raised corner. */
 void scene_home(const struct scene *scene, double aspect, struct camera *camera);
 

@@ -16,8 +16,9 @@ bool asset_set_has(const struct asset_set *set, int asset);
 
 struct clip { /* section planes; the space on the inner side of all planes is kept */
     int plane_count;
-    bool is_box;                       /* the planes are those of an axis-aligned box: min x, max x, min y, ... */
-    double planes[CLIP_MAX_PLANES][4]; /* nx, ny, nz, d: points p with n p + d >= 0 are kept; n: unit vector in the plant frame */
+    /* the planes are those of an axis-aligned box, in the order min x, max x, min y, max y, min z, max z */
+    bool is_box;
+    double planes[CLIP_MAX_PLANES][4]; /* (n.x, n.y, n.z, d): points p with n . p + d >= 0 are kept; n: unit normal in the plant frame */
 };
 /* Writes the plane that is used for cutting: slightly farther out than the set plane, so that a surface in the plane itself is kept
  * whole. */
@@ -25,10 +26,11 @@ void clip_plane(const struct clip *clip, int index, double out[4]);
 void clip_box(struct clip *clip, const double min_m[3], const double max_m[3]);
 void clip_get_box(const struct clip *clip, double min_m[3], double max_m[3]);
 bool clip_keeps(const struct clip *clip, const double point_m[3]);
-/* clip_drops: the box is cut away entirely; clip_touches: at least a part of the box is cut away. */
+/* clip_drops: returns whether the box is cut away entirely; clip_touches: returns whether at least a part of the box is cut away */
 bool clip_drops(const struct clip *clip, const double min_m[3], const double max_m[3]);
 bool clip_touches(const struct clip *clip, const double min_m[3], const double max_m[3]);
-/* Clips origin + t direction, low <= t <= high, to the kept space. Returns false if nothing is left. */
+/* Reduces the part low <= t <= high of a ray (origin + t direction) to the space that section planes leave. Returns false if nothing of it
+   is left. */
 bool clip_ray(const struct clip *clip, const double origin[3], const double direction[3], double *low, double *high);
 
 struct visibility {

@@ -30,8 +30,8 @@ void awaited_frames_finish(struct awaited_frames *in_flight);
    also *snapshot. Afterwards *group is empty, and *snapshot is a different one with unspecified content. */
 void awaited_frames_push(struct awaited_frames *in_flight, const struct awaited_frame *frame, struct request_group *group,
                          struct snapshot **snapshot);
-/* Returns the frame with that content hash, skipping frames that get an overlay; NULL: none. The frame stays in the list, and valid
-   until the next pop. */
+/* Returns the frame in the list with that content hash; NULL: none. Frames that get an overlay are skipped. The frame stays in the list and
+   is valid until the next awaited_frames_pop(). */
 struct awaited_frame *awaited_frames_find(struct awaited_frames *in_flight, uint64_t content);
 /* Returns the readings that the frame shows. */
 const struct snapshot *awaited_frames_readings(const struct awaited_frame *frame);

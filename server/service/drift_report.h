@@ -22,8 +22,8 @@ bool drift_report_read(struct drift_report *report, struct history_reader *reade
                        int64_t to_us);
 void drift_report_finish(struct drift_report *report);
 
-/* Append to the text: its beginning, one report, its end. tag: list only that tag, with its hours; -1: all. *any: true once a sensor is
-   listed, so that a comma comes next; updated. */
+/* drift_text_begin() appends the beginning of the text, drift_text_add() one report, drift_text_end() the end. tag: lists only that tag,
+   with its hours; -1: all. *any: set to true once a sensor is listed, since the next one needs a comma. */
 void drift_text_begin(struct text *out, const struct plant *plant, int group, int64_t to_us);
 void drift_text_add(struct text *out, const struct plant *plant, const struct drift_report *report, int tag, bool *any);
 void drift_text_end(struct text *out);

@@ -36,7 +36,7 @@ struct encode_job {
     struct encode_queue *queue;
     struct encode_stream *stream;
     struct frame *frame;        /* NULL: nothing needs encoding */
-    struct request_group group; /* requests that have the same codec and quality */
+    struct request_group group; /* requests with the same codec and quality; one encoded frame answers them all */
     struct encoder_params quality;
     bool again;
     uint64_t number, *from;
@@ -220,7 +220,8 @@ static bool encode(struct encode_job *job, struct packet **out)
     return good;
 }
 
-/* Returns the lowest packet number that this job and those after it still have to deliver. The caller holds the lock. */
+/* Returns the lowest sequence number of a packet that this job or a later one of its stream still has to deliver. The caller holds the
+   lock. */
 static uint64_t still_needed(const struct encode_job *job)
 {
     uint64_t least = UINT64_MAX;

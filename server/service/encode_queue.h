@@ -22,7 +22,7 @@ struct encode_queue_params {
 };
 
 struct encode_queue *encode_queue_create(const struct encode_queue_params *params); /* never returns NULL */
-/* Waits for running jobs, then frees everything. &NULL is allowed; sets *queue to NULL. */
+/* Waits for running jobs, frees everything and sets *queue to NULL; accepts a pointer to NULL. */
 void encode_queue_destroy(struct encode_queue **queue);
 /* Queues jobs that encode the frame: one for each codec and quality in the group, and one for each client that cannot share a packet
    stream. Takes its own reference to the frame; empties the group. */

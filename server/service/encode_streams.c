@@ -67,7 +67,7 @@ static bool same_coding(const struct encode_stream *stream, const struct frame *
            shown->view.width_px == frame->width_px && shown->view.height_px == frame->height_px;
 }
 
-/* Returns the number of the first packet that the client needs. */
+/* Returns the sequence number of the first packet that the client needs. */
 static uint64_t lacks(const struct encode_stream *stream, const struct encode_stream_member *link, const struct request_ticket *ticket)
 {
     uint64_t next = link && link->stream == stream && !ticket->request.alone ? link->position + 1 : 1;
@@ -169,8 +169,8 @@ static size_t count_outside(struct outsiders *outsiders, const struct request_gr
     return count;
 }
 
-/* Returns whether clients outside of the stream may join it by a key frame, which costs the bandwidth of its present clients. If not, moves
-   the joining clients' tickets to `rest`. */
+/* Returns whether clients outside of the stream may join it now. Joining takes a key frame, which costs bandwidth of the clients already in
+   the stream. If not, moves the joining clients' tickets to `rest`. */
 static bool let_in(struct encode_streams *streams, const struct encode_stream *stream, struct request_group *tickets, int64_t now_ns,
                    struct request_group *rest)
 {
@@ -233,8 +233,8 @@ static struct encode_stream *choose(struct encode_streams *streams, const struct
     return stream ? stream : add_chain(streams);
 }
 
-/* Returns whether a client that already shows this content must get it again. A request with `alone` (no dependence on earlier packets)
-   gets the kept packets, from the key frame on. */
+/* Returns whether a client must get the frame again although it already shows this content. This excludes requests that must decode without
+   earlier packets (`alone`): their clients get the kept packets, from the key frame on. */
 static bool must_again(const struct request_group *tickets)
 {
     for (size_t i = 0; i < tickets->count; i++)
@@ -296,7 +296,8 @@ void encode_stream_keep(struct encode_stream *stream, struct packet *packet, uin
     while (stream->kept_count > 0 && stream->oldest < needed &&
            (key || stream->kept_count == ENCODE_STREAM_KEPT || stream->kept_bytes > most_bytes(stream)))
         drop_oldest(stream);
-    if (stream->kept_count == ENCODE_STREAM_KEPT) /* the list is full although it holds more packets than a client may have in flight */
+    /* still full: the list holds more packets than a client may have in flight, so no client can need the oldest one */
+    if (stream->kept_count == ENCODE_STREAM_KEPT)
         drop_oldest(stream);
     stream->kept[stream->kept_count++] = packet ? packet_ref(packet) : NULL;
     stream->kept_bytes += packet ? packet->count : 0;

@@ -27,7 +27,7 @@ struct encode_stream {
 struct encode_stream_member {
     uint64_t client;
     struct encode_stream *stream;
-    uint64_t position; /* number of the newest packet that the client was given */
+    uint64_t position; /* sequence number of the newest packet that the client was given */
     /* joined_ns: when the client joined; patience_ns: delay before the client may join again by a key frame, longer if it often falls
        behind; join_after_ns: end of that delay */
     int64_t joined_ns, join_after_ns, patience_ns;
@@ -44,7 +44,7 @@ struct encode_plan { /* zero-initialise */
     bool encode;     /* true: encode the frame; false: the stream's newest packet already shows this content */
     bool key;        /* encode the frame as a key frame */
     bool again;      /* send the frame even if nothing changed in it */
-    uint64_t number; /* sequence number of the frame in the stream */
+    uint64_t number; /* sequence number of the frame in its stream */
     /* for each ticket, sequence number of the first packet that its client needs; a number above `number`: the client needs none */
     uint64_t *from;
     size_t from_capacity;

@@ -17,7 +17,8 @@ struct encoded_frame { /* owned by the code that collected it; free with encoded
     struct encoded_frame *next;
 };
 
-/* Frees the frame and drops its references to packets, which other frames may share. Any thread. &NULL is allowed; sets *frame to NULL. */
+/* Frees the frame, drops its references to packets, which other frames may share, and sets *frame to NULL; accepts a pointer to NULL. Any
+   thread. */
 void encoded_frame_destroy(struct encoded_frame **frame);
 /* Returns the number of bytes of all packets of the frame. */
 size_t encoded_frame_bytes(const struct encoded_frame *frame);

@@ -25,7 +25,7 @@ struct wanted_instant {
 struct history_loader {
     struct history_loader_params params;
     _Atomic bool stop;
-    /* reader of the history; this and the members below are used only by the thread; NULL: history is read from the core */
+    /* reader of the history; NULL: history is read from the core. Only the loader's thread uses this member and those up to `thread` */
     struct history_reader *reader;
     struct core_history *core; /* link to the core; NULL: the history is on this machine */
     struct history_tag *tags;
@@ -134,7 +134,7 @@ static void look_at_span(struct history_loader *loader)
                             : history_span(loader->reader, &first_us, &last_us);
     if (!any) {
         first_us = 0;
-        loader->spanned_ns = 0; /* nothing is recorded yet: check again soon, and at the next request */
+        loader->spanned_ns = 0; /* nothing is recorded yet: 0 makes the thread check again soon, and at the next request */
     }
     pthread_mutex_lock(&loader->thread.lock);
     loader->first_us = first_us;

@@ -28,7 +28,7 @@ struct history_loader_params {
 struct history_loader;
 /* Starts the thread. Returns NULL if it cannot, already logged. Everything that params point to must outlive the loader. */
 struct history_loader *history_loader_create(const struct history_loader_params *params);
-/* Ends the history thread. &NULL is allowed; sets *loader to NULL. */
+/* Ends the history thread and sets *loader to NULL; accepts a pointer to NULL. */
 void history_loader_destroy(struct history_loader **loader);
 /* Requests an instant, in UTC microseconds. Replaces the client's last request if that still waits. */
 void history_loader_ask(struct history_loader *loader, uint64_t client, int64_t at_us);

@@ -17,17 +17,18 @@
 #include "service/remote_history.h"
 
 enum { THREADS = 2 };                         /* each address uses one thread at a time, so that its queries do not block another address */
-static const size_t PIECE_BYTES = 256 * 1024; /* a piece of an answer ends with the tag after which it has this many bytes, */
+static const size_t PIECE_BYTES = 256 * 1024; /* a piece of an answer ends after the tag with which it reaches this many bytes */
 static const int64_t PIECE_NS = 100 * NS_PER_MS; /* or has taken this time */
 
 struct pending_query {
     struct history_query query;
     int next_tag; /* next tag to read; for drift queries, the next asset */
-    bool buckets; /* number of columns in the last line of CSV output: buckets or single values */
+    /* format of the last line of CSV output, which decides its number of columns: true: means of time buckets; false: single values */
+    bool buckets;
     bool listed;  /* a drifting sensor was listed already */
     bool wanted;  /* the client requested the next piece */
     bool forgotten;
-    uint64_t served; /* number of the turn in which the query's newest piece was begun; turns are counted over all queries; 0: none yet */
+    uint64_t served; /* value of history_queries.served when the query's newest piece was begun; 0: no piece yet */
     struct pending_query *next;
 };
 
@@ -46,9 +47,9 @@ struct history_queries {
     pthread_cond_t wake;
     /* --- below: protected by `lock` */
     struct pending_query *questions; /* queries that wait for a thread, newest first */
-    uint64_t at_work[THREADS];       /* account of the query on which each thread works; 0: none */
+    uint64_t at_work[THREADS];       /* account (client address) of the query on which each thread works; 0: none */
     struct pending_query *working[THREADS];
-    uint64_t served; /* number of pieces begun so far, over all queries */
+    uint64_t served; /* number of pieces begun so far, over all queries; a smaller number in a query means that it was served longer ago */
     int count;       /* number of queries that exist, including those on which a thread works */
     struct history_answer *answers, **last;
     bool stopping;
@@ -182,7 +183,7 @@ static struct history_answer *read_piece(struct history_queries *queries, struct
 
 /* --- scheduling ------------------------------------------------------------------------------------------------------- */
 
-/* Returns whether a thread works for that account. The caller holds the lock. */
+/* Returns whether a thread works on a query of that account (client address). The caller holds the lock. */
 static bool is_at_work(const struct history_queries *queries, uint64_t account)
 {
     bool any = false;
@@ -191,7 +192,7 @@ static bool is_at_work(const struct history_queries *queries, uint64_t account)
     return any;
 }
 
-/* Returns the turn number of the newest piece of all queries with the query's account. The caller holds the lock. */
+/* Returns when the query's account (client address) was last served: the largest `served` of all its queries. The caller holds the lock. */
 static uint64_t served_of(const struct history_queries *queries, const struct pending_query *question)
 {
     uint64_t served = question->served;
@@ -204,11 +205,11 @@ static uint64_t served_of(const struct history_queries *queries, const struct pe
 static bool goes_before(const struct history_queries *queries, const struct pending_query *a, const struct pending_query *b)
 {
     uint64_t a_served = served_of(queries, a), b_served = served_of(queries, b);
-    /* the list is newest first, so of two equal entries the later one is older, and is chosen */
+    /* the list is newest first, so among equal entries the later one in the list is the older query, which goes first */
     return a_served < b_served || (a_served == b_served && a->served <= b->served);
 }
 
-/* Removes the next query from the list and returns it; NULL: none is due. The caller holds the lock. */
+/* Removes from the list, and returns, the query whose account was served longest ago; NULL: none is due. The caller holds the lock. */
 static struct pending_query *take_next(struct history_queries *queries)
 {
     struct pending_query **best = NULL;

@@ -34,7 +34,7 @@ void history_answer_free(struct history_answer **answer);
    the history and is asked through core_link. */
 struct history_queries *history_queries_create(struct log *log, const struct plant *plant, const struct scene *scene, const char *folder,
                                                struct core_link *core_link, void (*notify)(void *arg), void *arg);
-/* Ends the threads. &NULL is allowed; sets *queries to NULL. */
+/* Ends the threads and sets *queries to NULL; accepts a pointer to NULL. */
 void history_queries_destroy(struct history_queries **queries);
 /* Queues a copy of the query. Returns false if HISTORY_QUERIES_MOST queries are being answered. */
 bool history_queries_ask(struct history_queries *queries, const struct history_query *query);

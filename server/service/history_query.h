@@ -14,7 +14,7 @@ enum { HISTORY_QUERY_TAGS = 64, HISTORY_QUERY_POINTS = 20000 };
 
 struct history_query {
     uint64_t client;
-    /* id of the account in whose turn the query is served: the client's address; 0: one account for all queries without an address */
+    /* id of the account that is charged for the query: the client's address; 0: one account for all queries without an address */
     uint64_t account;
     int tags[HISTORY_QUERY_TAGS]; /* indices into the plant's tags */
     int tag_count, max_points;

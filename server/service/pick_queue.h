@@ -20,7 +20,7 @@ struct pick_answer { /* free with mem_free */
 
 struct pick_queue;
 struct pick_queue *pick_queue_create(void);         /* never returns NULL */
-void pick_queue_destroy(struct pick_queue **queue); /* &NULL is allowed; sets *queue to NULL */
+void pick_queue_destroy(struct pick_queue **queue); /* destroys the queue and sets *queue to NULL; accepts a pointer to NULL */
 
 /* Queues a copy of the query. Replaces the client's last query if the last one still waits. */
 void pick_queue_ask(struct pick_queue *queue, const struct pick_query *query);

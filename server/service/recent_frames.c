@@ -4,7 +4,7 @@
 
 #include "base/clock.h"
 
-/* maximum age of a cached frame: clock and ages in a frame from the cache are up to this much too old */
+/* maximum age of a cached frame; the clock and the ages of readings in it may be too old by as much */
 static const int64_t KEPT_NS = 500 * NS_PER_MS;
 #define KEPT_BYTES ((size_t)32 * 1024 * 1024) /* maximum bytes of all kept frames; a single frame may be larger */
 

@@ -10,7 +10,8 @@
 /* Appends the series of a tag as JSON. first: also append the beginning of the whole answer; last: also append its end. */
 bool remote_history_json(struct core_history *core, const struct history_query *query, const char *tag, bool first, bool last,
                          struct text *out);
-/* Appends the series of a tag as CSV. *buckets: number of columns in the last line written; updated. */
+/* Appends the series of a tag as CSV. *buckets: true if the last line written holds means of time buckets, false if it holds single values,
+   because the two have different columns; updated. */
 bool remote_history_csv(struct core_history *core, const struct history_query *query, const char *tag, bool first, bool *buckets,
                         struct text *out);
 /* Appends the complete answer to a query for gaps, drifting sensors or the journal. */

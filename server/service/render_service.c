@@ -164,7 +164,7 @@ static void give_back(struct render_service *service, struct encoded_frame *enco
     pthread_mutex_unlock(&service->lock);
 }
 
-/* Calls params.notify if frames or answers can be collected of which the collector was not notified yet. Any thread. */
+/* Calls params.notify if frames or answers wait for collection and notify was not called for them yet. Any thread. */
 static void announce(void *arg)
 {
     struct render_service *service = arg;

@@ -39,7 +39,7 @@ struct render_service_params {
 /* Starts the thread and waits until it has created GL and the renderer. Returns NULL on failure, already logged. Everything that params
    point to must outlive the service. */
 struct render_service *render_service_create(const struct render_service_params *params);
-/* Ends the thread and all jobs that it gave to the workers. &NULL is allowed; sets *service to NULL. */
+/* Ends the thread and all jobs that it gave to the workers, and sets *service to NULL; accepts a pointer to NULL. */
 void render_service_destroy(struct render_service **service);
 
 enum request_outcome { REQUEST_ADDED, REQUEST_REPLACED, REQUEST_REFUSED };
@@ -47,7 +47,8 @@ enum request_outcome { REQUEST_ADDED, REQUEST_REPLACED, REQUEST_REFUSED };
    REQUEST_REPLACED: it replaced one that was not begun, and shares its answer. REQUEST_REFUSED: it was only valid as a replacement
    (only_replace), and there was none to replace. Drawing begins with render_service_wake(). */
 enum request_outcome render_service_request(struct render_service *service, uint64_t client, const struct frame_request *request);
-/* Queues requests of several clients at once: requests for equal views are begun together, so that one frame answers all these clients. */
+/* Queues requests of several clients in one call: requests for equal views are begun together, so that one frame answers all these
+   clients. */
 void render_service_request_all(struct render_service *service, size_t count, const uint64_t *clients, const struct frame_request *requests,
                                 enum request_outcome *outcomes);
 /* Wakes the render thread if requests were queued since the last call. Call it after all requests of one event, so that equal requests

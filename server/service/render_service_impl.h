@@ -9,14 +9,15 @@
 #include "service/time_accounts.h"
 
 struct render_client {
-    uint64_t id, number; /* number: sequence number of the client's requests, incremented when drawing of one begins */
+    uint64_t id, number; /* id: of the client; number: sequence number of its requests, incremented when the drawing of one begins */
     bool pending;        /* true: `request` waits for its drawing to begin */
     bool has_content;
-    bool left; /* the client no longer wants the frame that the long job draws for it */
+    bool left; /* the client no longer wants the frame that the long job (a frame drawn in steps) draws for it */
     /* how long changed readings wait for the client's long job (a frame drawn in steps) before they get a preview; 0: the initial delay */
     int64_t patience_ns;
     struct frame_request request;
-    /* content hash of the newest frame drawn for the client; number of the client's request that was answered last */
+    /* content: content hash of the newest frame drawn for the client; content_number: sequence number of the request that this frame
+       answered */
     uint64_t content, content_number;
     int64_t spent_ns[SCHEDULER_SHARES]; /* drawing time charged to the client, indexed by share (scheduler_share()) */
     struct time_account *account;       /* account of the client's address */
@@ -42,7 +43,7 @@ struct render_service {
     struct render_client **clients;        /* sorted by id, ascending */
     size_t client_count, client_capacity;
     struct time_accounts accounts;
-    int64_t spent_ns[SCHEDULER_SHARES];      /* drawing time with which the client served last had been charged before that turn */
+    int64_t spent_ns[SCHEDULER_SHARES];      /* by share of drawing time: the charge that the client served last had before it was served */
     struct encoded_frame *done, **done_last; /* encoded frames not collected yet, oldest first */
     bool announced;                          /* params.notify was called for them */
 };

@@ -5,7 +5,7 @@
 #include "render/frame_record.h"
 #include "render/overlay/overlay.h"
 
-/* time for one step of a long job (a frame drawn in steps); afterwards other requests get a turn */
+/* time for one step of a long job (a frame drawn in steps); after each step other requests are served */
 static const int64_t STEP_NS = 10 * NS_PER_MS;
 /* drawing time that each frame of a moving session may spend on baking a light that the session chose */
 static const int64_t LIGHT_NS = 4 * NS_PER_MS;
@@ -246,8 +246,8 @@ static const struct snapshot *long_job_readings(const struct render_thread *thre
     return thread->long_job.historical ? &thread->long_job.historical->snapshot : thread->long_job.snapshot;
 }
 
-/* Limits the delay before changed readings get a preview to MAX_READINGS_DELAY_NS, for clients that just got a refined frame. Refined
-   frames that were given up had doubled it. */
+/* Limits the delay after which changed readings get a preview to MAX_READINGS_DELAY_NS, for clients that just got a refined frame. Each
+   refined frame that was given up before had doubled the delay. */
 static void calm(struct render_service *service, const struct request_group *group)
 {
     pthread_mutex_lock(&service->lock);
@@ -318,7 +318,8 @@ static void long_job_leave(struct render_thread *thread)
     long_job_forget_instant(thread);
 }
 
-/* Turns the group's refined requests into previews if the first request allows that (or_moving); otherwise prepares them for a long job. */
+/* Turns the group's refined requests into previews if the first request has or_moving set; otherwise marks them as requests for a long job
+   (a frame drawn in steps). */
 static void choose_other(struct request_group *group)
 {
     bool moving = group->tickets[0].request.or_moving; /* one frame answers all tickets, so all tickets get the same tier */

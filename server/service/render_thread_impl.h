@@ -10,7 +10,7 @@
 
 struct thread_memory { /* memory of the caches (render_thread_memory.c) */
     counter *stores[RENDER_STORES], *fields, *frames, *bound;
-    size_t other;           /* recent peak of the process memory besides models and caches, in bytes; decays slowly */
+    size_t other;           /* peak, in bytes, of the memory that the process used besides models and caches; decays slowly */
     int64_t looked_ns;      /* monotonic: when the memory in use was last measured */
     int64_t trimmed_ns;     /* monotonic: when free heap memory was last returned to the system */
     int64_t alone_since_ns; /* monotonic time since when the service has had no client; 0: there are clients */
@@ -40,11 +40,12 @@ struct render_thread {
     struct request_group same; /* scratch memory: requests that are answered without drawing a frame */
     struct recent_frames recent;
     struct long_job long_job;
-    struct long_job parked; /* a suspended long job for a large frame: it continues after the smaller one of another address */
+    /* a suspended long job for a large frame; it continues after a smaller frame of another address, which was allowed to overtake it */
+    struct long_job parked;
     bool warm;              /* the warm-up is complete */
     int64_t turn_began_ns;  /* monotonic: since when the thread has been drawing without a wait or other work */
     struct awaited_frames in_flight;
-    /* groups that wait until their field is computed; each of their turns computes a part of the field */
+    /* groups that wait until their field is computed; in each turn that such a group gets, a part of the field is computed */
     struct deferred_requests deferred;
     struct thread_memory memory;
 };

@@ -13,7 +13,8 @@ static const double FIELD_SHARE = 0.3;                   /* share of the limit t
 static const size_t OTHER_BYTES = (size_t)576 << 20;
 static const size_t FREE_BYTES = (size_t)64 << 20; /* the heap is trimmed if this many bytes in it are free but still resident */
 static const int64_t TRIM_NS = 5 * NS_PER_S;       /* minimum time between two trims */
-static const size_t FADES = 64; /* decay: at each measurement the peak loses 1 / FADES of its excess over the present value */
+/* speed at which the recorded peak of other memory decays: at each measurement it loses 1 / FADES of its excess over the present value */
+static const size_t FADES = 64;
 
 static counter *add(struct render_service *service, const char *of)
 {

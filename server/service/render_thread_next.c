@@ -33,7 +33,7 @@ static bool waits_for_long_job(const struct render_thread *thread, const struct 
 }
 
 struct render_turn {
-    bool step;                    /* true: draw a step of the long job; false: serve `client` */
+    bool step;                    /* true: draw a step of the long job (a frame drawn in steps); false: serve `client` */
     struct render_client *client; /* client to serve next; NULL: none before wait_until_ns */
     int64_t wait_until_ns;
 };
@@ -48,8 +48,8 @@ bool render_thread_overtakes(const struct render_thread *thread, const struct re
     return px * OVERTAKE_SMALLER <= long_job->px && client->account->spent_ns[kind] < long_job->account_spent_ns + long_job->spent_ns;
 }
 
-/* Returns whether the client was charged less drawing time than the other: compares the totals of their addresses first, then those of the
-   clients. The caller holds the lock. */
+/* Returns whether the client goes before the other, because it was charged less drawing time. Compares the totals of their addresses; for
+   clients of one address, their own. kind: share of drawing time (scheduler_share()). The caller holds the lock. */
 static bool has_had_less(const struct render_client *client, const struct render_client *other, int kind)
 {
     const int64_t *a = client->account->spent_ns, *b = other->account->spent_ns;
@@ -95,8 +95,8 @@ static struct render_turn next_turn(const struct render_thread *thread, const st
     return turn;
 }
 
-/* Adjusts how long readings wait for a refined frame: an input resets the delay to its initial value; giving up a refined frame because of
-   readings doubles it. The caller holds the lock. */
+/* Adjusts how long changed readings wait for a refined frame of the client: an input resets the delay to its initial value; giving up a
+   refined frame because of readings doubles it. The caller holds the lock. */
 static void change_patience(const struct render_thread *thread, struct render_client *client)
 {
     int64_t twice_ns = 2 * (client->patience_ns ? client->patience_ns : OWN_DATA_NS);

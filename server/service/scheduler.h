@@ -17,15 +17,16 @@ struct scheduler {             /* zero-initialise */
 
 /* Drawing time is charged in two separate shares: one for frames for inputs and readings, one for long-running frames. */
 enum { SCHEDULER_MOVING, SCHEDULER_LONG, SCHEDULER_SHARES };
-/* Returns the index of the share to which frames of that urgency are charged. */
+/* Returns the index of the share (separate account of drawing time) to which frames of that urgency are charged. */
 int scheduler_share(enum urgency urgency);
-/* Returns the charge with which a client joins the queue: its own, but no less than that of the client served last. */
+/* Returns the charge with which a client enters the queue: its own, but no less than that of the client served last, so that time left
+   unused earlier gives no advantage. */
 int64_t scheduler_asked(int64_t spent_ns, int64_t served_ns);
 /* Returns whether client a goes before b: it was charged less; or it was charged the same and its request is older. */
 bool scheduler_before(int64_t a_spent_ns, int64_t a_asked_ns, int64_t b_spent_ns, int64_t b_asked_ns);
 
-/* Returns the class (urgency) of request to draw now. asked_ns: when the first request of each class was made; INT64_MAX: there is none.
-   Returns URGENCY_COUNT if nothing is due before *wait_until_ns (INT64_MAX: nothing waits). */
+/* Returns the class (urgency) of request to draw now. asked_ns, by class: when its oldest request was made; INT64_MAX: it has none. Returns
+   URGENCY_COUNT if nothing is due before *wait_until_ns (INT64_MAX: nothing waits). */
 enum urgency scheduler_choose(const struct scheduler *scheduler, const int64_t asked_ns[URGENCY_COUNT], int64_t now_ns,
                               int64_t *wait_until_ns);
 /* Records that a frame of that class is complete. */

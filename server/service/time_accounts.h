@@ -16,7 +16,7 @@ struct time_account {
 struct time_accounts { /* zero-initialise; free with time_accounts_finish() */
     struct time_account **all;
     size_t count, capacity;
-    int64_t served_ns[SCHEDULER_SHARES]; /* drawing time, by share, with which the account served last had been charged before that turn */
+    int64_t served_ns[SCHEDULER_SHARES]; /* by share of drawing time: the charge that the account served last had before it was served */
 };
 
 /* Adds a client to the account with that id; creates the account if needed. Returns it; time_accounts_leave() releases it. */
@@ -24,9 +24,10 @@ struct time_account *time_accounts_join(struct time_accounts *accounts, uint64_t
 /* Removes a client from the account and sets *account to NULL. An account without clients is kept until the others have been charged as
    much, so that a client cannot clear the charge by reconnecting. */
 void time_accounts_leave(struct time_accounts *accounts, struct time_account **account);
-/* Call it when a client of the account makes a request: drawing time that the account left unused until now is lost. */
+/* Call it when a client of the account makes a request. It raises the account's charge to that of the account served last, so that time
+   left unused earlier gives no advantage. */
 void time_accounts_asked(const struct time_accounts *accounts, struct time_account *account, int share);
-/* Call it when a request of the account is drawn next. */
+/* Call it when a request of the account is drawn next; its charge becomes the least that accounts with new requests start with. */
 void time_accounts_served(struct time_accounts *accounts, const struct time_account *account, int share);
 /* Frees all accounts; they must have no clients. */
 void time_accounts_finish(struct time_accounts *accounts);
