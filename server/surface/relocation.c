@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Builds the surface in the background, and computes distances on it, one request after another. */
+/* Builds the surface in the background, and computes the distances of moved sensors on it, one request after the other. */
 #include "surface/relocation.h"
 
 #include <math.h>
@@ -35,13 +35,13 @@ struct relocation {
     pthread_cond_t idle;
     /* --- below: under lock */
     enum relocation_state state;
-    struct surface *surface; /* surface of the asset; once warm, read without the lock */
-    /* embedding of the shape's vertices; once warm, read without the lock. NULL: not needed, because the surface was built from the shape's
-     * vertices */
+    struct surface *surface; /* surface of the asset; readable without the lock once the state is ready */
+    /* positions of the shape's vertices on the surface; readable without the lock once the state is ready; NULL: not needed, because the
+     * surface was built from the shape's vertices */
     struct vertex_embedding *embedding;
     struct relocation_ask *asks; /* waiting or running requests, oldest first */
     uint64_t last_ticket;
-    size_t jobs; /* count of jobs submitted to the workers and not finished */
+    size_t jobs; /* number of jobs that were submitted to the workers and have not finished */
 };
 
 static void corner(const struct relocation_shape *shape, size_t t, size_t i, double out[3])
@@ -61,7 +61,7 @@ static double size_of(const struct relocation_shape *shape)
 
 /* --- places ----------------------------------------------------------------------------------------------------------------- */
 
-/* Projects a point while the surface is not built yet: tries all triangles, which takes only a few milliseconds. */
+/* Projects a point onto the asset while the surface is still being built: tries all triangles, which takes only a few milliseconds. */
 static bool project_onto_triangles(const struct relocation *relocation, const double point_m[3], struct relocation_place *place)
 {
     double best_m = relocation->size_m;
@@ -144,7 +144,7 @@ static void end_job(struct relocation *relocation)
     pthread_mutex_unlock(&relocation->lock);
 }
 
-/* Returns the oldest request that is not running, and marks it as running. NULL: it was cancelled meanwhile. */
+/* Returns the oldest request that is not running, and marks it as running; NULL: there is none, because it was cancelled. */
 static struct relocation_ask *begin_ask(struct relocation *relocation)
 {
     pthread_mutex_lock(&relocation->lock);
@@ -186,7 +186,7 @@ static void solve_next(void *arg)
     end_job(relocation);
 }
 
-/* Reads the stored surface. NULL: there is no valid one. */
+/* Reads the surface that plantcast-prep stored. NULL: there is no valid one. */
 static struct surface *read_surface(const struct relocation *relocation, struct vertex_embedding **embedding)
 {
     struct cache_file kept = { 0 };

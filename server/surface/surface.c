@@ -18,11 +18,11 @@
 #include "surface/surface_impl.h"
 #include "surface/mesh/decimate.h"
 
-#define WELD_OF_SIZE 1e-6 /* welding distance of vertices relative to the model's size: the resolution of float positions */
+#define WELD_OF_SIZE 1e-6 /* distance up to which vertices are welded, relative to the model's size: the resolution of float positions */
 #define TOLERANCE_OF_SIZE 5e-4
-#define SAMPLES 15000.0        /* target number of points of an evenly sampled surface, in addition to the model's vertices */
-#define SPACING_GROWTH 1.25    /* factor by which the spacing grows while there are too many points */
-#define POINTS_PER_SPACING 2.7 /* points per square of the spacing if a surface is sampled by halving edges; measured */
+#define SAMPLES 15000.0        /* number of points that sampling aims at, in addition to the model's vertices */
+#define SPACING_GROWTH 1.25    /* factor by which the spacing grows in each attempt while sampling gives too many points */
+#define POINTS_PER_SPACING 2.7 /* number of points per square of side `spacing` that sampling by halving edges gives; measured */
 
 static double seconds_since(int64_t *since_ns)
 {
@@ -122,7 +122,7 @@ static bool close_seams(struct surface *surface, char *why)
     return made.k >= 0 || no_surface(surface, why, "out of memory for neighbours of %zu points", surface->mesh.point_count);
 }
 
-/* Moves visible triangles to the front. Returns the number of visible triangles. */
+/* Moves visible triangles to the front of the mesh, and hidden[] with them. Returns the number of visible triangles. */
 static size_t sort_hidden(struct trimesh *mesh, char *hidden)
 {
     size_t front = 0;
@@ -143,8 +143,8 @@ static size_t sort_hidden(struct trimesh *mesh, char *hidden)
     return front;
 }
 
-/* Merges coincident crossing points: where edges cross at an edge, each face got a point of its own, which leaves a crack that paths would
- * have to go around. */
+/* Merges crossing points (mesh repair inserts one where an edge passes through a face) at the same position. Where two edges cross, each
+ * face got a point of its own; two points would leave a crack that paths on the surface go around. */
 static void merge_twins(struct surface *surface, uint32_t *crossings, size_t crossing_count)
 {
     uint32_t *target = mem_array(surface->mesh.point_count, sizeof(*target));
@@ -158,7 +158,8 @@ static void merge_twins(struct surface *surface, uint32_t *crossings, size_t cro
     mem_free(target);
 }
 
-/* Removes inserted points that are not needed. Points numbered below `added` stay: the model's own and the samples. */
+/* Removes inserted points that are not needed (decimate.h). Points with an index below `added` stay: the model's own points and the
+ * samples. */
 static void decimate(struct surface *surface, const uint32_t *part, size_t added, char *hidden)
 {
     struct trimesh *mesh = &surface->mesh;
@@ -225,7 +226,8 @@ static void join_parts(struct surface *surface, struct body_parts *parts)
     mem_free(made.crossings);
 }
 
-/* Moves triangles with an edge longer than the asset's main part to the end. Returns the number of moved triangles. */
+/* Moves triangles with an edge longer than the asset's main part to the end of the mesh: triangles that reach to a stray vertex. Returns
+ * the number of moved triangles. */
 static size_t set_aside_needles(struct surface *surface)
 {
     struct trimesh *mesh = &surface->mesh;
@@ -239,9 +241,10 @@ static size_t set_aside_needles(struct surface *surface)
     return count;
 }
 
-/* Samples the surface evenly. Rods and narrow strips take more points than their area suggests. If there are too many points, the spacing
-   grows: leaving one part unsampled would leave edges as long as the asset, and poor distances. Triangles that reach from the main part to
-   a stray vertex are not sampled: they would use up all points. */
+/* Samples the surface evenly: adds points until edges are no longer than the spacing. Rods and narrow strips take more points than their
+ * area suggests. If there are too many points, the spacing grows for all parts: a single unsampled part would keep edges as long as the
+ * asset, and have poor distances. Triangles that reach from the main part to a stray vertex are not sampled, because they would use up all
+ * points. */
 static void sample(struct surface *surface)
 {
     struct surface_report *report = &surface->report;
@@ -263,7 +266,7 @@ static void sample(struct surface *surface)
     report->samples = mesh->point_count - before;
 }
 
-/* Finds model vertices without a triangle, and counts the hidden ones. */
+/* Lists the model vertices that belong to no triangle of the surface, and counts the vertices that only hidden triangles use. */
 static void find_strays(struct surface *surface)
 {
     char *used = mem_array(surface->mesh.point_count, 1);
@@ -287,7 +290,8 @@ static void find_strays(struct surface *surface)
     mem_free(used);
 }
 
-/* Groups the visible pieces of each model triangle; coplanar triangles that were merged form one group. */
+/* Groups the visible triangles of the surface by the model triangle of which they are pieces; coplanar model triangles that were merged
+ * form one group. */
 static void list_pieces(struct surface *surface)
 {
     const struct trimesh *mesh = &surface->visible;

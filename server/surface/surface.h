@@ -1,22 +1,22 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Geodesic distances on CAD surfaces as they are in practice. Layer: after base and plant; used by plantcast-prep, and by the daemon when a
-   sensor moves.
-   The paper (Kim & Suh 2025, section 3.3) discards the mesh: samples and vertices become a point cloud, kNN connects them, and the heat
-   method runs on that graph. On clean CAD this loses the mesh's connectivity (neighbours reach through thin walls and across narrow slots);
-   on broken CAD it still works. Here:
-   1. The mesh's connectivity is kept: vertices at one position are welded, repeated faces dropped (trimesh.h).
-   2. Defects are bridged: borders and parts that touch or cross, also themselves, are joined within one tolerance. Candidates on borders
-   come from the point cloud by kNN (point_cloud.h, repair.h). Triangles inside another closed part, or between two parts that touch face to
-   face, are hidden (parts.h, interior.h).
-   3. The surface is sampled evenly: edges are split until none is longer than the spacing (trimesh.h).
-   4. The heat method (Crane, Weischedel, Wardetzky 2013) runs with the cotangent Laplacian of the intrinsic Delaunay triangulation, which
-   has no negative weights inside a patch (intrinsic.h, heat.h). Diffusion time: 3 times the mean edge squared, more where the surface is so
-   long that the heat would underflow. The gradient is taken of the logarithm of heat, which is nearly linear within a triangle, unlike
-   heat.
-   5. The heat method errs by 0.05 to 0.4 % on average and up to 4 % at borders and ridges. So the distances returned come from propagation
-   over the same triangulation (propagation.h), with errors of 0.01 to 0.12 % on average. surface_check() compares some distances with the
-   heat method, which shares nothing with propagation but the mesh; the report states differences of more than a few percent. Distances are
-   stored at the model's own vertices. */
+ * sensor moves.
+ * The paper (Kim & Suh 2025, section 3.3) discards the mesh: samples and vertices become a point cloud, kNN connects them, and the heat
+ * method runs on that graph. On clean CAD this loses the mesh's connectivity (neighbours reach through thin walls and across narrow slots);
+ * on broken CAD it still works. This folder does the following instead:
+ * 1. The mesh's connectivity is kept: vertices at one position are welded, repeated faces dropped (trimesh.h).
+ * 2. Defects are bridged: borders are joined within one tolerance, and so are parts that touch or cross each other or themselves.
+ * Candidates on borders come from the point cloud by kNN (point_cloud.h, repair.h). Triangles inside another closed part, or between two
+ * parts that touch face to face, are hidden (parts.h, interior.h).
+ * 3. The surface is sampled evenly: edges are split until none is longer than the spacing (trimesh.h).
+ * 4. The heat method (Crane, Weischedel, Wardetzky 2013) runs with the cotangent Laplacian of the intrinsic Delaunay triangulation, which
+ * has no negative weights inside a patch (intrinsic.h, heat.h). Diffusion time: 3 times the mean edge squared, more where the surface is so
+ * long that the heat would underflow. The gradient is taken of the logarithm of heat, which is nearly linear within a triangle, unlike
+ * heat.
+ * 5. The heat method errs by 0.05 to 0.4 % on average and up to 4 % at borders and ridges. So the distances returned come from propagation
+ * over the same triangulation (propagation.h), with errors of 0.01 to 0.12 % on average. surface_check() compares some distances with the
+ * heat method, which has only the mesh in common with propagation; the report states differences of more than a few percent. Distances are
+ * stored at the model's own vertices. */
 #ifndef SURFACE_SURFACE_H
 #define SURFACE_SURFACE_H
 #include <stdbool.h>
@@ -29,25 +29,25 @@
 struct surface;
 
 struct surface_params { /* zero: chosen from the model */
-    double tolerance_m; /* largest gap that is closed; a tolerance chosen by the program is smaller at thin parts (parts.h) */
+    double tolerance_m; /* largest gap that is closed, metres; a tolerance chosen by the program is smaller at thin parts (parts.h) */
     double spacing_m;   /* longest edge that sampling may make, metres */
-    char *why;          /* buffer of SURFACE_WHY_BYTES that receives the reason if no surface can be built; NULL: the reason is logged */
+    char *why;          /* buffer of SURFACE_WHY_BYTES for the reason if no surface can be built; NULL: the reason is logged instead */
 };
 #define SURFACE_WHY_BYTES 160
 
 struct surface_report {
-    double size_m;                          /* diagonal of the main part (gap_split.h) */
+    double size_m;                          /* length of the diagonal of the model's main part (base/math/gap_split.h), metres */
     double tolerance_m, spacing_m, time_m2; /* tolerance and spacing that were used; time_m2: diffusion time t of the heat method */
     size_t triangles, welded_vertices, degenerate_triangles, repeated_triangles;
-    size_t border_edges, border_edges_after; /* edges with one face, before and after bridging */
-    size_t components, components_after;     /* connected components, before and after bridging */
-    size_t bridges;                          /* vertices joined to another point of the surface */
+    size_t border_edges, border_edges_after; /* number of edges with one face, before and after gaps were bridged */
+    size_t components, components_after;     /* number of connected components, before and after gaps were bridged */
+    size_t bridges;                          /* number of points that were joined to another point of the surface */
     double longest_bridge_m;
-    int k;                  /* count of neighbours requested per point (point_cloud.h); 0: there was nothing to bridge */
+    int k;                  /* largest number of neighbours requested per point (point_cloud.h); 0: there was nothing to bridge */
     size_t samples;         /* points added */
-    size_t hidden_vertices; /* model vertices inside another closed part, or covered by one */
-    /* root mean square difference from the heat method, relative to the largest distance, of the worst source checked. NaN until
-       surface_check(), as is time_m2 */
+    size_t hidden_vertices; /* number of model vertices inside another closed part, or covered by one */
+    /* root mean square difference from the heat method, relative to the largest distance, of the checked source with the largest
+     * difference. heat_disagreement and time_m2 are NaN until surface_check() */
     double heat_disagreement;
     double weld_s, bridge_s, sample_s, laplacian_s, factor_s, check_s;
 };
@@ -57,9 +57,9 @@ struct surface_report {
    the reason. Thread: one call at a time per surface; surfaces are independent. */
 struct surface *surface_create(struct log *log, struct workers *workers, const float (*positions_m)[3], size_t vertex_count,
                                const uint32_t *triangles, size_t triangle_count, const struct surface_params *params);
-/* Frees the surface. &NULL is fine; sets it to NULL. */
+/* Frees the surface and sets *surface to NULL. *surface may be NULL. */
 void surface_destroy(struct surface **surface);
-/* Returns counts and durations of the steps. Owned by the surface. */
+/* Returns the report: counts and durations of the steps. Owned by the surface. */
 const struct surface_report *surface_report(const struct surface *surface);
 
 /* The mesh on which distances are computed, for debug views. Owned by the surface. */
@@ -68,7 +68,7 @@ struct surface_debug_mesh {
     const double (*points_m)[3];
     const uint32_t (*tris)[3]; /* visible triangles first */
     size_t point_count, tri_count, visible_count;
-    const uint32_t *vertex_point; /* point of each model vertex; all other points are samples */
+    const uint32_t *vertex_point; /* by model vertex: index of its point in the mesh; all other points are samples */
     size_t vertex_count;
     const struct crack_bridge *bridges; /* repair.h */
     size_t bridge_count;
@@ -76,23 +76,23 @@ struct surface_debug_mesh {
 /* Fills *look with the mesh on which distances are computed. Its arrays are owned by the surface. */
 void surface_debug_mesh(const struct surface *surface, struct surface_debug_mesh *look);
 
-/* The result of projecting a point onto the surface. */
+/* result of projecting a point onto the surface */
 struct surface_place {
     double position_m[3]; /* nearest point on the surface */
     double distance_m;    /* from the requested point */
     uint32_t vertex;      /* model vertex nearest to position_m, in a straight line */
 };
-/* Projects a point onto the surface, and finds the model vertex nearest to the projection. */
+/* Projects a point onto the surface. The result includes the model vertex nearest to the projection. */
 void surface_nearest(const struct surface *surface, const double point_m[3], struct surface_place *place);
 
-/* A point on the surface, by triangle and barycentric weights. */
+/* a point on the surface, given by a triangle and barycentric weights */
 struct surface_point {
     uint32_t tri; /* of the sampled surface */
-    /* weights: barycentric weights of tri's corners; distance_m: distance from the requested point */
+    /* weights: of the triangle's corners; distance_m: from the point that was projected */
     double weights[3], point_m[3], distance_m;
 };
-/* Finds the surface point nearest to point_m. With `normal`, prefers a triangle that faces along it among those about equally near, so that
-   the far side of a thin wall is not taken (NULL: no preference). */
+/* Finds the surface point nearest to point_m. With `normal`, prefers, among triangles about equally near, one whose normal is close to it,
+ * so that the far side of a thin wall is not taken (NULL: no preference). */
 void surface_find_point(const struct surface *surface, const double point_m[3], const double normal[3], struct surface_point *hit);
 /* Finds the surface point nearest to point_m as surface_find_point() does, but only within limit_m. Returns false if there is none. */
 bool surface_find_point_within(const struct surface *surface, const double point_m[3], const double normal[3], double limit_m,
@@ -106,16 +106,16 @@ bool surface_find_point_on(const struct surface *surface, const double point_m[3
 bool surface_find_point_among(const struct surface *surface, const double point_m[3], double limit_m,
                               bool (*allowed)(const void *arg, uint32_t triangle), const void *arg, struct surface_point *hit);
 
-/* Finds the point nearest to point_m on triangle `tri` of the sampled surface, with the same result as the search that found this triangle.
-   Returns false if there is no such triangle or the point is farther than limit_m. */
+/* Finds the point nearest to point_m on triangle `tri` of the sampled surface. The result is the same as that of the search that found this
+ * triangle. Returns false if there is no such triangle or the point is farther than limit_m. */
 bool surface_point_on(const struct surface *surface, const double point_m[3], double limit_m, uint32_t tri, struct surface_point *hit);
 
 /* Computes the geodesic distance in metres from each point (projected onto the surface) to every model vertex: out[point * vertex_count +
-   vertex], INFINITY where the surface does not connect them. Runs on all workers. Returns false when out of memory, logged. Thread: any
-   number of calls at a time; the same holds for all functions below. */
+ * vertex], INFINITY where the surface does not connect them. Runs on all workers. Returns false when out of memory, logged. Thread: any
+ * number of concurrent calls, of this and all functions below, unless their comment says otherwise. */
 bool surface_distances(const struct surface *surface, const double (*points_m)[3], size_t point_count, float *out);
 
-/* Distances from a set of sources at every point of the sampled surface; distances at other surface points are interpolated from them. */
+/* Distances of every point of the sampled surface from a set of sources. Distances of other surface points are interpolated from these. */
 struct surface_field {
     size_t source_count;
     struct surface_point *sources;
@@ -126,24 +126,25 @@ struct surface_field {
    any thread. */
 struct surface_columns {
     bool (*fetch)(void *arg, size_t source, float *distances_m); /* false: not cached */
-    void (*keep)(void *arg, size_t source, float *distances_m);  /* stores a newly computed column, rounded as fetch() would return it */
+    /* stores a newly computed column, after rounding it in place to the values that fetch() will return */
+    void (*keep)(void *arg, size_t source, float *distances_m);
     void *arg;
 };
 /* Returns the number of points of the sampled surface, the length of a column. */
 size_t surface_column_length(const struct surface *surface);
-/* Computes the field of these sources. Known columns are fetched from the cache, new ones stored (columns NULL: no cache). Returns false
-   when out of memory, logged; nothing needs freeing then. */
+/* Computes the field of these sources. Columns that the cache contains are fetched; computed columns are stored in the cache (columns NULL:
+ * no cache). Returns false when out of memory, logged; nothing needs freeing then. */
 bool surface_field_init(struct surface_field *field, const struct surface *surface, const double (*points_m)[3], size_t point_count,
                         const struct surface_columns *columns);
 /* Frees the field. */
 void surface_field_finish(struct surface_field *field);
-/* Writes the distances of a model vertex from every source: out[source]. */
+/* Writes the distance of a model vertex from every source: out[source]. */
 void surface_field_at_vertex(const struct surface_field *field, const struct surface *surface, uint32_t vertex, float *out);
-/* Writes the distances of a surface point from every source: out[source]. */
+/* Writes the distance of a surface point from every source: out[source]. */
 void surface_field_at_point(const struct surface_field *field, const struct surface *surface, const struct surface_point *hit, float *out);
 
 /* Compares the field with the heat method for some of its sources, and fills heat_disagreement, time_m2 and factor_s of the report. Returns
-   false when out of memory, logged. Thread: one at a time; other calls may run as long as they do not read the report. */
+ * false when out of memory, logged. Thread: one call at a time; other functions may run concurrently, except those that read the report. */
 bool surface_check(struct surface *surface, const struct surface_field *field);
 
 #endif

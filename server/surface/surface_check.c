@@ -9,13 +9,15 @@
 #include "surface/geodesic/heat.h"
 #include "surface/surface_impl.h"
 
-#define TIME_OF_SPACING 3.0 /* diffusion time t of the heat method, in squared mean edge lengths */
-/* largest distance on the surface, in sqrt(t): a larger surface gets a larger t, so that heat does not underflow */
+#define TIME_OF_SPACING 3.0 /* diffusion time t of the heat method, in multiples of the squared mean edge length */
+/* upper limit of the largest distance on the surface, in multiples of sqrt(t): a larger surface gets a larger t, so that heat does not
+ * underflow */
 #define MAX_DECAY 500.0
 #define MAX_SOURCES 32 /* number of sources checked, spread evenly over all */
 #define BLOCK 8        /* right-hand sides solved together */
 
-/* Returns the distance from an arbitrary point of the component with most triangles to the point farthest from it. */
+/* Returns the approximate size of the surface: in the component with most triangles, the distance from an arbitrary point to the point
+ * farthest from it. */
 static double reach_of(const struct surface *surface)
 {
     const struct trimesh *mesh = &surface->visible;
@@ -35,9 +37,9 @@ static double reach_of(const struct surface *surface)
     return reach_m;
 }
 
-/* Returns the difference of the two methods, relative to the largest distance. Heat distances have a free constant, chosen so that both
- * methods agree on average. The heat method smooths ridges and borders over about sqrt(t), so a few percent at single points are normal;
- * more indicates that the surface is not connected as it looks. */
+/* Returns the root mean square difference between the distances of both methods, relative to the largest distance. Heat distances have a
+ * free constant, chosen so that both methods agree on average. The heat method smooths ridges and borders over about sqrt(t), so a few
+ * percent at single points are normal; more indicates that the surface is not connected as it looks. */
 static double disagreement_of(const struct propagation *propagation, const struct surface_field *field, size_t source, const double *heat_m)
 {
     double sum = 0, squares = 0, largest_m = 0, count = 0;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes distances from many sources, block by block on all cores, and interpolates them at other points. */
+/* Computes distances from many sources on all cores, a block of sources at a time, and interpolates distances at points inside
+ * triangles. */
 #include <stdatomic.h>
 #include <string.h>
 
@@ -8,14 +9,15 @@
 #include "base/mem.h"
 #include "surface/surface_impl.h"
 
-#define BLOCK 16 /* sources per block: propagated one after another by one thread, then stored together */
+/* number of sources per block; one thread computes their distances one after the other, then stores the block's results together */
+#define BLOCK 16
 
 struct solve {
     const struct surface *surface;
     const struct surface_point *hits;
     size_t count;
     float *out;                            /* NULL, or distances [point][vertex] */
-    struct surface_field *field;           /* field to fill; NULL: distances go to `out` */
+    struct surface_field *field;           /* field to fill; NULL: distances are written to `out` instead */
     const struct surface_columns *columns; /* cache of columns; NULL: none */
     atomic_bool failed;
 };
@@ -33,8 +35,8 @@ static const struct stray *stray_of(const struct surface *surface, uint32_t vert
     return low < surface->stray_count && surface->strays[low].vertex == vertex ? &surface->strays[low] : NULL;
 }
 
-/* Returns the distance at a stray vertex. distances_m: distances of one source at all points, `apart` elements from one point to the
- * next. */
+/* Returns the distance at a stray vertex (its triangles have no area), from a source. distances_m: distances of the source at all points,
+ * `apart` elements from one point to the next. */
 static float at_stray(const struct stray *stray, const float *distances_m, size_t apart)
 {
     double sum = 0;
@@ -51,7 +53,8 @@ static void take_vertices(const struct surface *surface, const float *distances_
         out[surface->strays[i].vertex] = at_stray(&surface->strays[i], distances_m, 1);
 }
 
-/* Transposes a block of columns into rows of the field, one cache line at a time. */
+/* Copies a block of columns (distances by point, one column per source) into the rows of the field (distances by source, one row per
+ * point), one cache line at a time. */
 static void take_rows(const struct solve *solve, const float *block, size_t first, size_t count)
 {
     size_t points = solve->surface->mesh.point_count;
@@ -60,13 +63,14 @@ static void take_rows(const struct solve *solve, const float *block, size_t firs
             solve->field->distances_m[p * solve->field->source_count + first + s] = block[s * points + p];
 }
 
-struct abreast { /* sources that are propagated together */
+struct abreast { /* sources that one thread propagates alternately (PROPAGATION_ABREAST) */
     struct propagation_front fronts[PROPAGATION_ABREAST];
     struct propagation_source from[PROPAGATION_ABREAST];
     size_t source[PROPAGATION_ABREAST], count;
 };
 
-/* block: buffer for the columns of the sources from `first` on, used only if a field is filled. */
+/* Computes the distances of the waiting sources. block: buffer for the columns of the sources from index `first` on, used only if a field
+ * is filled. Returns false if out of memory. */
 static bool propagate(const struct solve *solve, struct abreast *abreast, float *block, size_t first)
 {
     const struct surface *surface = solve->surface;
@@ -182,8 +186,8 @@ void surface_field_at_vertex(const struct surface_field *field, const struct sur
         out[s] = at_stray(stray, field->distances_m + s, field->source_count);
 }
 
-/* An edge of the triangle that contains a surface point, from corner a to corner b: the edge's length, and the point's position with a at
- * (0, 0) and b at (side, 0). */
+/* An edge a-b of the triangle that contains a surface point. side: the edge's length; the point's position in the triangle's plane, in
+ * which a is at (0, 0) and b at (side, 0). */
 struct edge_window {
     float side, half, per, x, y;
 };
@@ -196,20 +200,23 @@ static struct edge_window sight_of(double ab, double to_a, double to_b)
     return (struct edge_window){ (float)ab, (float)ab / 2, 1 / (2 * (float)ab), (float)x, (float)y };
 }
 
-/* Returns the smaller one of best2 and the squared distance through the edge, with the source laid out beyond the edge. The latter counts
- * only if the ray from the source crosses the edge. */
+/* Returns the smaller one of best2 and the squared length of the straight way from the source through the edge to the point. da, db:
+ * distances of the edge's ends from the source, which is placed beyond the edge to fit both. The way counts only if it crosses the edge. */
 SIMD_BODY float through_edge(const struct edge_window *sight, float da, float db, float best2)
 {
     const float x = sight->x, y = sight->y;
     float sx = (da - db) * (da + db) * sight->per + sight->half, sy2 = (da - sx) * (da + sx), sy = sqrtf(sy2 > 0 ? sy2 : 0);
-    float dx = x - sx, dy = y + sy, cut = sx * y + x * sy; /* cut: where the source's ray crosses the edge, times dy */
+    /* cut / dy: position on the edge, from a, at which the straight way crosses it */
+    float dx = x - sx, dy = y + sy, cut = sx * y + x * sy;
     float straight2 = dx * dx + dy * dy;
-    straight2 = cut >= 0 ? straight2 : INFINITY; /* this comparison is false where da or db is INFINITY */
+    /* if da or db is INFINITY, one of the two comparisons is false, so the result is INFINITY */
+    straight2 = cut >= 0 ? straight2 : INFINITY;
     straight2 = cut <= sight->side * dy ? straight2 : INFINITY;
     return straight2 < best2 ? straight2 : best2;
 }
 
-/* Fills a row with the shortest distance through any edge, or in a straight line from a corner. */
+/* Fills a row of distances (one per source) for a surface point: the shortest way through an edge of its triangle, or straight from a
+ * corner. */
 SIMD_BODY void fill_row(const struct edge_window sights[3], const float to_m[3], const float *restrict a, const float *restrict b,
                         const float *restrict c, size_t count, float *restrict out)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shared by the files that build a surface and compute distances on it. */
+/* Declarations shared by the files that build a surface and compute distances on it. */
 #ifndef SURFACE_SURFACE_IMPL_H
 #define SURFACE_SURFACE_IMPL_H
 #include "surface/mesh/bvh.h"
@@ -7,7 +7,7 @@
 #include "surface/surface.h"
 #include "surface/geodesic/propagation.h"
 
-struct stray { /* a model vertex whose triangles have no area: it gets the distance of the nearest surface point */
+struct stray { /* a model vertex all of whose triangles have no area; its distances are those of the nearest surface point */
     uint32_t vertex, points[3];
     double weights[3];
 };
@@ -17,28 +17,28 @@ struct surface {
     struct workers *workers;
     size_t vertex_count;
     uint32_t *vertex_point; /* per model vertex */
-    struct trimesh mesh;    /* mesh after welding, bridging and sampling; visible triangles first */
+    struct trimesh mesh;    /* mesh after welding, bridging of gaps and sampling; visible triangles first */
     struct trimesh visible; /* mesh of the visible triangles only; its arrays are those of `mesh` */
-    /* connected component of each point, by visible triangles; NULL: not computed yet, because the surface was read from a file */
+    /* by point: its connected component, by visible triangles; NULL: not computed yet, because the surface was read from a file */
     uint32_t *component;
     struct stray *strays; /* sorted by vertex */
     size_t stray_count;
     struct intrinsic intrinsic;
     struct propagation propagation;
     struct bvh *bvh;
-    uint32_t *plane; /* plane of each model triangle: the lowest of the coplanar triangles that it was merged with (decimate.h) */
-    uint32_t *piece_first, *pieces; /* visible triangles grouped by the plane of their model triangle */
+    uint32_t *plane; /* by model triangle: lowest index of the coplanar model triangles with which it was merged (decimate.h) */
+    uint32_t *piece_first, *pieces; /* visible triangles grouped by `plane` of their model triangle */
     double edge_m;                  /* mean edge length */
     struct surface_report report;
     struct crack_bridge *bridges;
     size_t bridge_count, bridge_capacity;
 };
 
-/* Builds what searches and distances need: the BVH, the propagation fans, the lists of pieces by model triangle, and the intrinsic
-   triangulation if it is missing. */
+/* Builds the data that searches and distances need: the bounding volume hierarchy, the propagation fans, the lists of triangles by model
+ * triangle, and the intrinsic triangulation if the stored surface had none. */
 void surface_index(struct surface *surface);
 
-/* Argument of surface_faces(): accepts only triangles whose front faces along the normal. */
+/* Argument of surface_faces(): the normal along which accepted triangles must face. */
 struct surface_facing {
     const struct trimesh *mesh;
     const double *normal;

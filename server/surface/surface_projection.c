@@ -6,12 +6,12 @@
 #include "base/math/vec.h"
 #include "surface/surface_impl.h"
 
-#define SPOT_ON_SURFACE 1e-3 /* distance in mean edges below which a point counts as on its triangle */
-#define ON_PIECE 1e-5        /* distance in mean edges below which no nearer piece is searched for */
-#define MAX_TRIED_PIECES 24  /* largest number of a model triangle's pieces that are tried one by one */
-/* a triangle that faces the right way is preferred if it is at most this many times as far as the nearest one */
+#define SPOT_ON_SURFACE 1e-3 /* distance in multiples of the mean edge length, below which a point counts as on its triangle */
+#define ON_PIECE 1e-5        /* distance in multiples of the mean edge length, below which the search for a nearer triangle ends */
+#define MAX_TRIED_PIECES 24  /* maximum number of surface triangles of one model triangle that are tried one by one */
+/* a triangle whose normal fits is preferred if its distance is at most this many times that of the nearest triangle */
 #define FACING_FACTOR 4.0
-#define ROUNDING 1e-9 /* rounding allowance of a distance, relative */
+#define ROUNDING 1e-9 /* relative rounding allowance of a distance */
 
 void surface_nearest(const struct surface *surface, const double point_m[3], struct surface_place *place)
 {

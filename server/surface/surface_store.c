@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Packs the results that are slow to compute; all others are computed again when unpacking. */
+/* Packs the results that are slow to compute. surface_unpack() computes all others again. */
 #include "surface/surface_store.h"
 
 #include "base/mem.h"
@@ -11,7 +11,8 @@ struct surface_totals {
     struct surface_report report;
 };
 
-/* Two glued sides have the same length, which is stored only with the side of the lower index. */
+/* Returns whether the side's length is stored. Two glued sides have the same length, which is stored only with the side of the lower
+ * index. */
 static bool is_kept(const struct intrinsic *in, uint32_t side)
 {
     uint32_t other = in->glue[side / 3][side % 3];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds vertices on a surface by their position. */
+/* Finds the surface point or triangle at the position of each vertex. */
 #include "surface/vertex_embedding.h"
 
 #include <math.h>
@@ -11,10 +11,12 @@
 #include "surface/surface_impl.h"
 
 #define GRAIN 512
-#define ON_SURFACE 1e-3 /* distance in mean edge lengths below which a vertex counts as on a face */
+#define ON_SURFACE 1e-3 /* distance in multiples of the mean edge length, up to which a vertex counts as on a face */
 
 struct anchor {
-    uint32_t point; /* index of the surface point that the vertex is attached to; TRIMESH_NONE: it is attached at `hit` */
+    /* index of the surface point at the vertex's position; TRIMESH_NONE: there is none, and `hit` is the vertex's position on the
+     * surface */
+    uint32_t point;
     struct surface_point hit;
 };
 
@@ -24,7 +26,7 @@ struct vertex_embedding {
     struct anchor *at;
 };
 
-struct point_table { /* hash table of points that have triangles, by position */
+struct point_table { /* hash table that finds, by position, a point that has triangles */
     const struct trimesh *mesh;
     uint32_t *points;
     size_t mask;
@@ -65,7 +67,7 @@ struct embedding_job {
     struct point_table table;
     const float (*positions_m)[3];
     double (*normals)[3]; /* not normalised */
-    /* by vertex: 1: only coarser levels use it, so it may be nearer to the other side of a wall than to its own side */
+    /* by vertex: 1 if only coarser levels of detail use it; such a vertex may be nearer to the other side of a wall than to its own */
     char *is_off;
 };
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The heat method (Crane, Weischedel, Wardetzky 2013) with sparse Cholesky factors. */
+/* Implements the heat method (Crane, Weischedel, Wardetzky 2013) for geodesic distances with sparse Cholesky factors. */
 #include "surface/geodesic/heat.h"
 
 #include <float.h>
@@ -11,8 +11,8 @@
 #include "surface/geodesic/laplacian.h"
 #include "surface/geodesic/solver.h"
 
-/* L is singular on each connected component. Adding this fraction of M, relative to the component's area, makes L regular and changes
- * distances by a millionth only. */
+/* L (Laplacian) is singular on each connected component. Adding this fraction of M (areas), relative to the component's area, makes L
+ * regular and changes distances by only a millionth. */
 #define REGULARISATION 1e-6
 
 struct heat {
@@ -24,7 +24,8 @@ struct heat {
     cholmod_common common;
 };
 
-/* Returns for each row the mass to add, relative to the area of the row's component. */
+/* Returns for each matrix row the area to add to its diagonal element, relative to the area of the row's component. The caller frees the
+ * array. */
 static double *regularisation(const struct heat *heat, const uint32_t *component)
 {
     double *area_m2 = mem_array(heat->in->point_count, sizeof(*area_m2)), *share = mem_array(heat->laplacian.row_count, sizeof(*share));
@@ -86,7 +87,8 @@ void heat_destroy(struct heat **heat_ptr)
     *heat_ptr = NULL;
 }
 
-/* Turns heat `u` into the weak divergence of its unit gradient: b_i = integral of grad psi_i . X. */
+/* Replaces the heat `u` by its logarithm, and computes from the unit gradient X of that the weak divergence: b_i = integral of grad psi_i .
+ * X (psi_i: hat function of point i). */
 static void flow(const struct heat *heat, double *u, double *b)
 {
     const struct intrinsic *in = heat->in;

@@ -8,20 +8,20 @@
 
 struct heat;
 
-/* Builds and factors the systems (M + t L) u = source and L d = div(grad / |grad|), t = time_m2. component[point]: connected component of
-   the point. `in` must outlive the result. Returns NULL when out of memory, logged. */
+/* Builds and factors the systems (M + t L) u = source (u: heat, M: areas, L: Laplacian, t = time_m2) and L d = div(grad u / |grad u|) (d:
+ * distance). component[point]: connected component of the point. `in` must outlive the result. Returns NULL when out of memory, logged. */
 struct heat *heat_create(struct log *log, const struct intrinsic *in, const uint32_t *component, double time_m2);
-/* Frees the factors. &NULL is fine; sets it to NULL. */
+/* Frees the factors and sets *heat to NULL. *heat may be NULL. */
 void heat_destroy(struct heat **heat);
 
-/* A source: a surface point, as weights of a triangle's three points. */
+/* a source of heat: a surface point, given as weights of a triangle's three points */
 struct heat_source {
     uint32_t points[3];
     double weights[3];
 };
 
-/* Computes distances up to a constant per source: out[source * point_count + point]. Points without a triangle get 0. Returns false if out
- * of memory, logged. Thread: any number of calls at a time. */
+/* Computes the distance of each point from each source, up to an unknown constant per source: out[source * point_count + point]. Points
+ * without a triangle get 0. Returns false if out of memory, logged. Thread: any number of calls at a time. */
 bool heat_solve(const struct heat *heat, const struct heat_source *sources, size_t source_count, double *out);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Glues triangles into patches, and flips edges until the triangulation is Delaunay. */
+/* Connects triangles to patches across edges with two faces, and flips these edges until the triangulation is Delaunay. */
 #include "surface/geodesic/intrinsic.h"
 
 #include <math.h>
@@ -10,7 +10,7 @@
 #include "surface/mesh/tri_edges.h"
 
 #define MOLLIFY 1e-4
-#define FLIPS_PER_EDGE 50u /* limit of flips, never reached: ends flips that rounding might repeat forever */
+#define FLIPS_PER_EDGE 50u /* limit of flips per edge; normally never reached, but rounding errors might repeat flips forever */
 
 void intrinsic_finish(struct intrinsic *in)
 {
@@ -20,7 +20,7 @@ void intrinsic_finish(struct intrinsic *in)
     *in = (struct intrinsic){ 0 };
 }
 
-/* Gives all triangles of a patch the same orientation. */
+/* Gives all triangles of a patch (connected by edges with two faces) the same orientation. */
 static void orient(struct intrinsic *in, const struct tri_edges *edges, signed char *facing)
 {
     tri_edges_orient_all(edges, facing);
@@ -33,14 +33,14 @@ static void orient(struct intrinsic *in, const struct tri_edges *edges, signed c
     }
 }
 
-/* Returns the index of a side after its triangle was reoriented (facing < 0), which exchanges sides 0 and 2. */
+/* Returns the new index of a side after its triangle was reoriented (facing < 0), which exchanges sides 0 and 2. */
 static uint32_t turned_side(uint32_t side, const signed char *facing)
 {
     return facing[side / 3] < 0 ? side - side % 3 + 2 - side % 3 : side;
 }
 
-/* Glues pairs of sides that run in opposite directions. Sides in the same direction (a Moebius strip) stay unglued, so that their edge is
- * never flipped. */
+/* Glues (connects for flips) the two sides at each edge with two faces, if they run in opposite directions. Sides that run in the same
+ * direction, as on a Moebius strip, stay unglued, so their edge is never flipped. */
 static void glue_sides(struct intrinsic *in, const struct tri_edges *edges, const signed char *facing)
 {
     for (uint32_t side = 0; side < 3 * in->tri_count; side++) {
@@ -72,12 +72,12 @@ static bool flip(struct intrinsic *in, uint32_t t, int i)
     int j = (int)(in->glue[t][i] % 3);
     if (u == t)
         return false;
-    /* t = (p, q, r) with side pq; u = (q, p, s). */
+    /* t has the corners p, q, r and the common edge as side pq; u has the corners q, p, s */
     const double *lt = in->lengths[t], *lu = in->lengths[u];
     double pq = lt[i], qr = lt[(i + 1) % 3], rp = lt[(i + 2) % 3], ps = lu[(j + 1) % 3], sq = lu[(j + 2) % 3];
     double rx = (pq * pq + rp * rp - qr * qr) / (2 * pq), ry = sqrt(max_of(rp * rp - rx * rx, 0));
     double sx = (pq * pq + ps * ps - sq * sq) / (2 * pq), sy = -sqrt(max_of(ps * ps - sx * sx, 0));
-    /* position along the old edge, from p, where the new edge crosses it */
+    /* distance from p along the old edge at which the new edge crosses it; -1: they do not cross */
     double cut = ry - sy > 0 ? rx + (sx - rx) * ry / (ry - sy) : -1;
     if (cut <= 0 || cut >= pq)
         return false;
@@ -89,8 +89,8 @@ static bool flip(struct intrinsic *in, uint32_t t, int i)
     memcpy(in->points[u], (const uint32_t[3]){ r, s, q }, sizeof(in->points[u]));
     memcpy(in->lengths[t], (const double[3]){ rs, rp, ps }, sizeof(in->lengths[t]));
     memcpy(in->lengths[u], (const double[3]){ rs, sq, qr }, sizeof(in->lengths[u]));
-    /* An outer side may be glued to another outer side of the same two triangles. Such references are renumbered before they are written
-     * back. */
+    /* an outer side may be glued to another outer side of the same two triangles; such references get the new side indices before they are
+     * written back */
     uint32_t outer[4] = { g_rp, g_ps, g_sq, g_qr };
     const uint32_t was[4] = { 3 * t + (uint32_t)((i + 2) % 3), 3 * u + (uint32_t)((j + 1) % 3), 3 * u + (uint32_t)((j + 2) % 3),
                               3 * t + (uint32_t)((i + 1) % 3) };
@@ -112,8 +112,8 @@ static bool flip(struct intrinsic *in, uint32_t t, int i)
     return true;
 }
 
-/* Lengthens all sides by the same small amount, so that no triangle is flatter than MOLLIFY mean edges (Sharp & Crane 2020, section
-   4.5). */
+/* Lengthens all sides by the same small amount, so that in no triangle two sides together exceed the third by less than MOLLIFY mean edge
+ * lengths (Sharp & Crane 2020, section 4.5). */
 static void mollify(struct intrinsic *in)
 {
     double sum = 0, lack = 0;

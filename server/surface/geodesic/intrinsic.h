@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Intrinsic Delaunay triangulation of a mesh: edge lengths instead of positions; edges are flipped within patches until no cotangent weight
-   is negative (Bobenko & Springborn 2007; Fisher et al. 2007). Edges with one face, or more than two, are never flipped. */
+/* Intrinsic Delaunay triangulation of a mesh: edge lengths instead of positions; edges are flipped within patches (triangles connected by
+ * edges with two faces) until no cotangent weight is negative (Bobenko & Springborn 2007; Fisher et al. 2007). Edges with one face, or more
+ * than two, are never flipped. */
 #ifndef SURFACE_GEODESIC_INTRINSIC_H
 #define SURFACE_GEODESIC_INTRINSIC_H
 #include "surface/mesh/trimesh.h"
@@ -9,7 +10,8 @@ struct intrinsic {
     size_t tri_count, point_count;
     uint32_t (*points)[3]; /* points of each triangle; all triangles of a patch have the same orientation */
     double (*lengths)[3];  /* length of side i, from corner i to corner i + 1 */
-    /* adjacent side of each triangle's side, as 3 * triangle + side; TRIMESH_NONE: not glued, so the edge cannot be flipped */
+    /* by triangle and side: the adjacent triangle's side, as 3 * triangle + side; TRIMESH_NONE: no adjacent triangle across which the edge
+     * could be flipped */
     uint32_t (*glue)[3];
     size_t flips;
 };
@@ -19,7 +21,7 @@ void intrinsic_init(struct intrinsic *in, const struct trimesh *mesh);
 /* Frees the triangulation. */
 void intrinsic_finish(struct intrinsic *in);
 
-/* Lays a triangle with these side lengths out in the plane, corners at (0, 0), (l0, 0) and (x, y), and writes x and y. */
+/* Places a triangle with the side lengths l0, l1, l2 in the plane, with corners at (0, 0), (l0, 0) and (x, y), and writes x and y. */
 void intrinsic_layout(const double lengths[3], double *x, double *y);
 
 #endif

@@ -95,7 +95,7 @@ cholmod_sparse *laplacian_assemble(const struct laplacian *laplacian, const doub
                 rows[n] = a > b ? a : b;
                 columns[n] = a > b ? b : a;
                 values[n] = stiffness * s->area * (gx[i] * gx[j] + gy[i] * gy[j]);
-                if (i != j && a == b) /* flips can create an edge from a point to itself; its weight counts for both corners */
+                if (i != j && a == b) /* edge flips can create an edge from a point to itself, whose weight counts for both corners */
                     values[n] *= 2;
             }
     }

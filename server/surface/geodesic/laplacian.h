@@ -7,8 +7,8 @@
 
 #include "surface/geodesic/intrinsic.h"
 
-struct laplacian_slope { /* gradients of the three hat functions in the triangle's plane, and its area */
-    /* gradient of the hat function of corner 1: (x1, y1); of corner 2: (0, y2); of corner 0: minus the sum of both; area: triangle */
+struct laplacian_slope { /* by triangle: gradients of the hat functions of its three corners in the triangle's plane, and its area */
+    /* gradients: (x1, y1) for corner 1, (0, y2) for corner 2, and minus the sum of both for corner 0; area: of the triangle */
     double x1, y1, y2, area;
 };
 
@@ -17,17 +17,19 @@ struct laplacian {
     uint32_t *row_of; /* row of each point in the matrices; TRIMESH_NONE: the point has no triangle */
     size_t row_count;
     struct laplacian_slope *slopes; /* by triangle */
-    double *mass_m2;                /* mass of each row: a third of the area of all triangles at the point */
+    double *mass_m2;                /* by row: a third of the area of all triangles at the row's point */
 };
 
-/* Numbers the rows and measures the triangles of `in`, which must outlive it. Returns false if out of memory; call laplacian_finish() in
-   both cases. */
+/* Assigns matrix rows to the points of `in`, and measures its triangles. `in`, which must outlive it. Returns false if out of memory; call
+ * laplacian_finish() in both cases. */
 bool laplacian_init(struct laplacian *laplacian, const struct intrinsic *in);
 /* Frees the arrays. */
 void laplacian_finish(struct laplacian *laplacian);
-/* Starts CHOLMOD for factoring such matrices: no output, one ordering, and single-threaded BLAS, since the workers use all cores. */
+/* Starts CHOLMOD with settings for factoring Laplacians: no output, one ordering, and single-threaded BLAS, since the workers use all
+ * cores. */
 void laplacian_start(cholmod_common *common);
-/* Returns diag(mass) + stiffness * L, the lower triangle of a symmetric matrix, which the caller frees; NULL if out of memory. */
+/* Returns the matrix diag(mass) + stiffness * L (L: cotangent Laplacian), stored as the lower triangle of a symmetric matrix. The caller
+ * frees it. NULL: out of memory. */
 cholmod_sparse *laplacian_assemble(const struct laplacian *laplacian, const double *mass, double stiffness, cholmod_common *common);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Prepares a mesh for propagation: builds the fans of triangles around each point. */
+/* Prepares a mesh for propagation: builds the fan of triangles around each point. */
 #include "surface/geodesic/propagation.h"
 
 #include <string.h>
@@ -7,13 +7,15 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-#define STEPS_PER_EDGE 32.0 /* count of buckets per mean edge length; points in one bucket are processed in any order */
+#define STEPS_PER_EDGE 32.0 /* buckets of the priority queue per mean edge length; points in one bucket are processed in any order */
 #define NEAR_EDGES 5.0
 #define MAX_BUCKETS (1u << 16)
-/* maximum number of triangles tested for being the next around a point; if none fits, the row of triangles ends there */
+/* maximum number of triangles that are tested in the search for the triangle adjacent to the last one of a row; if none of these is
+ * adjacent, the row ends */
 #define MAX_TRIED 64
 
-/* Returns the corners of the t-th triangle in order of propagation; tri_sides() writes its sides from corner i to corner i + 1. */
+/* Returns the corners of triangle t: a triangle of the intrinsic triangulation, or behind these an interior triangle. tri_sides() writes
+ * its side lengths, from corner i to corner i + 1. */
 static const uint32_t *tri_points(const struct propagation *propagation, const struct intrinsic *in, size_t t)
 {
     return t < in->tri_count ? in->points[t] : propagation->mesh->tris[t];
@@ -29,12 +31,12 @@ static void tri_sides(const struct propagation *propagation, const struct intrin
 
 /* --- fans ---------------------------------------------------------------------------------------------------------------------- */
 
-struct end { /* the other end of a side that begins at the current point */
+struct end { /* the end, away from the current point, of a triangle's side that begins at the current point */
     uint32_t to;
     float length_m; /* as in struct propagation_fan */
 };
 
-struct vertex_wedge { /* a triangle at the current point */
+struct vertex_wedge { /* a triangle at the current point: its two sides there, and the angle between them */
     struct end ends[2];
     float cosine, sine;
 };
@@ -61,8 +63,8 @@ static void turn_round(struct vertex_wedge *wedge)
     wedge->ends[1] = swap;
 }
 
-/* Extends the row of adjacent wedges (triangles at a point) that the first `count` wedges form: moves the next fitting wedge behind the
- * row, until none fits. Returns the new length of the row. */
+/* Extends the row of adjacent triangles around a point that the first `count` wedges form: moves an adjacent wedge to the end of the row,
+ * until there is none. Returns the new number of wedges in the row. */
 static size_t extend(struct vertex_wedge *wedges, size_t count, size_t all)
 {
     for (size_t i = count; i < all && i < count + MAX_TRIED; i++)
@@ -104,8 +106,9 @@ static struct propagation_fan *add_fan(struct propagation *propagation, uint32_t
     return fan;
 }
 
-/* Appends a row of adjacent wedges to the fans. A fan has PROPAGATION_FAN lanes; a wedge at the end of a full fan is stored again in the
- * next fan. lane: count of lanes used in the last fan. Returns the new count. */
+/* Appends a row of adjacent wedges (triangles around a point) to the point's fans. A fan has PROPAGATION_FAN lanes, one per neighbour; the
+ * neighbour in the last lane of a full fan is stored again in the next fan. lane: number of lanes used in the last fan. Returns the new
+ * number. */
 static int add_row(struct propagation *propagation, uint32_t point, const struct vertex_wedge *row, size_t count, int lane)
 {
     for (size_t i = 0; i <= count; i++) {
@@ -135,7 +138,8 @@ static void add_fans(struct propagation *propagation, uint32_t point, struct ver
     }
 }
 
-/* Returns by point the index of its first corner, with one additional element at the end. The caller frees the array. */
+/* Returns an array by point: number of triangle corners at points of lower index; one more element at the end holds the total. The caller
+ * frees the array. */
 static uint32_t *count_corners(const struct propagation *propagation, const struct intrinsic *in)
 {
     size_t points = propagation->mesh->point_count;
@@ -171,8 +175,8 @@ static void make_fans(struct propagation *propagation, const struct intrinsic *i
     mem_free(first);
 }
 
-/* Chooses the number of buckets, which are used as a ring buffer: it must span the longest edge and near_m, because new distances exceed
- * the current one by at most that. */
+/* Chooses the number of buckets. They form a ring buffer, which must span the longest edge and near_m, because a new distance exceeds the
+ * current distance by at most that. */
 static void choose_buckets(struct propagation *propagation, const struct intrinsic *in)
 {
     double sum = 0, longest = 0, sides[3];

@@ -1,39 +1,41 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Geodesic distances by propagation from a source, triangle by triangle, nearest points first, unfolding each triangle into the plane
-   (Novotni and Klein 2002). Exact where the surface is flat or developable. */
+/* Geodesic distances by propagation from a source, triangle by triangle, nearest points first. Each triangle is unfolded into the plane, in
+ * which distances are straight lines (Novotni and Klein 2002). Exact where the surface is flat or developable. */
 #ifndef SURFACE_GEODESIC_PROPAGATION_H
 #define SURFACE_GEODESIC_PROPAGATION_H
 #include "surface/geodesic/intrinsic.h"
 
-#define PROPAGATION_FAN 8 /* neighbours of a point that are processed at once, one per lane of a vector register */
+#define PROPAGATION_FAN 8 /* number of neighbours of a point that are processed together, one per lane of a vector register */
 
-/* Data about a mesh that all propagations share: the fan of neighbours and triangles around each point. */
+/* data about a mesh that all propagations share: the fan of neighbours and triangles around each point */
 struct propagation {
     const struct trimesh *mesh;
     const struct intrinsic *in;
-    uint32_t *first; /* by point: index of its first fan; one additional element at the end */
-    /* up to PROPAGATION_FAN neighbours of a point in angular order, and the triangle between each and the next */
+    uint32_t *first; /* by point: index in `fans` of its first fan; one additional element at the end */
+    /* up to PROPAGATION_FAN neighbours of a point in angular order, and the triangles between consecutive neighbours */
     struct propagation_fan {
-        uint32_t to[PROPAGATION_FAN]; /* by lane: index of the neighbour; the point itself in unused lanes */
-        /* length of the edge to the neighbour; negated: distances must not be offered to this neighbour; INFINITY: unused lane */
+        uint32_t to[PROPAGATION_FAN]; /* by lane: point index of the neighbour; index of the fan's own point in unused lanes */
+        /* length of the edge to the neighbour; negative: the same length, but the neighbour must get no distance from this point; INFINITY:
+         * unused lane */
         float length_m[PROPAGATION_FAN];
         /* cosine and sine of the angle to the next neighbour; sine 0: no triangle in between */
         float cosine[PROPAGATION_FAN], sine[PROPAGATION_FAN];
     } * fans;
     size_t fan_count, fan_capacity;
-    char *hidden;      /* 1 for points without a visible triangle */
+    char *hidden;      /* by point: 1 if it has no visible triangle */
     float steps_per_m; /* buckets per metre of distance */
-    double near_m;     /* radius around the source within which points are tested for a straight line to it */
+    double near_m;     /* radius around the source within which points are tested for a straight line of sight to the source */
     uint32_t bucket_count;
 };
 /* Builds the fans. Visible triangles (the first visible_count) are used in their intrinsic Delaunay form, which has few obtuse ones.
- * Propagation continues from visible into interior triangles, so that a triangle that passes through a surface also has distances at its
- * interior end, but never returns from interior triangles. mesh and in must outlive the propagation. Free with propagation_finish(). */
+ * Propagation continues from visible into interior (hidden) triangles, so that a triangle that passes through a surface also has distances
+ * at its hidden end. It never returns from interior to visible triangles. mesh and in must outlive the propagation. Free with
+ * propagation_finish(). */
 void propagation_init(struct propagation *propagation, const struct trimesh *mesh, size_t visible_count, const struct intrinsic *in);
 /* Frees the fans. */
 void propagation_finish(struct propagation *propagation);
 
-/* State of one propagation, used by one thread; zero-initialise; may be reused. */
+/* state of one propagation, used by one thread; initialise with zeros; may be reused */
 struct propagation_front {
     float *distance_m; /* per point; INFINITY: not reached */
     float *straight_m; /* straight-line distance of each point from the source */
@@ -54,8 +56,9 @@ struct propagation_source {
     uint32_t tri;
     const double *weights; /* of the triangle's corners */
 };
-/* Computes the distances of all points from each of `count` sources (at most PROPAGATION_ABREAST), each in the front of the same index.
-   Results do not depend on which sources are computed together. Returns false when out of memory. Thread: any, with its own fronts. */
+/* Computes the distances of all points from each of `count` sources (at most PROPAGATION_ABREAST), each with the state in fronts[] of the
+ * same index. Results do not depend on which sources are computed together. Returns false when out of memory. Thread: any, with its own
+ * fronts. */
 bool propagation_run(const struct propagation *propagation, struct propagation_front *fronts, const struct propagation_source *sources,
                      size_t count);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Propagates distances outwards from a source, nearest points first. */
+/* Computes distances by propagation from a source outwards, nearest points first. */
 #include <math.h>
 #include <string.h>
 
@@ -8,14 +8,19 @@
 #include "base/mem.h"
 #include "surface/geodesic/propagation.h"
 
-#define MIN_WEIGHT 1e-6    /* smallest barycentric weight of a source, which is kept slightly inside its triangle */
-#define CORNER_OFFSET 1e-3 /* offset from a corner, relative to the distance to the middle of the opposite side */
-#define ANY_ORDER 2        /* number of buckets by which the processing order may deviate from the order of distances */
-#define MAX_DEPTH 32       /* largest number of triangles that a straight line near the source is followed through */
-#define NO_LENGTH 1e-300   /* avoids division by 0 */
+/* smallest barycentric weight of a source; a source on a corner or edge is moved into its triangle by that much */
+#define MIN_WEIGHT 1e-6
+/* fraction of the way from a corner to the middle of the opposite side; a straight line aims there to check that the triangles reach the
+ * corner */
+#define CORNER_OFFSET 1e-3
+/* number of buckets by which a point may be processed before a nearer one; distances below the current one plus these buckets count as
+ * final */
+#define ANY_ORDER 2
+#define MAX_DEPTH 32     /* maximum number of triangles through which a straight line near the source is followed */
+#define NO_LENGTH 1e-300 /* avoids division by 0 */
 
 typedef float lanes __attribute__((vector_size(4 * PROPAGATION_FAN)));
-typedef int32_t mask __attribute__((vector_size(4 * PROPAGATION_FAN))); /* lane mask: each lane has all bits set, or none */
+typedef int32_t mask __attribute__((vector_size(4 * PROPAGATION_FAN))); /* one lane per neighbour; all bits of a lane are set, or none */
 
 void propagation_front_finish(struct propagation_front *front)
 {
@@ -37,7 +42,8 @@ static bool clear(const struct propagation *propagation, struct propagation_fron
         front->buckets = mem_try_array(propagation->bucket_count, sizeof(*front->buckets));
         if (!front->distance_m || !front->straight_m || !front->settled || !front->buckets)
             return false;
-        memset(front->buckets, 0xff, propagation->bucket_count * sizeof(*front->buckets)); /* a finished front leaves all buckets empty */
+        /* propagation empties all buckets, so they are initialised only once */
+        memset(front->buckets, 0xff, propagation->bucket_count * sizeof(*front->buckets));
     }
     for (size_t i = 0; i < count; i++)
         front->distance_m[i] = INFINITY;
@@ -55,8 +61,9 @@ static inline void fetch_fans(const struct propagation *propagation, uint32_t po
         __builtin_prefetch(from);
 }
 
-/* Lowers a point's distance to an offered one, or to the straight-line distance if the offer is shorter than that. Such an offer occurs if
- * the distances of an edge's two ends came by different paths around a fold or a rod: the source laid out to fit both is then too near. */
+/* Lowers a point's distance to the offered distance, but not below the straight-line distance. An offer can be shorter than the straight
+ * line if the distances of an edge's two ends come from different paths around a fold or a rod. The point of the plane that fits both
+ * distances is then too near. */
 static inline void offer(const struct propagation *propagation, struct propagation_front *front, uint32_t point, float offered_m)
 {
     float distance_m = offered_m < front->straight_m[point] ? front->straight_m[point] : offered_m;
@@ -66,10 +73,11 @@ static inline void offer(const struct propagation *propagation, struct propagati
         fetch_fans(propagation, point);
     front->distance_m[point] = distance_m;
     if (front->settled[point])
-        return; /* a settled point is not propagated again, because each small correction would run over the whole surface */
+        /* a settled point (already propagated) is not propagated again, because each small correction would run over the whole surface */
+        return;
     if (front->item_count == front->item_capacity)
         mem_grow(&front->items, &front->item_capacity, front->item_count + 1, sizeof(*front->items));
-    /* the value is not negative; the conversion via int64_t is a single instruction */
+    /* the value is not negative; converting it via int64_t takes a single instruction */
     uint64_t number = (uint64_t)(int64_t)(distance_m * propagation->steps_per_m);
     uint32_t *bucket = &front->buckets[(number > front->at ? number : front->at) & (propagation->bucket_count - 1)];
     front->items[front->item_count] = (struct propagation_item){ point, *bucket };
@@ -97,9 +105,10 @@ SIMD_BODY void choose(const mask *which, const lanes *x, const lanes *otherwise,
     *out = (lanes)((*which & (mask)*x) | (~*which & (mask)*otherwise));
 }
 
-/* Computes the distance that the edge from p (distance d) to b (distance db, pb away) offers to point c, pc away from p. The source is laid
- * out in the triangle's plane on the other side of the edge. The result is INFINITY where the ray from the source to c does not pass
- * between p and b, or b is farther than `reached`. */
+/* Computes, in each lane, the distance that reaches point c through the edge from p to b. p is at distance d from the source, b at db; the
+ * edge has length pb, the side from p to c length pc and the cosine and sine of its angle to the edge. The source is placed in the
+ * triangle's plane, beyond the edge. The result is INFINITY where the ray from the source to c does not pass between p and b, or where db
+ * exceeds `reached`, so that it is not final. */
 SIMD_BODY void through_edge(const lanes *d_of_p, const lanes *reached, const lanes *d_of_b, const lanes *p_to_b, const lanes *p_to_c,
                             const lanes *cosine, const lanes *sine, lanes *out)
 {
@@ -108,15 +117,16 @@ SIMD_BODY void through_edge(const lanes *d_of_p, const lanes *reached, const lan
     mask seen = (sy2 >= zero) & (db <= *reached);
     lanes sy = (lanes)(seen & (mask)sy2), cx = pc * *cosine, cy = pc * *sine;
     root(&sy);
-    lanes x = cx - sx, height = cy + sy, cut = sx * cy + cx * sy; /* cut: where the ray crosses the edge, times the height */
+    /* cut / height: position on the edge, from p, at which the ray crosses it */
+    lanes x = cx - sx, height = cy + sy, cut = sx * cy + cx * sy;
     seen &= (cy > zero) & (cut >= zero) & (cut <= pb * height);
     lanes straight = x * x + height * height;
     root(&straight);
     choose(&seen, &straight, &infinite, out);
 }
 
-/* Computes the distance offered to each neighbour in a fan: along the edge from p (distance d), or through the triangle shared with the
- * previous or next neighbour, if that neighbour is nearer. */
+/* Computes the distance that point p, at distance d, offers to each neighbour in a fan. It is the shorter of d plus the edge's length, and
+ * the distance through the triangle shared with the previous or next neighbour, if that neighbour is nearer to the source. */
 SIMD_BODY void offers_of(const lanes *d_of_p, const lanes *reached, const lanes *d_of_each, const lanes *length_m, const lanes *cosine,
                          const lanes *sine, lanes *out)
 {
@@ -142,14 +152,15 @@ SIMD_BODY void offers_of(const lanes *d_of_p, const lanes *reached, const lanes 
 /* Progress of a front. */
 struct front_turn {
     struct propagation_front *front;
-    const struct propagation_fan *fan, *end; /* current fan, and end of the current point's fans */
-    lanes d, reached;                        /* d: distance of the current point; reached: distance up to which distances are final */
-    uint32_t empty;                          /* number of consecutive empty buckets */
-    float offered_m[PROPAGATION_FAN];        /* offers to the fan's points */
-    uint32_t takes;                          /* bit mask of the neighbours whose distance the offer lowers */
+    const struct propagation_fan *fan, *end; /* fan: fan being processed; end: end of the current point's fans */
+    /* d: distance of the current point, in all lanes; reached: distance up to which distances are final */
+    lanes d, reached;
+    uint32_t empty;                   /* number of consecutive empty buckets */
+    float offered_m[PROPAGATION_FAN]; /* offers to the fan's points */
+    uint32_t takes;                   /* bit mask of lanes: neighbours whose distance the offer lowers */
 };
 
-/* Takes the next point to process. Returns false if all buckets are empty. */
+/* Takes the next point from the buckets and makes its fans the current ones. Returns false if all buckets are empty. */
 SIMD_BODY bool next_point(const struct propagation *propagation, struct front_turn *turn)
 {
     struct propagation_front *front = turn->front;
@@ -159,7 +170,7 @@ SIMD_BODY bool next_point(const struct propagation *propagation, struct front_tu
         while (*bucket != TRIMESH_NONE) {
             struct propagation_item item = front->items[*bucket];
             *bucket = item.next;
-            if (front->settled[item.point]) /* skip a point that was reached by a shorter path meanwhile */
+            if (front->settled[item.point]) /* skip a point that was already processed with a shorter distance */
                 continue;
             front->settled[item.point] = 1;
             turn->d = front->distance_m[item.point] - (lanes){ 0 };
@@ -173,8 +184,8 @@ SIMD_BODY bool next_point(const struct propagation *propagation, struct front_tu
     return false;
 }
 
-/* Computes the offers of the current point to the neighbours of the fan. Contains no branches, so that the processor overlaps the
- * computations of several fronts. */
+/* Computes the distances that the current point offers to the neighbours in the current fan. Has no branches, so that the processor
+ * overlaps the computations of several fronts. */
 SIMD_BODY void look_round(struct front_turn *turn)
 {
     const lanes zero = { 0 };
@@ -203,11 +214,12 @@ SIMD_BODY void hand_out(const struct propagation *propagation, struct front_turn
 
 /* --- near the source ------------------------------------------------------------------------------------------------------------ */
 
-/* View of the source, at (0, 0), through an edge in the plane: seen from the source, the edge runs from l to r counter-clockwise; the
- * source sees it in directions between low and high. */
+/* An edge as seen from the source, which is at (0, 0) of a plane. From the source, the edge runs counter-clockwise from l to r. The source
+ * sees the part of the edge in directions between low and high. */
 struct window {
     double l[2], r[2], low[2], high[2];
-    uint32_t entered; /* 3 * triangle + side: the edge as a side of the triangle beyond, where it runs from r to l */
+    /* 3 * triangle + side: the edge as a side of the triangle behind it, as seen from the source, where the side runs from r to l */
+    uint32_t entered;
 };
 
 static double cross(const double a[2], const double b[2])
@@ -215,8 +227,8 @@ static double cross(const double a[2], const double b[2])
     return a[0] * b[1] - a[1] * b[0];
 }
 
-/* Lays out the third corner of the triangle beyond the edge. The edge keeps its true length, however short: rounded to 0 length, the corner
- * would lie inside every window, so that 2^MAX_DEPTH windows would be followed. */
+/* Computes the position of the third corner of the triangle behind the window's edge. Even a very short edge keeps its length: with length
+ * 0, the corner would lie inside every window, and 2^MAX_DEPTH windows would be followed. */
 static void lay_out_apex(const struct window *window, double to_l_m, double to_r_m, double apex[2])
 {
     double e[2] = { window->r[0] - window->l[0], window->r[1] - window->l[1] }, length = max_of(hypot(e[0], e[1]), NO_LENGTH);
@@ -236,7 +248,7 @@ static void look_through(const struct propagation *propagation, struct propagati
     lay_out_apex(window, in->lengths[t][(side + 1) % 3], in->lengths[t][(side + 2) % 3], apex);
     double distance_m = hypot(apex[0], apex[1]);
     bool after_low = cross(window->low, apex) >= 0, before_high = cross(apex, window->high) >= 0;
-    /* a corner beyond an edge cannot be behind the source: such a position comes from NAN, and windows would not become narrower */
+    /* the corner is outside of the window on both sides only if its position is NAN; the windows would then not become narrower */
     if (!after_low && !before_high)
         return;
     if (after_low && before_high && distance_m < propagation->near_m)
@@ -252,13 +264,13 @@ static void look_through(const struct propagation *propagation, struct propagati
     }
 }
 
-/* A triangle laid out in the plane with the source at (0, 0). */
+/* a triangle placed in the plane with the source at (0, 0) */
 struct laid {
     uint32_t tri; /* number in the intrinsic triangulation */
     double corners[3][2];
 };
 
-/* Lays out a triangle whose edges were not flipped. Returns false if an edge was flipped. */
+/* Places in the plane a triangle none of whose edges was flipped. given: its corners in the mesh. Returns false if an edge was flipped. */
 static bool lay_out_kept(const struct intrinsic *in, const uint32_t given[3], uint32_t tri, const double weights[3], struct laid *laid)
 {
     const uint32_t *v = in->points[tri];
@@ -278,8 +290,9 @@ static bool lay_out_kept(const struct intrinsic *in, const uint32_t given[3], ui
     return true;
 }
 
-/* Follows a straight line from the middle of the window's edge to the point `to` behind the edge, triangle by triangle. The window becomes
- * the edge through which the last triangle was entered. Returns false if the surface ends before. */
+/* Follows a straight line from the middle of the window's edge to the point `to` behind the edge, triangle by triangle. Each triangle
+ * entered changes the window to the edge that the line crossed. apex: third corner of the last triangle. Returns false if the surface ends
+ * before `to`, or after MAX_DEPTH triangles. */
 static bool walk_to(const struct intrinsic *in, const double to[2], struct window *window, double apex[2])
 {
     const double from[2] = { (window->l[0] + window->r[0]) / 2, (window->l[1] + window->r[1]) / 2 };
@@ -288,7 +301,8 @@ static bool walk_to(const struct intrinsic *in, const double to[2], struct windo
         uint32_t t = window->entered / 3, side = window->entered % 3;
         lay_out_apex(window, in->lengths[t][(side + 1) % 3], in->lengths[t][(side + 2) % 3], apex);
         bool passes_l = cross(way, (const double[2]){ apex[0] - from[0], apex[1] - from[1] }) > 0;
-        const double *end = passes_l ? window->l : window->r; /* index of the end of the side through which the line leaves the triangle */
+        /* position of the end that the side through which the line leaves the triangle shares with the edge through which it entered */
+        const double *end = passes_l ? window->l : window->r;
         double along[2] = { apex[0] - end[0], apex[1] - end[1] }, beyond[2] = { to[0] - end[0], to[1] - end[1] };
         if (passes_l ? cross(along, beyond) >= 0 : cross(beyond, along) >= 0)
             return true;
@@ -300,14 +314,15 @@ static bool walk_to(const struct intrinsic *in, const double to[2], struct windo
     return false;
 }
 
-/* Computes a point's position in the plane from its distances to r at (0, 0) and l at (side, 0), on the positive side. */
+/* Computes the position in the plane, with y >= 0, of a point at the distances to_r_m from r at (0, 0) and to_l_m from l at (side, 0). */
 static void place_above(double side, double to_r_m, double to_l_m, double out[2])
 {
     intrinsic_layout((const double[3]){ side, to_l_m, to_r_m }, &out[0], &out[1]);
 }
 
-/* Lays out the source in the intrinsic triangles beyond an unflipped side of the flipped triangle. These triangles cover the flipped
- * triangle if they contain its third corner at the expected position; otherwise another side must be tried. */
+/* Places the source in the plane of the intrinsic triangles behind a side that the model triangle `given` still has. The triangle itself
+ * was flipped away. The intrinsic triangles cover it if a straight line finds its third corner at the expected position. Returns false if
+ * not; then another side must be tried. */
 static bool lay_out_beyond(const struct propagation *propagation, uint32_t entered, uint32_t third, const double source[3],
                            struct laid *laid)
 {
@@ -356,8 +371,8 @@ static bool lay_out_flipped(const struct propagation *propagation, const uint32_
     return false;
 }
 
-/* Sets the distances of points that the source sees in a straight line. Propagation alone would be wrong near the source: there a ray may
- * pass between two points that are farther from the source than the ray's end, so that processing from near to far comes too late. */
+/* Sets the distances of points near the source that a straight line on the unfolded surface reaches. Propagation alone would be wrong
+ * there: a ray may pass between two points that are farther from the source than the ray's end, so they are processed after it. */
 static void look_around(const struct propagation *propagation, struct propagation_front *front, uint32_t tri, const double weights[3])
 {
     const struct intrinsic *in = propagation->in;
@@ -394,8 +409,8 @@ SIMD_BODY void measure_straight(const struct trimesh *mesh, struct propagation_f
     }
 }
 
-/* Propagates the fronts from the points in their buckets, taking turns fan by fan. Within a front each fan depends on the results of the
-   previous one; alternating between independent fronts hides that latency. */
+/* Propagates distances from the points in the buckets of `count` fronts, until all buckets are empty. Takes one fan of each front in turn.
+ * Each fan of a front depends on the results of the previous fan; alternating between independent fronts hides that latency. */
 SIMD_BODY void propagate_fronts(const struct propagation *propagation, struct propagation_front *fronts, size_t count)
 {
     struct front_turn turns[PROPAGATION_ABREAST] = { { 0 } };

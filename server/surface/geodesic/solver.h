@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Solves linear systems with CHOLMOD factors, one block of right-hand sides after the other, reusing its work memory. Thread: one at a
-   time; a factor may serve several solvers at once. */
+/* Solves linear systems with CHOLMOD factors, one block of right-hand sides after the other, reusing its work memory. Thread: one at a time
+ * per solver; several solvers may use one factor simultaneously. */
 #ifndef SURFACE_GEODESIC_SOLVER_H
 #define SURFACE_GEODESIC_SOLVER_H
 #include <stddef.h>
@@ -12,11 +12,11 @@ struct solver {
 };
 
 void solver_init(struct solver *solver);
-/* Returns zeroed memory for `count` right-hand sides, [side][row], which the caller fills in before solver_solve(). Valid until the next
- * call. NULL: out of memory. */
+/* Returns zeroed memory for `count` right-hand sides, [right-hand side][row], which the caller fills in before solver_solve(). Valid until
+ * the next call. NULL: out of memory. */
 double *solver_begin(struct solver *solver, size_t rows, size_t count);
-/* Solves for these right-hand sides. Returns the solutions, [side][row], valid until the next call; the caller may modify them. NULL: out
-   of memory. */
+/* Solves for the right-hand sides that the caller wrote after solver_begin(). Returns the solutions, [right-hand side][row], valid until
+ * the next call; the caller may modify them. NULL: out of memory. */
 double *solver_solve(struct solver *solver, cholmod_factor *factor);
 void solver_finish(struct solver *solver);
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Builds the bounding volume hierarchy, splitting at the median along the longer side. */
+/* Builds the bounding volume hierarchy as a binary tree: splits the triangles of a node at their median along the longest side of its
+ * box. */
 #include "surface/mesh/bvh.h"
 
 #include <string.h>
@@ -9,8 +10,8 @@
 #include "surface/mesh/bvh_impl.h"
 
 #define LEAF_TRIS 4u
-/* largest distance between the hit on the segment and the hit in the triangle, relative to the longest of their sides. A larger one means
-   that both are nearly parallel, so that rounding decides where they meet. */
+/* maximum distance between the intersection computed on the segment and the one computed in the triangle, relative to the longest of their
+ * sides. A larger distance means that segment and triangle are nearly parallel, so that rounding decides where they meet. */
 #define SAME_PLACE 1e-6
 
 static void box_of(const struct bvh *bvh, uint32_t first, uint32_t count, double low[3], double high[3])
@@ -29,7 +30,7 @@ static void box_of(const struct bvh *bvh, uint32_t first, uint32_t count, double
         }
 }
 
-/* Moves the triangles with the `half` lowest centres to the front (quickselect). */
+/* Moves the `half` triangles with the lowest centres on the axis to the front of the range (quickselect). */
 static void split_at(struct bvh *bvh, uint32_t first, uint32_t count, uint32_t half, int axis)
 {
     uint32_t *v = bvh->order + first;

@@ -10,7 +10,7 @@ struct bvh;
 
 /* Builds the hierarchy of a mesh, which must outlive the hierarchy unchanged. The caller destroys it. */
 struct bvh *bvh_create(const struct trimesh *mesh);
-/* Frees the hierarchy. &NULL is fine; sets it to NULL. */
+/* Frees the hierarchy and sets *bvh to NULL. *bvh may be NULL. */
 void bvh_destroy(struct bvh **bvh);
 
 struct bvh_place {
@@ -19,12 +19,12 @@ struct bvh_place {
     double point[3], distance_m;
 };
 /* Finds the point of the mesh nearest to `point` within limit_m (may be INFINITY), on triangles for which allowed(arg, tri) returns true
-   (NULL: all). place->tri is TRIMESH_NONE if there is none. */
+ * (NULL: all). place->tri is TRIMESH_NONE if there is no such point. */
 void bvh_nearest(const struct bvh *bvh, const double point[3], double limit_m, bool (*allowed)(const void *arg, uint32_t tri),
                  const void *arg, struct bvh_place *place);
 
 /* Returns whether the mesh has a point within limit_m on an allowed triangle; faster than finding the nearest point. *tri: a triangle to
- * try first, or TRIMESH_NONE (neighbouring points often have the same one); receives the triangle found. */
+ * try first, or TRIMESH_NONE (neighbouring points often have the same nearest triangle); receives the triangle found. */
 bool bvh_any_within(const struct bvh *bvh, const double point[3], double limit_m, bool (*allowed)(const void *arg, uint32_t tri),
                     const void *arg, uint32_t *tri);
 
@@ -32,19 +32,19 @@ bool bvh_any_within(const struct bvh *bvh, const double point[3], double limit_m
 void bvh_overlaps(const struct bvh *bvh, const double low[3], const double high[3], double margin_m, void (*visit)(void *arg, uint32_t tri),
                   void *arg);
 
-/* Calls visit(arg, tri, t) for every triangle that the ray hits at origin + t direction, t > 0, in no particular order. */
+/* Calls visit(arg, tri, t) for every triangle that the ray hits at origin + t * direction for a t > 0, in no particular order. */
 void bvh_ray(const struct bvh *bvh, const double origin[3], const double direction[3], void (*visit)(void *arg, uint32_t tri, double t),
              void *arg);
 
-/* Computes where the segment from p to q passes through a triangle: its fraction t (0..1) and the barycentric weights. Returns false if the
-   segment misses the triangle, or is parallel to it within rounding. */
+/* Computes where the segment from p to q passes through a triangle: the fraction t (0 at p, 1 at q) and the barycentric weights. Returns
+ * false if the segment misses the triangle, or is parallel to it within rounding. */
 bool triangle_crossed(const double p[3], const double q[3], const double a[3], const double b[3], const double c[3], double *t,
                       double weights[3]);
 
 /* Computes the point of a triangle nearest to p, as barycentric weights. */
 void triangle_nearest(const double p[3], const double a[3], const double b[3], const double c[3], double weights[3]);
 /* Returns true only if the triangle is farther from p than distance_m, judged by its bounding box or plane alone. A quick rejection test:
- * false does not mean that the triangle is near.. */
+ * false does not mean that the triangle is near. */
 bool triangle_is_farther(const double p[3], const double a[3], const double b[3], const double c[3], double distance_m);
 
 #endif

@@ -1,16 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shared by the files of the bounding volume hierarchy (bvh*.c). */
+/* Declarations shared by the files of the bounding volume hierarchy (bvh*.c). */
 #ifndef SURFACE_MESH_BVH_IMPL_H
 #define SURFACE_MESH_BVH_IMPL_H
 #include "surface/mesh/bvh.h"
 
 #define BVH_WIDE 8
 #define BVH_IS_TRIANGLE 0x80000000u /* flag in bvh_wide.child: the rest of the number is a triangle's index, not a node's */
-#define BVH_STACK 256               /* entries of the traversal stack: each level leaves at most seven, and there are at most 10 levels */
+/* entries of the traversal stack: each level of the tree leaves at most seven entries on it, and there are at most 10 levels of nodes with
+ * eight children */
+#define BVH_STACK 256
 
 struct bvh_node {
     double low[3], high[3];
-    /* leaf: range of its triangles in `order`; else count is 0, first is the right child, and the left child is the next node */
+    /* leaf: range of its triangles in `order`; inner node: count is 0, `first` is the index of the right child, and the left child follows
+     * the node */
     uint32_t first, count;
 };
 
@@ -20,18 +23,21 @@ struct bvh {
     uint32_t *order;
     double (*centres)[3];
     size_t node_count, node_capacity;
-    struct bvh_wide { /* node with eight children, down to single triangles, with the same boxes as the binary tree; used by queries */
+    /* Node with eight children, used by queries. The tree of these nodes divides the triangles as the binary tree does, but down to single
+     * triangles. */
+    struct bvh_wide {
         float low[3][BVH_WIDE], high[3][BVH_WIDE];
-        uint32_t child[BVH_WIDE]; /* index of a node, or of a triangle with the flag set; unused children have an inverted box */
-    } * wide;                     /* children precede parents, so the root is last */
+        /* index of a node, or index of a triangle with BVH_IS_TRIANGLE set; unused children have a box with low > high */
+        uint32_t child[BVH_WIDE];
+    } * wide; /* children come before their parent, so the root is the last node */
     size_t wide_count, wide_capacity;
 };
 
-/* Builds the nodes of eight children (bvh->wide), which queries use, from the binary tree. Their float boxes enclose the double ones. */
+/* Builds bvh->wide, the nodes with eight children that queries use, from the binary tree. Their float boxes enclose the double boxes. */
 void bvh_build_wide(struct bvh *bvh);
 
-/* Computes where the line through p meets a triangle: t in multiples of `direction`, unbounded, and the barycentric weights. Returns false
-   if the line misses the triangle. */
+/* Computes where the line through p meets a triangle: t, the position on the line in multiples of `direction` (any sign), and the
+ * barycentric weights. Returns false if the line misses the triangle. */
 bool bvh_line_meets(const double p[3], const double direction[3], const double a[3], const double b[3], const double c[3], double *t,
                     double weights[3]);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Nearest-point queries on the hierarchy, testing eight boxes at a time. */
+/* Nearest-point queries on the bounding volume hierarchy, which test the eight boxes of a node at a time. */
 #include <float.h>
 #include <string.h>
 #if defined(__x86_64__)
@@ -11,13 +11,14 @@
 #include "base/mem.h"
 #include "surface/mesh/bvh_impl.h"
 
-/* margin of float boxes, relative to the largest coordinate: four rounding errors, so that each point in a box is also in the float version
- * of the box */
+/* margin of float boxes, relative to the largest coordinate: four rounding errors, so that each point of the double box is also in the
+ * float box */
 #define BOX_MARGIN 2.4e-7
 #define MARGIN 1e-5 /* relative margin of squared distances in floats, much larger than the rounding error */
-/* smallest squared area of a triangle, relative to its sides' squares, at which barycentric weights are exact to eight digits */
+/* smallest squared area of a triangle, relative to the squares of its sides, at which barycentric weights are exact to eight digits */
 #define EXACT_AREA 1e-8
-#define SURELY_POSITIVE 1e-6 /* weights above this are positive despite rounding, if the triangle's area exceeds EXACT_AREA */
+/* weights above this are certainly positive despite rounding errors, if the triangle's area exceeds EXACT_AREA */
+#define SURELY_POSITIVE 1e-6
 
 static void weights_on_edge(const double p[3], const double a[3], const double b[3], double *wa, double *wb)
 {
@@ -29,9 +30,9 @@ static void weights_on_edge(const double p[3], const double a[3], const double b
     *wa = 1 - *wb;
 }
 
-/* Writes the nearest point's weights. If p projects into the triangle, the projection is the nearest point; otherwise it is the best point
- * of the edges. The nearest point is on an edge with p on its outer side, where the opposite corner's weight is negative; weights of
- * slivers are too inexact for that test, so all edges are tried. */
+/* Writes the nearest point's weights. If p projects into the triangle, the projection is the nearest point; otherwise the nearest point is
+ * on an edge. In theory only edges opposite a corner with negative weight matter. But the weights of slivers are too inexact for that test,
+ * so all three edges are tried. */
 void triangle_nearest(const double p[3], const double a[3], const double b[3], const double c[3], double weights[3])
 {
     double ab[3], ac[3], ap[3];
@@ -66,8 +67,8 @@ void triangle_nearest(const double p[3], const double a[3], const double b[3], c
     }
 }
 
-/* Quick test: returns true only if the triangle's plane is farther than the distance. It rejects most triangles in a box that contains
- * p. */
+/* Quick test: returns true only if the triangle's plane is farther from p than the distance. It rejects most triangles in a box that
+ * contains p. */
 static bool plane_is_farther(const double p[3], const double a[3], const double b[3], const double c[3], double distance2)
 {
     double ab[3], ac[3], ap[3], n[3];
@@ -124,7 +125,8 @@ static struct bvh_box box_of_tri(const struct trimesh *mesh, uint32_t tri)
     return box;
 }
 
-/* Builds a node over `count` triangles in order. They are halved until single ones remain; all nodes but the root have eight children. */
+/* Builds the node with eight children for `count` triangles from order[first] on. The triangles are halved three times per node, until
+ * single ones remain; only the root may have fewer than eight children. Returns the node's box. */
 static struct bvh_box build_wide(struct bvh *bvh, uint32_t first, uint32_t count, int halvings)
 {
     uint32_t firsts[BVH_WIDE + 1] = { first, first + count };
@@ -177,7 +179,7 @@ struct nearest_search {
     const double *point;
     bool (*allowed)(const void *arg, uint32_t tri);
     const void *arg;
-    bool any; /* true: the search ends at the first point within the limit, not at the nearest */
+    bool any; /* true: the search ends at any point within the limit; false: at the nearest one */
     double best2;
     struct bvh_place *place;
 };
@@ -189,7 +191,7 @@ static inline float in_floats(double best2)
     return most < (double)FLT_MAX ? (float)most : FLT_MAX;
 }
 
-/* Computes the squared distances of a node's boxes. Returns a bit for each box within the limit. */
+/* Computes the squared distances of p from a node's eight boxes. Returns a bit mask: bit i is set if box i is within the limit. */
 typedef unsigned look(const struct bvh_wide *node, const float p[3], float limit2, float distance2[BVH_WIDE]);
 
 static unsigned look_plain(const struct bvh_wide *node, const float p[3], float limit2, float distance2[BVH_WIDE])
@@ -225,8 +227,8 @@ SIMD_AVX2 static unsigned look_wide(const struct bvh_wide *node, const float p[3
 #define look_wide look_plain
 #endif
 
-/* Pushes the children within the limit, the nearest on top. Entries have the squared distance in the upper half (non-negative floats sort
- * like their bits) and the child's number in the lower. Returns the number of entries pushed. */
+/* Pushes the children whose box is within the limit onto the stack, the nearest on top. An entry has the squared distance in the upper half
+ * (bits of non-negative floats sort like the floats) and the child's index in the lower half. Returns the number of entries pushed. */
 SIMD_BODY size_t push_near(look *look_at, const struct bvh_wide *node, const float p[3], float limit2, uint64_t *stack)
 {
     float distance2[BVH_WIDE];

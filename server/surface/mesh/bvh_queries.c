@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Overlap and ray queries on the hierarchy, testing eight boxes at a time; triangles are visited in the tree's order. */
+/* Overlap and ray queries on the bounding volume hierarchy, which test the eight boxes of a node at a time. Triangles are visited in the
+ * order of the tree. */
 #include "surface/mesh/bvh.h"
 
 #include <math.h>
@@ -16,7 +17,7 @@ struct query { /* a box, or a ray */
     double origin[3], inverse[3]; /* inverse: 1 / direction */
 };
 
-/* Returns a bit for each of a node's boxes that the query meets. */
+/* Returns a bit mask: bit i is set if the query's box or ray meets box i of the node. */
 typedef unsigned meet(const struct bvh_wide *node, const struct query *query);
 
 static unsigned meet_box_plain(const struct bvh_wide *node, const struct query *query)
@@ -88,7 +89,8 @@ SIMD_AVX2 static unsigned meet_ray_wide(const struct bvh_wide *node, const struc
 #define meet_ray_wide meet_ray_plain
 #endif
 
-/* Pushes those children of a node that the query meets, the first child on top. Returns the number of entries pushed. */
+/* Pushes those children of a node whose box the query meets onto the stack, the first child on top. Returns the number of entries
+ * pushed. */
 static size_t push_met(meet *meets, const struct bvh_wide *node, const struct query *query, uint32_t *stack)
 {
     size_t count = 0;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Collapses edges onto one of their ends where the surface keeps its shape and only the number of triangles changes. */
+/* Collapses edges onto one of their ends where this leaves the shape of the surface unchanged and only lowers the number of triangles. */
 #include "surface/mesh/decimate.h"
 
 #include <string.h>
@@ -8,7 +8,7 @@
 #include "base/mem.h"
 
 #define MAX_STAR 48 /* maximum number of triangles around a point; points with more are not removed */
-/* smallest height of a new triangle, relative to its longest side, unless the triangle that it replaces was as thin */
+/* smallest height of a triangle that a collapse creates, relative to its longest side, unless the triangle that it replaces was thinner */
 #define MIN_HEIGHT 0.02
 #define ROUNDING_OF_AREA 1e-9
 
@@ -17,13 +17,14 @@ struct thin {
     const struct decimate_params *params;
     char *hidden, *gone; /* per triangle */
     uint32_t *plane;
-    /* lists of the corners (3 * triangle + corner) at each point: heads, tails: by point, first and last corner; next: by corner */
+    /* lists of the triangle corners (3 * triangle + corner) at each point: heads, tails: by point, first and last corner of its list; next:
+     * by corner, next corner of the list */
     uint32_t *heads, *tails, *next;
 };
 
-struct star_face { /* a triangle of a star */
+struct star_face { /* a triangle of a star (the triangles around a point) */
     uint32_t tri, corner;
-    double normal[3], length; /* normal: not normalised; length: twice the area */
+    double normal[3], length; /* normal: not of unit length; length: of the normal, twice the triangle's area */
 };
 
 struct star {
@@ -43,7 +44,7 @@ static uint32_t corner_of(const struct thin *thin, const struct star_face *face,
     return thin->mesh->tris[face->tri][(face->corner + after) % 3];
 }
 
-/* Collects the triangles at a point. Returns false if there are none, or too many. */
+/* Collects the triangles around a point. Returns false if there are none, or more than MAX_STAR. */
 static bool collect_star(const struct thin *thin, uint32_t point, struct star *star)
 {
     star->point = point;
@@ -64,8 +65,8 @@ static bool collect_star(const struct thin *thin, uint32_t point, struct star *s
     return star->count > 0;
 }
 
-/* Checks a face of the star after the point has moved to a neighbour. Returns false if the face would leave its plane, turn over, or become
- * too thin. *length receives twice the new area. */
+/* Checks a triangle of the star as it would be after the point has moved to a neighbour. Returns false if the triangle would leave its
+ * plane, turn over, or become too thin. *length receives twice the new area. */
 static bool can_take(const struct thin *thin, const struct star *star, const struct star_face *face, const double to[3], double *length)
 {
     const double *a = point_of(thin, star->point), *b = point_of(thin, corner_of(thin, face, 1));
@@ -86,7 +87,8 @@ static bool same_part(const struct thin *thin, uint32_t s, uint32_t t)
     return thin->params->part[s] == thin->params->part[t];
 }
 
-/* Returns whether the collapse changes neither the visible nor the hidden area of any part. grown: change of each face's doubled area. */
+/* Returns whether the collapse changes neither the visible nor the hidden area of any part. grown: by triangle of the star, the change of
+ * its doubled area. enough: tolerance. */
 static bool keeps_areas(const struct thin *thin, const struct star *star, const double grown[MAX_STAR], double enough)
 {
     for (size_t i = 0; i < star->count; i++) {
@@ -107,8 +109,8 @@ static bool has(const struct thin *thin, uint32_t tri, uint32_t point)
     return v[0] == point || v[1] == point || v[2] == point;
 }
 
-/* Returns whether a corner that loses the triangle between `from` and `to` is still connected to `to` by another visible triangle. Checked
- * because a lost triangle without area may be the only connection of two parts. */
+/* Returns whether corner `point`, which loses the triangle that it forms with `from` and `to` when `from` is merged into `to`, has another
+ * visible triangle at `to` afterwards. Checked because a lost triangle without area may be the only connection of two parts. */
 static bool stays_joined(const struct thin *thin, uint32_t point, uint32_t from, uint32_t to)
 {
     for (uint32_t corner = thin->heads[point]; corner != TRIMESH_NONE; corner = thin->next[corner]) {
@@ -142,7 +144,7 @@ static bool can_go_to(const struct thin *thin, const struct star *star, uint32_t
     return true;
 }
 
-/* Returns the nearest neighbour that the point can be collapsed into, or TRIMESH_NONE. */
+/* Returns the nearest neighbour into which the point can be collapsed, or TRIMESH_NONE. */
 static uint32_t find_collapse_target(const struct thin *thin, const struct star *star)
 {
     uint32_t best = TRIMESH_NONE;
@@ -158,7 +160,8 @@ static uint32_t find_collapse_target(const struct thin *thin, const struct star 
     return best;
 }
 
-/* Merges planes of the star's model triangles: the collapse may have moved pieces of one onto the plane of another. */
+/* Merges the planes (groups of coplanar model triangles) of the star's triangles: the collapse may have moved a piece of one model triangle
+ * onto another. */
 static void join_planes(struct thin *thin, const struct star *star)
 {
     for (size_t i = 0; i < star->count; i++)

@@ -4,17 +4,17 @@
 #define SURFACE_MESH_DECIMATE_H
 #include "surface/mesh/trimesh.h"
 
-/* Input of decimate_mesh(): which points may be removed, and the conditions to keep. */
+/* input of decimate_mesh(): the points that may be removed, and the conditions for it */
 struct decimate_params {
     const uint32_t *part; /* per triangle */
-    const char *keep;     /* 1 for points that must stay */
+    const char *keep;     /* by point: 1 for points that must stay */
     double within_m;      /* largest displacement of the surface */
     double longest_m;     /* longest edge that may be created */
 };
-/* Removes points by collapsing each into a neighbour, where all triangles at the point stay in their planes (within params->within_m) and
- * each part keeps its visible and hidden area, so that borders and lines between parts stay in place. hidden[tri]: moves with the
- * triangles. Pieces of coplanar model triangles may be merged: plane[source] receives the lowest such triangle. target[point]: receives the
- * point's new index, or TRIMESH_NONE if the point is removed. */
+/* Removes points by collapsing each into a neighbour. All triangles at the point must stay in their planes (within params->within_m). Each
+ * part must keep its visible and its hidden area, so that borders and lines between parts stay in place. hidden[] is rearranged with the
+ * triangles. Pieces of coplanar model triangles may be merged: plane[source] receives the lowest index of a model triangle with which
+ * triangle `source` was merged. target[point]: receives the point's new index, or TRIMESH_NONE if the point is removed. */
 void decimate_mesh(struct trimesh *mesh, char *hidden, const struct decimate_params *params, uint32_t *plane, size_t source_count,
                    uint32_t *target);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Collects edges with a hash table, and walks across them from triangle to triangle. */
+/* Collects edges with a hash table, and finds the triangle on the other side of an edge. */
 #include "surface/mesh/tri_edges.h"
 
 #include "base/mem.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Welds, splits and counts triangles with shared points. */
+/* Builds triangle meshes with shared points: welds vertices, splits triangles, finds connected components. */
 #include "surface/mesh/trimesh.h"
 
 #include <string.h>
@@ -35,7 +35,7 @@ void edge_table_finish(struct edge_table *table)
     *table = (struct edge_table){ 0 };
 }
 
-/* Keys are (lower + 1, higher), so that 0 is an empty slot. */
+/* Returns the key of an edge in the hash table: (lower index + 1, higher index), so that 0 marks an empty slot. */
 static uint64_t edge_key(uint32_t a, uint32_t b)
 {
     return a < b ? (uint64_t)(a + 1) << 32 | b : (uint64_t)(b + 1) << 32 | a;
@@ -150,7 +150,8 @@ void trimesh_add_tri(struct trimesh *mesh, uint32_t a, uint32_t b, uint32_t c, u
     mesh->tri_source[mesh->tri_count++] = source;
 }
 
-/* Grid of cells of twice the welding distance; a lookup reads the eight cells that the point's neighbourhood touches. */
+/* Hash grid with cells of twice the welding distance. A lookup reads the eight cells that may contain points within the welding
+ * distance. */
 struct weld_grid {
     double cell_m;
     uint32_t *heads, *next;
@@ -249,13 +250,14 @@ static void sort3(uint32_t v[3])
             }
 }
 
-/* Returns the index of a triangle in a set of triangles; the key is its three points regardless of order. */
+/* Returns the index that a triangle has among the triangles seen so far. Triangles with the same three points, in any order, have the same
+ * index. */
 static uint32_t tri_number(struct edge_table *pairs, struct edge_table *seen, const uint32_t tri[3])
 {
     uint32_t v[3] = { tri[0], tri[1], tri[2] };
     sort3(v);
     uint32_t pair = edge_table_add(pairs, v[0], v[1]);
-    /* The table for pairs ignores the order of the two keys. Even keys for pairs and odd keys for points keep them apart. */
+    /* the table ignores the order of its two keys, so keys that contain a pair are even and keys of single points are odd */
     return edge_table_add(seen, pair * 2u, v[2] * 2u + 1u);
 }
 
@@ -269,12 +271,12 @@ static bool tri_has_area(const struct trimesh *mesh, uint32_t a, uint32_t b, uin
     vec_sub(mesh->points[c], mesh->points[b], bc);
     vec_cross(ab, ac, n);
     double longest2 = max_of(vec_dot(ab, ab), max_of(vec_dot(ac, ac), vec_dot(bc, bc)));
-    /* height over a millionth of the longest edge; flatter triangles are removed; their corner then is a hanging vertex on that edge, which
-     * repair.h inserts */
+    /* A triangle flatter than a millionth of its longest edge is removed. Its third corner then is a hanging vertex on that edge, which
+     * repair.h inserts. */
     return vec_length(n) > 1e-6 * longest2;
 }
 
-/* Removes triangles without area, and duplicates. */
+/* Removes triangles without area, and duplicate triangles. */
 static void clean(struct trimesh *mesh, size_t *degenerate, size_t *repeated)
 {
     struct edge_table pairs, seen;
@@ -362,8 +364,8 @@ double trimesh_tri_area(const struct trimesh *mesh, size_t tri)
     return vec_length(n) / 2;
 }
 
-/* Points inserted on edges: by index of the edge, the first inserted point and the number of equal parts; points are numbered from the
- * edge's lower to its higher end. */
+/* Points inserted on edges. By index of the edge: the first inserted point, and the number of equal parts into which the points divide the
+ * edge. The points of an edge have consecutive indices, from the edge's end with the lower index. */
 struct cuts {
     struct edge_table edges;
     uint32_t *first, *parts;
@@ -394,7 +396,7 @@ static void cut_edge(struct trimesh *mesh, struct cuts *cuts, uint32_t a, uint32
     }
 }
 
-/* Lists the points from a to b along their edge, including a, excluding b. */
+/* Lists the points along the edge from a to b, including a, excluding b. Returns their number. */
 static size_t side_points(const struct cuts *cuts, uint32_t a, uint32_t b, uint32_t *out)
 {
     uint32_t e = edge_table_find(&cuts->edges, a, b);
@@ -411,9 +413,9 @@ static size_t side_count(const struct cuts *cuts, uint32_t a, uint32_t b)
     return e == TRIMESH_NONE ? 1 : cuts->parts[e];
 }
 
-/* Triangulates a triangle whose edges were cut, like a zip: one chain is the side a-b with most points, the other goes a-c-b; at each step
- * the shorter cross edge is taken. The chain a-b stops before b until the other chain is finished, so that no piece is flat. Thin triangles
- * get no points inside, however long they are. */
+/* Triangulates a triangle whose edges were cut, by closing two chains of points like a zip. One chain is a-b, the side with most points;
+ * the other is a-c-b. Each step adds the shorter one of the two possible cross edges. Chain a-b stops before b until the other chain has
+ * ended, so that no triangle is flat. Narrow triangles get no points inside, however long they are. */
 static void zip_tri(struct trimesh *mesh, const struct cuts *cuts, size_t t)
 {
     int side = longest_side(mesh, t);
@@ -452,8 +454,8 @@ static void zip_all(struct trimesh *mesh, struct cuts *cuts)
         zip_tri(mesh, cuts, t);
 }
 
-/* One round: a triangle higher than height_m above its longest edge gets a point in the middle of that edge. Returns false if there was no
- * such triangle. */
+/* One round of halving: each triangle whose height above its longest edge exceeds height_m gets a point in the middle of that edge. Returns
+ * false if there was no such triangle. */
 static bool halve_round(struct trimesh *mesh, double height_m, size_t point_limit)
 {
     struct cuts cuts = { 0 };

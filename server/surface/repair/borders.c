@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds border edges, and edges that became borders because triangles at them were hidden. */
+/* Finds border edges (edges with one face), and edges that became borders because triangles at them were hidden. */
 #include "surface/repair/borders.h"
 
 #include <math.h>
@@ -20,7 +20,7 @@ void borders_finish(struct borders *b)
     mem_free(b->reach_m);
 }
 
-/* Finds border edges. With `hidden`: only edges that hidden triangles also have. */
+/* Finds border edges. With `hidden`: only border edges that hidden triangles also have. */
 static void find_open_edges(struct borders *b, const struct trimesh *mesh, const struct trimesh *hidden)
 {
     struct edge_table edges;

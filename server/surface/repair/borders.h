@@ -1,23 +1,25 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Border edges of a mesh (edges with one face) and the points on them. */
+/* Lists the border edges of a mesh (edges with one face) and the points on them. */
 #ifndef SURFACE_REPAIR_BORDERS_H
 #define SURFACE_REPAIR_BORDERS_H
 #include "surface/repair/parts.h"
 
 struct borders {
-    uint32_t (*edges)[2], *edge_tri; /* border edges, and the one triangle at each */
+    uint32_t (*edges)[2], *edge_tri; /* edges: both points of each border edge; edge_tri: the one triangle at it */
     size_t edge_count;
     uint32_t *points; /* points on border edges */
     size_t point_count;
-    uint32_t *slot;       /* index of each point in `points`, or TRIMESH_NONE */
-    double *shortest_m;   /* shortest edge of any triangle at each border point */
-    uint32_t *first, *at; /* range of each border point's edges: from at[first[i]] to before at[first[i + 1]] */
-    double *reach_m;      /* smallest reach (parts.h) of the parts at each border point; NULL: not computed */
+    uint32_t *slot;       /* by point: its index in `points`, or TRIMESH_NONE */
+    double *shortest_m;   /* by border point: length of the shortest edge of any triangle at it */
+    uint32_t *first, *at; /* edges at border point i: their indices in `edges` are at[first[i]] up to, but without, at[first[i + 1]] */
+    /* by border point: smallest reach (distance up to which a part counts as touching, parts.h) of the parts at it; NULL: not computed */
+    double *reach_m;
 };
 
 /* Collects all border edges of a mesh, and the points on them. Keeps no pointer to the mesh. Free with borders_finish(). */
 void borders_init(struct borders *borders, const struct trimesh *mesh);
-/* Collects only border edges of `seen` whose other faces are hidden, and the reach of the parts (parts.h) at them. */
+/* Collects only those border edges of `seen` (the visible triangles) whose other faces are hidden, and the reach of the parts (parts.h) at
+ * them. */
 void borders_init_rims(struct borders *borders, const struct trimesh *seen, const struct trimesh *hidden, const struct body_parts *parts);
 /* Frees the lists. */
 void borders_finish(struct borders *borders);

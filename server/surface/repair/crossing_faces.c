@@ -1,15 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tests pairs of faces: two faces do not cross if the plane of one separates them, or within that plane one of its sides. */
+/* Tests pairs of faces. Two faces do not cross if the plane of one separates them. They do not cross either if the line where one cuts the
+ * plane of the other lies beyond one of the other's sides. */
 #include "surface/repair/crossing_faces.h"
 
 #include "base/math/vec.h"
 #include "base/mem.h"
 #include "surface/mesh/bvh.h"
 
-/* rounding allowance relative to the largest coordinate: much larger than the distance by which sampling moves a point */
+/* rounding allowance relative to the largest coordinate: much larger than the distance by which surface sampling moves a point */
 #define ROUNDING 1e-10
-#define SLIVER 1e-5 /* minimum height of a face relative to the model's size; the plane of a flatter face is not reliable */
-#define BESIDE 1e-4 /* accuracy of a face's intersection with a plane, relative to the face's longest side */
+/* minimum height of a face above its longest side, relative to the model's size; the plane of a flatter face is not reliable */
+#define SLIVER 1e-5
+#define BESIDE 1e-4 /* rounding allowance of a face's intersection with a plane, relative to the face's longest side */
 
 struct crossing_face {
     const double *at[3];
@@ -36,8 +38,8 @@ static void face_init(struct crossing_face *face, const struct trimesh *mesh, ui
     face->height_m = face->longest_m > 0 ? doubled_m2 / face->longest_m : 0;
 }
 
-/* Computes the heights of a face's corners over another face's plane. Returns true if they are all on one side of the plane, within a
- * tolerance of clear_m. */
+/* Computes the heights of a face's corners above another face's plane. Returns true if all corners are on one side of the plane, or no
+ * farther than clear_m on the other side. */
 static bool lies_to_one_side(const struct crossing_face *plane, const struct crossing_face *face, double clear_m, double heights_m[3])
 {
     double low_m = INFINITY, high_m = -INFINITY;
@@ -51,7 +53,8 @@ static bool lies_to_one_side(const struct crossing_face *plane, const struct cro
     return high_m <= clear_m || low_m >= -clear_m;
 }
 
-/* Returns how far a point in a face's plane is beyond its side from corner i to the next. */
+/* Returns how far a point in the plane of a face is outside of the face's side from corner i to the next; negative: the point is inside of
+ * that side. */
 static double beyond_side(const struct crossing_face *face, int i, const double place[3])
 {
     double along[3], out[3], from[3];
@@ -62,7 +65,8 @@ static double beyond_side(const struct crossing_face *face, int i, const double 
     return vec_dot(from, out);
 }
 
-/* Returns whether a face is on one side of the line from a to b, in the face's plane. */
+/* Returns whether a face lies entirely on one side of the line from a to b, which is in the face's plane, at least margin_m away from
+ * it. */
 static bool lies_beside(const struct crossing_face *face, const double a[3], const double b[3], double margin_m)
 {
     double along[3], across[3], low_m = INFINITY, high_m = -INFINITY;
@@ -78,7 +82,7 @@ static bool lies_beside(const struct crossing_face *face, const double a[3], con
     return low_m > margin_m || high_m < -margin_m;
 }
 
-/* Returns the corner of a face that the other face shares; -1: none. */
+/* Returns the index (0 to 2) of the face's corner that is also a corner of the other face; -1: none. */
 static int shared_corner(const struct crossing_face *face, const struct crossing_face *other)
 {
     for (int i = 0; i < 3; i++)
@@ -88,8 +92,8 @@ static int shared_corner(const struct crossing_face *face, const struct crossing
     return -1;
 }
 
-/* The face intersects the plane of `other` in a line segment. Returns whether that segment stays clear of `other`, except for a shared
- * corner. */
+/* Returns whether the line segment in which a face intersects the plane of `other` stays clear of `other`, except for a corner that both
+ * faces share. heights_m: heights of the face's corners above that plane. */
 static bool cuts_beside(const struct crossing_face *face, const double heights_m[3], const struct crossing_face *other, double margin_m)
 {
     const int shared = shared_corner(face, other), from = shared_corner(other, face);
@@ -102,7 +106,7 @@ static bool cuts_beside(const struct crossing_face *face, const double heights_m
         vec_mix(face->at[i], face->at[j], heights_m[i] / (heights_m[i] - heights_m[j]), ends[count++]);
     }
     for (int i = 0; i < 3; i++) {
-        /* if the faces share a corner, test only the sides at that corner */
+        /* if the faces share a corner, test only the two sides of `other` at that corner */
         bool beyond = count > 0 && (from < 0 || i == from || (i + 1) % 3 == from);
         for (int end = 0; end < count; end++)
             beyond = beyond && beyond_side(other, i, ends[end]) > margin_m;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Inserts points into one triangle, and edges between them. */
+/* Inserts points into the triangulation of one face, and edges between these points. */
 #include "surface/repair/face_triangulation.h"
 
 #include <math.h>
@@ -9,8 +9,8 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-#define ON_EDGE 1e-9 /* largest barycentric weight of a corner with which a point counts as on the opposite edge */
-#define ON_WAY 1e-6  /* largest distance from a straight line at which a point counts as on the line, relative to the line's length */
+#define ON_EDGE 1e-9 /* a point counts as on an edge if the barycentric weight of the opposite corner is at most this */
+#define ON_WAY 1e-6  /* maximum distance of a point from a straight line at which it counts as on the line, relative to the line's length */
 
 void face_triangulation_finish(struct face_triangulation *face)
 {
@@ -42,7 +42,8 @@ static double twice_area(const struct face_triangulation *face, uint32_t a, uint
     return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
 }
 
-/* Finds the sub-triangle that contains a local point: the one whose smallest weight is largest. */
+/* Returns the index of the triangle of the face's triangulation that contains a point: the one in which the point's smallest barycentric
+ * weight is largest. */
 static size_t locate(const struct face_triangulation *face, uint32_t point, double weights[3])
 {
     size_t best = 0;
@@ -64,7 +65,7 @@ static size_t locate(const struct face_triangulation *face, uint32_t point, doub
     return best;
 }
 
-/* Splits every sub-triangle with the side u-v at the point. */
+/* Splits every triangle of the face's triangulation with the side u-v at the point. */
 static void split_side(struct face_triangulation *face, uint32_t u, uint32_t v, uint32_t point)
 {
     size_t count = face->tri_count;
@@ -97,7 +98,7 @@ void face_triangulation_insert(struct face_triangulation *face, uint32_t point)
 
 /* --- sides between points ------------------------------------------------------------------------------------------------------ */
 
-struct crossed { /* sides that a straight line crosses, in order */
+struct crossed { /* the sides that a straight line crosses, in the order in which it crosses them */
     uint32_t (*sides)[2];
     size_t count, capacity;
 };
@@ -108,7 +109,7 @@ static void add_crossed(struct crossed *crossed, uint32_t a, uint32_t b)
     memcpy(crossed->sides[crossed->count++], (const uint32_t[2]){ a, b }, sizeof(*crossed->sides));
 }
 
-/* Returns the triangle with the side from a to b, and its third corner; tri_count: there is none. */
+/* Returns the index of the triangle with the side from a to b, and its third corner in *apex; tri_count: there is none. */
 static size_t find_side(const struct face_triangulation *face, uint32_t a, uint32_t b, uint32_t *apex)
 {
     for (size_t t = 0; t < face->tri_count; t++)
@@ -120,7 +121,7 @@ static size_t find_side(const struct face_triangulation *face, uint32_t a, uint3
     return face->tri_count;
 }
 
-/* Returns whether a point is on the line from u to v, or at its end. */
+/* Returns whether a point is on the line from u to v, or is v. */
 static bool is_passed(const struct face_triangulation *face, uint32_t u, uint32_t v, uint32_t point)
 {
     const double *p = face->at[u], *q = face->at[v], *r = face->at[point];
@@ -128,8 +129,8 @@ static bool is_passed(const struct face_triangulation *face, uint32_t u, uint32_
     return point == v || (along > ON_WAY * length2 && along < length2 && fabs(twice_area(face, u, v, point)) < ON_WAY * length2);
 }
 
-/* Follows the line from u to v until it ends or passes over a point, and collects the crossed sides. Returns that point, or u if the line
- * cannot be followed. */
+/* Follows the line from u to v until it ends or passes over a point, and lists the crossed sides. Returns v or the point passed over; u if
+ * the line cannot be followed. */
 static uint32_t follow_line(const struct face_triangulation *face, uint32_t u, uint32_t v, struct crossed *crossed)
 {
     uint32_t right = u, left = u, apex;
@@ -145,7 +146,8 @@ static uint32_t follow_line(const struct face_triangulation *face, uint32_t u, u
                 left = b;
             }
         }
-    while (right != left && crossed->count < face->tri_count) { /* limit of steps, because flat triangles might lead around in circles */
+    /* the number of steps is limited, because flat triangles might lead around in circles */
+    while (right != left && crossed->count < face->tri_count) {
         add_crossed(crossed, right, left);
         if (find_side(face, left, right, &apex) == face->tri_count)
             return u;
@@ -159,7 +161,8 @@ static uint32_t follow_line(const struct face_triangulation *face, uint32_t u, u
     return u;
 }
 
-/* Flips the side from a to b. Returns false if the side's two triangles do not form a convex quadrilateral. */
+/* Flips the side from a to b to the other diagonal of its two triangles, whose ends turned[] receives. Returns false if the triangles do
+ * not form a convex quadrilateral. */
 static bool flip_side(struct face_triangulation *face, const uint32_t side[2], uint32_t turned[2])
 {
     uint32_t a = side[0], b = side[1], c = a, d = a;
@@ -180,7 +183,7 @@ static bool is_crossed(const struct face_triangulation *face, uint32_t u, uint32
     return (twice_area(face, u, v, side[0]) > 0) != (twice_area(face, u, v, side[1]) > 0);
 }
 
-/* Makes u-v an edge by flipping each side that crosses it, until none is left (Sloan 1993). */
+/* Makes u-v an edge by flipping the sides that cross the line from u to v, until none is left (Sloan 1993). */
 void face_triangulation_connect(struct face_triangulation *face, uint32_t u, uint32_t v)
 {
     struct crossed crossed = { 0 };

@@ -1,21 +1,22 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Triangulation of one face while points and edges are inserted: points in the face's plane, and triangles between them with one
-   orientation. */
+/* Triangulation of one face (triangle of the surface) into which points and edges are inserted: points in the face's plane, and triangles
+ * between them, all with the same orientation. */
 #ifndef SURFACE_REPAIR_FACE_TRIANGULATION_H
 #define SURFACE_REPAIR_FACE_TRIANGULATION_H
 #include <stddef.h>
 #include <stdint.h>
 
 struct face_triangulation {
-    uint32_t *ids; /* index of each point in the mesh */
+    uint32_t *ids; /* by point of the triangulation: its index in the mesh */
     double (*at)[2];
-    uint32_t (*tris)[3]; /* indices of points of this triangulation */
+    uint32_t (*tris)[3]; /* corners of each triangle, as indices of the triangulation's points */
     size_t count, capacity, at_capacity, tri_count, tri_capacity;
 };
 
 /* Frees the triangulation. */
 void face_triangulation_finish(struct face_triangulation *face);
-/* Appends the mesh's point `id` at (x, y) in the face's plane. Returns its index in the triangulation; no triangle uses the point yet. */
+/* Adds the mesh's point `id`, which is at (x, y) in the face's plane, to the triangulation. Returns the point's index in the triangulation;
+ * no triangle uses the point yet. */
 uint32_t face_triangulation_add_point(struct face_triangulation *face, uint32_t id, double x, double y);
 /* Appends a triangle of three points. */
 void face_triangulation_add_tri(struct face_triangulation *face, uint32_t a, uint32_t b, uint32_t c);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds triangles inside another, closed part, or covered by one, by counting ray intersections. */
+/* Finds triangles inside another, closed part, or covered by one, by counting how often rays from the triangle intersect the part. */
 #include "surface/repair/interior.h"
 
 #include <math.h>
@@ -10,30 +10,35 @@
 #include "surface/mesh/bvh.h"
 
 #define RAYS 5
-#define RAYS_INSIDE 4 /* number of rays, of RAYS, that must agree */
-#define VOTE_EVERY 16 /* one in this many triangles of a region is tested; the tested ones decide for the region */
-/* in reaches (parts.h): distance of the test points on either side of a triangle that lies on another part's surface */
+#define RAYS_INSIDE 4 /* minimum number of the RAYS rays that must agree */
+/* one in VOTE_EVERY triangles of a region (points connected without passing another part) is tested; if these agree, their result holds for
+ * the region */
+#define VOTE_EVERY 16
+/* in multiples of the reach (parts.h): distance of the test points on both sides of a triangle that lies on another part's surface */
 #define BESIDE 1.5
-#define BARELY 0.05 /* in reaches: distance of the test points from a triangle that may be inside its own part */
-#define FLUSH 0.9   /* smallest cosine between faces that lie on each other */
-#define SLIVER 2.0  /* in reaches: minimum height of a triangle whose normal is reliable */
+/* in multiples of the reach (parts.h): distance of the test points on both sides of a triangle that may be inside its own part */
+#define BARELY 0.05
+#define FLUSH 0.9  /* minimum cosine between the normals of two faces that lie on each other */
+#define SLIVER 2.0 /* in multiples of the reach (parts.h): minimum height of a triangle whose normal is reliable */
 
-struct solid { /* a closed part, in its state before sampling */
+struct solid { /* a closed part, in its state before surface sampling */
     uint32_t part;
-    bool is_thin; /* the part is a thin plate, so that a triangle that ends inside it is near both sides of the plate */
-    bool winds;   /* self-intersecting body: the winding number decides what is inside */
+    /* the part is a thin plate: a triangle that ends inside it is near both sides of the plate, so distances do not show on which side it
+     * is */
+    bool is_thin;
+    bool winds; /* the body intersects itself, so the winding number decides which points are inside */
     double low[3], high[3];
-    struct trimesh mesh;     /* triangles of the part; the arrays are not owned */
-    const signed char *side; /* orientation of each triangle, as in struct body_parts */
+    struct trimesh mesh;     /* triangles of the part; their arrays belong to struct solids */
+    const signed char *side; /* by triangle: orientation, as body_parts.side */
     struct bvh *bvh;
 };
 
 struct solids {
     struct solid *at;
     size_t count;
-    uint32_t (*tris)[3];    /* triangles of all parts, part by part */
+    uint32_t (*tris)[3];    /* triangles of all parts, sorted by part */
     signed char *sides;     /* the same for sides */
-    struct solid **of_part; /* solid of each part; NULL: the part is not closed */
+    struct solid **of_part; /* by part: its solid; NULL: the part is not closed */
 };
 
 static void solids_finish(struct solids *solids)
@@ -106,7 +111,7 @@ struct interior_search {
     char *hidden;
 };
 
-/* Directions of the rays; odd, so that hardly any model has faces along them. */
+/* directions of the rays, with odd numbers, because hardly any model has faces along such directions */
 static const double directions[RAYS][3] = {
     { 0.3572, 0.6129, 0.7048 },    { -0.7741, 0.2417, 0.5851 }, { 0.1693, -0.8846, 0.4345 },
     { -0.4419, -0.3251, -0.8361 }, { 0.8523, 0.2951, -0.4318 },
@@ -117,7 +122,7 @@ struct hits { /* intersections of one ray */
     const struct solid *solid;
     const double *direction;
     double same_m;
-    int count, turns; /* count: number of points hit; turns: number of exits minus number of entries */
+    int count, turns; /* count: number of intersections; turns: number of exits minus number of entries */
     struct ray_hits { /* the first points hit */
         double t;
         int faces;
@@ -144,7 +149,8 @@ static void count_hit(void *arg, uint32_t tri, double t)
     hits->count++;
 }
 
-/* Returns whether the ray's origin is inside the solid. Two faces at one point are a wall between two bodies and count twice. */
+/* Returns whether the ray's origin is inside the solid. Two faces at one point are a wall between two bodies, which a ray leaves and enters
+ * there, so they count twice. */
 static bool says_inside(const struct hits *hits)
 {
     int bounds = hits->count > HITS ? hits->count - HITS : 0;
@@ -180,13 +186,13 @@ static bool is_inside(const struct solid *solid, const double place[3], double s
     return inside >= RAYS_INSIDE;
 }
 
-struct interior_face { /* the triangle being tested: centre and normal, and the solid that it belongs to if that is closed */
+struct interior_face { /* the triangle being tested: its centre and normal, and the solid of its own part, NULL if that is not closed */
     double middle[3], normal[3];
     double height_m; /* height over its longest edge */
     const struct solid *own;
 };
 
-/* Returns whether one side of the face is inside one solid and the other side inside the other. */
+/* Returns whether there is the inside of `one` at one side of the face and the inside of `other` at the other side. */
 static bool is_between(const struct interior_face *face, const double normal[3], const struct solid *one, const struct solid *other,
                        double beside_m, double same_m)
 {
@@ -217,7 +223,7 @@ static char is_hidden_by(const struct interior_face *face, const struct solid *s
     double length = vec_length(n);
     for (int axis = 0; axis < 3; axis++)
         n[axis] /= length;
-    /* lies: the faces lie on each other; flush: they may, because the normal of a sliver between points of both parts is arbitrary */
+    /* lies: the faces lie on each other; flush: they probably do, because the normal of a sliver is arbitrary */
     bool lies = fabs(vec_dot(n, face->normal)) > FLUSH, flush = lies || face->height_m < SLIVER * reach_m;
     if (face->own && flush && is_between(face, n, solid, face->own, BESIDE * reach_m, BARELY * reach_m))
         return INTERIOR_INSIDE;
@@ -266,7 +272,8 @@ static void search_some(void *arg, size_t begin, size_t end)
 
 /* --- regions ------------------------------------------------------------------------------------------------------------------ */
 
-/* Marks points where triangles of several parts meet. Only there can a part pass from the outside to the inside of another. */
+/* Marks points at which triangles of several parts meet. Only at such a point can a part pass from the outside of another part to its
+ * inside. */
 static void mix_parts(const struct trimesh *mesh, const uint32_t *part, char *mixed)
 {
     uint32_t *of_point = mem_array(mesh->point_count, sizeof(*of_point));
@@ -280,8 +287,8 @@ static void mix_parts(const struct trimesh *mesh, const uint32_t *part, char *mi
     mem_free(of_point);
 }
 
-/* Marks points on edges with three faces or more, and points where a part crosses itself: only there can a part pass from its outside to
-   its inside. */
+/* Marks points on edges with three faces or more, and points where a part crosses itself. Only at such a point can a part pass from its own
+ * outside to its own inside. */
 static void mix_branches(const struct trimesh *mesh, const uint32_t *part, const char *tangled, char *mixed)
 {
     struct edge_table edges;
@@ -298,7 +305,8 @@ static void mix_branches(const struct trimesh *mesh, const uint32_t *part, const
     mem_free(faces);
 }
 
-/* Returns by point its region, named by the lowest point: a set of points connected without passing a marked point. */
+/* Returns by point its region: the set of points that are connected with it without passing a marked point (`mixed`). A region is
+ * identified by its lowest point index. The caller frees the array. */
 static uint32_t *find_regions(const struct trimesh *mesh, const char *mixed)
 {
     uint32_t *region = mem_array(mesh->point_count, sizeof(*region));
@@ -315,7 +323,7 @@ static uint32_t *find_regions(const struct trimesh *mesh, const char *mixed)
     return region;
 }
 
-/* Returns the region of a triangle. Returns TRIMESH_NONE if all corners are marked. */
+/* Returns the region of a triangle: that of a corner that is not marked. TRIMESH_NONE: all corners are marked. */
 static uint32_t region_of(const struct trimesh *mesh, size_t t, const char *mixed, const uint32_t *region)
 {
     for (int i = 0; i < 3; i++)
@@ -338,12 +346,12 @@ static void ask(struct interior_search *search, struct workers *workers, const s
         search_some(search, 0, count);
 }
 
-/* The sample of a region's triangles may miss a few of the other kind. A point of the region where hidden and visible triangles meet shows
- * such a miss: tests all triangles at these points, until there are no new ones. */
+/* Corrects regions in which only a sample of the triangles was tested and a few of the others differ. Where hidden and visible triangles of
+ * a region meet at a point, tests all triangles at that point, and repeats until no triangle changes. */
 static void ask_beside(struct interior_search *search, struct workers *workers, const char *mixed, size_t *asked, char *was_asked)
 {
     const struct trimesh *mesh = search->mesh;
-    char *kinds = mem_array(mesh->point_count, 1); /* by point: bit 1: a visible triangle is there; bit 2: a hidden one */
+    char *kinds = mem_array(mesh->point_count, 1); /* by point: bit 0: a visible triangle is at the point; bit 1: a hidden triangle is */
     size_t count;
     do {
         memset(kinds, 0, mesh->point_count);
@@ -370,7 +378,7 @@ struct region_vote { /* votes of a region */
     char most;
 };
 
-/* Returns whether any closed part may hide others, or itself where it intersects itself. */
+/* Returns whether any closed part may hide triangles: those of other parts, or its own if it intersects itself. */
 static bool may_hide(const struct body_parts *parts)
 {
     for (size_t p = 0; p < parts->count; p++)
@@ -396,7 +404,8 @@ bool interior_find(const struct trimesh *mesh, const uint32_t *part, const struc
     size_t *asked = mem_array(mesh->tri_count, sizeof(*asked)), asked_count = 0;
     struct region_vote *votes = mem_array(mesh->point_count, sizeof(*votes));
     struct interior_search search = { .mesh = mesh, .part = part, .parts = parts, .solids = &solids, .hidden = hidden };
-    for (size_t t = 0; t < mesh->tri_count; t++) { /* test all triangles where parts meet, and a sample of each region */
+    /* test all triangles at marked points, where parts meet, and a sample of the other triangles of each region */
+    for (size_t t = 0; t < mesh->tri_count; t++) {
         uint32_t r = region_of(mesh, t, mixed, region);
         if (!untouched(mesh, t, mixed) || votes[r].seen++ % VOTE_EVERY == 0)
             asked[asked_count++] = t;
@@ -413,7 +422,7 @@ bool interior_find(const struct trimesh *mesh, const uint32_t *part, const struc
             vote->most = hidden[asked[i]] > vote->most ? hidden[asked[i]] : vote->most;
         }
     asked_count = 0;
-    for (size_t t = 0; t < mesh->tri_count; t++) { /* test all triangles of regions whose samples disagree */
+    for (size_t t = 0; t < mesh->tri_count; t++) { /* test all triangles of a region in which the sampled triangles disagree */
         const struct region_vote *vote = untouched(mesh, t, mixed) ? &votes[region_of(mesh, t, mixed, region)] : NULL;
         if (vote && vote->hidden > 0 && vote->hidden < vote->asked)
             asked[asked_count++] = t;

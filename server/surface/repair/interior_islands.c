@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Hides visible triangles left over among hidden ones. */
+/* Hides small groups of visible triangles that are left among hidden ones. */
 #include <math.h>
 
 #include "base/math/vec.h"
 #include "base/mem.h"
 #include "surface/repair/interior.h"
 
-struct island {                /* group of visible triangles, indexed by its lowest point */
-    double seen_m2, hidden_m2; /* seen_m2: area of the group; hidden_m2: area of the hidden triangles that touch it */
-    bool free;                 /* true if a point of the group touches no hidden triangle */
+struct island {                /* a group of visible triangles connected by points; groups are indexed by their lowest point */
+    double seen_m2, hidden_m2; /* seen_m2: area of the group; hidden_m2: area of the hidden triangles that touch the group */
+    bool free;                 /* a point of the group touches no hidden triangle, so the group stays visible */
 };
 
 void interior_islands(const struct trimesh *mesh, char *hidden)
@@ -44,7 +44,7 @@ void interior_islands(const struct trimesh *mesh, char *hidden)
 void interior_resolve_across(const struct trimesh *mesh, char *hidden)
 {
     uint32_t *seen = mem_array(mesh->point_count, sizeof(*seen)), *group = mem_array(mesh->point_count, sizeof(*group));
-    /* by lowest point of a group of INTERIOR_ACROSS triangles: a visible piece that the group touches; TRIMESH_NONE: none */
+    /* by lowest point of a group of INTERIOR_ACROSS triangles: a visible piece that touches the group; TRIMESH_NONE: none found yet */
     uint32_t *first = mem_array(mesh->point_count, sizeof(*first));
     char *is_seen = mem_array(mesh->point_count, 1), *joins = mem_array(mesh->point_count, 1);
     for (uint32_t i = 0; i < mesh->point_count; i++) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tests whether surfaces face each other. */
+/* Tests whether a point of one surface faces another surface. */
 #include "surface/repair/line_of_sight.h"
 
 #include <math.h>
@@ -7,7 +7,7 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-#define LOOKS 0.5    /* smallest cosine between a face's normal and the direction to the point that it faces */
+#define LOOKS 0.5    /* minimum cosine between a face's normal and the direction to a point that the face faces */
 #define NEXT_TO 1e-3 /* relative to the distance */
 
 static void list_triangles(struct line_of_sight *sight)
@@ -42,13 +42,13 @@ void line_of_sight_finish(struct line_of_sight *sight)
     mem_free(sight->at);
 }
 
-/* Returns whether the triangle's part is open, which leaves its outer side unknown. */
+/* Returns whether the triangle's part is open, so that its outer side is unknown and the triangle faces both ways. */
 static bool looks_both_ways(const struct line_of_sight *sight, uint32_t tri)
 {
     return !sight->parts->closed[sight->parts->of_source[sight->mesh->tri_source[tri]]];
 }
 
-/* Computes the outward unit normal; a zero vector if the triangle bounds no body and so faces nothing. */
+/* Computes the outward unit normal; a zero vector if the triangle bounds no body (a fin or a wall) and so faces nothing. */
 static void find_normal(const struct line_of_sight *sight, uint32_t tri, double n[3])
 {
     const struct trimesh *mesh = sight->mesh;
@@ -101,8 +101,8 @@ static void block(void *arg, uint32_t tri, double t)
     ray->is_blocked = ray->is_blocked || (t > NEXT_TO && t < 1 + NEXT_TO && ray->sight->body[tri] == ray->own);
 }
 
-/* Returns whether the point's own body blocks the view. Otherwise a wall between two bodies of one part would be joined to objects behind
- * one of these bodies. */
+/* Returns whether the point's own body blocks the view of the other point. Without this test, a wall between two bodies of one part would
+ * be joined to objects behind one of these bodies. */
 static bool is_blocked(const struct line_of_sight *sight, const double from[3], const double way[3], uint32_t own)
 {
     struct sight_ray ray = { sight, own, false };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Inserts points into edges and faces, and triangulates the triangles that contain them. */
+/* Inserts points into edges and faces of the mesh, and triangulates the triangles that contain them again. */
 #include "surface/repair/mesh_edit.h"
 
 #include <math.h>
@@ -71,14 +71,15 @@ static void find_targets(const struct mesh_edit *edit, size_t point_count, uint3
         target[i] = trimesh_root(target, i);
 }
 
-struct crossing_lists { /* insertions by edge (from the lower point, by t) and by triangle */
+struct crossing_lists { /* insertions grouped by edge, sorted by t from the end with the lower index; and insertions grouped by triangle */
     struct edge_table edges;
-    uint32_t *edge_first, *tri_first; /* by edge index, and by triangle: index of the first insertion; one additional element at the end */
+    /* by edge index (edge_first) or triangle (tri_first): index of its first insertion; one additional element at the end */
+    uint32_t *edge_first, *tri_first;
     struct mesh_edit_insertion *by_edge;
     uint32_t *by_tri;
-    uint32_t *target;                   /* point that replaces each point */
-    uint32_t *partner_first, *partners; /* by point after replacement: the points to connect it with; NULL: no connections */
-    /* by point after replacement: its index in the current face's triangulation + 1; 0: the point is not in the face */
+    uint32_t *target;                   /* by point: index of the point that replaces it */
+    uint32_t *partner_first, *partners; /* by point after replacement: the points to which it gets an edge; NULL: no edges are requested */
+    /* by point after replacement: its index in the triangulation of the current face + 1; 0: it is not in that triangulation */
     uint32_t *slot;
 };
 
@@ -88,7 +89,7 @@ static int by_t(const void *a, const void *b)
     return p->t < q->t ? -1 : p->t > q->t;
 }
 
-/* Lists the connections in both directions, with merged points replaced. */
+/* Lists by point the points with which it is to be connected (edit->joins), in both directions, after replacement of merged points. */
 static void lists_partners(struct crossing_lists *lists, const struct mesh_edit_pair *joins, size_t count, size_t point_count)
 {
     if (!count)
@@ -162,7 +163,8 @@ static bool is_corner(const uint32_t corners[3], uint32_t point)
     return point == corners[0] || point == corners[1] || point == corners[2];
 }
 
-/* Lists the inserted points on the side from a to b, in order, without the ends, as indices in the triangulation. */
+/* Lists the points inserted on the side from a to b, in this order, without a and b, as indices in the face's triangulation. Returns their
+ * number. */
 static size_t side(struct face_triangulation *face, const struct crossing_lists *lists, const uint32_t corners[3], uint32_t a, uint32_t b,
                    uint32_t *out)
 {
@@ -188,7 +190,8 @@ static double distance2(const struct face_triangulation *face, uint32_t a, uint3
     return x * x + y * y;
 }
 
-/* Triangulates between the chain a-b, which has most points, and a-c-b, like a zip, as trimesh_sample() does. */
+/* Triangulates a face between two chains of points like a zip, as trimesh_sample() does: `low`, along a-b, the side with most points, and
+ * the chain a-c-b. */
 static void zip(struct face_triangulation *face, const uint32_t *low, size_t low_count, const uint32_t *high, size_t high_count)
 {
     size_t i = 1, j = 1, ab = low_count - 1, acb = high_count - 1;
@@ -256,7 +259,7 @@ static bool touched(const struct crossing_lists *lists, const uint32_t v[3], siz
            edge_table_find(&lists->edges, v[1], v[2]) != TRIMESH_NONE || edge_table_find(&lists->edges, v[2], v[0]) != TRIMESH_NONE;
 }
 
-/* Inserts a point into the triangle's plane, from its position in space. */
+/* Adds a point to the face's triangulation, at its projection onto the face's plane. */
 static void set_point(struct face_triangulation *face, const struct trimesh *mesh, const uint32_t corners[3], uint32_t id)
 {
     double w[3];
@@ -268,7 +271,7 @@ static void set_point(struct face_triangulation *face, const struct trimesh *mes
     }
     for (size_t i = 0; i < face->count; i++)
         if (face->ids[i] == id)
-            return; /* the point is in the triangulation already, as a corner or on a side */
+            return; /* the point is already in the triangulation, as a corner or on a side */
     face_triangulation_insert(face, face_triangulation_add_point(face, id, x, y));
 }
 
@@ -296,7 +299,7 @@ static void cut(struct cutter *cutter, const struct crossing_lists *lists, struc
     uint32_t corners[3], source = mesh->tri_source[t];
     memcpy(corners, mesh->tris[t], sizeof(corners));
     lay_out(face, mesh, corners);
-    uint32_t a = 0; /* corner at which the side with most inserted points begins */
+    uint32_t a = 0; /* index (0 to 2) of the corner at which the side with most inserted points begins */
     for (uint32_t i = 1; i < 3; i++)
         if (side_count(lists, corners, i) > side_count(lists, corners, a))
             a = i;

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A batch of edits that join a mesh to itself: points to merge, points to insert into edges or faces, edges to add. Edits are collected
-   first and then applied together. */
+ * first, and mesh_edit_apply() applies them together. */
 #ifndef SURFACE_REPAIR_MESH_EDIT_H
 #define SURFACE_REPAIR_MESH_EDIT_H
 #include "surface/mesh/trimesh.h"
 
 struct mesh_edit {
-    struct mesh_edit_insertion { /* point inserted into the edge a-b at fraction t from a, or into triangle tri (a = TRIMESH_NONE) */
+    struct mesh_edit_insertion { /* a point to insert: into the edge a-b at fraction t from a, or into triangle tri if a is TRIMESH_NONE */
         uint32_t point, a, b, tri;
         double t;
     } * items;
@@ -21,16 +21,16 @@ struct mesh_edit {
 void mesh_edit_init(struct mesh_edit *edit);
 /* Frees the batch without applying it, and leaves it empty. */
 void mesh_edit_finish(struct mesh_edit *edit);
-/* Adds the edit: merge points a and b, which are distance_m apart. */
+/* Requests that points a and b, which are distance_m apart, are merged. */
 void mesh_edit_merge_points(struct mesh_edit *edit, uint32_t a, uint32_t b, double distance_m);
-/* Adds the edit: insert a point, distance_m away from the edge a-b, into that edge at fraction t from a. */
+/* Requests that a point, distance_m away from the edge a-b, is inserted into this edge at fraction t from a. */
 void mesh_edit_insert_in_edge(struct mesh_edit *edit, uint32_t point, uint32_t a, uint32_t b, double t, double distance_m);
-/* Adds the edit: insert a point, distance_m away from the triangle, into that triangle. */
+/* Requests that a point, distance_m away from the triangle, is inserted into the triangle. */
 void mesh_edit_insert_in_tri(struct mesh_edit *edit, uint32_t point, uint32_t tri, double distance_m);
-/* Adds the edit: connect both points by an edge in each edited triangle that contains both. */
+/* Requests an edge between both points, in each edited triangle that contains both. */
 void mesh_edit_connect(struct mesh_edit *edit, uint32_t a, uint32_t b);
 
-/* Applies the batch to the mesh: triangles with an inserted or merged point are triangulated again. target[point]: receives the point's new
+/* Applies the batch to the mesh: triangles with an inserted or merged point are triangulated again. target[point] receives the point's new
  * index. */
 void mesh_edit_apply(const struct mesh_edit *edit, struct trimesh *mesh, uint32_t *target);
 

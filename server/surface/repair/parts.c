@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Orients the faces of parts outwards, finds walls within parts, and limits the reach of thin parts. */
+/* Orients the faces of parts outwards, finds walls within parts, and limits the reach (distance up to which a part counts as touching) of
+ * thin parts. */
 #include "surface/repair/parts.h"
 
 #include <math.h>
@@ -9,14 +10,16 @@
 #include "base/mem.h"
 #include "surface/repair/parts_impl.h"
 
-/* smallest share of doubled triangles in a wall's area; below 1, because a slit in one layer leaves single triangles */
+/* minimum share of a wall's area whose triangles occur twice in the model; below 1, because a slit in one of the two layers leaves single
+ * triangles */
 #define MIN_DOUBLED_SHARE 0.75
 #define OF_THICKNESS 0.5
 #define MIN_REACH 0.05 /* smallest reach, in tolerances */
 
 /* --- orientation of patches ----------------------------------------------------------------------------------------------- */
 
-/* Flips patches whose volume, relative to their centre, is negative, so that all face outwards. */
+/* Reverses patches (triangles connected by edges with two faces) whose signed volume, relative to their centre, is negative, so that all
+ * patches face outwards. */
 static void face_outwards(struct parts_finding *f)
 {
     const struct trimesh *mesh = &f->parts->solid;
@@ -46,8 +49,9 @@ static void face_outwards(struct parts_finding *f)
     mem_free(votes);
 }
 
-/* Finds walls: where two bodies touch with identical vertices, welding left one face of two. Such a patch ends at edges of three faces or
-   more, and its triangles have twice the multiplicity of others in its part. A fin, which stands on a surface, bounds nothing either. */
+/* Finds walls: faces where two bodies touch with identical vertices, so that welding left one face of two. A wall is a patch that ends at
+ * edges with three or more faces, and its triangles occur twice as often in the model as the others of its part. Walls, and fins that stand
+ * on a surface, bound nothing: sets their side to 0. */
 static void drop_walls(struct parts_finding *f, const uint32_t *times)
 {
     struct body_parts *parts = f->parts;
@@ -72,11 +76,10 @@ static void drop_walls(struct parts_finding *f, const uint32_t *times)
     mem_free(least);
 }
 
-/* --- reach: the distance up to which parts count as touching
- * --------------------------------------------------------------------------------------------------- */
+/* --- reach: the distance up to which parts count as touching --- */
 
-/* Limits the reach to half of the thickness, estimated as twice the volume over the area. That is exact for plates; other bodies are
-   thicker. */
+/* Limits the reach of closed parts to half of their thickness, estimated as twice the volume divided by the area. The estimate is exact for
+ * plates; other bodies are thicker. */
 static void limit_reach(struct body_parts *parts, double tolerance_m)
 {
     const struct trimesh *mesh = &parts->solid;

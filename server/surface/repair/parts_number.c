@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds which triangles make up a body: patches, fins that stand on them, and how patches are connected. */
+/* Finds which triangles make up a part: patches (triangles connected by edges with two faces), fins that stand on them, and how patches are
+ * connected. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,7 +12,8 @@
 /* maximum total length of open edges of a closed part, relative to the root of its area: more than remnants of a hair gap, less than the
  * end of a pipe */
 #define MAX_OPEN_OF_SIZE 0.05
-#define MAX_BODY_OPEN_OF_SIZE 0.5 /* the same limit for a patch to be a body of its own, counting all edges at which the patch ends */
+/* the same limit for a patch that counts as a body of its own; here all edges at which the patch ends are added */
+#define MAX_BODY_OPEN_OF_SIZE 0.5
 
 static double edge_length(const struct trimesh *mesh, size_t t, int i)
 {
@@ -33,12 +35,12 @@ static void find_patches(struct parts_finding *f)
 
 /* --- what hangs together ------------------------------------------------------------------------------------------------------ */
 
-/* Faces at edges with three or more faces, sorted by edge and patch; one entry per patch. A patch with two faces continues through the
-   edge, and the others only stand on it, like a fin. */
+/* Patches at edges with three or more faces: one entry per edge and patch, sorted by edge. A patch with two faces at the edge continues
+ * through it. A patch with one face only stands on the others, like a fin. */
 struct branches {
     struct open_branch {
         uint32_t edge, patch, faces;
-        bool runs_through; /* true: some patch has two faces at this edge and so continues through it */
+        bool runs_through; /* some patch has two faces at this edge and so continues through it */
         double length_m;
     } * at;
     size_t count;
@@ -103,7 +105,7 @@ static bool stands(const struct open_branch *branch)
     return branch->runs_through && branch->faces == 1;
 }
 
-struct core { /* set of patches connected at edges through which no patch continues; indexed by the lowest triangle */
+struct core { /* a set of patches connected at edges through which no patch continues; stored at the index of its lowest triangle */
     double open_m, area_m2;
     bool stands;
 };
@@ -113,13 +115,14 @@ static bool is_closed(double open_m, double area_m2)
     return open_m <= MAX_OPEN_OF_SIZE * sqrt(area_m2);
 }
 
-/* Joins patches that meet at edges into parts, but not two closed ones where one only stands on the other, or on a fin: fins of two bodies,
- * joined by a seam, do not make the bodies one. of[triangle]: in: its patch; out: its part; both are named by their lowest triangle. */
+/* Joins patches that meet at edges into parts. Two closed sets of patches stay separate where one only stands on the other, or on a fin of
+ * the other: fins of two bodies, joined by a seam, do not make the bodies one part. of[triangle] on entry: its patch; on return: its part.
+ * Both are identified by their lowest triangle. */
 static void join_patches(struct parts_finding *f, const struct branches *b, uint32_t *of)
 {
     size_t tri_count = f->parts->solid.tri_count;
     struct core *cores = mem_array(tri_count, sizeof(*cores));
-    char *holds = mem_array(tri_count, 1); /* by root of a part: 1 if the part contains a closed core */
+    char *holds = mem_array(tri_count, 1); /* by lowest triangle of a part: 1 if the part contains a closed set of patches */
     for (size_t i = 1; i < b->count; i++)
         if (b->at[i].edge == b->at[i - 1].edge && !b->at[i].runs_through)
             trimesh_join(of, b->at[i - 1].patch, b->at[i].patch);
@@ -146,7 +149,7 @@ static void join_patches(struct parts_finding *f, const struct branches *b, uint
     mem_free(holds);
 }
 
-/* Numbers parts from 0, in the order of their first triangles. */
+/* Assigns indices to parts, from 0 in the order of their lowest triangles. */
 static void number_parts(struct parts_finding *f, const struct branches *b)
 {
     struct body_parts *parts = f->parts;
@@ -154,7 +157,8 @@ static void number_parts(struct parts_finding *f, const struct branches *b)
     uint32_t *number = mem_array(tri_count, sizeof(*number)), *part = parts->of_tri;
     memcpy(part, f->patch, tri_count * sizeof(*part));
     join_patches(f, b, part);
-    for (uint32_t t = 0; t < tri_count; t++) /* the root is the lowest triangle of a part, so it is numbered before the others */
+    /* a part is identified by its lowest triangle, which gets the part's index before the part's other triangles need it */
+    for (uint32_t t = 0; t < tri_count; t++)
         number[t] = trimesh_root(part, t) == t ? (uint32_t)parts->count++ : number[trimesh_root(part, t)];
     memcpy(part, number, tri_count * sizeof(*part));
     mem_free(number);
@@ -167,7 +171,7 @@ static void find_closed(struct parts_finding *f)
     double *area_m2 = mem_array(parts->count, sizeof(*area_m2)), *open_m = mem_array(parts->count, sizeof(*open_m));
     for (size_t t = 0; t < mesh->tri_count; t++) {
         double n[3], open = 0;
-        /* open edges of a fin, or next to an edge that is closed without the triangle, do not count */
+        /* open edges do not count if the triangle belongs to a fin, or has an edge that two other triangles close already */
         bool fin = f->patches[f->patch[t]].loose;
         trimesh_normal(mesh, t, n);
         area_m2[parts->of_tri[t]] += vec_length(n) / 2;
@@ -185,7 +189,8 @@ static void find_closed(struct parts_finding *f)
     mem_free(open_m);
 }
 
-/* Separates bodies that are joined to others by a few edges by mistake: such a body is a patch that is nearly closed by itself. */
+/* Assigns bodies: usually the parts. A patch that is nearly closed by itself is a body of its own: only a few edges join it to its part, by
+ * mistake of the model. */
 static void find_bodies(struct parts_finding *f, const struct trimesh *mesh)
 {
     struct body_parts *parts = f->parts;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Closes seams along border edges, and along edges that became borders because triangles at them were hidden. */
+/* Closes seams: gaps between border edges (edges with one face), including edges that became borders because triangles at them were
+ * hidden. */
 #include "surface/repair/repair.h"
 
 #include <math.h>
@@ -15,21 +16,20 @@
 
 #define GAP_OF_EDGE 0.45 /* two points are merged only if they are nearer than this fraction of the shortest edge at either */
 #define EXACT_OF_TOLERANCE 0.01
-/* in tolerances: deviation from a straight line that welding may cause; distinct points of a border are farther apart */
+/* in multiples of the tolerance: deviation from a straight line that welding may cause; distinct points of a border are farther apart */
 #define STRAIGHT 0.1
-#define FLUSH 0.99 /* smallest cosine between faces that lie on each other, and between edges that run along each other */
+#define FLUSH 0.99 /* minimum cosine between the directions of faces that lie on each other, and of edges that run along each other */
 
-/* --- seams: rounds that merge points alternate with rounds that insert points into edges
- * ---------------------------------------------------------- */
+/* --- seams: rounds that merge points alternate with rounds that insert points into edges --- */
 
 struct seams {
     const struct trimesh *mesh;
     const struct borders *borders;
     struct mesh_edit *edit;
-    /* end_m: a point nearer than this to an edge's end is not inserted, but merged with the end in another round */
+    /* end_m: a point nearer than this to an end of an edge is not inserted into the edge; another round merges it with the end */
     double tolerance_m, end_m;
     bool fits;            /* only exact fits */
-    struct nearest_edge { /* best position of each border point on a border edge that is not its own */
+    struct nearest_edge { /* by border point: the nearest position on a border edge of which it is not an end */
         double distance_m, t;
         uint32_t edge;
     } * nearest;
@@ -41,7 +41,7 @@ static void outwards(const struct seams *s, uint32_t e, uint32_t p, double along
     vec_sub(s->mesh->points[edge[edge[0] == p]], s->mesh->points[p], along);
 }
 
-/* Returns whether the faces of two edges that run along each other lie on each other. */
+/* Returns whether the faces at two edges that run along each other lie on each other, on the same side of the edges. */
 static bool lie_on_each_other(const struct seams *s, uint32_t e, uint32_t f)
 {
     const uint32_t edges[2] = { e, f };
@@ -59,9 +59,9 @@ static bool lie_on_each_other(const struct seams *s, uint32_t e, uint32_t f)
     return vec_dot(side[0], side[1]) > FLUSH * sqrt(vec_dot(side[0], side[0]) * vec_dot(side[1], side[1]));
 }
 
-/* Returns whether merging two points would close an edge of one with an edge of the other although their faces lie on each other. Such
- * faces belong to two bodies that touch. If they were joined, the surfaces on the other side of the gap could no longer be joined to
- * them. */
+/* Returns whether merging border points i and j would join an edge of one with an edge of the other although their faces lie on each other.
+ * Such faces belong to two bodies that touch. Joining them would use up the edges, so that neither body could be joined to the surface on
+ * the other side of the gap. */
 static bool would_fold(const struct seams *s, size_t i, size_t j)
 {
     const struct borders *b = s->borders;
@@ -91,15 +91,15 @@ static void join_near(void *arg, size_t i, size_t j, double distance_m)
         mesh_edit_merge_points(s->edit, b->points[i], b->points[j], distance_m);
 }
 
-/* Returns the other end of a point's n-th border edge. */
+/* Returns the other end of the border edge at[n], of which p is an end. */
 static uint32_t beyond(const struct seams *s, uint32_t n, uint32_t p)
 {
     const uint32_t *edge = s->borders->edges[s->borders->at[n]];
     return edge[edge[0] == p];
 }
 
-/* Returns whether the border at a point runs along the edge, that is, its next point lies on the edge's line too. A point alone may be near
- * an edge by chance, where cracks are many. towards: required direction along the edge; NULL: either. */
+/* Returns whether the border at point p runs along edge e, which means that a neighbour of p on the border is on the line of e too. A
+ * single point may be near an edge by chance, where cracks are many. towards: required direction of the border from p; NULL: either. */
 static bool runs_along(const struct seams *s, uint32_t p, uint32_t e, const double towards[3], double within_m)
 {
     const struct borders *b = s->borders;
@@ -117,8 +117,8 @@ static bool runs_along(const struct seams *s, uint32_t p, uint32_t e, const doub
     return false;
 }
 
-/* Returns whether the border runs straight through a point, along the edge: such a point is a hanging vertex, because gaps are rarely as
- * straight. */
+/* Returns whether the border passes straight through point p along edge e. Such a point is a hanging vertex of e, because the border of a
+ * gap is rarely that straight. */
 static bool hangs(const struct seams *s, uint32_t p, uint32_t e)
 {
     double forth[3], back[3], within_m = STRAIGHT * s->tolerance_m;
@@ -136,8 +136,8 @@ static bool have_an_edge(const struct seams *s, uint32_t p, uint32_t q)
     return false;
 }
 
-/* Returns whether p, distance_m from an end of an edge, counts as that end. Hanging vertices in one line stay separate, however near they
-   are. */
+/* Returns whether p, distance_m away from an end of edge e, counts as that end. Hanging vertices in one line stay separate points, however
+ * near each other they are. */
 static bool is_at_end(const struct seams *s, uint32_t p, uint32_t e, uint32_t end, double distance_m, double length_m)
 {
     if (distance_m > max_of(REPAIR_AT_END * length_m, s->end_m))
@@ -146,8 +146,9 @@ static bool is_at_end(const struct seams *s, uint32_t p, uint32_t e, uint32_t en
     return !(apart && (have_an_edge(s, p, end) || (hangs(s, p, e) && hangs(s, end, e))));
 }
 
-/* Tries to insert a border point into an edge. A hanging vertex is inserted into all edges that run there. If it were inserted into the
- * nearest edge only, some of these edges would be joined to each other and the others would stay open. */
+/* Tries to insert a border point into edge e. A hanging vertex is inserted immediately, and so into all edges along which the border runs.
+ * If it were inserted into the nearest edge only, some of these edges would be joined to each other and the others would stay open. For
+ * another point, records e if it is the nearest edge so far. */
 static void try_edge(struct seams *s, size_t i, uint32_t e)
 {
     const struct borders *b = s->borders;
@@ -207,7 +208,8 @@ static void set_into_edges(struct seams *s)
     mem_free(s->nearest);
 }
 
-/* One round: merges border points (within tolerance_m), or inserts border points into border edges. */
+/* One round of closing seams: merges border points within tolerance_m of each other, or, with into_edges, inserts border points into border
+ * edges. */
 static void seam_round(struct trimesh *mesh, const struct borders *borders, double tolerance_m, double end_m, bool fits, bool into_edges,
                        uint32_t *target, size_t target_count, struct repair_report *report)
 {
@@ -233,8 +235,9 @@ void repair_seams(struct trimesh *mesh, double tolerance_m, uint32_t *target, st
     size_t target_count = mesh->point_count;
     for (uint32_t i = 0; i < target_count; i++)
         target[i] = i;
-    /* Closes exact fits first: their edges are then no borders any more when gaps are closed, and are not pulled to a neighbour. A point
-     * that is on an edge by chance is not inserted, because it would split the edge into pieces too short to be closed. */
+    /* Rounds 0 and 1 close exact fits only, so that their edges are no borders any more when rounds 2 and 3 close gaps, and are not pulled
+     * to a neighbour. In round 1, a point that is on an edge by chance is not inserted, because it would split the edge into pieces too
+     * short to be closed. */
     for (int round = 0; round < 4; round++) {
         struct borders borders;
         borders_init(&borders, mesh);
@@ -259,7 +262,7 @@ void repair_join_points(struct trimesh *mesh, double tolerance_m, uint32_t *targ
 
 /* --- rims ------------------------------------------------------------------------------------------------------------------- */
 
-/* Writes to `out` the triangles with hidden[tri] == which. */
+/* Copies to `to` the triangles with hidden[tri] == which. */
 static void copy_triangles(struct trimesh *to, const struct trimesh *from, const char *hidden, char which)
 {
     *to = (struct trimesh){ .points = from->points, .point_count = from->point_count };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Applies the edits that mesh repair found, and records each bridge. */
+/* Applies the edits that mesh repair found, and records each bridge (pair of joined points). */
 #include <string.h>
 
 #include "base/math/vec.h"
@@ -39,8 +39,8 @@ static void place_of(const struct trimesh *mesh, const struct mesh_edit_insertio
         place[axis] = w[0] * mesh->points[v[0]][axis] + w[1] * mesh->points[v[1]][axis] + w[2] * mesh->points[v[2]][axis];
 }
 
-/* Records bridges. Points from first_new on are crossings: each is inserted into an edge first, and then into a face, or merged with one of
-   its corners. */
+/* Records a bridge for each merged or inserted point. Points with index first_new or higher are crossings. The edit contains each crossing
+ * twice: first inserted into an edge, then into a face, or merged with a corner of the face. */
 static void note_bridges(struct repair_report *report, const struct mesh_edit *edit, const struct trimesh *mesh, uint32_t first_new)
 {
     uint32_t last_new = TRIMESH_NONE;
@@ -62,7 +62,8 @@ void repair_apply(struct mesh_edit *edit, struct trimesh *mesh, uint32_t *target
                   struct repair_report *report)
 {
     uint32_t *then = mem_array(mesh->point_count, sizeof(*then));
-    report->bridges += edit->item_count + edit->pair_count - crossings; /* a crossing is inserted into both faces but counts once */
+    /* each crossing is inserted twice, into an edge and a face, but counts once */
+    report->bridges += edit->item_count + edit->pair_count - crossings;
     report->longest_m = max_of(report->longest_m, edit->longest_m);
     note_bridges(report, edit, mesh, (uint32_t)(mesh->point_count - crossings));
     if (edit->item_count + edit->pair_count) {

@@ -18,18 +18,18 @@
 struct contacts {
     struct trimesh *mesh;
     struct body_parts *parts;
-    const uint32_t *part, *body; /* part and body of each triangle of `mesh` */
+    const uint32_t *part, *body; /* by triangle of `mesh`: its part and its body */
     const struct bvh *bvh;
     struct mesh_edit *edit;
-    uint32_t own;   /* own part of the current edge's triangle, or own body of the current point */
-    double reach_m; /* reach of the current point's part, or of the rim's */
+    uint32_t own;   /* part of the triangle whose edge is being tested, or body of the point being tested */
+    double reach_m; /* reach (distance up to which a part counts as touching) of the part of the point or rim being tested */
     uint32_t edge[2];
-    uint32_t *touched; /* body that each point touches, or TRIMESH_NONE */
+    uint32_t *touched; /* by point: the body that it touches, or TRIMESH_NONE */
     struct contact_crossing {
-        uint32_t tri, a, b, c, d; /* edge a-b passes through tri or, if that is TRIMESH_NONE, over the edge c-d */
+        uint32_t tri, a, b, c, d; /* the edge a-b passes through triangle tri or, if tri is TRIMESH_NONE, crosses the edge c-d */
         uint32_t point;           /* the inserted point */
         double t, s, weights[3];
-        bool own; /* edge and triangle belong to one part */
+        bool own; /* edge a-b and triangle tri belong to one part */
     } * crossings;
     size_t crossing_count, crossing_capacity;
 };
@@ -45,8 +45,8 @@ static double reach_of(const struct contacts *c, uint32_t tri)
     return c->parts->reach_m[c->part[tri]];
 }
 
-/* Returns whether both ends of the current edge are far enough from the triangle's plane: faces of one part that lie on each other do not
- * count as crossing. */
+/* Returns whether both ends of the current edge are far enough from the plane of triangle v. Otherwise the edge's face and the triangle,
+ * which belong to one part, may lie on each other without crossing. */
 static bool stands_clear(const struct contacts *c, const uint32_t *v)
 {
     double n[3], up[3];
@@ -72,7 +72,7 @@ static void visit_crossed(void *arg, uint32_t tri)
         return;
     double length = vec_distance(p, q), reach_m = min_of(c->parts->reach_m[c->own], reach_of(c, tri));
     if (t * length < reach_m || (1 - t) * length < reach_m || (own && !stands_clear(c, v)))
-        return; /* ignored: only the end of the edge touches, which find_touches() handles */
+        return; /* ignored: only the end of the edge touches the triangle, which find_touches() handles */
     struct contact_crossing *found = add_crossing(c);
     *found = (struct contact_crossing){ .tri = tri, .a = c->edge[0], .b = c->edge[1], .t = t, .own = own };
     memcpy(found->weights, w, sizeof(w));
@@ -80,7 +80,7 @@ static void visit_crossed(void *arg, uint32_t tri)
         c->parts->crossed[c->own] = c->parts->tangled[c->own] = 1;
 }
 
-/* Inserts a point into a face at these weights: into the side that contains it, or merged with the corner there. */
+/* Inserts a point into a triangle, at barycentric weights w: into a side if the point is on it, or merged with a corner if it is there. */
 static void set_into_face(const struct contacts *c, uint32_t point, uint32_t tri, const double w[3], double distance_m)
 {
     const uint32_t *v = c->mesh->tris[tri];
@@ -98,7 +98,7 @@ static void set_into_face(const struct contacts *c, uint32_t point, uint32_t tri
     mesh_edit_insert_in_tri(c->edit, point, tri, distance_m);
 }
 
-/* Calls `visit` for the triangles near the current edge. */
+/* Calls `visit` for the triangles whose bounding box is within margin_m of the current edge's. */
 static void look_around(struct contacts *c, void (*visit)(void *arg, uint32_t tri), double margin_m)
 {
     const double *p = c->mesh->points[c->edge[0]], *q = c->mesh->points[c->edge[1]];
@@ -110,8 +110,8 @@ static void look_around(struct contacts *c, void (*visit)(void *arg, uint32_t tr
     bvh_overlaps(c->bvh, low, high, margin_m, visit, c);
 }
 
-/* Searches each edge once, for the first triangle that has it, which determines its part; if that triangle cannot cross anything, the edge
-   is skipped. may_cross: by model triangle, from crossing_faces_find(). */
+/* Finds where edges pass through triangles. Each edge is searched once, as an edge of the first triangle that has it, which determines the
+ * edge's part. If that triangle cannot cross any other, the edge is skipped. may_cross: by model triangle, from crossing_faces_find(). */
 static void find_crossings(struct contacts *c, const char *may_cross)
 {
     struct edge_table edges;
@@ -149,7 +149,8 @@ static bool other_body_as_far(const void *arg, uint32_t tri)
     return c->body[tri] != c->own && reach_of(c, tri) >= c->reach_m;
 }
 
-/* Finds the nearest point of another body, within the reach of both. */
+/* Finds the point of another body that is nearest to point_m, within the reach of both bodies' parts. place->tri is TRIMESH_NONE if there
+ * is none. */
 static void find_touch(const struct contacts *c, const double point_m[3], struct bvh_place *place)
 {
     bvh_nearest(c->bvh, point_m, c->reach_m, other_body, c, place);
@@ -157,9 +158,9 @@ static void find_touch(const struct contacts *c, const double point_m[3], struct
         bvh_nearest(c->bvh, point_m, c->reach_m, other_body_as_far, c, place);
 }
 
-/* Finds points that touch another body. A surface nearer to a thin part than half of its thickness touches it, from either side. A farther
- * surface must face the part: then the distance is a gap to bridge, but the part covers nothing there. Rims and intersections therefore use
- * the reach alone. */
+/* Finds points that touch another body, and requests that they are inserted there. A surface within a thin part's reach (half of its
+ * thickness) touches the part, from either side. A surface beyond the reach must face the part: their distance then is a gap to bridge, but
+ * the part covers nothing there, so rims and intersections do not use such touches. */
 static void find_touches(struct contacts *c)
 {
     struct line_of_sight sight;
@@ -186,10 +187,10 @@ static void find_touches(struct contacts *c)
     mem_free(seen);
 }
 
-/* --- rims: edges where a face leaves the body that it lies on
- * ----------------------------------------------------------------------------------------------------- */
+/* --- rims: edges where a face leaves the body that it lies on --- */
 
-/* Computes where two edges that are not parallel are nearest, as fractions of both. */
+/* Computes the points at which two edges are nearest to each other: t, fraction from a to b, and s, fraction from c to d. Returns false if
+ * the edges are parallel, or such a point is not inside its edge. */
 static bool edges_meet(const double a[3], const double b[3], const double c[3], const double d[3], double *t, double *s)
 {
     double ab[3], cd[3], ac[3];
@@ -236,8 +237,8 @@ static void visit_rim(void *arg, uint32_t tri)
     }
 }
 
-/* Finds edges with both ends on another body while the third corner of a face is not on that body. Records where these edges cross edges of
- * that body, which is cut there.. */
+/* Finds rims: edges of a triangle with both ends on another body while the triangle's third corner is not on that body. Records where rims
+ * cross edges of that body, so that the body is cut there. */
 static void find_rims(struct contacts *c)
 {
     for (uint32_t t = 0; t < c->mesh->tri_count; t++)
@@ -253,7 +254,8 @@ static void find_rims(struct contacts *c)
         }
 }
 
-/* Inserts the points of all crossings. Points are added only after all searches, because the searches read the array of points. */
+/* Adds a mesh point for each crossing, and requests that it is inserted on both sides. Points are added only after all searches, because
+ * the searches read the array of points. */
 static void set_crossings(struct contacts *c, struct repair_report *report)
 {
     for (size_t i = 0; i < c->crossing_count; i++) {
@@ -273,9 +275,9 @@ static void set_crossings(struct contacts *c, struct repair_report *report)
     }
 }
 
-/* --- the lines along which faces cross ---------------------------------------------------------------------------------------- */
+/* --- the lines along which triangles intersect --------------------------------------------------------------------------------- */
 
-struct meeting {             /* a point at which two triangles intersect */
+struct meeting {             /* a point at which two triangles intersect (an edge of one passes through the other) */
     uint32_t tris[2], point; /* tris: the lower one first */
 };
 
@@ -293,7 +295,8 @@ static int compare_meetings(const void *a, const void *b)
     return (x->point > y->point) - (x->point < y->point);
 }
 
-/* Lists meetings: where an edge passes through a triangle, each triangle at the edge meets the triangle. */
+/* Lists the points at which triangles intersect: where an edge passes through a triangle, each triangle at the edge intersects that
+ * triangle. */
 static void find_meetings(const struct contacts *c, struct meetings *meetings)
 {
     struct edge_table edges;
@@ -325,7 +328,7 @@ static void find_meetings(const struct contacts *c, struct meetings *meetings)
     mem_free(of_edge);
 }
 
-/* Connects the point with a corner of `tri` that touches `other`, where the intersection ends. */
+/* Requests an edge between the point and the corners of `tri` that touch triangle `other`, because the line of intersection ends there. */
 static void join_corners(const struct contacts *c, uint32_t point, uint32_t tri, uint32_t other)
 {
     const uint32_t *v = c->mesh->tris[tri], *u = c->mesh->tris[other];
@@ -342,7 +345,8 @@ static void join_corners(const struct contacts *c, uint32_t point, uint32_t tri,
     }
 }
 
-/* Connects the ends of the intersection of two triangles; near a corner some points may be found twice. */
+/* Requests edges along the intersection of two triangles: from the farthest of their common points to the others. Usually there are two
+ * points; near a corner, some may be found twice. */
 static void join_meetings(const struct contacts *c, const struct meeting *meetings, size_t count)
 {
     size_t far = 0;
@@ -358,7 +362,8 @@ static void join_meetings(const struct contacts *c, const struct meeting *meetin
             join_corners(c, meetings[0].point, meetings[0].tris[i], meetings[0].tris[1 - i]);
 }
 
-/* Cuts both faces along their intersection, so that its two sides can be told apart. */
+/* Cuts all pairs of intersecting triangles along their intersection, so that afterwards each triangle is on one side of the other, and can
+ * be hidden or visible as a whole. */
 static void cut_along(struct contacts *c)
 {
     struct meetings meetings = { 0 };
@@ -382,7 +387,7 @@ static bool is_one_body(const struct contacts *c)
     return t == c->mesh->tri_count;
 }
 
-/* Finds all contacts. In a mesh of a single body, searches only for places where the body crosses itself. */
+/* Finds all contacts between bodies. In a mesh of a single body, searches only for places where the body crosses itself. */
 static void find_contacts(struct contacts *c)
 {
     char *may_cross = crossing_faces_find(c->parts);

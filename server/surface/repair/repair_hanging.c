@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Inserts hanging vertices into edges that are not borders, because other faces at the edge belong to another body there. */
+/* Inserts hanging vertices into edges that have several faces and so are no borders: one of the bodies that meet there has a slit along the
+ * edge. */
 #include "surface/repair/repair.h"
 
 #include <math.h>
@@ -11,17 +12,19 @@
 #include "surface/repair/borders.h"
 #include "surface/repair/repair_impl.h"
 
-#define MAX_ROUNDS 4 /* limit of rounds: an edge whose faces are all split at different points needs one round fewer than it has faces */
+/* maximum number of rounds: an edge whose faces are all split at different points needs one round fewer than it has faces */
+#define MAX_ROUNDS 4
 
 struct hanging {
     const struct trimesh *mesh;
     const struct borders *borders;
     struct mesh_edit *edit;
     double within_m;
-    uint32_t *last; /* by border point: index of the last edge that the point was inserted into */
+    uint32_t *last; /* by border point: index of the edge into which it was inserted last */
 };
 
-/* Returns the position of p along a-b as a fraction; negative: p is not on the edge, or at an end. */
+/* Returns the position of p along the edge a-b as a fraction. *distance_m receives the distance of p from the edge. Negative: p is not on
+ * the edge, or at an end. */
 static double place_on(const struct hanging *h, uint32_t p, uint32_t a, uint32_t b, double *distance_m)
 {
     double ab[3], ap[3], at[3];
@@ -35,7 +38,7 @@ static double place_on(const struct hanging *h, uint32_t p, uint32_t a, uint32_t
     return *distance_m <= h->within_m ? t : -1;
 }
 
-/* Returns whether the border continues straight at p, coming from a. */
+/* Returns whether the border that comes from a to p continues behind p in the same direction. */
 static bool runs_straight(const struct hanging *h, uint32_t p, uint32_t a)
 {
     const struct borders *b = h->borders;
@@ -49,7 +52,7 @@ static bool runs_straight(const struct hanging *h, uint32_t p, uint32_t a)
     return false;
 }
 
-/* Inserts into the edge a-b those border points that lie on it and are connected with a by a border edge. */
+/* Inserts into edge a-b, whose index is `number`, those border points that lie on it and are connected with a by a border edge. */
 static void look_from(struct hanging *h, uint32_t a, uint32_t b, uint32_t number)
 {
     const struct borders *borders = h->borders;
@@ -70,8 +73,8 @@ static bool is_at_border(const struct hanging *h, uint32_t a, uint32_t b)
     return h->borders->slot[a] != TRIMESH_NONE || h->borders->slot[b] != TRIMESH_NONE;
 }
 
-/* Finds edges with an end on a border, and an odd number of faces above one: a body has a slit there. Returns a flag by edge index. Other
- * edges are left out: edges with an even number of faces are closed, and edges with one face are closed as seams. */
+/* Returns a flag by edge index: 1 for edges with an end on a border, and an odd number of faces above one. A body has a slit at such an
+ * edge. Edges with an even number of faces are closed, and edges with one face are closed as seams. */
 static char *find_odd(const struct hanging *h, struct edge_table *edges)
 {
     const struct trimesh *mesh = h->mesh;
