@@ -190,8 +190,8 @@ static size_t count_from(const struct pairings *pairings, const uint8_t address[
     return from;
 }
 
-/* Frees an entry when all entries for waiting devices are taken. Drops the newest waiting device of the address with the most of them,
-   if that address has at least two more than `from`, the number of devices of the requesting address. So a few addresses cannot keep
+/* Frees an entry when all entries for waiting devices are taken. Drops the newest waiting device of the address that has the most,
+   if that is at least two more than `from`, the number of waiting devices of the requesting address. So a few addresses cannot keep
    others out. Returns false if no address has that many. */
 static bool make_room(struct pairings *pairings, size_t from)
 {

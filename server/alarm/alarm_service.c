@@ -12,7 +12,7 @@
 #include "base/mem.h"
 #include "base/thread.h"
 
-enum { MAX_ROWS = 2048 /* number of journal rows kept in memory for a standby that connects */ };
+enum { MAX_ROWS = 2048 /* number of journal rows kept in memory, to be sent to a standby that connects */ };
 enum { QUEUE_MAX = 1000000 /* maximum number of samples queued between two evaluations (a tenth of a second) */, RATE_SLOTS = 60 };
 static const int64_t TICK_NS = NS_PER_S / 10, RATE_NS = 600 * NS_PER_S;
 
@@ -28,11 +28,11 @@ struct alarm_service {
         counter *statuses[ALARM_STATUSES], *priorities[ALARM_PRIORITIES], *active, *standing, *chattering, *held, *rate, *raised, *lost;
     } counters;
     _Atomic uint64_t number;
-    /* --- below: used only by the thread */
+    /* --- below: used only by the service's own thread */
     struct alarm_event_queue taken;
     struct snapshot *snapshot;
     int64_t counted_ns;
-    int raised[RATE_SLOTS]; /* ring of counts of raised alarms, one per time slot of RATE_NS / RATE_SLOTS */
+    int raised[RATE_SLOTS]; /* ring buffer: number of alarms raised in each time slot of RATE_NS / RATE_SLOTS */
     int64_t slot;
     pthread_mutex_t queue_lock; /* lock of the sample queue; a thread that holds the store's lock may take it */
     /* --- below: protected by queue_lock */
@@ -41,9 +41,9 @@ struct alarm_service {
     /* --- below: protected by thread.lock */
     struct alarms *alarms;
     int raised_now;
-    struct journal_entry *rows; /* ring buffer of the last rows; NULL: there is no journal */
-    uint64_t row_count;         /* total number of journal rows so far, including those no longer in the ring buffer */
-    bool ending, lost;          /* ending: the journal is being closed; lost: it was closed with rows that are not on disk */
+    struct journal_entry *rows; /* ring buffer of the newest journal rows; NULL: there is no journal */
+    uint64_t row_count;         /* total number of journal rows since the start, including those no longer in the ring buffer */
+    bool ending, lost;          /* ending: the journal is being closed; lost: it was closed although some rows are not on disk */
     void (*changed)(void *arg); /* listener, called after alarms changed; NULL: none */
     void *changed_arg;
 };
@@ -131,7 +131,7 @@ static void keep_all(struct alarm_service *service)
     }
 }
 
-/* Writes the alarms that changed after change `number` to the journal; on a standby these are the mirrored ones. */
+/* Writes to the journal the present state of every alarm whose change number is greater than `number`. */
 static void keep_since(struct alarm_service *service, uint64_t number)
 {
     for (int i = service->journal ? alarms_newest(service->alarms) : -1; i >= 0; i = alarms_at(service->alarms, i)->older) {
@@ -142,7 +142,7 @@ static void keep_since(struct alarm_service *service, uint64_t number)
     }
 }
 
-/* Notifies the listeners if any alarm changed. */
+/* Calls the listeners if any alarm has a change number greater than `number`. */
 static void tell(struct alarm_service *service, uint64_t number)
 {
     if (atomic_exchange(&service->number, number) == number)
@@ -360,7 +360,7 @@ void alarm_service_end(struct alarm_service *service, struct settling_ticket *ti
     pthread_mutex_lock(&service->thread.lock);
     if (service->journal)
         journal_end(service->journal, ticket);
-    /* the service was halted after alarm_service_begin(): rows were lost, or their write is still undecided */
+    /* without a journal after alarm_service_begin(), the service was halted: the result for the ticket's rows is unknown or bad */
     else if (service->ending || service->lost)
         ticket->last = UINT64_MAX;
     pthread_mutex_unlock(&service->thread.lock);
@@ -413,7 +413,7 @@ void alarm_service_mirror_row(struct alarm_service *service, const struct journa
         return;
     journal_add_entry(service->journal, row);
     pthread_mutex_lock(&service->thread.lock);
-    /* remembers the row: the former leader may lack it when it returns as a standby */
+    /* keeps the row in memory, because the former leader may lack it when it returns as a standby */
     service->rows[++service->row_count % MAX_ROWS] = *row;
     pthread_mutex_unlock(&service->thread.lock);
 }

@@ -16,50 +16,52 @@ struct alarm_service_params {
     struct store *store; /* plant and store must outlive the service */
     const char *folder;  /* folder of the journal; NULL: no journal, so states are lost when the daemon ends */
     double keep_days;
-    /* true: states come from a core (alarm_service_mirror), not from samples: nothing is evaluated, and tags in the store get no alarms */
+    /* true: alarm states come from a core (alarm_service_mirror) and not from samples: nothing is evaluated, and tags in the store get
+       no alarms */
     bool mirrors;
     struct alarm_service *before; /* after a reload: the halted service of the old plant, whose alarm states are taken over; NULL: none */
-    void (*notify)(void *arg);    /* called when an alarm changed, by the thread or within alarm_service_act(); may be NULL */
+    void (*notify)(void *arg);    /* called when an alarm changed, by the service's thread or within alarm_service_act(); may be NULL */
     void *notify_arg;
 };
 
 struct alarm_service;
 /* Starts the service. Returns NULL if the thread cannot start (logged). */
 struct alarm_service *alarm_service_start(const struct alarm_service_params *params);
-/* Ends the thread and waits until the journal is on disk. Alarms do not change any more, but can still be queried. Journal rows that
-   cannot be written are lost (logged). Then free the service with alarm_service_stop(). */
+/* Ends the thread and waits until the journal is on disk. After this call alarms do not change but can still be queried. Journal rows
+   that cannot be written are lost (logged). The caller frees the service with alarm_service_stop(). */
 void alarm_service_halt(struct alarm_service *service);
 /* Writes pending rows to the journal, ends the thread and frees the service. &NULL is allowed; sets *service to NULL. */
 void alarm_service_stop(struct alarm_service **service);
 
-/* Sets the listener. changed(arg) is called after alarms changed, by the service's thread or within alarm_service_act(), under a lock:
-   it may only wake another thread. There is one listener; NULL: none. */
+/* Sets the one listener; NULL: none. changed(arg) is called after alarms changed, by the service's thread or within alarm_service_act(),
+   under a lock, so it may do no more than wake another thread. */
 void alarm_service_listen(struct alarm_service *service, void (*changed)(void *arg), void *arg);
-/* Returns the sequence number of the last change of any alarm. */
+/* Returns the change number of the newest change of any alarm; it grows by 1 with each change. */
 uint64_t alarm_service_number(const struct alarm_service *service);
-/* Calls each() under the lock for every alarm that changed after change number `since`, newest first; since 0: for every alarm that is
-   not normal. Returns alarm_service_number(). */
+/* Calls each() under the lock for every alarm whose change number is greater than `since`, newest first; since 0: for every alarm that
+   is not normal. Returns alarm_service_number(). */
 uint64_t alarm_service_changes(struct alarm_service *service, uint64_t since, void (*each)(void *arg, const struct alarm *alarm),
                                void *arg);
-/* Carries out an operator's action: acknowledge, shelve and so on. name: name of the tag; for ALARM_LINK, of the device. Returns the reason
-   of a refusal, or REFUSAL_NONE. */
+/* Carries out an operator's action: acknowledge, shelve and so on. name: name of the tag; for a LINK alarm, name of the device. Returns
+   the reason of a refusal, or REFUSAL_NONE. */
 enum refusal_code alarm_service_act(struct alarm_service *service, const char *name, enum alarm_kind kind, const struct alarm_act *act);
-/* Tell whether changes of alarms between alarm_service_begin() and alarm_service_end() are in the journal on disk
-   (base/files/settling.h). Without a journal they count as on disk. Changes that are not on disk are in force, but would be lost if the
-   daemon were killed. */
+/* Together with the next two functions tells whether alarm changes made between alarm_service_begin() and alarm_service_end() are in the
+   journal on disk (base/files/settling.h). Without a journal they count as on disk. Changes that are not on disk are in force, but would
+   be lost if the daemon were killed. */
 struct settling_ticket alarm_service_begin(struct alarm_service *service);
 void alarm_service_end(struct alarm_service *service, struct settling_ticket *ticket);
 int alarm_service_settled(struct alarm_service *service, const struct settling_ticket *ticket);
-/* For a service that mirrors: sets alarms, found by name and kind, to the core's states, in list order. whole: all other alarms are normal.
-   Returns NULL; or an error message (static text), and then nothing changed. */
+/* For a service that mirrors: sets alarms, found by name and kind, to the core's states, in the order of `list`. whole: all alarms that
+   are not in `list` become normal. Returns NULL; or an error message (static text), and then nothing changed. */
 const char *alarm_service_mirror(struct alarm_service *service, const struct alarm *list, size_t count, bool whole);
-/* On a standby: returns the time of the newest change in its journal; 0: none. Thread: that of alarm_service_mirror_row(). */
+/* On a standby: returns the UTC time of the newest change in its journal; 0: none. Thread: that of alarm_service_mirror_row(). */
 int64_t alarm_service_journal_utc_ns(const struct alarm_service *service);
-/* Calls each() under the lock for changes after number `since` and after a time, oldest first, as far back as the service keeps them in
-   memory (some thousands). Returns the number of the last change. */
+/* Calls each() under the lock, oldest first, for the journal rows with a row number greater than `since` that are also newer than a
+   time. The service keeps only the newest MAX_ROWS rows in memory. Returns the number of the newest row. */
 uint64_t alarm_service_rows(struct alarm_service *service, uint64_t since, int64_t after_utc_ns,
                             void (*each)(void *arg, const struct journal_entry *row), void *arg);
-/* Writes a change that a core made to the journal. Call it before alarm_service_mirror() takes the resulting states. */
+/* Writes a row for a change that the core made to this standby's journal. Call it before alarm_service_mirror() takes the resulting
+   states. */
 void alarm_service_mirror_row(struct alarm_service *service, const struct journal_entry *row);
 /* Ends mirroring, when this daemon becomes the leader: from now on the service evaluates samples, and continues with the mirrored
    states. */

@@ -51,7 +51,7 @@ static enum alarm_outcome acknowledge(struct alarm_state *state)
     return ALARM_CHANGED;
 }
 
-/* Resets a latched alarm; refused while it is unacknowledged, so that no alarm disappears unseen. */
+/* Resets a latched alarm (one that stays after its cause ended). Refused while it is unacknowledged, so that no alarm disappears unseen. */
 static enum alarm_outcome reset(struct alarm_state *state)
 {
     if (!state->latched || state->active || state->unacknowledged || state->aside)
@@ -69,7 +69,8 @@ static enum alarm_outcome set_aside(struct alarm_state *state, int how)
     return ALARM_CHANGED;
 }
 
-/* Ends a suppression, shelving or out-of-service state. An alarm that is active then is annunciated as if it were new. */
+/* Ends one reason for which the alarm is not annunciated: suppressed, shelved or out of service. An alarm that is active and has no such
+   reason left is annunciated as if it were new. */
 static enum alarm_outcome bring_back(struct alarm_state *state, const struct alarm_rule *rule, int how)
 {
     if (!(state->aside & how))

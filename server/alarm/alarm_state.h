@@ -12,14 +12,14 @@ enum alarm_event {
     ALARM_CLEAR,
     ALARM_ACKNOWLEDGE,
     ALARM_RESET,    /* resets a latched alarm */
-    ALARM_SHELVE,   /* a shelved alarm may be shelved again, with another end */
+    ALARM_SHELVE,   /* allowed for a shelved alarm too, to change when shelving ends */
     ALARM_UNSHELVE, /* ends shelving, by hand or because the shelving time is over */
     ALARM_SUPPRESS,
     ALARM_UNSUPPRESS,
-    ALARM_TAKE_OUT, /* takes the alarm out of service (event of an operator) */
+    ALARM_TAKE_OUT, /* an operator takes the alarm out of service */
     ALARM_PUT_BACK,
     ALARM_CARRY, /* suppresses the alarm, because the alarm of its device reports the failure */
-    ALARM_CALL,  /* ends ALARM_CARRY: the device's alarm no longer reports this failure */
+    ALARM_CALL,  /* ends ALARM_CARRY, because the device's alarm no longer reports this failure */
     ALARM_EVENTS
 };
 
@@ -35,13 +35,13 @@ struct alarm_state {     /* zero-initialised: normal */
 struct alarm_rule {
     bool acknowledges; /* true: the alarm must be acknowledged; false: the alarm only knows the states active and normal */
     bool latches;
-    bool forgets; /* the alarm becomes normal when its cause ends, even if it was not acknowledged */
+    bool forgets; /* true: the alarm becomes normal when its cause ends, even if it was not acknowledged */
     bool carried; /* true: when the alarm is raised now, the device's alarm already reports the failure, so this alarm is suppressed */
 };
 
 enum alarm_outcome { ALARM_CHANGED, ALARM_AS_IT_WAS, ALARM_REFUSED /* not possible in this state */ };
 
-/* Applies an event to a state and returns the result. */
+/* Applies an event to an alarm's state. Returns whether the state changed, stayed, or refused the event. */
 enum alarm_outcome alarm_state_step(struct alarm_state *state, const struct alarm_rule *rule, enum alarm_event event);
 /* Returns the state as one word of ISA-18.2. */
 enum alarm_status alarm_state_status(const struct alarm_state *state, const struct alarm_rule *rule);

@@ -59,8 +59,8 @@ static void add_bad(struct alarms *alarms, int tag)
     add_suppression(alarms, index);
 }
 
-/* Adds or adjusts the LINK alarm of a device: its delay is the shortest of its tags' delays, and its priority one level less urgent than
-   their most urgent. */
+/* Creates the LINK alarm of a device (raised when the device does not answer), or adjusts it to one more tag. Its delay is the shortest
+   delay of the device's tags, but at least least_on_ns. Its priority is one level less urgent than the most urgent priority of the tags. */
 static void add_link(struct alarms *alarms, struct alarm_device *device, int tag, int64_t least_on_ns)
 {
     const struct plant_alarm_settings *settings = &alarms->plant->tags[tag].alarm_settings;
@@ -95,8 +95,9 @@ static bool never_stale(const struct alarms *alarms, size_t tag)
     return alarms->plant->tags[tag].stale_s >= PLANT_NEVER_STALE_S;
 }
 
-/* Gives every device a LINK alarm. Its delay comes from the tags with BAD alarms, or from all tags if none has one. A replayed file
-   simply ends: it gets the alarm only if one of its tags has a BAD alarm. */
+/* Gives every device a LINK alarm (raised when the device does not answer). Its delay comes from the device's tags with BAD alarms, or
+   from all its tags if none has one. A source that replays a file ends normally, so it gets a LINK alarm only if one of its tags has a
+   BAD alarm. */
 static void add_links(struct alarms *alarms)
 {
     const struct plant *plant = alarms->plant;
@@ -114,7 +115,7 @@ static void add_links(struct alarms *alarms)
         if (device && (device->alarm < 0 || device->alarm >= (int)with_bad) && !(kind && !strcmp(kind, "replay")))
             add_link(alarms, device, (int)i, LINK_DELAY_NS);
     }
-    /* tags that never become stale need a longer delay, to bridge short losses of the connection */
+    /* if all tags are never stale, the delay is longer, to bridge short losses of the connection */
     for (size_t i = 0; i < tag_count; i++) {
         struct alarm *link = of_tag[i] < 0 || list[of_tag[i]].alarm < 0 ? NULL : &alarms->list[list[of_tag[i]].alarm];
         if (link && never_stale(alarms, i) && link->delays.on_ns < LINK_DELAY_NS)
@@ -143,7 +144,8 @@ static enum alarm_kind kind_of(const struct plant_mirror *mirror)
     return mirror->limit == LIMIT_COUNT ? ALARM_ON : (enum alarm_kind)(1 + mirror->limit);
 }
 
-/* Adds alarms for the bits that mirror alarms of this tag in another system, in their order. The bit's own quality can become bad. */
+/* Adds an alarm of this tag for each bit tag that mirrors an alarm of another system, in the order of `mirrors`. A bit whose own quality
+   is bad raises an alarm as well. */
 static void add_mirrored(struct alarms *alarms, const int *mirrors, size_t count)
 {
     const struct plant *plant = alarms->plant;
@@ -205,7 +207,7 @@ static int by_tag_and_kind(const void *pa, const void *pb, void *list_ptr)
     return a->tag != b->tag ? a->tag - b->tag : (int)a->kind - (int)b->kind;
 }
 
-/* Builds the indices by tag: the entries of tag t run from firsts[t] up to, but not including, firsts[t + 1]. */
+/* Builds the indices by tag: the entries of tag t have the positions from firsts[t] to firsts[t + 1] - 1. */
 static void index_all(struct alarms *alarms)
 {
     size_t tags = alarms->plant->tag_count;
@@ -307,7 +309,7 @@ static void find_gravest(struct alarms *alarms, int tag)
         alarms->listener.of_tag(alarms->listener.arg, tag, (enum alarm_kind)now.kind, (enum alarm_status)now.status);
 }
 
-/* Gives the alarm a new change number and moves it to the front of the list of changes. */
+/* Gives the alarm the next change number and moves it to the front of the list of alarms, which is sorted by change number. */
 void alarms_touch(struct alarms *alarms, int index)
 {
     struct alarm *alarm = &alarms->list[index];
@@ -361,8 +363,8 @@ static enum alarm_outcome step(struct alarms *alarms, int index, const struct al
     return outcome;
 }
 
-/* Copies the other alarm system's acknowledgement: acknowledged while its bit is set; unacknowledged again if the bit is cleared while
-   the alarm is active. */
+/* Copies the acknowledgement of the other alarm system: this alarm is acknowledged while the other system's bit is set, and
+   unacknowledged again if the bit is cleared while the alarm is active. */
 static void follow_acknowledgement(struct alarms *alarms, int index, struct instant at)
 {
     struct alarm *alarm = &alarms->list[index];
@@ -377,7 +379,7 @@ static void follow_acknowledgement(struct alarms *alarms, int index, struct inst
     step(alarms, index, &change, at.mono_ns);
 }
 
-/* Returns the device whose LINK alarm covers this alarm: that is so while the tag's device is lost as a whole. NULL: none. */
+/* Returns the device whose LINK alarm covers this BAD alarm, which is so while the tag's device is lost as a whole. NULL: none. */
 static const struct alarm_device *carrier_of(const struct alarms *alarms, const struct alarm *alarm)
 {
     int of = alarm->kind == ALARM_BAD ? alarms->devices->of_tag[alarm->tag] : -1;
@@ -400,7 +402,7 @@ static void turned(struct alarms *alarms, int index, double value, struct instan
     follow_acknowledgement(alarms, index, at);
 }
 
-/* Applies delays whose end has passed, each at the time at which it ended. */
+/* Ends the alarm's delays that are over by now, each with the time at which it was over. */
 static void advance(struct alarms *alarms, int index, struct instant now)
 {
     struct alarm *alarm = &alarms->list[index];
@@ -476,7 +478,8 @@ static void put_sample(struct alarms *alarms, const struct feed *feed, const str
 
 /* --- devices ---------------------------------------------------------------------------------------------------------------- */
 
-/* Suppresses unacknowledged BAD alarms that were raised before the device was known to be lost as a whole. */
+/* Suppresses unacknowledged BAD alarms that were raised before the device was known to be lost as a whole: the device's LINK alarm now
+   reports the failure. */
 static void carry_all(struct alarms *alarms, const struct alarm_device *device, struct instant now)
 {
     for (size_t i = 0; i < alarms->count; i++) {
@@ -502,7 +505,8 @@ static void look_at_devices(struct alarms *alarms, struct instant now)
     }
 }
 
-/* Returns true if a bad tag needs its own alarm again: its device sends readings, but this tag has had none for its stale time. */
+/* Returns true if a tag whose BAD alarm was covered by the LINK alarm needs its own alarm again: its device sends readings of other
+   tags, but this tag has had none for its stale time. */
 static bool calls_by_itself(const struct alarms *alarms, const struct alarm *alarm, int64_t mono_ns)
 {
     const struct alarm_device *device = &alarms->devices->list[alarms->devices->of_tag[alarm->tag]];
@@ -520,14 +524,15 @@ static void call_those_left(struct alarms *alarms, struct instant now)
     }
 }
 
-/* A tag that never becomes stale keeps its last value while its device is lost, so quality alone does not show the loss. */
+/* Returns what a tag's quality says about its device. A tag that is never stale keeps its last value as usable while the device is lost,
+   so for that tag the quality "no communication, last usable value" counts as lost. */
 static enum device_status status_of(const struct alarms *alarms, size_t tag, uint32_t quality)
 {
     bool lost = quality == QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE && never_stale(alarms, tag);
     return lost ? DEVICE_GONE : device_status_of(quality);
 }
 
-/* Devices are evaluated before their tags, so that a device's alarm can suppress those of its tags. */
+/* evaluates a device before its tags, so that the device's LINK alarm can suppress the BAD alarms of the tags */
 void alarms_put(struct alarms *alarms, const struct sample_event *event, size_t count)
 {
     for (size_t i = 0; i < count; i++)
@@ -557,7 +562,7 @@ static bool is_waiting_too_long(struct alarms *alarms, int tag, int64_t mono_ns)
     return (double)(mono_ns - alarms->begun_ns) >= stale_s * 1e9;
 }
 
-/* Returns true if a tag's quality needs no event: no alarm depends on the tag, or its quality is unchanged. */
+/* Returns true if a tag's quality needs no sample event: no alarm depends on the tag, or the quality is as before. */
 static bool is_no_news(const struct alarms *alarms, size_t tag, bool bad, uint32_t quality)
 {
     const struct last_sample *seen = &alarms->seen[tag];
@@ -570,7 +575,7 @@ static bool is_no_news(const struct alarms *alarms, size_t tag, bool bad, uint32
     return seen->bad == bad && (!counts || alarms->devices->statuses[tag] == status_of(alarms, tag, quality));
 }
 
-/* Creates events for tags that became stale since their last sample, or never had one. */
+/* Creates sample events for tags that became stale since their last sample, or never had a sample. */
 static void look_at_qualities(struct alarms *alarms, const struct snapshot *now)
 {
     size_t count = 0;

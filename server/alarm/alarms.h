@@ -27,37 +27,38 @@ struct alarm {
     double limit; /* limit value; NaN: none */
     struct alarm_rule rule;
     struct alarm_state state;
-    bool acknowledged_there;                                /* a bit of another alarm system says that the alarm is acknowledged there */
+    bool acknowledged_there;                                /* true: a bit of the mirrored alarm system says that the alarm is
+                                                               acknowledged there */
     bool held;                                              /* true: the measurement is bad, so the alarm keeps its last state */
-    double value;                                           /* value when the alarm was raised; NaN: none */
-    int64_t raised_utc_ns;                                  /* UTC: when it was last raised; 0: never */
+    double value;                                           /* value when the alarm was raised; NaN: no value */
+    int64_t raised_utc_ns;                                  /* UTC time when the alarm was last raised; 0: never */
     int64_t changed_utc_ns;                                 /* UTC: when it last changed */
     struct instant until;                                   /* when shelving of the alarm ends; 0: the alarm is not shelved */
-    char who[ALARM_NAME_BYTES], reason[ALARM_REASON_BYTES]; /* operator and reason of the last action; "": none */
-    uint64_t number; /* sequence number of the alarm's last change, counted over all alarms; 0: the alarm never changed */
+    char who[ALARM_NAME_BYTES], reason[ALARM_REASON_BYTES]; /* operator and reason of the last action on the alarm; empty: none */
+    uint64_t number; /* change number of the alarm's newest change, counted over all alarms of the plant; 0: the alarm never changed */
     /* --- below: private to alarms*.c */
     struct condition condition;
     struct condition_delays delays;
-    /* raised_mono_ns: when the alarm was last raised; recent_ns: ring buffer of the last times when it was raised */
+    /* raised_mono_ns: monotonic time when the alarm was last raised; recent_ns: ring buffer of the times of the newest raises */
     int64_t raised_mono_ns, recent_ns[ALARM_RECENT];
     unsigned raised_count;
-    int older, newer; /* neighbours in the doubly linked list of alarms, sorted by change number; -1: none */
-    bool timed;       /* true: the alarm may change merely because time passes (it is in `timed`) */
+    int older, newer; /* indices of the neighbours in the list of alarms sorted by change number; -1: none */
+    bool timed;       /* true: the passing of time alone may change the alarm, so its index is in alarms->timed */
 };
 
-/* One change of one alarm, as the listener receives it. */
+/* One change of one alarm, as alarms_listener receives it. */
 struct alarm_change {
     const struct alarm *alarm; /* the alarm after the change */
     enum alarm_event event;
     enum alarm_status before, after;
     int64_t utc_ns;
-    double value;             /* value of the sample; NaN: none */
+    double value;             /* value of the sample that caused the change; NaN: none */
     const char *who, *reason; /* "": no operator, no reason */
 };
 
 struct alarms_listener {
     void (*changed)(void *arg, const struct alarm_change *change);
-    /* Called when the tag shows a different alarm, or its shown alarm has a new state. */
+    /* called when a tag's most urgent alarm is a different one now, or has a new state */
     void (*of_tag)(void *arg, int tag, enum alarm_kind kind, enum alarm_status status);
     void *arg;
 };
@@ -67,14 +68,14 @@ struct alarms;
 struct alarms *alarms_create(const struct plant *plant, const struct alarms_listener *listener);
 void alarms_destroy(struct alarms **alarms); /* &NULL is allowed; sets *alarms to NULL */
 
-/* Applies the store's sample events, in their order. */
+/* Applies sample events of the store, in the order of the array. */
 void alarms_put(struct alarms *alarms, const struct sample_event *event, size_t count);
-/* Applies the passing of time: delays, shelving, and readings that became bad without an event because they are stale. */
+/* Applies the passing of time: ends delays and shelving, and treats readings that became stale as bad, since no event reports that. */
 void alarms_tick(struct alarms *alarms, const struct snapshot *now);
 
 struct alarm_act {
-    enum alarm_event event; /* one of ACKNOWLEDGE, RESET, SHELVE, UNSHELVE, TAKE_OUT, PUT_BACK */
-    int64_t for_ns;         /* for SHELVE: duration, at most ALARM_LONGEST_SHELF_NS */
+    enum alarm_event event; /* action of the operator: ALARM_ACKNOWLEDGE, RESET, SHELVE, UNSHELVE, TAKE_OUT or PUT_BACK */
+    int64_t for_ns;         /* for ALARM_SHELVE: duration, at most ALARM_LONGEST_SHELF_NS */
     const char *who, *reason;
 };
 /* Carries out an operator's action on the alarm with that index. Returns REFUSAL_NONE, or why it was refused. */
@@ -84,20 +85,20 @@ enum refusal_code alarms_act(struct alarms *alarms, int index, const struct alar
 size_t alarms_count(const struct alarms *alarms);
 const struct alarm *alarms_at(const struct alarms *alarms, int index);
 int alarms_find(const struct alarms *alarms, int tag, enum alarm_kind kind); /* returns the index, or -1 */
-/* returns the index of an alarm, or -1; name: name of the tag; for ALARM_LINK, of the device */
+/* returns the index of an alarm, or -1. name: name of the tag; for a LINK alarm, of the device */
 int alarms_find_named(const struct alarms *alarms, const char *name, enum alarm_kind kind);
-enum alarm_status alarm_status_of(const struct alarm *alarm); /* returns the state as one word */
-uint64_t alarms_number(const struct alarms *alarms);          /* returns the sequence number of the last change of any alarm */
-/* Returns the index of the alarm that changed last, or -1; follow ->older for the ones before. */
+enum alarm_status alarm_status_of(const struct alarm *alarm); /* returns the alarm's state as one of the words of ISA-18.2 */
+uint64_t alarms_number(const struct alarms *alarms);          /* returns the newest change number of any alarm */
+/* Returns the index of the alarm that changed last, or -1; its member `older` is the index of the alarm that changed before it. */
 int alarms_newest(const struct alarms *alarms);
 
 struct alarm_counts {
     int statuses[ALARM_STATUSES];
     int active;     /* number of alarms that are annunciated while their cause is present */
-    int standing;   /* number of alarms in `active` that have been active for longer than a day */
+    int standing;   /* number of alarms that have been active for longer than a day; they are also counted in `active` */
     int chattering; /* number of alarms raised three times or more within the last minute */
     int held;
-    int priorities[ALARM_PRIORITIES]; /* annunciated alarms by priority; index 0 is priority 1 */
+    int priorities[ALARM_PRIORITIES]; /* number of annunciated alarms of each priority; index 0 is priority 1 */
 };
 #define ALARM_STANDING_NS (86400 * INT64_C(1000000000))
 #define ALARM_CHATTERING_NS (60 * INT64_C(1000000000))
@@ -105,15 +106,15 @@ struct alarm_counts {
 void alarms_counts(const struct alarms *alarms, int64_t now_mono_ns, struct alarm_counts *out);
 
 /* --- restoring --- */
-/* Sets an alarm to a state from the journal. The listener is called only for the tag's shown alarm (of_tag), not for the change. States
-   that do not exist in this plant's alarm mode are dropped. */
+/* Sets an alarm to a state from the journal. Of the listener only of_tag is called (the alarm that the tag shows), not the callback for
+   changes. States that do not exist in this plant's alarm mode are dropped. */
 void alarms_restore(struct alarms *alarms, int index, const struct alarm *saved, struct instant now);
-/* Sets alarms, found by name and kind, to another daemon's states, in list order. whole: all other alarms are normal. Returns false if
-   an alarm does not exist; then nothing changed. */
+/* Sets alarms, found by name and kind, to another daemon's states, in the order of `list`. whole: all alarms that are not in `list`
+   become normal. Returns false if an alarm does not exist; then nothing changed. */
 bool alarms_mirror(struct alarms *alarms, const struct alarm *list, size_t count, bool whole);
 /* Ends mirroring: alarms continue from their mirrored states; each keeps its state until its tag's next sample. */
 void alarms_lead(struct alarms *alarms, struct instant now);
-/* Takes over the states of alarms with the same tag and kind from another plant, including running delays. */
+/* Takes over states and running delays of the old plant's alarms, for alarms with the same tag and kind. */
 void alarms_adopt(struct alarms *alarms, const struct alarms *before);
 
 #endif

@@ -8,7 +8,7 @@
 #include "value/snapshot.h"
 
 /* Sets the alarms of a historical snapshot to those of the time snapshot->taken_utc_ns; sets none for a time when nothing was recorded.
-   folder: of the journal; reader: of the history in that folder. Returns 0 or -errno (logged). Thread: that of the reader. */
+   folder: folder of the journal; reader: reader of the history in that folder. Returns 0 or -errno (logged). Thread: that of the reader. */
 int alarms_at_instant(struct log *log, struct history_reader *reader, const char *folder, const struct plant *plant,
                       struct snapshot *snapshot);
 

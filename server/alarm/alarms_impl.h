@@ -6,12 +6,12 @@
 #include "alarm/devices.h"
 
 enum feed_role { FEED_VALUE, FEED_BIT, FEED_BADNESS, FEED_ACKNOWLEDGED, FEED_SUPPRESSES };
-struct feed { /* feed: a tag whose samples an alarm depends on, and the meaning of these samples for the alarm */
+struct feed { /* a tag on whose samples an alarm depends, and what these samples mean for the alarm */
     int tag, alarm;
     enum feed_role role;
 };
 
-struct last_sample { /* the last sample of a tag */
+struct last_sample { /* newest sample of a tag */
     double value;
     bool sampled, bad;
 };
@@ -28,21 +28,21 @@ struct alarms {
     struct feed *feeds; /* sorted by tag */
     size_t feed_count, feed_capacity;
     int *by_tag; /* indices of alarms, sorted by tag */
-    /* index by tag, with one extra entry at the end: position of the tag's first entry in feeds, and in by_tag */
+    /* index by tag, with one extra element at the end: position of the tag's first entry in `feeds`, and in by_tag */
     int *first_feed, *first_alarm;
     struct last_sample *seen;
     struct devices *devices;
-    struct sample_event *noticed; /* scratch memory of alarms_tick(): events found, one per tag */
+    struct sample_event *noticed; /* scratch memory of alarms_tick() for at most one event per tag */
     struct gravest *gravest;
-    int *timed; /* indices of the alarms that have a running delay or are shelved */
+    int *timed; /* indices of the alarms with a running delay and of the shelved alarms */
     size_t timed_count, timed_capacity;
-    int carried; /* number of alarms that are suppressed because the alarm of their device covers them */
+    int carried; /* number of BAD alarms that are suppressed because the LINK alarm of their device covers them */
     uint64_t number;
     int newest;
-    int64_t begun_ns; /* monotonic time of the first tick */
+    int64_t begun_ns; /* monotonic time of the first call of alarms_tick(); 0: none yet */
 };
 
-void alarms_touch(struct alarms *alarms, int index); /* gives the alarm a new change number */
+void alarms_touch(struct alarms *alarms, int index); /* gives the alarm the next change number */
 void alarms_watch(struct alarms *alarms, int index); /* adds the alarm to `timed` if the passing of time can change it */
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The condition of an alarm: a limit with a deadband and with on and off delays. When it becomes active or inactive depends only on the
-   samples and their times, not on how often it is evaluated. Pure; times are monotonic. Thread: any. */
+/* The condition of an alarm: a limit with a deadband, and with delays before it becomes active (on delay) and inactive (off delay). When
+   it changes depends only on the samples and their times, not on how often it is evaluated. Pure; times are monotonic. Thread: any. */
 #ifndef ALARM_CONDITION_H
 #define ALARM_CONDITION_H
 #include <stdbool.h>
@@ -10,7 +10,7 @@
 
 struct condition { /* zero-initialised: inactive */
     bool active;
-    enum { CONDITION_RESTS, CONDITION_COMES, CONDITION_GOES } pending; /* which delay is running: none, the on delay, the off delay */
+    enum { CONDITION_RESTS, CONDITION_COMES, CONDITION_GOES } pending; /* running delay: none, on delay, off delay */
     int64_t since_ns;                                                  /* monotonic: when the delay began */
 };
 
@@ -22,10 +22,10 @@ enum condition_side { CONDITION_CLEAR, CONDITION_BETWEEN /* within the deadband 
 
 /* Returns the side of the limit on which a value is. */
 enum condition_side condition_side(enum alarm_kind kind, double limit, double deadband, double value);
-/* Advances the time. Returns true if a delay ended: the condition changed at *at_ns. */
+/* Ends a running delay that is over at the given time. Returns true if one ended, so the condition changed; *at_ns receives the time. */
 bool condition_advance(struct condition *condition, const struct condition_delays *delays, int64_t now_ns, int64_t *at_ns);
-/* Applies a sample; call condition_advance() to its time first. Returns true if the condition changed. */
+/* Applies a sample; call condition_advance() with the sample's time first. Returns true if the condition changed. */
 bool condition_put(struct condition *condition, const struct condition_delays *delays, enum condition_side side, int64_t now_ns);
-void condition_hold(struct condition *condition); /* stops delays, because the measurement is unknown from now on */
+void condition_hold(struct condition *condition); /* stops a running delay, because the measurement is unknown from now on */
 
 #endif

@@ -5,13 +5,14 @@
 #define ALARM_DEVICES_H
 #include "plant/plant.h"
 
-enum device_status { DEVICE_UNKNOWN, DEVICE_USABLE, DEVICE_GONE /* no data arrives, or the controller has stopped */, DEVICE_OTHER };
+enum device_status { DEVICE_UNKNOWN, DEVICE_USABLE, DEVICE_GONE /* DEVICE_GONE: no data arrives from the device, or its controller has
+                                                                   stopped */, DEVICE_OTHER };
 
 struct alarm_device {
     char *name; /* name of the source, with the unit if the source has several: "plc1", "gateway/7" */
     int source, unit;
-    int usable, gone; /* counts of the device's tags whose status is DEVICE_USABLE, and DEVICE_GONE */
-    int64_t back_ns;  /* monotonic: since when a tag of the device is usable; 0: none is */
+    int usable, gone; /* numbers of the device's tags with status DEVICE_USABLE and DEVICE_GONE */
+    int64_t back_ns;  /* monotonic time since which a tag of the device is usable; 0: none is */
     int alarm;        /* index of the device's LINK alarm; -1: none */
     bool changed;     /* true: the device changed since alarms.c last evaluated it */
 };
@@ -19,7 +20,7 @@ struct alarm_device {
 struct devices {
     struct alarm_device *list;
     size_t count, capacity;
-    int *of_tag;       /* device index by tag; -1: none */
+    int *of_tag;       /* index in `list` of each tag's device, by tag; -1: none */
     uint8_t *statuses; /* enum device_status by tag */
 };
 
@@ -27,7 +28,7 @@ struct devices *devices_create(const struct plant *plant);         /* plant must
 void devices_destroy(struct devices **devices);                    /* &NULL is allowed; sets *devices to NULL */
 int devices_find(const struct devices *devices, const char *name); /* returns the index, or -1 */
 
-/* Returns the status that a tag's quality gives. */
+/* Returns what a tag's quality says about its device: DEVICE_USABLE, DEVICE_GONE or DEVICE_UNKNOWN. */
 enum device_status device_status_of(uint32_t quality);
 /* Records the status that a tag has from mono_ns on. */
 void devices_put(struct devices *devices, int tag, enum device_status status, int64_t mono_ns);

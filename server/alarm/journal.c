@@ -24,11 +24,11 @@ struct journal {
     struct log *log;
     char *folder;
     double keep_days;
-    int64_t newest_utc_ns; /* time of the newest row when the journal was opened */
+    int64_t newest_utc_ns; /* UTC time of the newest row that the file had when the journal was opened */
     struct {
         counter *rows, *lost, *waiting, *good;
     } counters;
-    /* --- below: used only by the thread */
+    /* --- below: used only by the journal's thread */
     struct journal_file *file;
     struct entries taken;
     bool failing;
@@ -68,7 +68,7 @@ static int write_taken(struct journal *journal, int64_t mono_ns)
     return error;
 }
 
-/* Records the result of a write attempt. count: number of rows written by this attempt. */
+/* Records the result of a write attempt for journal_settled(). count: number of rows that the attempt wrote. */
 static void count_written(struct journal *journal, size_t count, int error)
 {
     pthread_mutex_lock(&journal->thread.lock);
@@ -76,7 +76,7 @@ static void count_written(struct journal *journal, size_t count, int error)
     pthread_mutex_unlock(&journal->thread.lock);
 }
 
-/* Writes the rows taken from the queue. now: tries even if the retry delay after a failure is not over. */
+/* Writes the rows that were taken from the queue. now: write even if the retry delay after a failure is not over. */
 static void try_to_write(struct journal *journal, bool now)
 {
     int64_t mono_ns = clock_mono_ns();
@@ -99,7 +99,7 @@ static void try_to_write(struct journal *journal, bool now)
     count_written(journal, rows - journal->taken.count, error);
 }
 
-/* Moves rows from the queue to those that are to be written. The caller holds the lock. */
+/* Moves rows from the queue of other threads to the thread's list of rows to write. The caller holds the lock. */
 static void take(struct journal *journal)
 {
     struct entries *taken = &journal->taken, *waiting = &journal->waiting;
@@ -116,8 +116,8 @@ static void take(struct journal *journal)
     waiting->count = 0;
 }
 
-/* Waits for rows, then GATHER_NS more so that one transaction takes them together. If journal_end() waits for the rows, returns at once
-   with *urgent set. */
+/* Waits until there are rows to write, and at least GATHER_NS, so that one transaction writes the rows of that time. Returns earlier if
+   journal_end() waits for rows to be on disk; *urgent receives whether it does. Returns false once the thread must end. */
 static bool wait_for_work(struct journal *journal, bool *urgent)
 {
     int64_t until_ns = clock_mono_ns() + GATHER_NS;
@@ -262,7 +262,7 @@ static void note_newest(void *arg, const struct journal_row *row)
     ((struct journal *)arg)->newest_utc_ns = row->t_us * 1000;
 }
 
-/* Restores the alarm states. A damaged file is left to the thread, which renames it before writing. */
+/* Restores the alarm states from the file. If the file is damaged, restores none: the thread renames it before it writes. */
 static void restore_all(struct journal *journal, struct alarms *alarms, struct instant now)
 {
     struct restoring restoring = { alarms, now };

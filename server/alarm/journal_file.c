@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The journal's tables: one row for each change, and the present state of each alarm. */
+/* The journal's tables in SQLite: one row for each change, and the present state of each alarm. */
 #include "alarm/journal_file.h"
 
 #include <errno.h>
@@ -25,7 +25,7 @@ static const char schema_1[] =
 static const char *const schemas[JOURNAL_VERSION] = { schema_1 };
 
 #define ROW "id, t, tag, kind, event, before, after, priority, lim, value, who, reason"
-/* Sorted by an index, so that reading a page costs only its own rows, wherever the page is. */
+/* an index supplies this order, so that reading a page costs only the page's own rows, wherever the page is */
 #define IN_TIME "SELECT " ROW " FROM event WHERE t BETWEEN ?1 AND ?2 AND (t < ?3 OR id < ?4)"
 #define NEWEST " ORDER BY t DESC, id DESC LIMIT ?5"
 enum { SQL_EVENT, SQL_STATE, SQL_NORMAL, SQL_FORGET, SQL_STATES, SQL_TIME_OF, SQL_ROWS, SQL_ROWS_OF, SQL_AT, SQL_COUNT };
@@ -40,8 +40,8 @@ static const char *const sql[SQL_COUNT] = {
     [SQL_TIME_OF] = "SELECT t FROM event WHERE id = ?",
     [SQL_ROWS] = IN_TIME NEWEST,
     [SQL_ROWS_OF] = IN_TIME " AND tag = ?6" NEWEST,
-    /* Steps through the index from one alarm to the next, and takes the last row of each up to the time: a few steps per alarm, however
-       long the journal is. */
+    /* walks through the index from one alarm to the next and takes each alarm's newest row up to the time: a few steps per alarm,
+       however long the journal is */
     [SQL_AT] = "WITH RECURSIVE known(tag, kind) AS ("
                " SELECT * FROM (SELECT tag, kind FROM event ORDER BY tag, kind LIMIT 1)"
                " UNION ALL SELECT next.tag, next.kind FROM known JOIN event next ON next.id ="
@@ -204,7 +204,7 @@ static void tell(sqlite3_stmt *s, void (*each)(void *arg, const struct journal_r
     each(arg, &row);
 }
 
-/* Returns the time of a row; INT64_MIN: no such row, for example because it was deleted. */
+/* Returns the time of the row with an id; INT64_MIN: there is no such row, for example because it was deleted. */
 static int64_t time_of(struct journal_file *file, int64_t id)
 {
     sqlite3_stmt *s = database_statement(&file->db, SQL_TIME_OF);

@@ -10,7 +10,7 @@ enum { JOURNAL_VERSION = 1 };
 
 struct journal_entry {
     struct alarm alarm; /* the alarm at that time */
-    bool changed;       /* true: a change, with its event; false: only the present state */
+    bool changed;       /* true: the entry is a change, with its event; false: it is only an alarm's present state */
     enum alarm_event event;
     enum alarm_status before, after;
     int64_t utc_ns;
@@ -26,22 +26,22 @@ struct journal_row {
 };
 struct journal_query {
     int64_t from_us, to_us;
-    int64_t before_id; /* query: only rows with a smaller id; INT64_MAX: all rows */
+    int64_t before_id; /* only rows with a smaller id than this; INT64_MAX: all rows */
     const char *tag;   /* NULL: all tags */
-    int limit;         /* maximum number of rows, newest first */
+    int limit;         /* maximum number of rows to return, newest first */
 };
 
 struct journal_file;
-/* Opens the file for writing; creates folder and file. *renewed: a damaged file was renamed, and this one is empty. Returns NULL with
-   *error. */
+/* Opens the file for writing; creates folder and file if missing. *renewed true: a damaged file was renamed, and the opened one is
+   empty. Returns NULL with *error on failure. */
 struct journal_file *journal_file_open(struct log *log, const char *folder, bool *renewed, int *error);
-/* Opens the file for reading. Returns NULL with *error; *error 0: the file does not exist. */
+/* Opens the file for reading. Returns NULL with *error on failure; *error 0: the file does not exist. */
 struct journal_file *journal_file_read(struct log *log, const char *folder, int *error);
 void journal_file_close(struct journal_file **file); /* &NULL is allowed; sets *file to NULL */
 /* Writes all entries in one transaction. Returns -EBADMSG if the file is damaged. */
 int journal_file_write(struct journal_file *file, const struct journal_entry *entries, size_t count);
 int journal_file_forget(struct journal_file *file, int64_t before_us); /* deletes rows older than before_us */
-/* Calls each() for the state of every alarm when the journal was last written. */
+/* Calls each() for the stored state of every alarm, as of the last write to the journal. */
 int journal_file_states(struct journal_file *file, void (*each)(void *arg, const char *tag, const struct alarm *alarm), void *arg);
 int journal_file_rows(struct journal_file *file, const struct journal_query *query, void (*each)(void *arg, const struct journal_row *row),
                       void *arg);

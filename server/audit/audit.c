@@ -19,7 +19,7 @@ static const int64_t RETRY_NS = NS_PER_S;
 struct queued_entry {
     struct audit_entry entry; /* the texts of the entry are stored in the same allocation, directly after the struct */
     int64_t utc_us;
-    bool said; /* the entry was logged already, because the file could not be written */
+    bool said; /* true: the entry is already in the log, which happens while the file cannot be written */
     struct queued_entry *next;
 };
 
@@ -34,7 +34,7 @@ struct audit {
     /* --- below: protected by thread.lock */
     struct queued_entry *first, **last;
     size_t count;
-    int64_t lost_count; /* entries lost since the last successful write */
+    int64_t lost_count; /* number of entries lost since the last successful write */
     struct settling settling;
     pthread_cond_t settled;
 };
@@ -185,7 +185,7 @@ static void free_first(struct audit *audit)
     mem_free(first);
 }
 
-/* Logs the queued entries that the file cannot take now. The caller holds the lock; only this thread removes entries. */
+/* Writes the queued entries that the file cannot take now to the log. The caller holds the lock; only this thread removes entries. */
 static void log_waiting(struct audit *audit)
 {
     for (struct queued_entry *waiting = audit->first; waiting; waiting = waiting->next) {
@@ -195,7 +195,7 @@ static void log_waiting(struct audit *audit)
     }
 }
 
-/* Records how many entries were lost. The caller holds the lock. */
+/* Queues an entry that says how many entries were lost. The caller holds the lock. */
 static void say_lost(struct audit *audit)
 {
     int64_t lost = audit->lost_count;

@@ -12,15 +12,15 @@ struct audit;
 struct audit *audit_start(const struct audit_params *params);
 /* Writes the queued entries, if possible, and ends the thread. &NULL is allowed; sets *audit to NULL. */
 void audit_stop(struct audit **audit);
-/* Calls that tell whether the entries recorded between audit_begin() and audit_end() are on disk (base/files/settling.h); none of the three
-   blocks. audit NULL: they count as on disk. */
+/* Together with the next two functions tells whether the entries recorded between audit_begin() and audit_end() are on disk
+   (base/files/settling.h). None of the three functions blocks. audit NULL: the entries count as on disk. */
 struct settling_ticket audit_begin(struct audit *audit);
 void audit_end(struct audit *audit, struct settling_ticket *ticket);
 int audit_settled(struct audit *audit, const struct settling_ticket *ticket);
-/* Waits until audit_settled() knows the result, for a second at most, and returns that result. Any thread except the event loop, which must
-   not block. */
+/* Waits for a second at most until audit_settled() knows the result, and returns that result. Thread: any except the event loop, which
+   must not block. */
 int audit_wait(struct audit *audit, const struct settling_ticket *ticket);
-/* Records a copy of an entry. audit NULL: does nothing. Any thread. */
+/* Queues a copy of an entry to be written. audit NULL: no-op. Thread: any. */
 void audit_say(struct audit *audit, const struct audit_entry *entry);
 
 #endif

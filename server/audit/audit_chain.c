@@ -29,7 +29,7 @@ static void hash_of(const char *bytes, size_t count, char out[AUDIT_HASH_CHARS +
     hex_print(hash, sizeof(hash), out);
 }
 
-/* Adds a text to the line. Outsiders choose some of these texts, so control characters and invalid UTF-8 become '?'. */
+/* Adds a text to the line. Some texts are chosen by outsiders, so control characters and invalid UTF-8 become '?'. */
 static void set_field(json_t *object, const char *key, const char *text)
 {
     char copy[FIELD_BYTES + 1];

@@ -22,17 +22,18 @@ struct audit_entry {
     const char *who, *role;
     const char *from;    /* the client's address */
     const char *how;     /* by which way or means */
-    const char *through; /* renderer (a daemon that draws for clients) that forwarded the action, and the name of its token; NULL: none */
+    const char *through; /* name of the renderer (a daemon that draws for clients) that forwarded the action, as its token names it;
+                            NULL: none */
     const char *what;    /* what was changed or requested */
     const char *why;     /* reason of a refusal */
 };
 
 /* Initialises the chain of an empty trail. */
 void audit_chain_init(struct audit_chain *chain);
-/* Appends the trail's next line, with its newline, to `out` and advances the chain. */
+/* Appends the next line of the trail for an entry to `out`, with its newline, and advances the chain. */
 void audit_chain_add(struct audit_chain *chain, const struct audit_entry *entry, int64_t utc_us, struct text *out);
-/* Checks a line (without its newline). first: the line is the oldest one kept, so its predecessor is not checked. Returns true and
-   advances the chain; or false with the reason in *why (static text). */
+/* Checks a line (without its newline) against the chain. first: the line is the oldest one kept, so the hash of its predecessor is not
+   checked. Returns true and advances the chain; or false with the reason in *why (static text). */
 bool audit_chain_check(struct audit_chain *chain, const char *line, size_t count, bool first, const char **why);
 
 #endif

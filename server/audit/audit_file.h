@@ -11,17 +11,17 @@
 struct audit_file {
     char *path, *head_path;
     int fd;                   /* file descriptor; -1: not open */
-    size_t bytes;             /* present size of PATH in bytes */
-    size_t most_bytes;        /* size in bytes at which the file is rotated */
+    size_t bytes;             /* size of PATH in bytes */
+    size_t most_bytes;        /* limit in bytes at which PATH is rotated: renamed, and a new one begun */
     struct audit_chain chain; /* where the trail ends */
 };
 
-/* Opens the file, or creates it. *finding: NULL, or a description of what is wrong with the existing trail, which is continued anyway;
-   the caller frees it with mem_free. */
+/* Opens the file, or creates it. *finding receives NULL, or a description of what is wrong with the existing trail, which is continued
+   anyway; the caller frees it with mem_free. */
 int audit_file_open(struct audit_file *file, const char *path, size_t most_bytes, char **finding);
-void audit_file_close(struct audit_file *file); /* the struct may also be a zeroed one that was never opened */
+void audit_file_close(struct audit_file *file); /* a zeroed struct that was never opened is allowed */
 /* Appends an entry. On success the whole entry is on disk; on failure no part of the entry is, and the chain is unchanged. The entry's line
-   is appended to `line`. *finding: as in audit_file_open(), about changes that another program made meanwhile. */
+   is appended to `line`. *finding receives NULL, or a description of changes that another program made to the file. */
 int audit_file_append(struct audit_file *file, const struct audit_entry *entry, int64_t utc_us, struct text *line, char **finding);
 
 struct audit_report {
@@ -29,10 +29,10 @@ struct audit_report {
     uint64_t first_seq;
     struct audit_chain end;
     bool good;
-    char *text; /* description of the fault and of its place; NULL: no fault. Free it with mem_free */
+    char *text; /* description of the first fault, with file and line; NULL: no fault. Free it with mem_free */
 };
-/* Verifies the trail: full files, PATH, and PATH.head. known: sequence number and hash of a line, noted in another place (seq 0: none);
-   reports a trail that ends before that line or has another one there. */
+/* Verifies the trail: rotated files, PATH, and PATH.head. known: sequence number and hash of a line that were noted in another place
+   (seq 0: none). Reports a trail that ends before that line, or has another line with that number. */
 void audit_file_verify(const char *path, const struct audit_chain *known, struct audit_report *report);
 
 #endif

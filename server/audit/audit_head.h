@@ -7,9 +7,9 @@
 
 /* Parses `NUMBER HASH` or `NUMBER:HASH`. Returns false if the text is neither. */
 bool audit_head_parse(const char *text, struct audit_chain *head);
-/* Returns false if the file does not exist or cannot be parsed. */
+/* Reads PATH.head. Returns false if the file does not exist or cannot be parsed. */
 bool audit_head_read(const char *path, struct audit_chain *head);
-/* Returns whether the file was written. */
+/* Writes PATH.head. Returns true if it was written. */
 bool audit_head_write(const char *path, const struct audit_chain *head);
 
 #endif

@@ -11,9 +11,9 @@ struct audit_params {
     struct log *log;
     struct counters *counters;
     const char *path;                     /* path of the trail's file */
-    size_t most_bytes;                    /* size at which the file is rotated; 0: 64 MB */
+    size_t most_bytes;                    /* bytes at which the file is rotated; 0: 64 MB */
     const char *syslog;                   /* HOST[:PORT] of a syslog server over TLS; NULL: none */
-    const char *syslog_ca;                /* PEM file of trusted certificates for the syslog server; NULL: those of the operating system */
+    const char *syslog_ca;                /* PEM file of certificates to trust for the syslog server; NULL: those of the operating system */
     const char *syslog_cert, *syslog_key; /* PEM files of our client certificate for the syslog server; NULL: none */
 };
 

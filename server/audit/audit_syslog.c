@@ -26,13 +26,13 @@ struct audit_syslog {
     pthread_t thread;
     counter *good, *lost;
     CURL *connection; /* used only by the thread; NULL: not connected */
-    bool failing;     /* used only by the thread: the last line could not be sent */
+    bool failing;     /* used only by the thread: true while the newest line could not be sent */
     pthread_mutex_t lock;
     pthread_cond_t wake;
     /* --- below: protected by `lock` */
     struct framed *first, **last;
     size_t waiting;
-    int64_t stop_ns; /* monotonic time at which the thread must end; 0: the thread keeps running */
+    int64_t stop_ns; /* monotonic time at which the thread must end; 0: no end requested */
 };
 
 void audit_syslog_frame(struct text *out, const char *host, int pid, const char *event, bool good, int64_t utc_us, const char *line,
@@ -95,8 +95,8 @@ static bool connect_now(struct audit_syslog *syslog)
     return false;
 }
 
-/* Returns whether the connection is still open. Checked before each line, so that no line is lost in the socket of a server that has
-   gone. */
+/* Returns true if the connection is still open. Checked before each line, because a line sent to a server that has gone would be lost in
+   the socket. */
 static bool is_alive(CURL *connection)
 {
     char byte;
@@ -161,7 +161,7 @@ static void *run(void *arg)
             pthread_cond_wait(&syslog->wake, &syslog->lock);
         if (syslog->stop_ns && (!syslog->first || clock_mono_ns() >= syslog->stop_ns))
             break;
-        struct framed *first = syslog->first; /* stays valid without the lock: only this thread removes lines */
+        struct framed *first = syslog->first; /* valid without the lock, because only this thread removes lines */
         pthread_mutex_unlock(&syslog->lock);
         bool sent = deliver(syslog, &first->text);
         pthread_mutex_lock(&syslog->lock);

@@ -7,15 +7,14 @@
 #include "base/text/text.h"
 
 struct audit_syslog;
-/* Returns NULL if the thread cannot start, already logged. */
+/* Starts the thread. Returns NULL if it cannot start, already logged. */
 struct audit_syslog *audit_syslog_start(const struct audit_params *params);
 /* Sends the queued lines, for a few seconds at most, and ends the thread. &NULL is allowed; sets *syslog to NULL. */
 void audit_syslog_stop(struct audit_syslog **syslog);
-/* Queues a copy of a line. Any thread. */
+/* Queues a copy of a line to be sent. Thread: any. */
 void audit_syslog_send(struct audit_syslog *syslog, const char *event, bool good, int64_t utc_us, const char *line, size_t count);
 
-/* Appends to `out` the length of a message and then the message, the framing of syslog over a stream. host: "-" if it is not known.
-   Pure. */
+/* Appends a syslog message to `out`, preceded by its length, as syslog over a stream requires. host: "-" if it is not known. Pure. */
 void audit_syslog_frame(struct text *out, const char *host, int pid, const char *event, bool good, int64_t utc_us, const char *line,
                         size_t count);
 

@@ -14,7 +14,7 @@
 struct audit_walk {
     struct audit_report *report;
     const struct audit_chain *known;
-    struct audit_chain head; /* the trail's head; seq 0: none */
+    struct audit_chain head; /* content of PATH.head; seq 0: there is none */
 };
 
 static void set_fault(struct audit_report *report, char *text)
@@ -26,7 +26,7 @@ static void set_fault(struct audit_report *report, char *text)
     report->good = false;
 }
 
-/* Reports a line whose hash differs from the hash that the caller knows from another place. */
+/* Reports a fault if the line just read has the sequence number of `with` but another hash. */
 static void compare(struct audit_walk *walk, const struct audit_chain *with, const char *path, const char *whose)
 {
     const struct audit_chain *end = &walk->report->end;

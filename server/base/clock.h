@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Clocks. Only the threads and main files read them; all other code takes the time as an argument. Thread: any. */
+/* Clocks. Only the threads' main loops read them; all other code takes the time as an argument. Thread: any. */
 #ifndef BASE_CLOCK_H
 #define BASE_CLOCK_H
 #include <pthread.h>
@@ -16,7 +16,7 @@ int64_t clock_utc_ns(void);  /* Returns UTC since 1970, for stored times and for
 int64_t clock_plant_ns(void);
 /* Sets the number of nanoseconds by which the core's clock is ahead of this machine's. 0: this node follows no core. */
 void clock_follow(int64_t ahead_ns);
-bool clock_utc_is_set(void);                /* Returns whether NTP or PTP synchronises the clock, according to the kernel. */
+bool clock_utc_is_set(void);                /* Returns true if NTP or PTP synchronises the clock, according to the kernel. */
 void clock_cond_init(pthread_cond_t *cond); /* Initialises a condition variable whose timed waits use clock_mono_ns(). */
 /* Waits for the condition variable until the given time; INT64_MAX: no limit. Returns false if that time was reached; true if the thread
    was woken. Call it with the lock held. */

@@ -14,7 +14,7 @@ void mem_grow(void *array_ptr, size_t *capacity, size_t need, size_t bytes_each)
 
 /* Returns zeroed memory, or NULL if the size is too large or memory is exhausted. */
 void *mem_try_array(size_t count, size_t bytes_each);
-/* Frees memory from any of these functions; accepts NULL. */
+/* Frees memory that any function of this header returned; NULL is a no-op. */
 void mem_free(void *p);
 
 #endif

@@ -13,7 +13,7 @@ struct thread {
     bool started;
     pthread_mutex_t lock;
     pthread_cond_t wake; /* timed waits use clock_mono_ns() */
-    bool stopping;       /* protected by the lock: true once the thread must end */
+    bool stopping;       /* protected by the lock; true: the thread must end */
 };
 
 /* Initialises lock and condition variable. End with thread_finish(). */
@@ -23,10 +23,10 @@ bool thread_start(struct thread *thread, struct log *log, const char *name, void
 /* Sets `stopping`, wakes the thread and waits until it has ended. If no thread was started, only sets `stopping`. */
 void thread_stop(struct thread *thread);
 void thread_finish(struct thread *thread);
-/* Returns whether the thread must end. Takes the lock. */
+/* Returns true if the thread must end. Takes the lock. */
 bool thread_is_stopping(struct thread *thread);
-/* Waits for the next tick: *next_ns plus the period, or now if that has passed. Returns false once the thread must end. Takes the lock.
-   Thread: the thread itself. */
+/* Waits until *next_ns plus the period, or not at all if that time has passed, and stores it in *next_ns. Returns false once the thread
+   must end. Takes the lock. Thread: the thread itself. */
 bool thread_wait_for_tick(struct thread *thread, int64_t period_ns, int64_t *next_ns);
 
 #endif

@@ -101,7 +101,7 @@ void workers_submit(struct workers *workers, void (*run)(void *arg), void *arg)
     pthread_mutex_unlock(&workers->lock);
 }
 
-/* One call of workers_for() in progress. Shared by the caller and its helpers; the last user frees it. */
+/* One call of workers_for() in progress. The caller and its helper jobs share it; the last one to finish frees it. */
 struct loop {
     size_t count, grain;
     void (*body)(void *arg, size_t begin, size_t end);
@@ -148,7 +148,7 @@ static void loop_help(void *arg)
     loop_unref(arg);
 }
 
-/* Starts a parallel loop: queues one helper job for each thread that is to take part besides the caller. */
+/* Starts a parallel loop: queues one helper job for each thread that shall help the caller. */
 static struct loop *loop_begin(struct workers *workers, const struct loop *like)
 {
     struct loop *loop = mem_new(sizeof(*loop));

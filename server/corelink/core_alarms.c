@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sends alarms by name and kind. Times are sent as ages too, so that the clocks of the nodes need not agree. */
+/* Converts alarms to JSON and back; alarms are named by tag or device name and kind. Times are also sent as ages, so that the clocks of
+   the nodes need not agree. */
 #include "corelink/core_alarms.h"
 
 #include <math.h>
@@ -120,7 +121,8 @@ static bool read_row(const json_t *one, struct journal_entry *out)
     return good;
 }
 
-/* Writes changes from the core to the journal; the alarm states that follow them are written to the same file afterwards. */
+/* Writes the core's alarm changes (`rows`) to the journal. The alarm states that result from them are written to the same file
+   afterwards. Returns NULL, or what is wrong with the rows (static). */
 static const char *take_rows(struct alarm_service *service, const json_t *rows)
 {
     const json_t *one;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Queries to the core, by libcurl. */
+/* Asks the core for recorded data over HTTP, by libcurl. */
 #include "corelink/core_history.h"
 
 #include <stdatomic.h>
@@ -17,7 +17,7 @@ struct core_history {
     struct core_link *link;
     const _Atomic bool *stop;
     struct http_request request;
-    char said[CURL_ERROR_SIZE + 100]; /* text of the last error that was logged; "": the last query succeeded */
+    char said[CURL_ERROR_SIZE + 100]; /* text of the last error that was logged; empty: the last query succeeded */
 };
 
 struct core_history *core_history_create(struct log *log, struct core_link *link, const _Atomic bool *stop)

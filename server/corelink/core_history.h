@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Queries of a renderer to its core over HTTP (libcurl) for data that only the core has: recorded series, gaps, the alarm journal, and
-   the readings of an instant. Blocks for seconds if the core does not answer: for threads that read history, each with its own struct.
-   Only the core that sends readings is asked, which is known to have the same plant. */
+/* Queries of a renderer to its core over HTTP (libcurl), for data that only the core has: recorded series, gaps, the alarm journal, and
+   the readings of an instant. A query blocks for seconds if the core does not answer, so only threads that read history may use it, each
+   with its own struct. Only the core that sends readings is asked, because that core is known to have the same plant. */
 #ifndef CORELINK_CORE_HISTORY_H
 #define CORELINK_CORE_HISTORY_H
 #include "base/log/log.h"
@@ -10,15 +10,17 @@
 #include "value/snapshot.h"
 
 struct core_history;
-/* Creates a client. Returns NULL if out of memory (logged). `link` must outlive it. stop: once true, waiting queries end soon. */
+/* Creates a client for queries. Returns NULL if out of memory (logged). `link` must outlive it. stop: flag; once it is true, waiting
+   queries end soon. */
 struct core_history *core_history_create(struct log *log, struct core_link *link, const _Atomic bool *stop);
 void core_history_destroy(struct core_history **history); /* &NULL is fine; leaves NULL */
 /* Appends `name=value` to a path, preceded by `?` or `&`, with the value URL-encoded. */
 void core_history_add(struct text *path, const char *name, const char *value);
-/* Appends the core's answer for the path to *out. Returns false on failure; logged if the cause differs from the last one. */
+/* Appends the core's answer to the query `path` to *out. Returns false on failure; a failure is logged unless the last one had the same
+   cause. */
 bool core_history_get(struct core_history *history, const char *path, struct text *out);
-/* Reads the readings of an instant into *snapshot, and the start of the history into *first_us (0: no history). snapshot NULL: reads only
-   the start of the history. Returns false on failure. */
+/* Reads the readings of an instant into *snapshot, and the time at which the core's history starts into *first_us (0: no history).
+   snapshot NULL: reads only the start of the history. Returns false on failure. */
 bool core_history_instant(struct core_history *history, int64_t at_us, struct snapshot *snapshot, int64_t *first_us);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A core and its renderers must have the same version, plant and configuration, so that indices of tags have the same meaning in all
-   these daemons. */
+/* Checks that a core and its renderers have the same version, plant and configuration, because otherwise indices of tags would have
+   different meanings in these daemons. */
 #include "corelink/core_identity.h"
 
 #include <string.h>

@@ -8,13 +8,13 @@
 #define CORE_PATH "/core"
 
 struct core_identity {
-    const char *version, *plant, *configuration; /* version of the program; name of the plant; hash of plant file and tag list */
+    const char *version, *plant, *configuration; /* version of the program; name of the plant; hash of the plant file and the tag list */
 };
 
 /* Returns the identity message as JSON; the caller owns it. type: "core" or "renderer". */
 json_t *core_identity_message(const char *type, const struct core_identity *own);
-/* Returns what differs between `own` and the identity message of the peer ("core" or "renderer"), as text for the log; free with
-   mem_free(). NULL: nothing differs. */
+/* Returns how the identity message of the peer ("core" or "renderer") differs from `own`, as text for the log; free with mem_free().
+   NULL: nothing differs. */
 char *core_identity_difference(const json_t *told, const char *peer, const struct core_identity *own);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Converts the readings of an instant, as a core recorded them, to bytes for a renderer and back. Pure. Thread: any. */
+/* Converts the readings of a past instant, as a core recorded them, to bytes for a renderer and back. Pure. Thread: any. */
 #ifndef CORELINK_CORE_INSTANT_H
 #define CORELINK_CORE_INSTANT_H
 #include "base/text/text.h"
@@ -8,10 +8,10 @@
 #define CORE_INSTANT_PATH "/core/instant"
 enum { CORE_INSTANT_HEAD_BYTES = 16, CORE_INSTANT_READING_BYTES = 32 };
 
-/* Appends the message. first_us: start of the core's history, 0: none. snapshot NULL: only first_us. */
+/* Appends the message. first_us: start of the core's history, 0: none. snapshot NULL: the message has only first_us. */
 void core_instant_write(struct text *out, int64_t first_us, const struct snapshot *snapshot);
-/* Reads a message into *snapshot, which has a reading for each tag; the snapshot's clocks stay unchanged. snapshot NULL: reads *first_us
-   only. Returns NULL, or what is wrong (static). */
+/* Reads a message into *snapshot, which has a reading for each tag; the snapshot's clocks stay unchanged. snapshot NULL: reads only
+   *first_us. Returns NULL, or what is wrong with the message (static). */
 const char *core_instant_read(const void *bytes, size_t count, int64_t *first_us, struct snapshot *snapshot);
 
 #endif

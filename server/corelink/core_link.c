@@ -25,12 +25,14 @@
 #include "value/backoff.h"
 #include "value/lookup.h"
 
-enum { CORE_ACT_BYTES = 200 * 1024 /* maximum length in bytes of an act (a forwarded action); below the limit of the core */ };
+enum { CORE_ACT_BYTES = 200 * 1024 /* maximum length in bytes of an act (a user's action that a renderer forwards to the core); below the
+                                      core's own limit */ };
 enum { MAX_MESSAGE_BYTES = 64 << 20 /* of one message */, TOKEN_BYTES = 256, WHY_BYTES = 300, LOOK_US = 200000, ADDRESSES = 8 };
-static const int64_t CONNECT_NS = 4 * NS_PER_S, CLOCKS_NS = 2 * NS_PER_S /* clock difference above which a warning is logged */;
-/* smaller clock differences are not corrected, so that the clock which pages use does not step */
+static const int64_t CONNECT_NS = 4 * NS_PER_S, CLOCKS_NS = 2 * NS_PER_S /* CLOCKS_NS: clock difference between core and renderer above
+                                                                            which a warning is logged */;
+/* clock differences below this are not corrected, so that the clock that pages show does not jump */
 static const int64_t STEP_NS = 500 * NS_PER_MS;
-static const int64_t QUICK_NS = 100 * NS_PER_MS; /* maximum delay of a message for its clock to be used */
+static const int64_t QUICK_NS = 100 * NS_PER_MS; /* a message that was delayed by more than this is not used to compare clocks */
 
 struct pending_request {
     uint64_t id, client; /* id 0: free slot */
@@ -38,29 +40,31 @@ struct pending_request {
 
 struct core_link {
     struct core_link_params params;
-    char authorization[TOKEN_BYTES + 16]; /* value of the header; "": none */
+    char authorization[TOKEN_BYTES + 16]; /* value of the HTTP authorization header; empty: none */
     int stop_fd;
     counter *up, *connects, *refused, *behind;
-    /* --- below: used by the link's thread only */
+    /* --- below: used only by the link's thread */
     struct mirrored *readings; /* buffer for one reading of each tag */
     struct text in;
     struct lws *wsi;
     struct host_turn turn;
     struct {
-        int count, index;                /* number of addresses of the host name, at most ADDRESSES; index of the next one to try */
-        char said[ADDRESSES][WHY_BYTES]; /* per address: last logged reason why there was no connection */
+        int count, index;                /* number of addresses of the host name, at most ADDRESSES; index of the address to try next */
+        char said[ADDRESSES][WHY_BYTES]; /* for each address: the reason logged last why there was no connection */
     } hosts[CORE_URLS];
-    int address;                                       /* index of the address being tried */
-    int64_t heard_ns, begun_ns, least_ns, readings_ns; /* least_ns, readings_ns: kept for the next core_readings (least_ns, at_ns) */
-    bool ended, taken, votes, introduced, clock_said;  /* votes: the connection is only for lease promises and gets no readings */
-    bool at_fault;       /* true: the last error is a misconfiguration of this node or of the core; false: the link was lost */
+    int address;                                       /* index of the address that is being tried */
+    int64_t heard_ns, begun_ns, least_ns, readings_ns; /* heard_ns: time of the newest message; least_ns, readings_ns: kept between
+                                                          messages for struct core_readings (least_ns, at_ns) */
+    bool ended, taken, votes, introduced, clock_said;  /* votes: this connection is used only for lease promises and gets no readings */
+    bool at_fault;       /* true: the connection failed because this node or the core is configured wrongly; false: the connection was
+                            lost */
     char why[WHY_BYTES]; /* why this connection ended */
     struct thread thread;
     /* --- below: under thread.lock */
     struct lws_context *context; /* NULL: not connected */
     bool is_up;
-    int up_index;     /* index of the URL whose core sends readings */
-    struct text *out; /* messages that wait to be sent */
+    int up_index;     /* index in params.urls of the core that sends readings */
+    struct text *out; /* messages that wait to be sent to the core */
     size_t out_count, out_capacity;
     struct pending_request waiting[CORE_ACTS];
     uint64_t last_id;
@@ -104,7 +108,7 @@ bool core_link_is_up(struct core_link *link)
     return up;
 }
 
-/* Queues a message. Call with the lock held. Takes ownership of `text`. */
+/* Queues a message to the core; takes ownership of `text`. Call with the lock held. */
 static void queue(struct core_link *link, char *text)
 {
     mem_grow(&link->out, &link->out_capacity, link->out_count + 1, sizeof(*link->out));
@@ -116,8 +120,8 @@ static void queue(struct core_link *link, char *text)
     mem_free(text);
 }
 
-/* Packs an act (a user's forwarded action) into a message. Returns NULL if the core could not accept the message, which would end the
-   link. */
+/* Packs an act (a user's forwarded action) into a message. Returns NULL if the message would be too long: the core would end the link
+   because of it. */
 static char *pack_act(const struct core_act *act, uint64_t id)
 {
     json_t *message = json_loads(act->text, 0, NULL);
@@ -171,7 +175,7 @@ static void end(struct core_link *link, const char *why)
     link->ended = true;
 }
 
-/* Ends the connection because of a fault reported by the core, or found in its messages. */
+/* Ends the connection because of a fault that the core reported, or that was found in its messages. */
 static void refuse(struct core_link *link, const char *why)
 {
     counter_inc(link->refused, 1);
@@ -179,8 +183,8 @@ static void refuse(struct core_link *link, const char *why)
     end(link, why);
 }
 
-/* Uses the connection only for votes (lease promises): the leader's configuration differs from ours, so its readings cannot be used, but it
-   needs our promise not to take the lead. */
+/* Keeps the connection for votes (lease promises) only. The leader's configuration differs from ours, so its readings cannot be used
+   here; but the leader needs our promises not to take the lead. */
 static void stay_to_vote(struct core_link *link, const char *why)
 {
     char *said = link->hosts[link->turn.index].said[link->address], text[WHY_BYTES];
@@ -237,7 +241,7 @@ static void on_links(struct core_link *link, const json_t *message)
             store_link_down(link->params.store, (int)i, now_ns);
 }
 
-/* Frees the entry of an act that was answered. Returns the client that waits for the answer; 0: no client waits any more. */
+/* Frees the entry of an act that was answered. Returns the id of the client that waits for the answer; 0: no client waits any more. */
 static uint64_t take_waiting(struct core_link *link, uint64_t id)
 {
     uint64_t client = 0;
@@ -263,7 +267,7 @@ static void on_answer(struct core_link *link, const json_t *message)
     }
 }
 
-/* Answers the leader's request for a promise. Sends nothing if this node cannot promise. */
+/* Answers the leader's request for a lease promise. Sends nothing if this node cannot promise not to take the lead. */
 static void on_lease(struct core_link *link, const json_t *message)
 {
     const json_t *number = json_object_get(message, "number"), *sent = json_object_get(message, "sent_age_ms");
@@ -277,7 +281,7 @@ static void on_lease(struct core_link *link, const json_t *message)
     lws_callback_on_writable(link->wsi);
 }
 
-/* Stores which recipients were notified of which alarms, as the leader reports. */
+/* Stores which recipients were notified of which alarms, as the leader reports it, for the case that this node takes the lead. */
 static void on_told(struct core_link *link, const json_t *message)
 {
     const char *kept = json_string_value(json_object_get(message, "kept"));
@@ -317,7 +321,7 @@ static void on_text(struct core_link *link)
     json_decref(message);
 }
 
-/* Adjusts the clock for displayed times to the core's clock; readings carry ages, which need no common clock. */
+/* Adjusts the clock that pages show to the core's clock. Readings are sent with their ages and need no common clock. */
 static void compare_clocks(struct core_link *link, int64_t core_utc_ns, int64_t late_ns)
 {
     int64_t ahead_ns = core_utc_ns - clock_utc_ns();
@@ -370,7 +374,7 @@ static void on_bytes(struct core_link *link)
     }
     link->least_ns = readings.least_ns;
     link->readings_ns = readings.at_ns;
-    /* rejects readings that a slow network delayed, or that were received while this machine slept: they are not current */
+    /* rejects readings that a slow network delayed or that arrived while this machine slept, because they are not current */
     if (readings.late_ns > CORE_SILENT_NS) {
         end(link, "its readings come more than 2 s late");
         return;
@@ -474,7 +478,7 @@ static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *use
     case LWS_CALLBACK_CLIENT_CONNECTION_ERROR: on_failure(link, in); break;
     case LWS_CALLBACK_CLIENT_RECEIVE: on_receive(link, in, len); return link->ended ? -1 : 0;
     case LWS_CALLBACK_CLIENT_WRITEABLE: return send_next(link);
-    case LWS_CALLBACK_EVENT_WAIT_CANCELLED: /* woken because a message is queued, or the thread must end */
+    case LWS_CALLBACK_EVENT_WAIT_CANCELLED: /* another thread woke the loop: a message is queued, or this thread must end */
         if (link->wsi)
             lws_callback_on_writable(link->wsi);
         break;
@@ -495,7 +499,7 @@ struct link_wakeup {
     struct core_link *link;
 };
 
-/* Does nothing: a timer that only makes lws_service() return regularly. */
+/* Callback of a timer that does nothing else than make lws_service() return regularly. */
 static void on_look(lws_sorted_usec_list_t *sul)
 {
     struct link_wakeup *look = lws_container_of(sul, struct link_wakeup, sul);
@@ -547,8 +551,8 @@ bool core_link_peer(struct core_link *link, struct core_peer *out)
     return true;
 }
 
-/* Resolves the host name with a timeout, which the system's resolver and lws lack. Each attempt uses the next address. Returns false
-   with the reason in link->why. */
+/* Resolves the host name of a core with a timeout, which the system's resolver and libwebsockets lack. Each call returns the next of the
+   host's addresses. Returns false with the reason in link->why. */
 static bool resolve(struct core_link *link, const struct core_url *url, char address[INET6_ADDRSTRLEN])
 {
     struct lookup *lookup = lookup_start(url->host, url->port);
@@ -625,7 +629,7 @@ static void watch_silence(struct core_link *link)
         end(link, "no readings came for 2 s");
 }
 
-/* Runs one connection until it ends; link->why has the reason. */
+/* Runs one connection to a core until it ends; link->why then has the reason. */
 static void run_connection(struct core_link *link)
 {
     struct core_url url;
@@ -648,7 +652,7 @@ static void run_connection(struct core_link *link)
 
 /* --- the thread --------------------------------------------------------------------------------------------------------------- */
 
-/* Tells all clients with unanswered acts that the outcome is unknown. */
+/* Answers all clients that wait for the result of an act: the outcome is unknown. */
 static void answer_waiting(struct core_link *link)
 {
     for (size_t i = 0; i < CORE_ACTS; i++) {
@@ -682,14 +686,15 @@ static void lost(struct core_link *link)
     memcpy(said, link->why, WHY_BYTES);
 }
 
-/* Selects the next address of this core's name, or the next core. Returns the monotonic time at which to try it. */
+/* Selects what to try next: the next address of this core's host name or, after the last one, the next core. Returns the monotonic time
+   at which to try it. */
 static int64_t take_turn(struct core_link *link)
 {
     int *index = &link->hosts[link->turn.index].index, count = link->hosts[link->turn.index].count;
     *index = count ? (link->address + 1) % count : 0;
     if (*index)
         return clock_mono_ns();
-    if (link->turn.backoff.failures > 1) /* limits the reconnect delay to about a second, because operators are waiting */
+    if (link->turn.backoff.failures > 1) /* keeps the reconnect delay at about a second at most, because operators are waiting */
         link->turn.backoff.failures = 1;
     return host_turn_next_ns(&link->turn, link->params.url_count, clock_mono_ns());
 }
@@ -739,7 +744,8 @@ struct core_link *core_link_start(const struct core_link_params *params)
         counters_add(c, "plantcast_core_refused_total", "counter", "Connections refused: the core does not belong to this renderer.");
     link->behind = counters_add_seconds(c, "plantcast_core_clock_ahead_seconds", "gauge",
                                         "Seconds by which the core's clock is ahead of this machine's.");
-    lws_set_log_level(LLL_ERR | LLL_WARN, NULL); /* libwebsockets logs only errors and warnings; the loop logs the connection's target */
+    lws_set_log_level(LLL_ERR | LLL_WARN, NULL); /* silences libwebsockets except for errors and warnings; the thread's loop logs to
+                                                    where it connects */
     thread_init(&link->thread);
     link->stop_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
     if (link->stop_fd < 0)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Message format, little-endian: "PCR1", count, the core's UTC and monotonic clocks; then for each reading: tag, quality, value, age,
-   source time. */
+/* Converts readings to bytes, little-endian: "PCR1", number of readings, the core's UTC and monotonic clocks; then for each reading:
+   tag, quality, value, age, source time. */
 #include "corelink/core_readings.h"
 
 #include <math.h>
@@ -10,7 +10,7 @@
 #include "corelink/little_endian.h"
 #include "value/quality.h"
 
-enum { DRIFT = 5000 /* maximum drift between the clocks of two machines: one part in 5000 */ };
+enum { DRIFT = 5000 /* maximum drift between the clocks of two machines: 1 ns in DRIFT ns */ };
 static const char MAGIC[4] = { 'P', 'C', 'R', '1' };
 
 void core_sent_init(struct core_sent *sent, size_t tag_count)

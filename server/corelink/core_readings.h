@@ -9,7 +9,7 @@
 
 enum { CORE_READINGS_HEAD_BYTES = 24, CORE_READING_BYTES = 32 };
 
-/* The readings that were last sent to one renderer, by tag. */
+/* The newest readings sent to one renderer, by tag. */
 struct core_sent {
     size_t count;
     struct core_sent_reading {
@@ -21,18 +21,19 @@ struct core_sent {
 
 void core_sent_init(struct core_sent *sent, size_t tag_count);
 void core_sent_finish(struct core_sent *sent);
-/* Appends the message with the readings that differ from those last sent, and records them as sent. Without changes the message only
-   shows that the core is alive. */
+/* Appends a message with the readings that differ from the newest ones sent, and records them in *sent. If no reading differs, the
+   message only shows that the core is alive. */
 void core_readings_write(struct text *out, const struct snapshot *snapshot, struct core_sent *sent);
 
 struct core_readings {
-    int64_t utc_ns; /* the core's clock when it took the readings */
-    /* smallest difference between our monotonic clock and the core's seen in this connection; set to INT64_MAX for a new one */
+    int64_t utc_ns; /* the core's UTC clock when it took the readings */
+    /* smallest difference between this machine's monotonic clock and the core's over all messages of this connection; the caller sets it
+       to INT64_MAX for a new connection */
     int64_t least_ns;
-    int64_t at_ns;   /* arrival time of the last message of this connection; set to 0 for a new one */
-    int64_t late_ns; /* extra delay of this message over the fastest message of the connection; already added to the ages */
+    int64_t at_ns;   /* arrival time of this connection's previous message; the caller sets it to 0 for a new connection */
+    int64_t late_ns; /* delay of this message beyond that of the connection's fastest message; already added to the ages */
     size_t count;
-    struct mirrored *at; /* buffer for one reading of each tag */
+    struct mirrored *at; /* room for one reading of each tag */
 };
 
 /* Reads a message that arrived at now_mono_ns into out->at, which has room for tag_count readings. Returns NULL, or what is wrong with

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Format, little-endian: "PCS1", count; then for each sample: tag, quality, value, time. */
+/* Converts samples to bytes, little-endian: "PCS1", number of samples; then for each sample: tag, quality, value, time. */
 #include "corelink/core_samples.h"
 
 #include <math.h>
@@ -14,7 +14,7 @@ static const char MAGIC[4] = { 'P', 'C', 'S', '1' };
 
 struct core_samples {
     struct store *store;
-    pthread_mutex_t lock; /* lock of the queue; may be taken while the store's lock is held */
+    pthread_mutex_t lock; /* protects the queue; may be taken while the store's lock is held */
     /* --- below: under `lock` */
     struct sample_event *at;
     size_t count, capacity;

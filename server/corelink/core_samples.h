@@ -17,11 +17,11 @@ struct core_samples;
 /* Starts listening to the store, which must outlive the queue. */
 struct core_samples *core_samples_listen(struct store *store);
 void core_samples_end(struct core_samples **samples); /* Frees the queue. &NULL is fine; leaves NULL. */
-/* Appends a message with queued samples, at most CORE_SAMPLES_AT_ONCE. Returns their number; 0: the queue is empty, nothing was
-   appended; -1: the queue overflowed and samples are lost. */
+/* Appends a message with the oldest queued samples, at most CORE_SAMPLES_AT_ONCE, and removes them from the queue. Returns their number;
+   0: the queue is empty, nothing was appended; -1: the queue overflowed and samples are lost. */
 int core_samples_write(struct core_samples *samples, struct text *out);
 
-/* Returns whether a message contains samples. */
+/* Returns true if a message consists of samples. */
 bool core_samples_is(const void *bytes, size_t count);
 /* Reads a message into *out (mem_free), with times of this machine's monotonic clock. Returns NULL, or what is wrong with the message
    (static). */

@@ -26,7 +26,7 @@ static bool is_same(const struct lease_row *a, const struct lease_row *b)
     return a->epoch == b->epoch && a->beat == b->beat;
 }
 
-/* Makes this node the leader. It may not act before a renewal is confirmed. */
+/* Makes this node the leader. It must not act as leader before a renewal is confirmed. */
 static void lead(struct lease *lease)
 {
     lease->leads = true;
@@ -39,10 +39,11 @@ void lease_saw(struct lease *lease, const struct lease_row *row, int64_t now_ns)
     bool same = lease->known && is_same(row, &lease->row);
     if (lease->leads && (!is_ours(lease, row) || row->epoch != lease->row.epoch))
         lease->lost = true;
-    else if (!lease->leads && lease->bids && is_ours(lease, row)) /* this node's bid had succeeded, but the database's answer was lost */
+    else if (!lease->leads && lease->bids && is_ours(lease, row)) /* this node's bid changed the row, but the database's answer to the
+                                                                     bid was lost */
         lead(lease);
     else if (!same)
-        lease->bids = false; /* the row has changed, so a late answer to this node's old bid has no effect any more */
+        lease->bids = false; /* the row has changed, so this node's bid, if it still arrives late, can no longer succeed */
     if (!same)
         lease->seen_ns = now_ns;
     lease->row = *row;
@@ -94,7 +95,8 @@ bool lease_promise(struct lease *lease, int64_t now_ns)
 
 void lease_renew(struct lease *lease, const char *standby)
 {
-    if (strcmp(lease->counts, standby) != 0) /* from here on the row may name a different standby */
+    if (strcmp(lease->counts, standby) != 0) /* the renewal about to be sent may name another standby in the row, so promises of the old
+                                                one no longer count */
         lease->counts[0] = 0;
 }
 

@@ -15,54 +15,58 @@
 #include <stdint.h>
 
 #define LEASE_NS (3 * INT64_C(1000000000))      /* time that a follower waits */
-#define LEASE_HOLD_NS (2 * INT64_C(1000000000)) /* time that a leader may act after a confirmation */
+#define LEASE_HOLD_NS (2 * INT64_C(1000000000)) /* time for which a leader may act after a confirmed request was sent */
 #define LEASE_RENEW_NS (500 * INT64_C(1000000)) /* interval between renewals */
-#define LEASE_LOOK_NS (250 * INT64_C(1000000))  /* interval between a follower's reads of the row */
+#define LEASE_LOOK_NS (250 * INT64_C(1000000))  /* interval at which a follower reads the row */
 enum { LEASE_NODE_BYTES = 64 };
 
 struct lease_row {    /* the row in the database */
     int64_t epoch;    /* increases with each new leader */
-    int64_t beat;     /* sequence number that increases with each change of the row (beat) */
-    int64_t instance; /* random number of the leader's process, which distinguishes a restarted node */
-    /* unique names of nodes; leader "": the lease was given back; standby "": none */
+    int64_t beat;     /* sequence number of the row; increases with each change of the row */
+    int64_t instance; /* random number of the leader's process, which tells a restarted node from the old one */
+    /* unique names of nodes. leader empty: the lease was given back; standby empty: there is none */
     char leader[LEASE_NODE_BYTES], standby[LEASE_NODE_BYTES];
 };
 
 struct lease {
     char node[LEASE_NODE_BYTES]; /* name of this node */
     int64_t instance;
-    struct lease_row row; /* the row as last read or written */
+    struct lease_row row; /* the row as this node last read or wrote it */
     bool known;           /* `row` is valid */
     bool leads;
-    bool lost;                     /* this node was the leader, and another node leads now */
-    bool bids;                     /* a bid of this node is in progress, or its outcome is unknown */
-    int64_t seen_ns;               /* follower: time since which the row is unchanged */
-    int64_t bound_ns;              /* follower: time until which its promise binds it */
-    int64_t until_ns;              /* leader: time until which it may act */
-    char counts[LEASE_NODE_BYTES]; /* leader: name of the node whose promises count; "": none */
+    bool lost;                     /* true: this node was the leader, and another node leads now */
+    bool bids;                     /* true: a bid of this node is being sent, or its outcome is unknown */
+    int64_t seen_ns;               /* follower: time since which the row has not changed */
+    int64_t bound_ns;              /* follower: time until which its own promise forbids it to bid */
+    int64_t until_ns;              /* leader: time until which it may act as leader */
+    char counts[LEASE_NODE_BYTES]; /* leader: name of the standby whose promises count; empty: none */
 };
 
-/* Initialises a lease. node: shorter than LEASE_NODE_BYTES. */
+/* Initialises a lease that this node does not hold. node: name of this node, shorter than LEASE_NODE_BYTES. instance: random number of
+   this process. */
 void lease_init(struct lease *lease, const char *node, int64_t instance);
-/* Returns whether this node may act at this time. */
+/* Returns true if this node may act as the leader at this time. */
 bool lease_acts(const struct lease *lease, int64_t now_ns);
 
-/* Processes the row that the database returned at now_ns. A leader that finds another node's name in the row is no longer the leader. */
+/* Processes the row that the database returned at now_ns. A leader that finds another node in the row stops being the leader
+   (lease->lost). */
 void lease_saw(struct lease *lease, const struct lease_row *row, int64_t now_ns);
 
 /* --- for a follower --- */
 bool lease_may_bid(const struct lease *lease, int64_t now_ns);
-/* Call lease_bid() before sending the bid; then lease_won() if the bid changed the row, or lease_saw() with the current row. */
+/* Call lease_bid() before sending a bid. Afterwards call lease_won() if the bid changed the row, or else lease_saw() with the present
+   row. */
 void lease_bid(struct lease *lease);
 void lease_won(struct lease *lease, int64_t sent_ns);
-/* Promises not to bid for LEASE_NS from now. Returns false if this node cannot promise that. */
+/* Makes a promise not to bid for LEASE_NS from now. Returns false if this node cannot promise that. */
 bool lease_promise(struct lease *lease, int64_t now_ns);
 
 /* --- for a leader --- */
-/* Call lease_renew() before sending a renewal that names `standby` ("": none), and lease_renewed() if the renewal changed the row. */
+/* Call lease_renew() before sending a renewal that names `standby` ("": none) in the row. Afterwards call lease_renewed() if the renewal
+   changed the row. */
 void lease_renew(struct lease *lease, const char *standby);
 void lease_renewed(struct lease *lease, const char *standby, int64_t sent_ns);
-/* Processes a promise of the standby, as the answer to a question sent at sent_ns. */
+/* Processes a promise that the standby made in answer to a question sent at sent_ns. */
 void lease_promised(struct lease *lease, const char *standby, int64_t sent_ns);
 
 #endif

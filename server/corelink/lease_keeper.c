@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The thread that talks to the database. Promises of the standby arrive on other threads. */
+/* The thread that reads and changes the lease's row in the database. Promises of the standby arrive on other threads. */
 #include "corelink/lease_keeper.h"
 
 #include <errno.h>
@@ -18,9 +18,10 @@
 
 enum { ASKED = 32, NUMBER_BYTES = 24 };
 static const int64_t MAX_TIMEOUT_NS = NS_PER_S, MIN_TIMEOUT_NS = 50 * NS_PER_MS;
-/* a standby whose connection has ended still counts for this long, for example during a reload */
+/* after its connection ends, for example during a reload, a standby stays named in the row for this long */
 static const int64_t STANDBY_GRACE_NS = 10 * NS_PER_S;
-static const int64_t SHUTDOWN_NS = 300 * NS_PER_MS; /* time to log the reason and shut down in order before the kernel ends the process */
+static const int64_t SHUTDOWN_NS = 300 * NS_PER_MS; /* time before the kernel ends the process in which it can log the reason and shut
+                                                       down in order */
 
 struct lease_keeper {
     struct lease_keeper_params params;
@@ -34,18 +35,18 @@ struct lease_keeper {
     } counters;
     /* --- below: used by the keeper's thread only */
     struct postgres_link *link; /* connection to the database; NULL: none */
-    bool looks;                 /* true: the current row is unknown and must be read */
+    bool looks;                 /* true: the present row is unknown and must be read from the database */
     bool told_won, told_lost;
     char said[POSTGRES_WHY_BYTES], led_by[LEASE_NODE_BYTES];
-    /* value of beat when the row first named another core with this node's name; -1: that core is alive, which was logged; 0: no such
-       row */
+    /* `beat` of the row when it first named another core that has this node's name; -1: that core turned out to be alive, which was
+       logged; 0: the row has never named such a core */
     int64_t namesake_beat;
     struct thread thread;
     /* --- below: under thread.lock */
     struct lease lease;
-    char standby[LEASE_NODE_BYTES]; /* name of the standby that is connected, or that was connected until gone_ns */
+    char standby[LEASE_NODE_BYTES]; /* name of the standby that is connected, or was connected until gone_ns */
     int64_t gone_ns;                /* 0: connected */
-    bool follows;                   /* the standby has our version and configuration */
+    bool follows;                   /* true: the standby has our version and configuration */
     uint64_t asked;
     struct {
         uint64_t number;
@@ -53,7 +54,7 @@ struct lease_keeper {
     } questions[ASKED];
 };
 
-/* Returns the lease's clock, which continues while the machine sleeps and is never set. */
+/* Returns the time of the lease's clock, which continues while the machine sleeps and is never set. */
 static int64_t now_of_lease(void)
 {
     struct timespec now;
@@ -61,8 +62,8 @@ static int64_t now_of_lease(void)
     return (int64_t)now.tv_sec * NS_PER_S + now.tv_nsec;
 }
 
-/* Sets the kernel timer to the end of the lease. Call with the lock held. The kernel then ends the process even if it is stopped,
-   swapped out or in an endless loop. */
+/* Sets the kernel timer to the time at which the lease ends. The kernel then ends the process even if it is stopped, swapped out or in
+   an endless loop. Call with the lock held. */
 static void set_timer(struct lease_keeper *keeper)
 {
     const struct lease *lease = &keeper->lease;
@@ -98,7 +99,8 @@ static bool is_well(struct lease_keeper *keeper)
     return true;
 }
 
-/* Returns the time limit of database requests: for a leader the rest of its lease, within bounds. */
+/* Returns the time limit for database requests: for a leader the remaining time of its lease, at least MIN_TIMEOUT_NS; at most
+   MAX_TIMEOUT_NS. */
 static int64_t request_timeout_ns(struct lease_keeper *keeper)
 {
     pthread_mutex_lock(&keeper->thread.lock);
@@ -164,7 +166,8 @@ static bool read_row(struct lease_keeper *keeper, struct lease_row *row)
     return there && is_well(keeper);
 }
 
-/* Changes the row if it is still as `seen`. Returns 1 if it was changed, 0 if the row differs, -1 if the outcome is unknown. */
+/* Changes the row in the database if it still equals `seen`. Returns 1 if it was changed, 0 if the row differs, -1 if the outcome is
+   unknown. */
 static int change_row(struct lease_keeper *keeper, const char *sql, const struct lease_row *seen, const char *name, int64_t instance)
 {
     char epoch[NUMBER_BYTES], beat[NUMBER_BYTES], own[NUMBER_BYTES];
@@ -203,8 +206,8 @@ static int name_bytes(const char *node)
     return id ? (int)(id - node) : (int)strlen(node);
 }
 
-/* Logs if another core with our name is alive. A dead one, which may be this node before its disk was replaced, no longer changes the
-   row. */
+/* Logs a warning if another core with this node's name is alive. A dead one, which may be this node before its disk was replaced, no
+   longer changes the row and is not reported. */
 static void look_for_namesake(struct lease_keeper *keeper, const struct lease_row *row)
 {
     int own = name_bytes(keeper->node), bytes = name_bytes(row->leader);
@@ -288,7 +291,7 @@ static void renew(struct lease_keeper *keeper)
     }
 }
 
-/* Reports the outcome of one round of the keeper's work: metrics, log, callbacks. */
+/* Reports what one turn of the keeper's thread changed: metrics, log lines, and the callbacks won and lost. */
 static void tell(struct lease_keeper *keeper)
 {
     int64_t now_ns = now_of_lease();
@@ -315,7 +318,7 @@ static void tell(struct lease_keeper *keeper)
     }
 }
 
-/* Does one round of the keeper's work: connects, reads the row, renews or bids. Returns the time of the next call. */
+/* Does one turn of the keeper's work: connects, reads the row, renews the lease or bids for it. Returns the time of the next turn. */
 static int64_t take_turn(struct lease_keeper *keeper)
 {
     int64_t began_ns = now_of_lease();
@@ -334,7 +337,7 @@ static int64_t take_turn(struct lease_keeper *keeper)
     pthread_mutex_lock(&keeper->thread.lock);
     int64_t next_ns = began_ns + (leads ? LEASE_RENEW_NS : LEASE_LOOK_NS), last_ns = keeper->lease.until_ns - SHUTDOWN_NS + 1;
     pthread_mutex_unlock(&keeper->thread.lock);
-    /* limits the wait, so that the thread wakes in time to report the end of the lease */
+    /* a leader wakes at the latest when its lease ends, to report that */
     return leads && !keeper->told_lost && last_ns > began_ns && last_ns < next_ns ? last_ns : next_ns;
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The file FOLDER/node holds the random number, the file's inode, and the machine's id. */
+/* Reads and writes the file FOLDER/node, which holds a random number, the file's inode, and the machine's id. */
 #include "corelink/seat.h"
 
 #include <errno.h>
@@ -26,7 +26,8 @@ static void read_machine(char out[MACHINE_BYTES])
     mem_free(text);
 }
 
-/* Reads the number. It is invalid if the folder was copied: the inode differs then, or the machine's id. */
+/* Reads the random number. Returns false if the folder was copied: the inode, or the machine's id, then differs from the one in the
+   file. */
 static bool read_id(struct seat *seat, unsigned long long inode, const char *machine)
 {
     char line[LINE_BYTES] = "", of[MACHINE_BYTES] = "";

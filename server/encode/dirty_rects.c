@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Compares frames tile by tile and encloses the differences in rectangles. */
+/* Compares two frames tile by tile and encloses the differing tiles in rectangles. */
 #include "encode/dirty_rects.h"
 
 #include <stdlib.h>
@@ -7,7 +7,8 @@
 
 #include "base/mem.h"
 
-static const long PART_COST_PX = 4096; /* cost of one more rectangle's header and tables, as the number of pixels that take as many bytes */
+static const long PART_COST_PX = 4096; /* cost of one more rectangle (its header and tables), as the number of pixels whose encoding
+                                          takes as many bytes */
 
 static const uint8_t *row(const struct frame *frame, int x_px, int y_px)
 {
@@ -62,7 +63,7 @@ static bool overlap(const struct dirty_rect *a, const struct dirty_rect *b)
            b->y_px < a->y_px + a->height_px;
 }
 
-/* Returns the cost, in pixels, of replacing two rectangles by one that encloses both; negative: the single one is cheaper. */
+/* Returns the cost, in pixels, of replacing two rectangles by one that encloses both; negative: one rectangle is cheaper. */
 static long growth(const struct dirty_rect *a, const struct dirty_rect *b)
 {
     struct dirty_rect all = around(a, b);
@@ -74,7 +75,7 @@ struct rect_list {
     size_t count, capacity;
 };
 
-/* Adds a run of differing tiles in a row, merged with an equal run directly above. */
+/* Adds a horizontal run of differing tiles; extends the rectangle directly above if that has the same left edge and width. */
 static void add_run(struct rect_list *list, const struct dirty_rect *run)
 {
     for (size_t i = 0; i < list->count; i++) {
@@ -107,7 +108,7 @@ static void find_runs(const struct frame *before, const struct frame *now, struc
     }
 }
 
-/* Finds the pair of rectangles whose common rectangle costs least. Returns that cost. */
+/* Finds the pair of rectangles that costs least to replace by one (growth()). *a and *b receive their indices. Returns that cost. */
 static long cheapest(const struct rect_list *list, size_t *a, size_t *b)
 {
     long best = 0;
@@ -130,7 +131,8 @@ static void merge(struct rect_list *list, size_t a, size_t b)
     list->at[b] = list->at[--list->count];
 }
 
-/* First merges neighbours while there are many runs, so that the search for the best pair stays cheap. */
+/* Merges rectangles that are neighbours in the list until at most `enough` remain, so that the quadratic search for the best pair stays
+   cheap. */
 static void thin(struct rect_list *list, size_t enough)
 {
     for (size_t i = 0; i + 1 < list->count && list->count > enough;)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Interface of a codec; the table of codecs is in encoder.c. Private to encode/. */
+/* Interface between encoder.c, which has the table of codecs, and each codec. Private to encode/. */
 #ifndef ENCODE_ENCODER_IMPL_H
 #define ENCODE_ENCODER_IMPL_H
 #include "encode/dirty_rects.h"
@@ -9,8 +9,8 @@ struct encoder_impl {
     const char *name;
     bool is_stream;
     struct encoder *(*create)(struct log *log, const char *library);
-    /* Encodes a frame and leaves the packet in encoder->ready. count 0: encodes the whole frame; else the rectangles cover everything that
-       differs from params->before, and the codec may encode more. */
+    /* Encodes a frame and stores the packet in encoder->ready. count 0: encodes the whole frame. Otherwise the rectangles cover
+       everything that differs from params->before, and the codec encodes at least these. */
     int (*send)(struct encoder *encoder, struct frame *frame, const struct encoder_params *params, const struct dirty_rect *rects,
                 int count);
     void (*destroy)(struct encoder *encoder);
@@ -19,7 +19,7 @@ struct encoder_impl {
 struct encoder { /* first member of each codec's struct */
     const struct encoder_impl *impl;
     struct log *log;
-    struct packet *ready; /* packet that send() made and encoder_receive() has not taken yet; NULL: none */
+    struct packet *ready; /* packet that send() made and that encoder_receive() has not returned yet; NULL: none */
 };
 
 extern const struct encoder_impl jpeg_impl, png_impl;

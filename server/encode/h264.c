@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The H.264 codec: Annex B, no frame reordering, key frames on demand only. */
+/* The H.264 codec: converts frames to planes for h264_codec.h. Annex B, no frame reordering, key frames on demand only. */
 #include <errno.h>
 #include <string.h>
 
@@ -37,7 +37,7 @@ static struct encoder *h264_create(struct log *log, const char *library)
     return NULL;
 }
 
-/* Repeats the last column and row of luma, if the size is odd. */
+/* H.264 needs even sizes: if width or height is odd, repeats luma's last column or row. */
 static void extend(const struct h264_planes *to, int width_px, int height_px)
 {
     size_t pitch = (size_t)to->pitches[0];
@@ -75,7 +75,7 @@ static int h264_send(struct encoder *encoder, struct frame *frame, const struct 
     struct h264_access_unit unit;
     struct h264_planes planes;
     char why[H264_WHY_BYTES];
-    (void)rects; /* dirty rectangles are ignored: the encoder skips unchanged blocks itself */
+    (void)rects; /* dirty rectangles are ignored, because the encoder itself skips unchanged blocks */
     (void)count;
     int status = h264->functions->begin(h264->codec, frame->width_px, frame->height_px, &planes, why);
     if (status == 0) {

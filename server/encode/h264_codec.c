@@ -11,11 +11,11 @@
 #include "base/mem.h"
 #include "encode/h264_upload.h"
 
-/* Options of libavcodec's encoders. x264: qcomp=1 gives every frame the same quality, however little moves; without ipratio, key frames are
-   no finer than others, which would only cause a spike in the bit rate. */
+/* Options of libavcodec's encoders. For x264: qcomp=1 gives every frame the same quality, however little moves; ipratio=1 makes key
+   frames no finer than others, since finer ones would only cause a peak of the bit rate. */
 struct library {
     const char *name, *options;
-    bool has_crf; /* true: quality can change per frame; false: the encoder uses the quality in `options` */
+    bool has_crf; /* true: quality can change with each frame; false: the encoder has the constant quality in `options` */
 };
 static const struct library libraries[] = {
     { "libx264",
@@ -26,13 +26,13 @@ static const struct library libraries[] = {
     { "libopenh264", "rc_mode=quality allow_skip_frames=0", false },
 };
 static const struct library other_library = { "", "", false };
-static const int64_t DEFAULT_BITS_PER_PX_S = 4; /* bit rate for encoders that need one */
+static const int64_t DEFAULT_BITS_PER_PX_S = 4; /* bits per pixel and second, for encoders that need a bit rate */
 enum { RATE_HZ = 60, SLICED_PX = 1500000, MANY_CORES = 8, MAX_THREADS = 8 };
 
 struct h264_codec {
     const AVCodec *codec;
     const struct library *library;
-    AVCodecContext *context; /* libavcodec context for frames of the last frame's size */
+    AVCodecContext *context; /* libavcodec context for frames of the size of the newest frame */
     AVFrame *picture;
     AVPacket *out;
     struct h264_upload *upload;
@@ -88,7 +88,8 @@ static int failed(const struct h264_codec *h264, const char *what, int status, c
     return status == AVERROR(ENOMEM) ? -ENOMEM : -EIO;
 }
 
-/* Returns the number of slices: several only where one core would be too slow; with many cores one per SLICED_PX pixels. */
+/* Returns the number of slices for encoding in parallel: several only for frames for which one core would be too slow; with many cores
+   one per SLICED_PX pixels. */
 static int thread_count(int width_px, int height_px)
 {
     long cores = sysconf(_SC_NPROCESSORS_ONLN), pixels = (long)width_px * height_px;
@@ -98,8 +99,8 @@ static int thread_count(int width_px, int height_px)
     return (int)(parts < most ? parts : most);
 }
 
-/* Describes the frames. Colours are BT.601 at full range, as in JPEG: libyuv's fastest conversion, and what browsers reproduce most exactly
-   (with BT.709 at limited range chromium is up to 12 of 255 off). */
+/* Describes the frames to libavcodec. Colours are BT.601 at full range, as in JPEG: that is libyuv's fastest conversion, and browsers
+   reproduce it most exactly (with BT.709 at limited range, chromium is off by up to 12 of 255). */
 static void describe(AVCodecContext *context, const struct h264_codec *h264)
 {
     context->width = (h264->width_px + 1) & ~1;
@@ -162,8 +163,9 @@ static int codec_begin(struct h264_codec *h264, int width_px, int height_px, str
     return 0;
 }
 
-/* Maps quality to x264's rate factor: JPEG's 92 looks like 18, 78 like 25. Below 78, the bit rate falls with quality as JPEG's does, and
-   the look gets worse more slowly: from 40 on nearly all blocks of a moving picture would be skipped and show outdated content. */
+/* Maps JPEG quality to x264's rate factor: 92 looks like rate factor 18, and 78 like 25. Below 78, the bit rate falls as JPEG's does,
+   and the look gets worse more slowly: with rate factors of 40 and above, nearly all blocks of a moving picture would be skipped and
+   show outdated content. */
 static double rate_factor(int quality)
 {
     static const double fine = 18, moving = 25;

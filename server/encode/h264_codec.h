@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* H.264 with libavcodec: planar frames in, access units out. Of all code that encodes, only this module uses libavcodec, so that
-   h264_lazy.c can load both on demand. Thread: one at a time per codec. */
+/* H.264 with libavcodec: planar frames in, access units (encoded frames) out. No other code for encoding uses libavcodec, so that
+   h264_lazy.c can load this module and libavcodec together on first use. Thread: one at a time per codec. */
 #ifndef ENCODE_H264_CODEC_H
 #define ENCODE_H264_CODEC_H
 #include <stdbool.h>
@@ -10,29 +10,30 @@
 #define H264_WHY_BYTES 320
 
 struct h264_codec;
-struct h264_planes { /* YUV 4:2:0 at full range, filled by the caller; width and height are even */
+struct h264_planes { /* planes of a frame in YUV 4:2:0 at full range, filled by the caller; width and height are even */
     uint8_t *at[3];
     int pitches[3];
     int width_px, height_px;
 };
 struct h264_access_unit {
-    const uint8_t *bytes; /* bytes of the access unit; owned by the codec, valid until the codec's next call */
+    const uint8_t *bytes; /* bytes of the access unit (encoded frame); owned by the codec, valid until its next call */
     size_t count;
     bool key;
 };
 
 struct h264_codec_functions {
-    /* library: name of the libavcodec encoder. Returns NULL, with the reason in `why`, if there is none of that name for H.264. */
+    /* Creates a codec. library: name of the libavcodec encoder. Returns NULL, with the reason in `why`, if libavcodec has no H.264
+       encoder of that name. */
     struct h264_codec *(*create)(const char *library, char why[H264_WHY_BYTES]);
     void (*destroy)(struct h264_codec **codec); /* &NULL is fine; sets it to NULL */
-    /* Begins a frame of this size, whose planes the caller fills; a change of size restarts the stream. Returns 0; < 0: failed, with the
-       reason in `why`. */
+    /* Begins a frame of this size: *planes receives the planes that the caller must fill. A change of size restarts the stream. Returns
+       0; < 0: failed, with the reason in `why`. */
     int (*begin)(struct h264_codec *codec, int width_px, int height_px, struct h264_planes *planes, char why[H264_WHY_BYTES]);
-    /* Encodes the frame. quality: 1..100. key: makes a key frame. Returns 0; < 0: failed, with the reason in `why`. */
+    /* Encodes the frame begun. quality: 1..100. key: make a key frame. Returns 0; < 0: failed, with the reason in `why`. */
     int (*encode)(struct h264_codec *codec, int quality, bool key, struct h264_access_unit *out, char why[H264_WHY_BYTES]);
 };
 
-/* Returns the functions, valid forever. NULL, with the reason in `why`, if their module cannot be loaded. */
+/* Returns the module's functions, valid forever. NULL, with the reason in `why`, if the module cannot be loaded. */
 const struct h264_codec_functions *h264_codec_functions(char why[H264_WHY_BYTES]);
 
 #endif

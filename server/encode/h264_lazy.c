@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Loads the H.264 module on first use: the 120 libraries behind libavcodec take as long to load as everything else at a program's start. */
+/* Loads the H.264 module on first use. The 120 libraries behind libavcodec take as long to load as everything else at the start of a
+   program. */
 #include "base/system/module.h"
 #include "encode/h264_codec.h"
 

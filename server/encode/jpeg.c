@@ -13,7 +13,7 @@ struct jpeg_encoder {
     struct jpeg_writer *writer;
     unsigned char *out; /* output buffer, reused from frame to frame */
     size_t capacity;
-    unsigned char *planes; /* luma of one rectangle, then its subsampled chroma */
+    unsigned char *planes; /* planes of one rectangle: luma, then subsampled chroma */
     size_t planes_capacity;
 };
 
@@ -40,7 +40,7 @@ static struct encoder *jpeg_create(struct log *log, const char *library)
     return &jpeg->base;
 }
 
-/* Grows a buffer; its content is lost. */
+/* Grows a buffer to at least `need` bytes; its content is lost. Returns false when out of memory. */
 static bool reserve(unsigned char **at, size_t *capacity, size_t need)
 {
     if (need <= *capacity)
@@ -56,13 +56,13 @@ static int padded(int px)
     return (px + JPEG_PAD_PX - 1) / JPEG_PAD_PX * JPEG_PAD_PX;
 }
 
-/* Returns an upper bound of the JPEG's size, as large as the bound that TurboJPEG gives. */
+/* Returns an upper bound in bytes of the size of a rectangle's JPEG, as large as TurboJPEG's own bound. */
 static size_t max_bytes(const struct dirty_rect *part)
 {
     return (size_t)padded(part->width_px) * (size_t)padded(part->height_px) * 6 + 2048;
 }
 
-/* Fills the padding at the right with the last column. */
+/* Repeats the last column of each plane into the padding at its right. */
 static void extend(const struct yuv_planes *planes)
 {
     for (int c = 0; c < 3; c++) {
@@ -92,7 +92,7 @@ static size_t compress_halved(struct jpeg_encoder *jpeg, const uint8_t *from, in
     return jpeg_write_halved(jpeg->writer, &planes, quality, to, max_bytes(part));
 }
 
-/* Compresses a rectangle and appends it at *end of the output buffer. */
+/* Compresses a rectangle and appends its JPEG at offset *end of the output buffer. Returns false on failure. */
 static bool compress(struct jpeg_encoder *jpeg, const struct frame *frame, const struct dirty_rect *part,
                      const struct encoder_params *params, size_t *end)
 {

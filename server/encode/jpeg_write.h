@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes baseline JPEG with libjpeg and its own chroma quantization tables. A field's colours differ by chroma, of which the standard
-   tables, made for photographs, lose most within a few pixels. At quality 80, on parts a few pixels wide, the standard tables misread
-   values by 3.9 % of the range, these by 2.3 %, for 8 % more bytes. From JPEG_READ_QUALITY up, the chroma tables allow at most a fifth of
-   luma's error if chroma is subsampled, and half of luma's error if not. Private to jpeg.c. Thread: one at a time per writer. */
+/* Writes baseline JPEG with libjpeg and its own quantization tables for chroma. A field's colours differ by chroma, and the standard
+   tables, made for photographs, lose most of the chroma within a few pixels. At quality 80, on areas a few pixels wide, values are
+   misread by 3.9 % of the range with the standard tables and by 2.3 % with these, for 8 % more bytes. From JPEG_READ_QUALITY up, the
+   chroma tables allow at most a fifth of luma's error if chroma is subsampled, and half of luma's error if not. Private to jpeg.c.
+   Thread: one at a time per writer. */
 #ifndef ENCODE_JPEG_WRITE_H
 #define ENCODE_JPEG_WRITE_H
 #include <stdbool.h>
@@ -11,17 +12,18 @@
 
 #include "encode/planes.h"
 
-enum { JPEG_READ_QUALITY = 75 }; /* JPEG quality below which the standard quantization tables are used */
+enum { JPEG_READ_QUALITY = 75 }; /* below this JPEG quality, the standard quantization tables are used */
 
 struct jpeg_writer;
 struct jpeg_writer *jpeg_writer_create(void);          /* NULL: out of memory */
 void jpeg_writer_destroy(struct jpeg_writer **writer); /* &NULL is fine; sets it to NULL */
-/* Both functions write to `to`, which has room for `capacity` bytes. They return the number of bytes written; 0 on failure, with the reason
-   in jpeg_writer_why(). */
+/* Both jpeg_write functions write to `to`, which has room for `capacity` bytes. They return the number of bytes written; 0 on failure,
+   with the reason in jpeg_writer_why(). */
 /* Encodes pixels with full chroma. */
 size_t jpeg_write_whole(struct jpeg_writer *writer, const uint8_t *bgrx, int stride_bytes, int width_px, int height_px, int quality,
                         unsigned char *to, size_t capacity);
-/* Encodes planes with subsampled chroma. Their rows are padded to JPEG_PAD_PX (chroma: half of that) with the pixels of the edge. */
+/* Encodes planes with subsampled chroma. The rows of luma must be padded to a multiple of JPEG_PAD_PX pixels, those of chroma to half of
+   that, with copies of the edge pixel. */
 enum { JPEG_PAD_PX = 16 };
 size_t jpeg_write_halved(struct jpeg_writer *writer, const struct yuv_planes *planes, int quality, unsigned char *to, size_t capacity);
 const char *jpeg_writer_why(const struct jpeg_writer *writer);

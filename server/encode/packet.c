@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Packets: an encoded frame and its metadata, without the pixels. */
+/* Packets: an encoded frame with the frame's metadata but without its pixels. */
 #include "encode/packet.h"
 
 #include <string.h>
@@ -15,11 +15,11 @@ static void *copy_of(const void *list, size_t count, size_t bytes_each)
     return copy;
 }
 
-/* Copies a frame without its pixels: a packet may wait for a slow peer, and must not hold megabytes meanwhile. */
+/* Copies a frame without its pixels, because a packet may wait for a slow client and must not hold megabytes while it waits. */
 static struct frame *without_pixels(const struct frame *frame)
 {
     struct frame *copy = mem_new(sizeof(*copy));
-    /* members before `view` are not copied: other threads change the reference count meanwhile */
+    /* copies only the members from `view` on: those before include the reference count, which other threads change meanwhile */
     size_t plain = offsetof(struct frame, view);
     memcpy((char *)copy + plain, (const char *)frame + plain, sizeof(*copy) - plain);
     atomic_init(&copy->refs, 1);

@@ -9,7 +9,7 @@
 #include "render/frame.h"
 
 enum { PACKET_PARTS = 8, PACKET_SHA256_BYTES = 32 };
-struct packet_part { /* a rectangle of the frame, and the range of the packet's bytes that encodes it */
+struct packet_part { /* a rectangle of the frame, and the range of the packet's bytes that encodes the rectangle */
     int x_px, y_px, width_px, height_px;
     size_t begin, count;
 };
@@ -18,11 +18,11 @@ struct packet {
     _Atomic int refs;
     struct frame *frame; /* metadata of the frame, without the pixels (frame->bgrx is NULL) */
     enum wire_codec codec;
-    bool key;       /* key packet: can be decoded without the previous packet */
-    bool is_signed; /* true: the bytes are a PNG file with statement and signature (provenance/signed_picture.h) */
+    bool key;       /* true: the packet can be decoded without the previous packet */
+    bool is_signed; /* true: the bytes are a signed PNG file (provenance/signed_picture.h) */
     uint8_t *bytes;
     size_t count;
-    /* SHA-256 of the pixels (red, green, blue, rows from the top), only for PNG packets of frames with a record of their readings
+    /* SHA-256 of the pixels (red, green, blue, rows from the top); only for PNG packets of frames with a record of their readings
        (render/frame_record.h) */
     uint8_t pixels_sha256[PACKET_SHA256_BYTES];
     struct packet_part parts[PACKET_PARTS];

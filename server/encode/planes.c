@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Subsampled chroma with sharp colour edges: libyuv's mean, recomputed with weights where a colour meets a grey. */
+/* Subsamples chroma with sharp colour edges: computes the mean of four pixels by libyuv, and again with weights where a colour meets a
+   grey. */
 #include "encode/planes.h"
 
 #include <libyuv.h>
@@ -8,9 +9,9 @@
 
 #include "base/math/simd.h"
 
-enum { TILE_W = 16, TILE_H = PLANES_BAND_PX / 2 }; /* size of a tile in chroma samples */
-enum { COLOUR = 16 };                              /* smallest chroma, in 8-bit steps from grey, that counts as a colour */
-static const float GREY = 4; /* weight of a grey pixel in the mean; a coloured pixel weighs this plus the square of its chroma */
+enum { TILE_W = 16, TILE_H = PLANES_BAND_PX / 2 }; /* width and height of a tile, in chroma samples */
+enum { COLOUR = 16 };                              /* smallest chroma, in 8-bit steps from grey, with which a pixel counts as coloured */
+static const float GREY = 4; /* weight of a grey pixel in the weighted mean; a coloured pixel weighs this plus the square of its chroma */
 
 size_t planes_bands(int height_px)
 {
@@ -22,7 +23,8 @@ static int least(int a, int b)
     return a < b ? a : b;
 }
 
-/* Returns whether a tile contains both a colour and a grey. Between two colours the plain mean is as good. */
+/* Returns true if a tile contains both a colour and a grey, so that the weighted mean is needed. Between two colours the plain mean is
+   as good. */
 static bool has_rim(uint8_t *const at[2], const int pitch[2], int width, int height)
 {
     bool colour = false, grey = true;
@@ -52,7 +54,7 @@ SIMD_BODY void weigh_row(const uint32_t *pixels, float u[2 * TILE_W], float v[2 
     }
 }
 
-/* pixels: two rows of 2 * TILE_W pixels, contiguous. */
+/* Computes the weighted mean chroma of a tile's row. pixels: two rows of 2 * TILE_W pixels, contiguous; out: u, v. */
 SIMD_BODY void weigh_pair(const uint32_t *pixels, uint8_t out[2][TILE_W])
 {
     float u[2][2 * TILE_W], v[2][2 * TILE_W], weight[2][2 * TILE_W];
@@ -63,7 +65,8 @@ SIMD_BODY void weigh_pair(const uint32_t *pixels, uint8_t out[2][TILE_W])
         v[0][i] += v[1][i];
         weight[0][i] += weight[1][i];
     }
-    for (int i = 0; i < TILE_W; i++) { /* the mean of chroma is within -127.5..127.5; adding 128.5 shifts and rounds it */
+    for (int i = 0; i < TILE_W; i++) { /* the mean chroma is between -127.5 and 127.5; adding 128.5 shifts it to positive numbers and
+                                          rounds it */
         float part = 1 / (weight[0][2 * i] + weight[0][2 * i + 1]);
         out[0][i] = (uint8_t)least((int)((u[0][2 * i] + u[0][2 * i + 1]) * part + 128.5f), 255);
         out[1][i] = (uint8_t)least((int)((v[0][2 * i] + v[0][2 * i + 1]) * part + 128.5f), 255);
@@ -80,7 +83,7 @@ SIMD_AVX2 static void weigh_wide(const uint32_t *pixels, uint8_t out[2][TILE_W])
     weigh_pair(pixels, out);
 }
 
-/* Copies pixels; beyond the picture, the edge is repeated. */
+/* Copies the pixels of a tile; beyond the picture's edge, the edge pixel is repeated. */
 static void gather(const struct yuv_planes *planes, int x, int y, uint32_t pixels[2][2 * TILE_W])
 {
     int width = least(2 * TILE_W, planes->width_px - x);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Converts frames to luma and subsampled chroma (4:2:0, BT.601, full range) for JPEG and H.264. The mean chroma of four pixels is weighted
-   by saturation: a plain mean mixes a field's colour at its edge with the adjacent grey, which reads as another value. Thread: any; bands
-   of one frame may be converted in parallel. */
+/* Converts frames to luma and subsampled chroma (4:2:0, BT.601, full range) for JPEG and H.264. The mean chroma of four pixels is
+   weighted by saturation, because a plain mean mixes a field's colour at its edge with the adjacent grey, which reads as another value.
+   Thread: any; horizontal bands of one frame may be converted in parallel. */
 #ifndef ENCODE_PLANES_H
 #define ENCODE_PLANES_H
 #include <stddef.h>
@@ -10,7 +10,7 @@
 struct yuv_planes {
     const uint8_t *bgrx;
     int stride_bytes, width_px, height_px;
-    uint8_t *plane[3]; /* both chroma planes have half the width and height, rounded up */
+    uint8_t *plane[3]; /* luma, then two chroma planes of half the width and height, rounded up */
     int pitch[3];
 };
 

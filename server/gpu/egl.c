@@ -14,7 +14,7 @@ struct egl {
     struct gl base;
     EGLDisplay display;
     EGLContext context;
-    bool used; /* the context was current at least once */
+    bool used; /* true: the context was current at least once */
 };
 
 static const char *egl_error_text(void)
@@ -46,8 +46,8 @@ static void egl_lose(struct gl *gl)
     egl->context = EGL_NO_CONTEXT;
 }
 
-/* Destroys a context. Does not unload a driver that was used: the leak checker suppresses leaks by the driver's name (tests/leaks.txt) and
-   could not name an unloaded one. The display is kept after the loss of a context. If the display is lost as well, the next attempt to
+/* Destroys a context, but does not unload its driver: the leak checker suppresses leaks by the driver's name (tests/leaks.txt) and could
+   not name an unloaded one. The display stays open after the loss of a context. If the display is lost as well, the next attempt to
    create a context fails and closes it, and the attempt after that opens it again. */
 static void egl_destroy(struct gl *gl)
 {
@@ -57,7 +57,7 @@ static void egl_destroy(struct gl *gl)
         egl_lose(gl);
     if (egl->display && !used && !gl_others())
         eglTerminate(egl->display);
-    if (egl->display && eglReleaseThread) /* EGL 1.2 function: not loaded if the display could not be initialised */
+    if (egl->display && eglReleaseThread) /* function of EGL 1.2; NULL if the display could not be initialised */
         eglReleaseThread();
     if (!used && !gl_others())
         gladLoaderUnloadEGL();
@@ -72,7 +72,7 @@ static bool load_client(const char *name, struct text *why)
     return false;
 }
 
-/* Creates a context that reports its loss, where the driver supports that. */
+/* Creates a context that reports when it is lost (GPU reset), if the driver supports that. Returns EGL_NO_CONTEXT on failure. */
 static EGLContext create_context(EGLDisplay display, EGLConfig config)
 {
     static const EGLint telling[] = { EGL_CONTEXT_MAJOR_VERSION,
@@ -92,7 +92,7 @@ static EGLContext create_context(EGLDisplay display, EGLConfig config)
     return context ? context : eglCreateContext(display, config, EGL_NO_CONTEXT, silent);
 }
 
-/* Creates a context on an initialised display and makes it current. */
+/* Creates a context on an initialised display and makes it current. Returns false with the reason appended to `why`. */
 static bool make_current(struct egl *egl, const char *name, struct text *why)
 {
     static const EGLint config_attributes[] = { EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE };

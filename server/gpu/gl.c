@@ -12,8 +12,8 @@
 
 struct attempt {
     const struct gl_impl *impl;
-    /* software: may use a software device if none is requested; again: the attempt repeats an earlier one, except that a software device
-       may be used */
+    /* software: may use a software device if no device is requested; again: the same as an earlier attempt, except that a software
+       device may be used */
     bool software, again;
 };
 static const struct attempt attempts[] = {
@@ -25,7 +25,7 @@ static const struct attempt attempts[] = {
 enum { ATTEMPTS = sizeof(attempts) / sizeof(attempts[0]) };
 
 static struct {
-    pthread_mutex_t lock; /* held while a context is created or destroyed */
+    pthread_mutex_t lock; /* held while any thread creates or destroys a context */
     /* --- below: under lock */
     int count;         /* number of living contexts */
     enum gl_kind kind; /* kind of the living contexts */
@@ -95,7 +95,7 @@ static void read_capabilities(struct gl *gl)
     glGetIntegerv(GL_MAX_SAMPLES, &gl->max_samples);
 }
 
-/* Sets state that every pass relies on: rows from the top, depth 1 (near) to 0 (far). */
+/* Sets the GL state that every pass relies on: rows from the top, depth 1 (near) to 0 (far). */
 static void set_conventions(struct gl *gl)
 {
     glClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE);
@@ -107,10 +107,11 @@ static void set_conventions(struct gl *gl)
     glDebugMessageCallback(on_debug_message, gl->log);
 }
 
-/* Tries all kinds of contexts (enum gl_kind). why: the reasons of failed attempts are appended, each preceded by "; ". */
+/* Tries the kinds of contexts in order, or only `kind` unless it is GL_AUTO. The reasons of failed attempts are appended to `why`, each
+   preceded by "; ". Returns NULL if none works. */
 static struct gl *attempt_all(enum gl_kind kind, const struct gl_device *device, struct text *why)
 {
-    bool asked = kind != GL_AUTO || device; /* a caller that asks for a kind or device gets a software device at once */
+    bool asked = kind != GL_AUTO || device; /* a caller that asks for a kind or device may get a software device in the first attempt */
     for (int i = 0; i < ATTEMPTS; i++) {
         const struct attempt *attempt = &attempts[i];
         bool wanted = kind == GL_AUTO ? !device || attempt->impl->kind == GL_EGL_DEVICE : attempt->impl->kind == kind;
@@ -178,7 +179,7 @@ static GLenum next_error(void)
 
 void gl_clear_errors(void)
 {
-    for (int i = 0; i < 8 && next_error() != GL_NO_ERROR; i++) { /* leaves the loop, because a lost context reports errors forever */
+    for (int i = 0; i < 8 && next_error() != GL_NO_ERROR; i++) { /* at most 8 errors, because a lost context reports errors forever */
     }
 }
 

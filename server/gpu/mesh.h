@@ -20,12 +20,12 @@ enum mesh_attribute {
     MESH_SECOND_TEXCOORD = 7,
     MESH_INSTANCE_PLACES
 };
-/* number of 4-float vectors per instance: 3 at the attribute locations that begin with that of normals, 7 at those that begin with that of
-   placements */
+/* number of 4-float vectors that each instance has: 3 for the normals' transform (MESH_INSTANCE_NORMALS), 7 from the placement on
+   (MESH_INSTANCE_PLACES) */
 enum { MESH_INSTANCE_VECTORS = 10 };
 
-/* Input of mesh_init(). Pointers need only live for the call, except positions, colours and indices: GL on a processor reads these in place
-   (gl.reads_in_place), so they must stay unchanged until mesh_finish(). */
+/* Input of mesh_init(). Pointers need only be valid during the call, except positions, colours and indices: GL on a processor reads
+   these in place (gl.reads_in_place), so they must stay unchanged until mesh_finish(). */
 struct mesh_params {
     size_t vertex_count, index_count;
     const float (*positions_m)[3];
@@ -46,13 +46,13 @@ struct gpu_mesh {
 };
 
 bool mesh_init(struct gpu_mesh *mesh, const struct gl *gl, const char *name,
-               const struct mesh_params *params); /* params: data to upload; mesh_init() returns false when out of memory, logged */
+               const struct mesh_params *params); /* creates the buffers from `params`; returns false when out of memory, logged */
 void mesh_finish(struct gpu_mesh *mesh);
-void mesh_bind(const struct gpu_mesh *mesh); /* binds the mesh for the next draws */
-/* instances: a buffer of MESH_INSTANCE_VECTORS vectors per instance */
+void mesh_bind(const struct gpu_mesh *mesh); /* makes the mesh the source of the following draws */
+/* Sets the instances of the following draws. instances: a buffer of MESH_INSTANCE_VECTORS vectors per instance. */
 void mesh_bind_instances(const struct gpu_mesh *mesh, GLuint instances);
 
-/* Creates an immutable buffer. Returns 0 when the GPU is out of memory, logged. */
+/* Creates an immutable buffer. Returns its GL name; 0 when the GPU is out of memory, logged. */
 GLuint mesh_buffer(struct log *log, const char *name, size_t bytes, const void *data, GLbitfield flags);
 
 #endif

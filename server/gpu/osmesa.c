@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* GL contexts from OSMesa, which is searched for at run time: Mesa 25.1 and later do not have it. */
+/* GL contexts from OSMesa, a library that is searched for at run time, because Mesa 25.1 and later do not have it. */
 #include <dlfcn.h>
 
 #include <glad/gl.h>
@@ -27,7 +27,8 @@ struct osmesa {
     unsigned char (*make_current)(void *context, void *buffer, unsigned type, int width, int height);
     GLADapiproc (*get_proc)(const char *name);
     void *(*get_current)(void);
-    unsigned char buffer[4 * 4 * 4]; /* buffer that OSMesa requires to make a context current; frames are drawn to framebuffers instead */
+    unsigned char buffer[4 * 4 * 4]; /* OSMesa cannot make a context current without a buffer; frames are drawn to framebuffers, not to
+                                        this one */
 };
 
 static bool osmesa_current(const struct gl *gl)
@@ -49,7 +50,7 @@ static void osmesa_destroy(struct gl *gl)
     struct osmesa *osmesa = (struct osmesa *)gl;
     if (osmesa->context)
         osmesa->destroy(osmesa->context);
-    mem_free(osmesa); /* the library stays loaded: its threads may still be ending */
+    mem_free(osmesa); /* does not unload the library: its threads may still be ending */
 }
 
 static bool osmesa_load(struct osmesa *osmesa)

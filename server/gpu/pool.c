@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Manages pages of GPU memory and the free gaps in them. */
+/* Manages pages (buffers) of GPU memory and the free gaps in them. */
 #include "gpu/pool.h"
 
 #include "base/mem.h"
@@ -11,7 +11,7 @@ struct pool {
     GLenum format;
     size_t texel_bytes, max_texels; /* most_texels: of a page */
     GLbitfield flags;
-    size_t expected, texels; /* expected: texels announced for the next page; texels: sum of the sizes of all pages */
+    size_t expected, texels; /* expected: number of texels announced for the next page; texels: sum of the sizes of all pages */
     struct pool_page **pages;
     size_t page_count, page_capacity;
 };
@@ -53,8 +53,8 @@ static size_t whole_blocks(size_t texels)
     return (texels + POOL_BLOCK - 1) / POOL_BLOCK * POOL_BLOCK;
 }
 
-/* Finds a free gap of at least that size in the page. *before: receives the slice in front of the gap; NULL: the gap is at the beginning.
-   Returns false if there is none. */
+/* Finds a free gap of at least `count` texels in the page. *first receives its offset; *before receives the slice in front of the gap,
+   NULL if it is at the beginning. Returns false if there is none. */
 static bool find_gap(const struct pool_page *page, size_t count, struct pool_slice **before, size_t *first)
 {
     *before = NULL;
@@ -103,7 +103,7 @@ void pool_expect(struct pool *pool, size_t texels, size_t slices)
     pool->expected = texels + slices * (POOL_BLOCK - 1);
 }
 
-/* Returns the size of a new page: at least half of what all pages hold, so that pages stay few. */
+/* Returns the number of texels for a new page: at least half of the sum of all pages, so that pages stay few. */
 static size_t page_texels(const struct pool *pool, size_t least)
 {
     size_t texels = pool->expected > pool->texels / 2 ? pool->expected : pool->texels / 2;

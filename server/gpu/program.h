@@ -9,18 +9,18 @@
 struct program_params {
     const char *vertex, *fragment; /* names of embedded shader files; NULL if `compute` is set */
     const char *compute;
-    const char *defines; /* lines inserted before the source; NULL: none */
+    const char *defines; /* lines to insert before the source; NULL: none */
 };
 #define program_params(...) (&(struct program_params){ __VA_ARGS__ })
 
-/* Compiles and links a program. A line `#include "x.glsl"` is replaced by that embedded file. Returns 0 on failure; the compiler's messages
-   are logged. */
+/* Compiles and links a program. A line `#include "x.glsl"` is replaced by that embedded file. Returns the program's GL name; 0 on
+   failure, with the compiler's messages logged. */
 GLuint program_create(struct log *log, const struct program_params *params);
 void program_destroy(GLuint *program); /* &0 is fine; sets it to 0 */
 
-/* Compiles one stage from text. name: for messages. Returns 0 on failure, logged. */
+/* Compiles one stage from text. name: how log messages name the text. Returns 0 on failure, logged. */
 GLuint program_compile(struct log *log, GLenum stage, const char *name, const char *text, const char *defines);
-/* Links two stages (0: none) and deletes them. Returns 0 on failure, logged. */
+/* Links two stages (0: none) to a program and deletes the stages. Returns 0 on failure, logged. */
 GLuint program_link(struct log *log, const char *name, const GLuint stages[2]);
 
 #endif

@@ -17,14 +17,15 @@ struct readback { /* zero-initialise */
     GLsync done;
 };
 
-/* Starts to copy the resolved picture of the target, without waiting; call target_resolve() before. The target may be drawn to again at
-   once. Returns false when out of GPU memory, logged. */
+/* Starts to copy the resolved picture of the target to the CPU, without waiting; call target_resolve() before. The target may be drawn
+   to again immediately. Returns false when out of GPU memory, logged. */
 bool readback_start(struct readback *readback, struct log *log, const struct target *target);
 bool readback_is_done(const struct readback *readback);         /* never waits */
-bool readback_wait(struct readback *readback, struct log *log); /* waits for the copy. Returns false if the GL context is lost, logged */
-/* Copies the pixels after readback_wait(): 4 bytes each (B, G, R, X), rows from the top, stride_bytes apart. */
+bool readback_wait(struct readback *readback, struct log *log); /* waits for the copy to end. Returns false if the GL context is lost,
+                                                                   logged */
+/* Copies the pixels to `bgrx` after readback_wait(): 4 bytes each (B, G, R, X), rows from the top, stride_bytes apart. */
 void readback_get(const struct readback *readback, struct workers *workers, uint8_t *bgrx, size_t stride_bytes);
-void readback_drop(struct readback *readback); /* ends the readback, whether waited for or not */
+void readback_drop(struct readback *readback); /* ends the readback, whether readback_wait() was called or not */
 void readback_finish(struct readback *readback);
 
 #endif

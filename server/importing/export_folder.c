@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Files of the exports folder, by name; uploads in progress are hidden files. */
+/* Lists, adds and removes the files of the exports folder. Uploads in progress are hidden files. */
 #include "importing/export_folder.h"
 
 #include <dirent.h>
@@ -133,7 +133,7 @@ struct export_upload *export_upload_begin(const char *folder, const char *name, 
     upload->fd = mkostemp(upload->hidden, O_CLOEXEC);
     *error = upload->fd < 0 ? -errno : 0;
     if (upload->fd < 0) {
-        mem_free(upload->hidden); /* the file could not be created, so there is no hidden file to remove */
+        mem_free(upload->hidden); /* the hidden file could not be created, so there is none to remove */
         upload->hidden = NULL;
         export_upload_abandon(&upload);
     }

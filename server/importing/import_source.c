@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads the source from a plant, and passes it to programs. */
+/* Reads the data source of a plant, and turns it into program arguments. */
 #include "importing/import_source.h"
 
 #include <stdio.h>

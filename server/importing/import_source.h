@@ -6,14 +6,14 @@
 
 #include "plant/plant.h"
 
-struct import_source {                                   /* texts as `plantcast match` takes them; "": not stated */
+struct import_source {                                   /* texts as `plantcast match` takes them; empty: not stated */
     char host[254], port[6], unit[4], order[5], base[2]; /* host "": no source */
 };
 
-/* Returns whether the texts are safe as program arguments: a host name or numeric IPv4 address, numbers within their limits, a byte
+/* Returns true if the texts are safe as program arguments: a host name or numeric IPv4 address, numbers within their limits, a byte
    order. */
 bool import_source_good(const struct import_source *source);
-/* Returns the source of a plant; the host is empty if the plant has no source, several sources, or one of another kind. */
+/* Returns the data source of a plant. Its host is empty if the plant has no source, several sources, or a source of another kind. */
 struct import_source import_source_of_plant(const struct plant *plant);
 /* Returns the source as an object of texts, { host, port, unit, order, base }; the caller owns it. NULL: the source has no host. */
 json_t *import_source_json(const struct import_source *source);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* State and messages of the current import order. */
+/* Keeps the state and the messages of the current import order. */
 #include "importing/plant_import.h"
 
 #include <errno.h>
@@ -19,12 +19,12 @@
 enum { MAX_OUTPUT_BYTES = 64 * 1024 };
 
 struct plant_import {
-    /* choice: path of the file in which units, axis and encoding are stored across restarts of the daemon */
+    /* choice: path of the file that keeps units, axis and encoding across restarts of the daemon */
     char *exports, *matches, *report, *choice;
     pthread_mutex_t lock;
     /* --- below: under `lock` */
-    struct import_order order; /* the order in progress, else the last one */
-    struct import_order read;  /* the last successful order that read models; only units, axis and encoding are used */
+    struct import_order order; /* the order in progress; if there is none, the last one */
+    struct import_order read;  /* the last successful order that read models, of which units, axis and encoding are used */
     bool ordered, busy, cancelled;
     enum import_phase phase;
     unsigned number; /* number of orders so far */
@@ -32,7 +32,7 @@ struct plant_import {
     char *why; /* why the last order failed; NULL: it succeeded */
 };
 
-/* Reads the file "UNITS/UP/ENCODING/MESH_UNITS"; parts at the end may be missing. */
+/* Reads the stored choice from the file, whose text is "UNITS/UP/ENCODING/MESH_UNITS"; components at the end may be missing. */
 static void read_choice(struct plant_import *import)
 {
     struct import_order order = { 0 };
@@ -134,7 +134,8 @@ bool plant_import_order(struct plant_import *import, const struct import_order *
     bool taken = !import->busy;
     if (taken) {
         import->order = *order;
-        /* an order to apply decisions or to set the source states no encoding: keeps the one with which the list was read */
+        /* an order that only applies match decisions or sets the source states no encoding: keeps the one with which the tag list was
+           read */
         if (order->decides || *order->source.host)
             strcpy(import->order.encoding, import->read.encoding);
         import->ordered = import->busy = true;
@@ -192,7 +193,7 @@ char *plant_import_text(struct plant_import *import, const struct import_source 
 
 /* --- functions that the reload thread calls ----------------------------------------------------------------------------- */
 
-/* Appends the output of a program, which may contain arbitrary bytes in names of files and tags. */
+/* Appends the output of a program. The output may contain arbitrary bytes from names of files and tags; these are replaced. */
 static void add_printable(struct text *out, const char *text)
 {
     for (size_t left = strlen(text), bytes; left > 0; text += bytes, left -= bytes) {
@@ -252,7 +253,7 @@ void plant_import_end(struct plant_import *import, bool in_force, const char *wh
     mem_free(import->why);
     import->why = line.at;
     pthread_mutex_unlock(&import->lock);
-    /* errors are ignored: without this file the next start uses the units that the models state */
+    /* errors are ignored: without this file, the next start only loses the stored choice */
     atomic_file_put(import->choice, choice, strlen(choice));
     mem_free(choice);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Imports plants, one order at a time: the loop accepts orders and reports progress, the reload thread carries them out. */
+/* Imports plants, one order at a time: the event loop accepts orders and reports progress, and the reload thread carries them out. */
 #ifndef IMPORTING_PLANT_IMPORT_H
 #define IMPORTING_PLANT_IMPORT_H
 #include <stdbool.h>
@@ -11,13 +11,13 @@ enum { IMPORT_CHOICE_BYTES = 4, IMPORT_ENCODING_BYTES = 24 };
 
 struct import_order {
     bool models;                          /* true: read the models again, and match the tags to assets; false: only match the tags */
-    bool anew;                            /* create plant file and tag list from scratch instead of updating them */
-    bool decides;                         /* without `models`: apply the uploaded match decisions */
-    char units[IMPORT_CHOICE_BYTES];      /* unit of models that do not state one: m, mm, cm, in, ft; "": the reader's default */
-    char up[IMPORT_CHOICE_BYTES];         /* upward axis of such models: y or z; "": the reader's default */
-    char mesh_units[IMPORT_CHOICE_BYTES]; /* like `units`, for OBJ, STL, PLY and 3DS only */
-    char encoding[IMPORT_ENCODING_BYTES]; /* encoding of tag list and models; "": stated in the file or detected */
-    struct import_source source;          /* source of the tags; without a host: unchanged */
+    bool anew;                            /* true: create plant file and tag list from scratch; false: update them */
+    bool decides;                         /* true: apply the uploaded match decisions; only if `models` is false */
+    char units[IMPORT_CHOICE_BYTES];      /* length unit of models that do not state one: m, mm, cm, in, ft; empty: the reader's default */
+    char up[IMPORT_CHOICE_BYTES];         /* upward axis of models that do not state one: y or z; empty: the reader's default */
+    char mesh_units[IMPORT_CHOICE_BYTES]; /* like `units`, but only for OBJ, STL, PLY and 3DS */
+    char encoding[IMPORT_ENCODING_BYTES]; /* encoding of tag list and models; empty: as the file states, or detected */
+    struct import_source source;          /* data source of the tags; without a host: unchanged */
 };
 
 enum import_phase {
@@ -25,14 +25,14 @@ enum import_phase {
     IMPORT_READING,   /* plantcast import is running */
     IMPORT_MATCHING,  /* plantcast match is running */
     IMPORT_PREPARING, /* plantcast-prep is running */
-    IMPORT_LOADING    /* the new plant is being loaded */
+    IMPORT_LOADING    /* the daemon is loading the new plant */
 };
 
 struct plant_import;
-/* Creates the state. plant_path: path of the plant file; the folder of exports is created next to it if needed. Returns NULL with errno
-   on failure. */
+/* Creates the state. plant_path: path of the plant file; the exports folder is created next to it if needed. Returns NULL with errno on
+   failure. */
 struct plant_import *plant_import_create(const char *plant_path);
-void plant_import_destroy(struct plant_import **import); /* Frees the state. &NULL is fine; leaves NULL. */
+void plant_import_destroy(struct plant_import **import); /* Frees the state. &NULL is fine; sets it to NULL. */
 
 /* --- called from the loop */
 
@@ -42,27 +42,28 @@ const char *plant_import_exports(const struct plant_import *import);
 const char *plant_import_matches(const struct plant_import *import);
 /* Returns the path of the report that plantcast import writes; the file may be absent. Valid as long as `import`. */
 const char *plant_import_report(const struct plant_import *import);
-/* Returns the name, in the exports folder, of the file with match decisions, which an order with `models` false applies; static. */
+/* Returns the static name of the file in the exports folder with match decisions, which an order with `decides` applies. */
 const char *plant_import_decisions(void);
-/* Accepts an order. Returns false while another one is in progress. */
+/* Accepts an order. Returns false while another order is in progress. */
 bool plant_import_order(struct plant_import *import, const struct import_order *order);
 /* Cancels the order in progress; its changes are undone. */
 void plant_import_cancel(struct plant_import *import);
 bool plant_import_busy(struct plant_import *import);
-/* Returns the progress, the units and axis of the models in use, and the plant's source, as JSON; free with mem_free(). */
+/* Returns as JSON the progress, units and axis of the models in use, and the plant's data source; free with mem_free(). */
 char *plant_import_text(struct plant_import *import, const struct import_source *source);
-/* Returns whether units, axis, encoding and source of an order have valid values. */
+/* Returns true if units, axis, encoding and source of an order have valid values. */
 bool import_order_good(const struct import_order *order);
 
 /* --- functions that the reload thread calls */
 
-/* Returns whether an order waits to be carried out, and copies it. */
+/* Returns true if an order waits to be carried out; *order then receives a copy. */
 bool plant_import_next(struct plant_import *import, struct import_order *order);
 void plant_import_set_phase(struct plant_import *import, enum import_phase phase);
-/* Appends the output of a program, which engineers can read. */
+/* Appends the output of a program to the messages that engineers can read on the page. */
 void plant_import_say(struct plant_import *import, const char *text);
 bool plant_import_cancelled(struct plant_import *import);
-/* Ends the order. in_force: true if the plant that the order made is in use now. why: one line about the error; NULL: no error. */
+/* Ends the order. in_force: true if the plant that the order made is in use now. why: one line that says why the order failed; NULL: it
+   succeeded. */
 void plant_import_end(struct plant_import *import, bool in_force, const char *why);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Appends loop checks to a file, and keeps the latest result of each tag. */
+/* Appends loop checks to a file, and keeps the newest result of each tag. */
 #include "loopcheck/loop_checks.h"
 
 #include <errno.h>
@@ -30,10 +30,10 @@ struct loop_checks {
     const struct plant *plant;
     char *folder, *path;
     struct loop_check *at; /* latest check by tag */
-    uint64_t *numbers;     /* by tag: sequence number of the tag's latest check, as loop_checks_number() counts */
+    uint64_t *numbers;     /* by tag: sequence number (loop_checks_number()) of the tag's newest check */
     uint64_t number;
     bool begun;
-    atomic_bool *unproven; /* atomic flags by tag, for threads that draw: the tag must be marked as unproven */
+    atomic_bool *unproven; /* atomic flags by tag, read by threads that draw; true: the tag is marked as unproven */
 };
 
 /* --- fingerprint of a tag's configuration
@@ -102,7 +102,7 @@ static double number_of(const struct csv *csv, int column)
     return *text && !*end ? number : NAN;
 }
 
-/* Returns UTC microseconds; 0: the text is no time. */
+/* Parses a time. Returns UTC microseconds; 0: the text is no time. */
 static int64_t time_of(const char *text)
 {
     struct tm utc = { 0 };
@@ -117,7 +117,8 @@ static void read_row(struct loop_checks *loop_checks, const struct csv *csv)
     const char *fingerprint = csv_text(csv, FINGERPRINT), *result = csv_text(csv, RESULT);
     bool passed = !strcmp(result, loop_check_state_names[LOOP_CHECK_PASSED]);
     if (strlen(fingerprint) != 16 ||
-        (!passed && strcmp(result, loop_check_state_names[LOOP_CHECK_FAILED]) != 0)) /* an incomplete row, cut off while it was written */
+        (!passed && strcmp(result, loop_check_state_names[LOOP_CHECK_FAILED]) != 0)) /* the row is incomplete, because it was cut off
+                                                                                        while it was written */
         return;
     loop_checks->begun = true;
     if (tag < 0)
@@ -188,11 +189,11 @@ void loop_checks_close(struct loop_checks **pointer)
     *pointer = NULL;
 }
 
-/* Appends a row. If the last line is incomplete, for example after a power failure, it is ended with a newline first. Creates the folder if
-   needed: the historian's thread creates it, too, but may not have done so yet. */
+/* Appends a row to the file. An incomplete last line, for example after a power failure, is ended with a newline first. Creates the
+   folder if needed: the historian's thread creates it too, but may not have done so yet. */
 static bool append(struct log *log, const char *folder, const char *path, const struct text *row)
 {
-    mkdir(folder, 0777); /* if this fails, opening the file reports the reason */
+    mkdir(folder, 0777); /* result ignored: if this fails, opening the file reports the reason */
     FILE *file = fopen(path, "a+b");
     if (!file)
         return false;
@@ -204,7 +205,7 @@ static bool append(struct log *log, const char *folder, const char *path, const 
         good = fseek(file, 0, SEEK_END) == 0 && fputc('\n', file) != EOF;
     good = good && fwrite(row->at, 1, row->length, file) == row->length && fflush(file) == 0 && fsync(fileno(file)) == 0;
     int error = errno;
-    /* removes what was written of the row, because the caller reports it as not stored */
+    /* removes the incomplete row, because the caller reports it as not stored */
     if (!good && size >= 0 && ftruncate(fileno(file), size) != 0)
         log_err(log, "%s: %s", path, strerror(errno));
     fclose(file);

@@ -15,7 +15,7 @@ enum loop_check_state {
     LOOP_CHECK_NONE,
     LOOP_CHECK_PASSED,
     LOOP_CHECK_FAILED,
-    LOOP_CHECK_CHANGED /* the tag was checked, but its address, scaling or position has changed since: counts as not checked */
+    LOOP_CHECK_CHANGED /* the tag was checked, but its address, scaling or position has changed since then: it counts as not checked */
 };
 extern const char *const loop_check_state_names[]; /* names of the states, indexed by enum loop_check_state */
 
@@ -33,22 +33,23 @@ struct loop_checks;
    Never returns NULL. plant must outlive the result. */
 struct loop_checks *loop_checks_open(struct log *log, const struct plant *plant, const char *folder);
 void loop_checks_close(struct loop_checks **loop_checks); /* &NULL is allowed; sets *loop_checks to NULL */
-/* Adds a record of a tag and writes it to disk. Returns REFUSAL_NONE, or why it could not be added. */
+/* Adds the record of a check of a tag, and writes it to disk. Returns REFUSAL_NONE, or why it could not be added. */
 enum refusal_code loop_checks_add(struct loop_checks *loop_checks, int tag, const struct loop_check *check);
-/* Returns the last record of a tag. */
+/* Returns the newest record of a tag. */
 const struct loop_check *loop_checks_of(const struct loop_checks *loop_checks, int tag);
-/* Returns whether any tag has been checked; from then on, tags that have not passed are marked as unproven. */
+/* Returns true if any tag has been checked. Once that is so, all tags that have not passed are marked as unproven. */
 bool loop_checks_begun(
     const struct loop_checks *loop_checks);
-uint64_t loop_checks_number(const struct loop_checks *loop_checks); /* returns a number that increases with each record */
-/* Returns the value that loop_checks_number() had when the last record of this tag was added; 0: before the daemon started. */
+uint64_t loop_checks_number(const struct loop_checks *loop_checks); /* returns a sequence number that increases with each record */
+/* Returns the sequence number of the newest record of this tag; 0: it is from before the start of the daemon. */
 uint64_t loop_checks_number_of(const struct loop_checks *loop_checks, int tag);
-/* appends the check of every tag that has a source, as CSV */
+/* Appends a line of CSV with the newest check of every tag that has a source. */
 void loop_checks_print(const struct loop_checks *loop_checks, struct text *out);
-/* Returns whether the tag must be marked as unproven: other tags have been checked, and this one has not passed. Derived tags are not
-   checked. Thread: any. */
+/* Returns true if the tag must be marked as unproven: other tags have been checked, and this one has not passed. Derived tags are never
+   marked. Thread: any. */
 bool loop_checks_unproven(const struct loop_checks *loop_checks, int tag);
-/* Returns a hash of everything whose change makes a loop check void: source, address, type, byte order, scaling, asset and position. */
+/* Returns a hash of everything whose change makes a tag's loop check void: source, address, type, byte order, scaling, asset and
+   position. */
 uint64_t loop_check_fingerprint(const struct plant *plant, int tag);
 
 #endif

@@ -14,19 +14,19 @@ struct atomic_file {
     int fd; /* descriptor of the temporary file, for reading and writing; the caller may set the file's permissions and owner */
 };
 
-/* Creates PATH.PID.new, or PATH.PID.N.new if that exists: an existing file or link is never opened. `mode` is reduced by the umask. On
-   failure no call is needed to clean up. */
+/* Creates the temporary file PATH.PID.new, or PATH.PID.N.new if that exists; never opens an existing file or link. `mode` is reduced by
+   the umask. Returns 0 or -errno; after an error there is nothing to clean up. */
 int atomic_file_begin(struct atomic_file *file, const char *path, mode_t mode);
 int atomic_file_write(struct atomic_file *file, const void *bytes, size_t count);
-/* Syncs the file to disk and renames it to its final name; on failure removes it. Ends the write in both cases; memory mappings of the
-   file stay valid. durable: returns only when the new name is on disk too, which doubles the time; not needed for data that can be
-   recomputed. */
+/* Syncs the temporary file to disk and renames it to its final name; on failure removes it. Ends the write in both cases; memory
+   mappings of the file stay valid. durable: also waits until the new name is on disk, which doubles the time and is not needed for data
+   that can be recomputed. Returns 0 or -errno. */
 int atomic_file_commit(struct atomic_file *file, bool durable);
 void atomic_file_abandon(struct atomic_file *file); /* Removes the temporary file; no-op if no write is in progress. */
 
-/* Writes a whole file (mode 0666 less the umask) and commits it, not durably. Returns 0 or -errno. */
+/* Writes a whole file (mode 0666 less the umask) without waiting until its name is on disk. Returns 0 or -errno. */
 int atomic_file_put(const char *path, const void *bytes, size_t count);
-/* Does the same as atomic_file_put() durably, for data that the daemon confirms as saved. */
+/* Like atomic_file_put(), but returns only when the file is safely on disk, for data that the daemon confirms as saved. */
 int atomic_file_keep(const char *path, const void *bytes, size_t count);
 /* Converts the error of a write (-errno) into the refusal that is sent to the user whose change was not saved. */
 enum refusal_code atomic_file_not_kept(int error);
@@ -34,7 +34,7 @@ struct atomic_file_part {
     const void *bytes;
     size_t count;
 };
-/* Does the same as atomic_file_put() for several parts, written one after the other. */
+/* Like atomic_file_put(), with the content given in several parts that are written one after the other. */
 int atomic_file_put_parts(const char *path, const struct atomic_file_part *parts, size_t part_count);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A header precedes the content: magic, key, byte count and checksum. */
+/* Reads and writes cache files: a header with magic, key, byte count and checksum precedes the content. */
 #include "base/files/cache_file.h"
 
 #include <fcntl.h>
@@ -54,7 +54,7 @@ void cache_file_close(struct cache_file *file)
     *file = (struct cache_file){ 0 };
 }
 
-/* Hashes and writes the parts one by one: joined in memory they could have tens of megabytes. */
+/* Hashes and writes the parts one by one, because joining them in memory could take tens of megabytes. */
 int cache_file_write_parts(const char *path, const char *magic, uint64_t key, const struct atomic_file_part *parts, size_t part_count)
 {
     struct cache_head head = { .key = key };

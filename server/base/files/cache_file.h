@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Cache files: results that would take long to compute again, stored under a key. A file that is truncated, damaged, of another kind or
-   of another key counts as missing. Thread: any. */
+/* Cache files: results that take long to compute, stored under a key. A file that is truncated, damaged, of another kind or of another
+   key counts as missing. Thread: any. */
 #ifndef BASE_FILES_CACHE_FILE_H
 #define BASE_FILES_CACHE_FILE_H
 #include <stdbool.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* An SQLite file in a format of ours: opens it, converts it to this program's version, sets it aside if it is damaged, and prepares its
+/* An SQLite file in one of our formats: opens it, converts it to this program's version, renames it if it is damaged, and prepares its
    statements once. Thread: one at a time per database. Functions that return int return 0 or -errno, already logged, unless they say
    that they return an SQLite code. -EBADMSG: the file is damaged; -ENOSPC: the disk is full; -EROFS: the file cannot be written. */
 #ifndef BASE_FILES_DATABASE_H
@@ -31,14 +31,14 @@ struct database {
 void database_init(struct database *database, struct log *log, char *path, const struct database_format *format);
 void database_finish(struct database *database); /* Closes the database; a zeroed struct is fine and stays zeroed. */
 
-/* Opens the file for writing, creates it if it is missing, and converts an older version in one transaction. A damaged file is set aside
+/* Opens the file for writing. Creates it if it is missing, and converts an older version in one transaction. A damaged file is renamed
    and replaced by a new one; then *renewed is true. A file of a newer version is left unchanged: -EACCES. */
 int database_open(struct database *database, bool *renewed);
 /* Opens the file for reading, even on a read-only disk. Returns -ENOENT, not logged, if the file is missing or nothing has been written
    to it yet. The file may have any version up to this program's. */
 int database_open_to_read(struct database *database);
-/* Opens a file that another handle writes, to write to it as well: does not create, convert or set aside the file. Commits are atomic,
-   but may be lost with power. Returns -ENOENT, not logged, if there is no file of this version. */
+/* Opens a file that another handle already writes, to write to it as well: does not create, convert or rename the file. Commits are
+   atomic, but the newest may be lost when the power fails. Returns -ENOENT, not logged, if there is no file of this version. */
 int database_open_beside(struct database *database);
 /* Closes the file and renames NAME.sqlite and SQLite's companion files to NAME.damaged-TIME.sqlite, for later analysis. Returns false if
    it cannot be renamed. Logged in both cases. */
@@ -52,7 +52,8 @@ int database_step(struct database *database, sqlite3_stmt *statement);
 /* Steps a statement to its end and resets it. Returns the SQLite code, SQLITE_OK instead of SQLITE_DONE. */
 int database_run(struct database *database, sqlite3_stmt *statement);
 int database_exec(struct database *database, const char *sql, const char *doing);
-/* Logs an SQLite error with the file, the failed action and the cause. Returns it as -errno; 0 for SQLITE_OK, _ROW and _DONE. */
+/* Logs an SQLite error with the file, the failed action (`doing`) and the cause. Returns the error as -errno; 0 for SQLITE_OK,
+   SQLITE_ROW and SQLITE_DONE. */
 int database_fail(struct database *database, int code, const char *doing);
 
 void database_bind_text(sqlite3_stmt *statement, int index, const char *text); /* Binds a text, which must outlive the step. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Packs arrays: element count, element size, and the bytes padded to a multiple of eight. */
+/* Packs and unpacks arrays. An array is stored as its element count, its element size, and its bytes padded to a multiple of eight. */
 #include "base/files/pack.h"
 
 #include <stdint.h>
@@ -28,7 +28,8 @@ void pack_array(struct text *to, const void *array, size_t count, size_t bytes_e
     text_add_bytes(to, zeros, padding_of(count * bytes_each));
 }
 
-/* Returns the bytes of the next array and its element count; NULL: no such array. */
+/* Returns the bytes of the next array; *count receives its number of elements. NULL: the array is empty, has elements of another size,
+   or the data ends. */
 static const char *take(struct unpack *from, size_t *count, size_t bytes_each)
 {
     struct array_head head = { 0 };

@@ -9,13 +9,13 @@
 /* Appends an array with its length. */
 void pack_array(struct text *to, const void *array, size_t count, size_t bytes_each);
 
-struct unpack { /* the bytes that are not read yet; the caller owns the memory */
+struct unpack { /* the bytes that are not read yet, which belong to the caller */
     const char *at;
     size_t left;
     bool bad; /* true: a read has failed, so all further reads fail too */
 };
-/* Reads the next array; free with mem_free(). Returns NULL if it is empty, has elements of another size, or memory is exhausted;
-   from->bad distinguishes errors from an empty array. */
+/* Reads the next array; free with mem_free(). Returns NULL if it is empty, if its elements have another size, or if memory is exhausted;
+   from->bad is false only for an empty array. */
 void *unpack_array(struct unpack *from, size_t *count, size_t bytes_each);
 /* Reads the next array, which must have exactly `count` elements, into memory of the caller. */
 void unpack_into(struct unpack *from, void *to, size_t count, size_t bytes_each);

@@ -13,18 +13,18 @@ extern "C" {
 #define IMAGE_WHY_BYTES 200
 
 struct image {
-    uint8_t *rgba; /* pixels in rows from the top; sRGB, or as in the file; alpha not premultiplied; free with mem_free() */
+    uint8_t *rgba; /* pixels in rows from the top; colours in sRGB or as the file has them; alpha not premultiplied; free with mem_free() */
     uint32_t width_px, height_px;
 };
 struct image_float {
-    float *rgba; /* pixels in rows from the top; linear light, converted if the file has sRGB; free with mem_free() */
+    float *rgba; /* pixels in rows from the top; colours in linear light, converted if the file has sRGB; free with mem_free() */
     uint32_t width_px, height_px;
 };
 
-/* Decodes a PNG, JPEG or WebP file in memory, from an untrusted source. Scales images down to sides of at most max_px. Returns false on
-   failure, with the reason in `why`. */
+/* Decodes a PNG, JPEG or WebP file in memory, from an untrusted source. Scales images down until no side exceeds max_px. Returns false
+   on failure, with the reason in `why`. */
 bool image_decode(struct image *image, const void *bytes, size_t size, uint32_t max_px, char why[IMAGE_WHY_BYTES]);
-/* Does the same as image_decode() for any file that OpenImageIO reads, from a trusted source: the plant file or the command line names
+/* Like image_decode(), but for any file that OpenImageIO reads, and only from a trusted source: the plant file or the command line names
    the file. */
 bool image_load(struct image *image, const char *path, uint32_t max_px, char why[IMAGE_WHY_BYTES]);
 bool image_load_float(struct image_float *image, const char *path, uint32_t max_px, char why[IMAGE_WHY_BYTES]);

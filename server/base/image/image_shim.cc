@@ -25,13 +25,15 @@ namespace
 {
 
 constexpr int MAX_SIDE_PX = 1 << 15;
-constexpr int MAX_FILE_CHANNELS = 64;    /* maximum number of channels; rendering programs append further channels after the colours */
-constexpr uint64_t MAX_PIXELS = 1 << 26; /* maximum image size, 8192 x 8192; a texture is never drawn with more pixels */
-/* maximum plausible number of decoded values per byte of file (zlib shrinks to a thousandth at best, JPEG to less), and values that any
-   file may have */
+constexpr int MAX_FILE_CHANNELS = 64;    /* maximum number of channels in a file; rendering programs append further channels after the
+                                            colours */
+constexpr uint64_t MAX_PIXELS = 1 << 26; /* maximum number of pixels, 8192 x 8192: no texture is drawn with more */
+/* Limits against files that decode to far more than their size. VALUES_PER_BYTE: most decoded values per byte of file; zlib shrinks data
+   to a thousandth at best, JPEG to less. FREE_VALUES: number of values that a file of any size may have. */
 constexpr uint64_t VALUES_PER_BYTE = 2000, FREE_VALUES = 1 << 20;
 
-/* Returns the reader's name for the format that the first bytes show, since OpenImageIO chooses its reader by the file name. */
+/* Returns OpenImageIO's name of the reader for the format that the first bytes show; otherwise OpenImageIO would choose the reader by
+   the file name. */
 const char *format_of(const unsigned char *bytes, size_t size)
 {
     if (size >= 8 && memcmp(bytes, "\x89PNG\r\n\x1a\n", 8) == 0)
@@ -65,7 +67,7 @@ template <> struct kind<float> {
     static constexpr float opaque = 1;
 };
 
-/* Scales an image down in place if its sides are larger than max_px. */
+/* Scales an image down in place until no side exceeds max_px. */
 template <typename T> void shrink(T *rgba, uint32_t *width_px, uint32_t *height_px, uint32_t max_px)
 {
     uint32_t longest = std::max(*width_px, *height_px);
@@ -94,7 +96,8 @@ void read_pixels(OIIO::ImageInput *in, const OIIO::ImageSpec &spec, uint32_t max
         throw std::bad_alloc();
     bool read = in->read_image(0, 0, 0, channels, kind<T>::type, raw.data());
     std::string error = in->geterror();
-    if (!read || error.find("Premature end") != std::string::npos) /* the JPEG reader reports this error and fills missing rows with grey */
+    if (!read || error.find("Premature end") != std::string::npos) /* the JPEG reader only reports this error and fills the missing rows
+                                                                      with grey */
         throw std::runtime_error(error.empty() ? "broken" : error);
     spread(raw.data(), channels, pixels, kind<T>::opaque, *rgba);
     *width_px = static_cast<uint32_t>(spec.width);
@@ -125,7 +128,7 @@ bool size_good(const OIIO::ImageSpec &spec, int max_channels, char *why)
 bool claim_good(const OIIO::ImageSpec &spec, const char *format, size_t size, char *why)
 {
     uint64_t values = static_cast<uint64_t>(spec.width) * static_cast<uint64_t>(spec.height) * static_cast<uint64_t>(spec.nchannels);
-    /* no such check for WebP, which stores images of one colour in a few bytes */
+    /* WebP files are not checked, because WebP stores images of one colour in a few bytes */
     if (strcmp(format, "webp") != 0 && values > FREE_VALUES + VALUES_PER_BYTE * size)
         return refuse(why, "%zu bytes claim %d x %d pixels", size, spec.width, spec.height);
     return true;
@@ -211,7 +214,7 @@ bool load_float(struct image_float *image, const char *path, uint32_t max_px, ch
     return true;
 }
 
-/* Runs a function that may throw; frees a partial image after an exception. */
+/* Calls a function that may throw. If it throws, frees the partial image and returns false with the reason in `why`. */
 template <typename I, typename F> bool guarded(I *image, char *why, F read)
 {
     *image = {};

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes log lines in three formats, counting repeats. */
+/* Writes log lines in three formats, and counts repeated lines. */
 #include "base/log/log.h"
 
 #include <pthread.h>
@@ -20,7 +20,8 @@ static const int64_t REPEAT_NS = 1000000000;
 struct log {
     enum log_level level;
     enum log_format format;
-    char *plant, *journal_socket; /* plant's name, NULL: none; path of the journal's socket, NULL: the system's */
+    char *plant, *journal_socket; /* plant: name of the plant, NULL if none; journal_socket: path of the journal's socket, NULL for the
+                                     system's */
     pthread_mutex_t lock;
     /* --- below: under `lock` */
     char last[LINE_BYTES];

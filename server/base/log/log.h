@@ -9,7 +9,8 @@ enum log_level { LOG_ERROR, LOG_WARN, LOG_INFO, LOG_DEBUG };
 enum log_format {
     LOG_TEXT, /* lines of time, level, text */
     LOG_JSON, /* one JSON object per line: time, level, message, plant, event, message_id */
-    /* journal entries: PRIORITY, MESSAGE, PLANT, EVENT, MESSAGE_ID; lines `<PRIORITY>text` if the journal's socket is closed */
+    /* systemd journal entries with PRIORITY, MESSAGE, PLANT, EVENT, MESSAGE_ID; if the journal's socket cannot be used, lines
+       `<PRIORITY>text` */
     LOG_JOURNAL,
 };
 /* Events that other programs watch for; each has a name and a MESSAGE_ID of its own (log_events.c). */
@@ -38,11 +39,12 @@ struct log;
 
 /* Creates a log in text format that drops lines above `level`. Never returns NULL. */
 struct log *log_create(enum log_level level);
-/* Writes the repeated lines still held back, and frees the log. &NULL is fine; leaves NULL. */
+/* Writes the counts of repeated lines that are still held back, and frees the log. &NULL is fine; sets *log to NULL. */
 void log_destroy(struct log **log);
-/* Sets the format. Call it before other threads use the log. journal_socket: for LOG_JOURNAL, copied; NULL: the system journal's socket. */
+/* Sets the format. Call it before other threads use the log. journal_socket: socket for LOG_JOURNAL, copied; NULL: the system journal's
+   socket. */
 void log_set_format(struct log *log, enum log_format format, const char *journal_socket);
-/* Sets the plant's name for JSON and the journal. Call it before other threads use the log. */
+/* Sets the plant's name that LOG_JSON and LOG_JOURNAL write with each line. Call it before other threads use the log. */
 void log_set_plant(struct log *log, const char *plant);
 /* Returns whether the format is LOG_TEXT, which a person reads directly. */
 bool log_is_text(const struct log *log);
@@ -55,7 +57,7 @@ void log_event(struct log *log, enum log_level level, enum log_event event, cons
 #define log_info(log, ...) log_at(log, LOG_INFO, __VA_ARGS__)
 #define log_debug(log, ...) log_at(log, LOG_DEBUG, __VA_ARGS__)
 
-/* Return an event's name in JSON, and its MESSAGE_ID in the journal; NULL for EVENT_NONE. */
+/* Returns an event's name in JSON; NULL for EVENT_NONE. The sibling log_event_id() returns the MESSAGE_ID of the event in the journal. */
 const char *log_event_name(enum log_event event);
 const char *log_event_id(enum log_event event);
 

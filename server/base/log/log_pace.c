@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Counts the log lines that are left out between two that are written. */
+/* Counts the log lines that a rate limit leaves out. */
 #include "base/log/log_pace.h"
 
 #include <stdio.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rate limit for log lines about one repeating state: the first line at once, later ones after pauses that double from `first_ns` to
-   `longest_ns`, each with the number of occurrences left out. Pure; the caller passes now_ns. Thread: one. */
+/* Rate limit for log lines about one repeating state. The first line is due immediately, later ones after pauses that double from
+   `first_ns` to `longest_ns`; each gives the number of occurrences left out. Pure; the caller passes now_ns. Thread: one. */
 #ifndef BASE_LOG_LOG_PACE_H
 #define BASE_LOG_LOG_PACE_H
 #include <stdbool.h>
@@ -8,17 +8,17 @@
 
 enum { LOG_PACE_BYTES = 64 };
 
-struct log_pace { /* zero-initialise all but first_ns and longest_ns */
+struct log_pace { /* zero-initialise the members other than first_ns and longest_ns */
     int64_t first_ns, longest_ns;
     int64_t pause_ns, next_ns; /* length of the current pause, and its end (monotonic); next_ns 0: no line was written yet */
     long unsaid;
 };
 
-/* Counts one occurrence of the state. Returns true if a log line is due now; `more` is then the text to append: "" or " (and 5 more in the
-   last 60 s)". */
+/* Counts one occurrence of the state. Returns true if a log line is due now; `more` then receives the text to append: "" or " (and 5
+   more in the last 60 s)". */
 bool log_pace_take(struct log_pace *pace, int64_t now_ns, char more[LOG_PACE_BYTES]);
-/* Returns true if a pause has ended in which occurrences were left out, and starts the next pause; `more` is then a text with the count of
-   these occurrences. */
+/* Returns true if a pause has ended in which occurrences were left out, and starts the next pause. `more` then receives a text with
+   their number. */
 bool log_pace_flush(struct log_pace *pace, int64_t now_ns, char more[LOG_PACE_BYTES]);
 
 #endif

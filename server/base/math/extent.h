@@ -14,7 +14,7 @@ static inline struct extent extent_empty(void)
     return (struct extent){ { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY } };
 }
 
-/* Extends the box to a point, which must be finite. */
+/* Enlarges the box so that it contains a point, which must be finite. */
 static inline void extent_add(struct extent *extent, const double point[3])
 {
     for (int axis = 0; axis < 3; axis++) {
@@ -23,7 +23,7 @@ static inline void extent_add(struct extent *extent, const double point[3])
     }
 }
 
-/* Does the same as extent_add() for a point in floats. */
+/* Like extent_add(), for a point in single precision. */
 static inline void extent_addf(struct extent *extent, const float point[3])
 {
     extent_add(extent, (double[3]){ (double)point[0], (double)point[1], (double)point[2] });

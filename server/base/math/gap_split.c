@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Splits a set of triangles at gaps along the axes, found in histograms of their corners. */
+/* Separates a model's main part from stray pieces: splits its triangles at gaps along the axes, found in histograms of their corners. */
 #include "base/math/gap_split.h"
 
 #include <math.h>
@@ -9,10 +9,12 @@
 #include "base/math/vec.h"
 
 enum { BINS = 256, MAX_SPLITS = 64 };
-static const double SMALL_SHARE = 0.02; /* maximum fraction of the area of all triangles that small stray pieces may have together */
-/* stray: small pieces beyond a gap of SMALL_GAP main-part sizes, all pieces beyond a gap of LARGE_GAP */
+static const double SMALL_SHARE = 0.02; /* stray pieces are small if together they have at most this fraction of the area of all
+                                           triangles */
+/* lengths of a gap in sizes of the main part: small pieces beyond a gap of SMALL_GAP are stray, and pieces of any area beyond a gap of
+   LARGE_GAP */
 static const double SMALL_GAP = 1, LARGE_GAP = 100;
-/* corners that are farther apart than this fraction of the main part's size count as different places */
+/* distance, as a fraction of the main part's size, beyond which corners of triangles count as being at different places */
 static const double ONE_PLACE = 1e-3;
 
 struct tri_range {
@@ -42,7 +44,7 @@ static double size_of(const struct gap_tri *tris, size_t count)
     return size_m;
 }
 
-/* Finds the widest gap along an axis. Returns its length; 0: no gap. */
+/* Finds the widest interval along an axis without any corner of a triangle. Returns its length; 0: there is none. */
 static double find_gap(const struct tri_range *part, int axis, double min_m, double max_m, double *from_m, double *to_m)
 {
     struct {
@@ -80,7 +82,7 @@ static void swap(struct gap_tri *a, struct gap_tri *b)
     *b = copy;
 }
 
-/* Moves the triangles that are entirely on one side of the gap to the front. Returns the count of these triangles. */
+/* Moves the triangles that are entirely on one side of the gap to the front of the array. Returns their number. */
 static size_t gather(struct tri_range *part, int axis, double from_m, double to_m, bool above, double *area_m2)
 {
     size_t count = 0;
@@ -97,7 +99,8 @@ static size_t gather(struct tri_range *part, int axis, double from_m, double to_
     return count;
 }
 
-/* Returns whether the far corners of triangles that cross the gap are farther apart than within_m. */
+/* Returns true if the triangles that cross the gap end at several places on its far side: their corners there are more than within_m
+   apart. */
 static bool reach_several_places(const struct gap_tri *tris, size_t count, int axis, double from_m, double to_m, bool above,
                                  double within_m)
 {
@@ -113,7 +116,7 @@ static bool reach_several_places(const struct gap_tri *tris, size_t count, int a
     return extent.low[0] <= extent.high[0] && extent_size(&extent) > within_m;
 }
 
-/* Drops the triangles beyond one gap. Returns false if there is no such gap. */
+/* Drops the triangles beyond one gap from `part`. Returns false if no gap separates stray pieces. */
 static bool split(struct tri_range *part, double all_m2)
 {
     double min_m[3], max_m[3];

@@ -19,10 +19,11 @@ struct gap_tri {
     uint32_t owner; /* value for the caller's use */
 };
 
-/* Moves the triangles of the main part to the front. Returns the count of these triangles; *main receives their extent. */
+/* Moves the triangles of the main part to the front of the array. Returns their number; *main receives their extent. */
 size_t gap_split(struct gap_tri *tris, size_t count, struct extent *main);
 
-/* Returns the triangles of an indexed mesh (3 indices a triangle); `owner` is the triangle's index. The caller frees them (mem_free). */
+/* Converts an indexed mesh (3 indices a triangle) to an array of triangles, in which `owner` is the triangle's index in the mesh. The
+   caller frees the array (mem_free). */
 struct gap_tri *gap_tris(const float (*positions_m)[3], const uint32_t *indices, size_t triangle_count);
 /* Returns the diagonal of the main part of an indexed mesh. Tolerances and spacings are fractions of this diagonal, so that a stray vertex
    does not change them. */

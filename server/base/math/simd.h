@@ -8,7 +8,8 @@
 
 enum simd_level { SIMD_PLAIN, SIMD_HAS_AVX2, SIMD_HAS_AVX512 }; /* SIMD_HAS_AVX512: the processor has AVX-512 F, VL, BW and DQ */
 
-/* Write the loop as a SIMD_BODY function, and call it from a plain function and from a function marked SIMD_AVX2. */
+/* To build a loop for AVX2 as well, write it as a SIMD_BODY function, and call that from a plain function and from a function marked
+   SIMD_AVX2. */
 #define SIMD_BODY static inline __attribute__((always_inline))
 #if defined(__x86_64__)
 #define SIMD_AVX2 __attribute__((target("avx2")))
@@ -36,8 +37,8 @@ static inline bool simd_has_avx2(void)
 }
 #endif
 
-/* Put SIMD_CLONES("avx2") before a function to build it for each of these sets and for none; the loader selects the build. Disabled
-   under sanitizers, whose run time starts after the loader. */
+/* SIMD_CLONES("avx2") before a function builds it for plain processors and for AVX2; the loader selects the build that fits the machine.
+   Disabled under sanitizers, whose run time starts after the loader. */
 #if defined(__x86_64__) && defined(__linux__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && !defined(__clang__)
 #define SIMD_CLONES(...) __attribute__((target_clones(__VA_ARGS__, "default")))
 #else

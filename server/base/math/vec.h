@@ -4,7 +4,8 @@
 #define BASE_MATH_VEC_H
 #include <math.h>
 
-/* fmin and fmax without NaN rules: no NaN occurs here, and the library calls take half of a ray's time. */
+/* Minimum of two numbers that are not NaN. The library's fmin and fmax handle NaN, and their calls would take half of the time of a ray
+   query. */
 static inline double min_of(double a, double b)
 {
     return a < b ? a : b;
@@ -34,7 +35,8 @@ static inline void vec_cross(const double a[3], const double b[3], double out[3]
     out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-/* Computes (b - a) x (c - a): its length is twice the triangle's area; it points to the side from which a, b, c are counter-clockwise. */
+/* Computes (b - a) x (c - a). Its length is twice the area of triangle a, b, c; it points to the side from which a, b, c appear
+   counter-clockwise. */
 static inline void vec_normal(const double a[3], const double b[3], const double c[3], double out[3])
 {
     double ab[3], ac[3];
@@ -57,8 +59,8 @@ static inline double vec_normalize(double v[3])
     return length;
 }
 
-/* Computes two unit vectors orthogonal to each other and to `normal`, a unit vector: right-handed, deterministic (Duff et al., Building
-   an orthonormal basis, revisited, JCGT 2017). */
+/* Computes two unit vectors that are orthogonal to each other and to the unit vector `normal`: x, y, normal are right-handed; equal
+   input gives equal bits (Duff et al., Building an orthonormal basis, revisited, JCGT 2017). */
 static inline void vec_frame(const double normal[3], double x[3], double y[3])
 {
     double sign = copysign(1, normal[2]), a = -1 / (sign + normal[2]), b = normal[0] * normal[1] * a;
@@ -116,7 +118,7 @@ static inline float vecf_dot(const float a[3], const float b[3])
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* Does the same as vec_normal() for floats, in double precision. */
+/* Like vec_normal(), for points in single precision; computes in double precision. */
 static inline void vecf_normal(const float a[3], const float b[3], const float c[3], double out[3])
 {
     double ab[3], ac[3];

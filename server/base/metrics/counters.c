@@ -12,7 +12,7 @@
 struct counter_entry {
     char *name, *type, *help;
     counter value;
-    bool microseconds;           /* counted in microseconds, printed in seconds */
+    bool microseconds;           /* true: the number is in microseconds, and printed in seconds */
     struct histogram *histogram; /* durations; NULL: a single value */
     struct counter_entry *next;
 };

@@ -21,14 +21,14 @@ static bool read_stat(unsigned long long fields[STAT_LAST + 1])
     bool good = file && fgets(line, sizeof(line), file);
     if (file)
         fclose(file);
-    char *at = good ? strrchr(line, ')') : NULL; /* the program name before this character may contain spaces */
+    char *at = good ? strrchr(line, ')') : NULL; /* searches the last ')', because the program name before it may contain spaces */
     if (!at)
         return false;
     at = strchr(at, ' ');
     for (int i = 3; i <= STAT_LAST && at; i++, at = strchr(at, ' ')) {
         at++;
         if (i > 3 && sscanf(at, "%llu", &fields[i]) != 1)
-            fields[i] = 0; /* a negative field, such as a priority, is not parsed and counts as 0 */
+            fields[i] = 0; /* a negative field, such as a priority, is not parsed and reads as 0 */
     }
     return at != NULL;
 }
@@ -44,7 +44,7 @@ static int64_t boot_s(void)
 static int64_t count_files(void)
 {
     DIR *folder = opendir("/proc/self/fd");
-    int64_t count = -3; /* ".", ".." and the descriptor of the folder itself are not counted */
+    int64_t count = -3; /* starts below 0, so that ".", ".." and the descriptor of the folder itself are not counted */
     for (; folder && readdir(folder);)
         count++;
     if (folder)
@@ -62,7 +62,7 @@ void process_counters_set(struct counters *counters)
         counter_set(counters_add(counters, "process_threads", "gauge", "Threads."), (int64_t)fields[STAT_THREADS]);
         counter *start_s =
             counters_add(counters, "process_start_time_seconds", "gauge", "Start time of the process, in seconds since 1970.");
-        if (atomic_load(start_s) == 0) /* the start time is set only once, so that a later change of the clock does not change it */
+        if (atomic_load(start_s) == 0) /* sets the start time only once, so that a later change of the clock does not move it */
             counter_set(start_s, boot_s() + (int64_t)(fields[STAT_START] / (unsigned long long)sysconf(_SC_CLK_TCK)));
         counter_set(counters_add(counters, "process_virtual_memory_bytes", "gauge", "Address space in use."),
                     (int64_t)fields[STAT_VIRTUAL]);

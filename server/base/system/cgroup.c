@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Uses the kernel's cgroup v2 files (Documentation/admin-guide/cgroup-v2.rst). */
+/* Divides the service's cgroup among the daemon and its children, with the kernel's cgroup v2 files
+   (Documentation/admin-guide/cgroup-v2.rst). */
 #include "base/system/cgroup.h"
 
 #include <errno.h>
@@ -55,14 +56,14 @@ static bool write_file(const char *folder, const char *name, const char *text)
     return good;
 }
 
-/* Returns whether systemd delegated a cgroup, which it marks by this attribute (https://systemd.io/CGROUP_DELEGATION). */
+/* Returns true if systemd delegated the cgroup, which it marks by this attribute (https://systemd.io/CGROUP_DELEGATION). */
 static bool is_delegated(const char *folder)
 {
     char value[8];
     return getxattr(folder, "user.delegate", value, sizeof(value)) == 1 && value[0] == '1';
 }
 
-/* Finds the service's cgroup, after this process has moved into "daemon" below it. */
+/* Finds the service's cgroup: the parent of this process's cgroup, after the process has moved into "daemon". */
 static bool find_service(char out[PATH_MAX])
 {
     const size_t tail = sizeof(daemon_name) - 1;
@@ -93,7 +94,7 @@ char *cgroup_create(const char *name, size_t memory_bytes, int max_tasks)
     bool good = (mkdir(path, 0755) == 0 || errno == EEXIST) && write_file(path, "pids.max", number);
     snprintf(number, sizeof(number), "%zu", memory_bytes);
     good = good && write_file(path, "memory.max", memory_bytes ? number : "max");
-    write_file(path, "memory.swap.max", "0"); /* this file is absent if the kernel does not count swap */
+    write_file(path, "memory.swap.max", "0"); /* absent if the kernel does not count swap */
     if (!good)
         cgroup_destroy(&path);
     return path;
@@ -106,7 +107,7 @@ bool cgroup_add(const char *path, pid_t pid)
     return !path || write_file(path, "cgroup.procs", number);
 }
 
-/* Killed processes leave the cgroup only when they have ended, which takes milliseconds. */
+/* Removes the cgroup. Killed processes leave it only when they have ended, so this waits some milliseconds. */
 void cgroup_destroy(char **path)
 {
     if (!*path)

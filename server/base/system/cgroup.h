@@ -7,10 +7,11 @@
 #include <stddef.h>
 #include <sys/types.h>
 
-/* Moves this process into the cgroup "daemon" and enables memory and task limits for its siblings. Call it once, before other threads
-   start children. Returns false if the cgroup is not delegated, or lacks these controllers. */
+/* Moves this process into the cgroup "daemon" and enables memory and task limits for the cgroups of child processes next to it. Call it
+   once, before other threads start children. Returns false if systemd has not delegated the cgroup, or the cgroup lacks these
+   controllers. */
 bool cgroup_divide(void);
-/* Makes a cgroup NAME as a sibling of the daemon's, limited to memory_bytes (0: unlimited) and max_tasks. Returns its folder, or NULL if
+/* Makes a cgroup NAME next to the daemon's, limited to memory_bytes (0: unlimited) and max_tasks. Returns its folder, or NULL if
    cgroup_divide() did not succeed. */
 char *cgroup_create(const char *name, size_t memory_bytes, int max_tasks);
 /* Moves a process into a cgroup. path NULL: no-op, returns true. */

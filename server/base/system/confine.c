@@ -109,7 +109,7 @@ static uint64_t rights_of(enum confine_access access, enum confine_role role)
     return rights;
 }
 
-/* Adds a path to the ruleset. A path that is absent or that this user cannot reach needs no permission. */
+/* Adds a path to the ruleset. A path that is absent, or that this user cannot reach, is skipped without an error. */
 static int permit(int ruleset, const char *path, uint64_t rights)
 {
     struct stat st;
@@ -129,12 +129,12 @@ static int restrict_paths(const struct confine_params *params, int abi)
 {
     const struct confine_ruleset attributes = confine_ruleset_of(abi);
     uint64_t known = attributes.files;
-    /* Kernels refuse a structure that is longer than the one they know, unless the rest is zero. */
+    /* larger than any older kernel's structure: kernels accept that if the excess is zero */
     int ruleset = (int)syscall(SYS_landlock_create_ruleset, &attributes, sizeof(attributes), 0);
     int status = ruleset < 0 ? -errno : permit(ruleset, "/dev/null", (READ_FILE | WRITE_FILE | TRUNCATE) & known);
     for (size_t i = 0; i < sizeof(system_paths) / sizeof(system_paths[0]) && status == 0; i++)
         status = permit(ruleset, system_paths[i].path, rights_of(system_paths[i].access, params->role) & known);
-    if (status == 0) /* programs that a command starts have /proc entries of their own, unknown in advance */
+    if (status == 0) /* all of /proc: programs that a command starts have entries of their own, whose names are unknown in advance */
         status = permit(ruleset, params->role == CONFINE_READER ? "/proc/self" : "/proc", READ_FILE | READ_FOLDER);
     for (size_t i = 0; i < params->path_count && status == 0; i++)
         status = permit(ruleset, params->paths[i].path, rights_of(params->paths[i].access, params->role) & known);
@@ -145,7 +145,8 @@ static int restrict_paths(const struct confine_params *params, int abi)
     return status;
 }
 
-/* Drops all capabilities but a few: root keeps access to other users' folders, and its commands may also change a file's owner. */
+/* Drops all capabilities, except that root keeps access to other users' folders, and in a command also the right to change a file's
+   owner. */
 static void drop_capabilities(enum confine_role role)
 {
     uint32_t kept = 1U << CAP_DAC_OVERRIDE | 1U << CAP_DAC_READ_SEARCH;
@@ -166,7 +167,7 @@ static void offer_to_oom_killer(void)
     int file = open("/proc/self/oom_score_adj", O_WRONLY | O_CLOEXEC);
     if (file >= 0) {
         ssize_t written = write(file, "1000", 4);
-        (void)written; /* if the kernel refuses the write, the OOM score keeps its default */
+        (void)written; /* result ignored: if the kernel refuses the write, the OOM score keeps its default */
         close(file);
     }
 }
@@ -178,7 +179,8 @@ int confine(const struct confine_params *params)
     drop_capabilities(params->role);
     if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0)
         return -errno;
-    bool moves_files = params->role != CONFINE_READER; /* Landlock ABI 1 forbids moving files between folders to every confined process */
+    bool moves_files = params->role != CONFINE_READER; /* programs that may write also move files between folders, which Landlock ABI 1
+                                                          forbids every confined process */
     int status = abi < 1 || (abi < ABI_RENAME && moves_files) ? 0 : restrict_paths(params, abi);
     if (status != 0)
         return status;
@@ -193,7 +195,7 @@ bool confine_lacks_with(int abi, bool calls, char out[CONFINE_LACKS_BYTES])
         int abi;
         const char *missing;
     } parts[] = {
-        /* access left open without that Landlock ABI; seccomp still blocks TCP and devices, and for readers the rest too */
+        /* access that stays possible without that Landlock ABI; seccomp still blocks TCP and devices, and for readers all of these */
         { ABI_RENAME, "read and write all files of this user" },
         { ABI_TRUNCATE, "empty all files that this user may write" },
         { ABI_SCOPES, "signal other processes of this user" },

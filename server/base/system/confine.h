@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Confines a process that reads untrusted files: Landlock restricts paths, TCP, signals and abstract sockets, seccomp restricts system
-   calls. A restriction holds for the process and everything it starts, and cannot be lifted. */
+   calls. The restrictions hold for the process and for every process that it starts, and cannot be lifted. */
 #ifndef BASE_SYSTEM_CONFINE_H
 #define BASE_SYSTEM_CONFINE_H
 #include <stdbool.h>
@@ -12,11 +12,11 @@
 enum confine_access {
     CONFINE_READ,
     CONFINE_EXECUTE, /* execute and read */
-    CONFINE_WRITE    /* read and write; create, rename and remove regular files and folders below */
+    CONFINE_WRITE    /* read and write; create, rename and remove regular files and folders below the path */
 };
 
 struct confine_path {
-    const char *path; /* a file, or a folder with everything below; a path that does not exist is skipped */
+    const char *path; /* a file, or a folder with everything below; skipped if it does not exist */
     enum confine_access access;
 };
 
@@ -25,26 +25,27 @@ struct confine_params {
     /* allowed paths, in addition to the system libraries, fonts and kernel files that every program needs */
     const struct confine_path *paths;
     size_t path_count;
-    bool notifies; /* may send datagrams to the service manager's Unix socket */
+    bool notifies; /* true: may send datagrams to the service manager's Unix socket */
 };
 
-/* Confines the calling thread and what it starts. Refused system calls return EPERM; calls newer than this list return ENOSYS, so that
-   libraries fall back to older ones. Drops capabilities, sets no_new_privs, and makes the kernel's OOM killer prefer this process.
-   Restrictions that the kernel lacks are skipped (see confine_lacks()). Call it while the process has one thread, or between fork and
-   exec: it allocates no memory. Returns 0 or -errno; after an error the process must end. */
+/* Confines the calling thread and every process that it starts. Refused system calls return EPERM; system calls newer than this
+   program's list return ENOSYS, so that libraries fall back to older ones. Drops capabilities, sets no_new_privs, and makes the kernel's
+   OOM killer prefer this process. Restrictions that the kernel lacks are skipped (see confine_lacks()). Call it while the process has
+   one thread, or between fork and exec: it allocates no memory. Returns 0 or -errno; after an error the process must end. */
 int confine(const struct confine_params *params);
 
 enum { CONFINE_LACKS_BYTES = 320 };
-/* Describes in one line what this kernel cannot enforce and which kernel can. Returns false if nothing is missing. */
+/* Describes in one line which restrictions this kernel cannot enforce, and from which version on kernels can. Returns false if nothing
+   is missing. */
 bool confine_lacks(char out[CONFINE_LACKS_BYTES]);
-/* Does the same as confine_lacks() for a kernel with this Landlock ABI (0: none), and with or without seccomp. Pure. */
+/* Like confine_lacks(), for a kernel with the given Landlock ABI (0: none), and with or without seccomp. Pure. */
 bool confine_lacks_with(int abi, bool calls, char out[CONFINE_LACKS_BYTES]);
 
-/* The kernel's struct landlock_ruleset_attr: what a ruleset restricts. */
+/* The kernel's struct landlock_ruleset_attr: the kinds of access that a ruleset restricts. */
 struct confine_ruleset {
     uint64_t files, tcp, scoped;
 };
-/* Returns everything that this Landlock ABI can restrict; a kernel refuses newer flags. Pure. */
+/* Returns every kind of access that this Landlock ABI can restrict; a kernel refuses newer flags. Pure. */
 struct confine_ruleset confine_ruleset_of(int abi);
 
 /* Makes this process's memory, descriptors and environment unreadable for other processes of its user, and stops core dumps. */

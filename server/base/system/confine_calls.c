@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* An allow-list in classic BPF. Its length costs nothing, because the kernel caches the verdict for calls that do not depend on
-   arguments. */
+/* An allow-list of system calls in classic BPF. The length of the list costs nothing, because the kernel caches the verdict for calls
+   that do not depend on arguments. */
 #include "base/system/confine_calls.h"
 
 #include <errno.h>
@@ -24,7 +24,7 @@
 #endif
 
 #ifdef OWN_ARCH
-/* FIRST_NEWER_CALL: number of cachestat, Linux 6.5: this and higher calls, also those of x32, are newer than the list */
+/* FIRST_NEWER_CALL: system call number of cachestat (Linux 6.5). This and higher numbers, also those of x32, are newer than the list */
 enum { MAX_INSTRUCTIONS = 1024, FIRST_NEWER_CALL = 451 };
 #define NAMESPACES (CLONE_NEWNS | CLONE_NEWCGROUP | CLONE_NEWUTS | CLONE_NEWIPC | CLONE_NEWUSER | CLONE_NEWPID | CLONE_NEWNET)
 #ifndef PR_SET_VMA
@@ -46,7 +46,7 @@ struct values {
     int count;
 };
 
-/* Calls needed for parsing: memory, threads, time, the process's own signals, and files. Landlock decides which files. */
+/* Calls needed for parsing: memory, threads, time, signals to the process itself, and files. Landlock decides which files. */
 static const int reader_calls[] = {
     SYS_brk, SYS_mmap, SYS_munmap, SYS_mprotect, SYS_mremap, SYS_madvise, SYS_msync, SYS_mincore, SYS_mlock, SYS_munlock, SYS_membarrier,
     SYS_exit, SYS_exit_group, SYS_futex, SYS_set_robust_list, SYS_set_tid_address, SYS_rseq, SYS_getpid, SYS_getppid, SYS_gettid,
@@ -69,7 +69,7 @@ static const int reader_calls[] = {
 #endif
 };
 
-/* Further calls for the site's own programs, in the folder that they may write. */
+/* Further calls that the site's own programs need, in the folder that they may write. */
 static const int command_calls[] = {
     SYS_kill, SYS_tgkill, SYS_pidfd_open, SYS_pidfd_send_signal, SYS_setpgid, SYS_prctl, SYS_seccomp, SYS_capset, SYS_fchmod, SYS_fchown,
     SYS_landlock_create_ruleset, SYS_landlock_add_rule, SYS_landlock_restrict_self, SYS_sched_setaffinity,
@@ -107,9 +107,9 @@ static void allow(struct filter_program *program, const int *calls, size_t count
     }
 }
 
-/* Emits a test of the lower half of an argument (all that the kernel uses of an int) against values. `test` is BPF_JEQ, or BPF_JSET for
-   any bit of a value. allowed: a match is allowed and anything else refused; otherwise the reverse. Both supported processors are
-   little-endian. */
+/* Appends a test of an argument of a system call to the filter: compares the lower half of the argument (all that the kernel uses of an
+   int) with `values`. `test` is BPF_JEQ, or BPF_JSET for any bit of a value. allowed: a match is allowed and anything else refused;
+   otherwise a match is refused. Both supported processors are little-endian. */
 static void decide(struct filter_program *program, int call, int argument, unsigned test, const struct values *values, bool allowed)
 {
     add(program, BPF_JMP | BPF_JEQ | BPF_K, (uint32_t)call, 0, (unsigned)(2 + 2 * values->count));
@@ -121,7 +121,7 @@ static void decide(struct filter_program *program, int call, int argument, unsig
     answer(program, allowed ? SECCOMP_RET_ERRNO | EPERM : SECCOMP_RET_ALLOW);
 }
 
-/* Refuses O_TRUNC on files that are opened for reading only, which Landlock allows before ABI 3. */
+/* Refuses O_TRUNC on files that are opened only for reading, which Landlock before ABI 3 would allow. */
 static void refuse_emptying(struct filter_program *program, int call, int flags_argument)
 {
     add(program, BPF_JMP | BPF_JEQ | BPF_K, (uint32_t)call, 0, 5);
@@ -134,16 +134,16 @@ static void refuse_emptying(struct filter_program *program, int call, int flags_
 
 static void decide_by_arguments(struct filter_program *program, enum confine_role role, bool notifies)
 {
-    /* terminal input cannot be injected (TIOCSTI), devices cannot be controlled */
+    /* the allowed requests can neither inject terminal input (TIOCSTI) nor control devices */
     static const struct values ioctls = { { TCGETS, TIOCGWINSZ, TIOCGPGRP, FIONREAD, FIONBIO, FIOCLEX, FIONCLEX }, 7 };
-    /* signals cannot be sent through a descriptor's owner */
+    /* refused, because they send signals through a descriptor's owner */
     static const struct values owners = { { F_SETOWN, F_SETOWN_EX, F_SETSIG, F_SETLEASE, F_NOTIFY }, 5 };
     static const struct values names = { { PR_SET_NAME, PR_GET_NAME, PR_SET_VMA, PR_GET_DUMPABLE, PR_CAPBSET_READ, PR_GET_TIMERSLACK }, 6 };
     static const struct values itself = { { 0 }, 1 }, unix_sockets = { { AF_UNIX }, 1 }, thread = { { CLONE_THREAD }, 1 };
     static const struct values namespaces = { { (uint32_t)NAMESPACES }, 1 };
     const struct values own = { { (uint32_t)getpid() }, 1 }, self = { { 0, (uint32_t)getpid() }, 2 };
     decide(program, SYS_fcntl, 1, BPF_JEQ, &owners, false);
-    /* the process may change its own limits, not the daemon's */
+    /* the process may change its own limits, but not the daemon's */
     decide(program, SYS_prlimit64, 0, BPF_JEQ, role == CONFINE_READER ? &self : &itself, true);
     if (role == CONFINE_READER) {
         decide(program, SYS_kill, 0, BPF_JEQ, &own, true);
@@ -171,7 +171,7 @@ int confine_calls(enum confine_role role, bool notifies)
     add(&program, BPF_LD | BPF_W | BPF_ABS, offsetof(struct seccomp_data, nr), 0, 0);
     add(&program, BPF_JMP | BPF_JGE | BPF_K, FIRST_NEWER_CALL, 0, 1);
     answer(&program, SECCOMP_RET_ERRNO | ENOSYS);
-    /* clone3 and openat2 have their flags in memory, where a filter cannot see them */
+    /* refused, because a filter cannot see their flags, which are in memory */
     add(&program, BPF_JMP | BPF_JEQ | BPF_K, SYS_clone3, 1, 0);
     add(&program, BPF_JMP | BPF_JEQ | BPF_K, SYS_openat2, 0, 1);
     answer(&program, SECCOMP_RET_ERRNO | ENOSYS);

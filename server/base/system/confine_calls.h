@@ -5,11 +5,12 @@
 #include <stdbool.h>
 
 enum confine_role {
-    CONFINE_READER, /* parses untrusted files: has threads, but starts no process and signals only itself */
-    CONFINE_COMMAND /* a command of the site: starts programs, makes links and changes modes in the folder that it may write */
+    CONFINE_READER, /* parses untrusted files: has threads, but starts no process and sends signals only to itself */
+    CONFINE_COMMAND /* command of the site: starts programs, and in the folder that it may write makes links and changes modes */
 };
 
-/* Installs the filter for the calling thread; needs no_new_privs. Returns 0 or -errno. */
+/* Installs the filter of system calls for the calling thread, which must have no_new_privs. notifies: also allow messages to the service
+   manager. Returns 0 or -errno. */
 int confine_calls(enum confine_role role, bool notifies);
 
 #endif

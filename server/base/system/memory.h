@@ -5,13 +5,13 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Returns the machine's memory, or the control group's limit if that is less. */
+/* Returns the bytes of the machine's memory, or of the control group's limit if that is less. */
 size_t memory_machine_bytes(void);
 /* Returns the default memory limit: a quarter of memory_machine_bytes(), at most 2 GiB. */
 size_t memory_default_bytes(void);
 
 struct memory_use {             /* all in bytes */
-    size_t resident, anonymous; /* resident: bytes in RAM; anonymous: resident bytes that are not mapped from files */
+    size_t resident, anonymous; /* resident: bytes in RAM; anonymous: those resident bytes that are not mapped from files */
     size_t allocated;           /* allocated by malloc */
 };
 void memory_measure(struct memory_use *use); /* Fills *use with the current numbers. */

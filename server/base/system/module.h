@@ -10,12 +10,12 @@
 struct module {
     const char *name; /* file name; searched in the program's folder and in ../lib/plantcast */
     pthread_mutex_t lock;
-    void *library; /* library handle, under `lock`; NULL: not loaded yet, or not loadable. Once loaded it stays loaded */
+    void *library; /* library handle, protected by `lock`; NULL: not loaded yet, or not loadable. A loaded library stays loaded */
 };
 #define MODULE(file) { .name = (file), .lock = PTHREAD_MUTEX_INITIALIZER }
 
-/* Sets the function pointer at `function` to the module's function of that name. Returns false, with the file and the reason in `why`,
-   if the module cannot be loaded or has another version. */
+/* Sets the function pointer at `function` to the module's function of that name; loads the module first if needed. Returns false, with
+   the file and the reason in `why`, if the module cannot be loaded or has another version. */
 bool module_find(struct module *module, const char *name, void *function, char *why, size_t why_bytes);
 
 #endif

@@ -21,14 +21,15 @@
 #include "base/text/text.h"
 
 enum {
-    FIRST_SOCKET = 3 /* first descriptor passed by systemd: sd_listen_fds(3) */,
+    FIRST_SOCKET = 3 /* number of the first descriptor that systemd passes: sd_listen_fds(3) */,
     EXTENSION_S = 60,
     EXTENSION_INTERVAL_S = 10,
-    MIN_EXTENSIONS = 60 /* minimum number of extension requests within the time limit */
+    MIN_EXTENSIONS = 60 /* minimum number of requests for more time that fit into the limit (limit_s) */
 };
-static const int64_t AT_WORK_NS = 20 * NS_PER_MS; /* CPU time between two checks below which the processes count as idle */
+static const int64_t AT_WORK_NS = 20 * NS_PER_MS; /* processes that used less CPU time than this between two checks count as idle */
 
-/* Sends a datagram. path: a file's path, or @NAME for an abstract socket. */
+/* Sends a datagram to a Unix socket. path: path of the socket's file, or @NAME for an abstract socket. Returns false if it was not
+   delivered. */
 static bool send_to(const char *path, const char *bytes, size_t count)
 {
     struct sockaddr_un to = { .sun_family = AF_UNIX };
@@ -81,7 +82,7 @@ int service_take_socket(void)
     if (!pid || !count || strtol(pid, NULL, 10) != (long)getpid() || strtol(count, NULL, 10) < 1)
         return -1;
     bool one = strtol(count, NULL, 10) == 1;
-    unsetenv("LISTEN_PID"); /* plantcast-prep, which a reload starts, must not inherit the socket */
+    unsetenv("LISTEN_PID"); /* plantcast-prep, which a reload starts, must not take the socket for its own */
     unsetenv("LISTEN_FDS");
     fcntl(FIRST_SOCKET, F_SETFD, FD_CLOEXEC);
     return one ? FIRST_SOCKET : -EINVAL;
@@ -92,15 +93,15 @@ struct service_patience {
     pthread_mutex_t lock;
     pthread_cond_t wake;
     int64_t limit_ns, every_ns;
-    int64_t used_ns; /* CPU time used at the last check; used only by the thread of this struct */
+    int64_t used_ns; /* CPU time in nanoseconds that the processes had used at the last check; used only by the thread of this struct */
     /* --- below: under `lock` */
     char *status;
-    int64_t since_ns; /* time when the status was set */
+    int64_t since_ns; /* monotonic time when the status was set */
     bool ending;
 };
 
-/* Returns the CPU time in nanoseconds of a process and its reaped children; 0: the process is gone, or in another POSIX session.
-   id: its entry in /proc. */
+/* Returns the CPU time in nanoseconds of a process and its reaped children; 0: the process is gone, or belongs to another POSIX session.
+   id: name of its entry in /proc. */
 static int64_t used_by(const char *id)
 {
     char path[32], line[1024];
@@ -116,7 +117,7 @@ static int64_t used_by(const char *id)
     return known && session == getsid(0) ? (int64_t)(ticks[0] + ticks[1] + ticks[2] + ticks[3]) * (NS_PER_S / sysconf(_SC_CLK_TCK)) : 0;
 }
 
-/* Returns whether this process, or one that it started, has used CPU time since the last call. */
+/* Returns true if this process, or one that it started, has used CPU time since the last call. */
 static bool is_at_work(struct service_patience *patience)
 {
     struct timespec own;
@@ -127,19 +128,19 @@ static bool is_at_work(struct service_patience *patience)
             used_ns += used_by(entry->d_name);
     if (folder)
         closedir(folder);
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &own); /* the CPU time of this check itself does not count */
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &own); /* subtracts the CPU time of this check itself */
     used_ns -= own.tv_sec * NS_PER_S + own.tv_nsec;
     bool works = !folder || used_ns - patience->used_ns >= AT_WORK_NS;
     patience->used_ns = used_ns;
     return works;
 }
 
-/* Thread: asks for more time at each interval. Stops while the processes use no CPU time, or once the status is too old, so that a
-   hanging start is ended. */
+/* Main function of the thread that asks the service manager for more time to start, at each interval. It asks no more while the
+   processes use no CPU time, or once the status is too old, so that a hanging start is ended. */
 static void *extend_start(void *arg)
 {
     struct service_patience *patience = arg;
-    bool works = true; /* requests more time at least once, so that a quick start shows its status too */
+    bool works = true; /* asks at least once, so that a quick start shows its status too */
     pthread_mutex_lock(&patience->lock);
     do {
         if (works && clock_mono_ns() - patience->since_ns < patience->limit_ns)
@@ -215,7 +216,7 @@ bool service_is_journal(int fd)
            st.st_ino == (ino_t)inode;
 }
 
-/* Appends NAME=VALUE or, if the value has line breaks, NAME, the length in 8 bytes, little-endian, and VALUE. */
+/* Appends a field: NAME=VALUE or, if the value has line breaks, NAME, the value's length in 8 bytes (little-endian), and the value. */
 static void add_field(struct text *text, const struct service_field *field)
 {
     size_t length = strlen(field->value);

@@ -9,8 +9,8 @@
 
 /* Sends lines such as "READY=1 STATUS=..." to the socket that NOTIFY_SOCKET names. Returns whether the message was delivered. */
 bool service_notify(const char *fmt, ...) __attribute__((format(printf, 1, 2)));
-/* Returns the interval within which the manager expects each watchdog message (WATCHDOG_USEC, if meant for this process); 0: no
-   watchdog. */
+/* Returns the interval in nanoseconds within which the manager expects each watchdog message (WATCHDOG_USEC, if meant for this process);
+   0: no watchdog. */
 int64_t service_watchdog_ns(void);
 /* Starts a thread for long work before the service is ready: every few seconds it asks the manager to wait longer and shows `status`. It
    stops asking while neither this process nor others of its session use CPU time, and once a status is older than limit_s, so that the
@@ -20,17 +20,17 @@ struct service_patience *service_patience_begin(const char *status, int limit_s)
 void service_patience_status(struct service_patience *patience, const char *status); /* Changes the status; NULL patience is fine. */
 void service_patience_end(struct service_patience **patience);                       /* Ends the thread; leaves NULL. */
 
-/* Returns the listening socket that the manager has opened and passed on (LISTEN_FDS, if meant for this process), now owned by the
-   caller; -1: none; -EINVAL: more than one. */
+/* Returns the listening socket that the manager has opened and passed on (LISTEN_FDS, if meant for this process); the caller owns it
+   now. -1: none; -EINVAL: more than one. */
 int service_take_socket(void);
 
-/* Returns whether a descriptor is connected to the journal (JOURNAL_STREAM). */
+/* Returns true if a descriptor is connected to the journal (JOURNAL_STREAM). */
 bool service_is_journal(int fd);
 struct service_field {
     const char *name, *value; /* NAME in capitals; value NULL: the field is left out */
 };
 #define SERVICE_JOURNAL_SOCKET "/run/systemd/journal/socket"
-/* Sends one entry to the journal's socket at that path. Returns false if it could not be delivered. */
+/* Sends one entry to the journal's socket at socket_path. Returns false if the entry could not be delivered. */
 bool service_journal_send(const char *socket_path, const struct service_field *fields, size_t count);
 
 #endif

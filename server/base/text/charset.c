@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Names of encodings, byte order marks, and conversion by iconv. */
+/* Knows the names of encodings and byte order marks, and converts texts by iconv. */
 #include "base/text/charset.h"
 
 #include <ctype.h>
@@ -16,7 +16,8 @@ static const char replacement[] = "\xef\xbf\xbd";
 
 /* --- names ------------------------------------------------------------------------------------------------------------------ */
 
-/* `name`: our name. `iconv_name`: iconv's. `written`: other names, in lower case without punctuation, separated by blanks. */
+/* Encodings. `name`: our name of the encoding; `iconv_name`: the name for iconv; `written`: further names, in lower case without
+   punctuation, separated by blanks. */
 static const struct {
     const char *name, *iconv_name, *written;
 } known[] = {
@@ -88,7 +89,7 @@ char *charset_describe(const struct charset_choice *choice)
 
 /* --- conversion ------------------------------------------------------------------------------------------------------------- */
 
-/* Appends the output of iconv. Drops and counts zero bytes, which would end the text. */
+/* Appends what iconv has written. Drops zero bytes, which would end the text, and adds their number to *damaged. */
 static void take_converted(struct text *out, const char *from, const char *to, size_t *damaged)
 {
     for (; from < to; from++)
@@ -98,8 +99,8 @@ static void take_converted(struct text *out, const char *from, const char *to, s
             ++*damaged;
 }
 
-/* Converts bytes; each undecodable byte becomes one U+FFFD. The last call of iconv() flushes a letter that iconv holds back for a
-   following accent: Windows-1258 and Windows-1255 write accents after their letters. */
+/* Converts bytes; each undecodable byte becomes one U+FFFD. The last call of iconv() writes a letter that iconv holds back because an
+   accent may follow: Windows-1258 and Windows-1255 have accents after their letters. */
 static void convert(const char *bytes, size_t count, const char *encoding, struct text *out, size_t *damaged)
 {
     char buffer[4096], *from = (char *)bytes;
@@ -173,7 +174,8 @@ static size_t count_utf8(const char *bytes, size_t count, size_t *invalid)
     return characters;
 }
 
-/* Detects UTF-16 without a mark: digits, separators and line ends have a zero byte, always at odd or always at even positions. */
+/* Detects UTF-16 without a byte order mark: digits, separators and line ends have a zero byte, always at odd or always at even
+   positions. Returns the name of the encoding, or NULL. */
 static const char *find_utf16(const char *bytes, size_t count)
 {
     size_t zeros[2] = { 0 }, looked_at = (count < 65536 ? count : 65536) & ~(size_t)1;
@@ -217,7 +219,7 @@ struct charset_choice charset_find(const char *bytes, size_t count)
         choice.ascii = characters == 0 && invalid == 0;
         if (choice.ascii && has_escape(bytes, count))
             name = "ISO-2022-JP";
-        else if (invalid * 4 > characters) /* UTF-8 may have a few invalid bytes if the text is damaged or truncated */
+        else if (invalid * 4 > characters) /* tolerates a few invalid bytes, since a UTF-8 text may be damaged or truncated */
             return charset_find_legacy(bytes, count);
     }
     if (name) {

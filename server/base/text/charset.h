@@ -9,7 +9,7 @@ enum { CHARSET_NAME_BYTES = 32 };
 
 struct charset_choice {
     char name[CHARSET_NAME_BYTES];  /* name such as "UTF-8", "GB18030" or "Windows-1251" */
-    char other[CHARSET_NAME_BYTES]; /* another encoding that is nearly as likely but gives other letters; "": no other is likely */
+    char other[CHARSET_NAME_BYTES]; /* another encoding that is nearly as likely but gives other letters; empty: none is nearly as likely */
     bool ascii;                     /* all bytes are ASCII: every encoding gives the same text */
 };
 
@@ -17,26 +17,27 @@ struct charset_text {
     char *utf8; /* text that ends in 0; the caller frees it (mem_free) */
     size_t length;
     struct charset_choice encoding;
-    size_t damaged; /* number of undecodable characters, which became U+FFFD, and of zero bytes, which were left out */
+    size_t damaged; /* number of characters that could not be decoded and became U+FFFD, plus the number of zero bytes, which were left
+                       out */
 };
 
 /* Detects the encoding: a byte order mark decides, then validity as UTF-8, then the likelihood of the bytes in each known encoding. */
 struct charset_choice charset_find(const char *bytes, size_t count);
 /* Converts a whole file. `encoding`: a name that charset_resolve() knows; NULL: charset_find() decides. */
 void charset_decode(const char *bytes, size_t count, const char *encoding, struct charset_text *out);
-/* Converts one string without looking for byte order marks. Returns the UTF-8 text (mem_free); adds the number of undecodable characters
-   to *damaged, which may be NULL. */
+/* Converts one string without looking for byte order marks. Returns the UTF-8 text (mem_free); adds the number of characters that could
+   not be decoded to *damaged, which may be NULL. */
 char *charset_convert(const char *bytes, size_t count, const char *encoding, size_t *damaged);
 /* Translates an encoding's name as people and programs write it ("Windows 1251", "GBK", "latin1") into the name that charset_convert()
    takes. Returns false if the name is unknown. */
 bool charset_resolve(const char *written, char name[CHARSET_NAME_BYTES]);
-/* Returns whether all bytes are decodable in an encoding. */
+/* Returns true if all bytes can be decoded in an encoding. */
 bool charset_fits(const char *bytes, size_t count, const char *encoding);
-/* Returns one line without line end: "read as GB18030", and the alternative if the choice is uncertain; free with mem_free(). */
+/* Returns one line without a line end: "read as GB18030", with the alternative if the choice is uncertain; free with mem_free(). */
 char *charset_describe(const struct charset_choice *choice);
 
-/* Converts a UTF-8 text to another encoding. Returns the number of bytes written; 0: the encoding lacks a character, or `out` is too
-   small. */
+/* Converts a UTF-8 text to another encoding. Returns the number of bytes written to `out`; 0: the encoding lacks a character, or `out`
+   is too small. */
 size_t charset_encode(const char *utf8, size_t count, const char *encoding, unsigned char *out, size_t out_bytes);
 
 /* For charset_find() and its tests: chooses among the encodings other than UTF-8 and UTF-16, by statistical models of each. */

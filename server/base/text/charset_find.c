@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Detects the encoding of a short text by the likelihood of its bytes under a model of each encoding. The models use common characters
-   of tag lists and drawings, the frequency levels of the encodings' standards, and the letters around a character. The detector uchardet
-   adds to one score. */
+/* Detects the encoding of a short text by the likelihood of its bytes under a statistical model of each encoding. The models use
+   characters that are common in tag lists and drawings, the frequency levels of the encodings' standards, and the letters around a
+   character. The proposal of the library uchardet raises one score. */
 #include <ctype.h>
 #include <math.h>
 #include <stdint.h>
@@ -55,11 +55,13 @@ static const char korean[] =
 struct wide_model {
     const char *name, *frequent;
     double prior;
-    /* Returns the logarithm of the probability of a byte pair that is not frequent, or of a single byte (second 0); 0: no character. */
+    /* Returns the logarithm of the probability of the character with these two bytes (second 0: of one byte), if it is not in
+       `frequent`; 0: no such character. */
     double (*rate)(unsigned first, unsigned second);
 };
 
-/* Returns the logarithm of the probability of one character in a class of `cells` characters that makes up `share` of a text. */
+/* Returns the logarithm of the probability of one character of a class. The class has `cells` characters, which together make up the
+   fraction `share` of a text. */
 static double of_class(double share, double cells)
 {
     return log(share / cells);
@@ -70,7 +72,8 @@ static bool in(unsigned byte, unsigned from, unsigned to)
     return byte >= from && byte <= to;
 }
 
-/* In GB 2312, rows 16 to 55 are the common characters, 56 to 87 the others; GBK adds rare ones around them. */
+/* Rates a byte pair of GBK. In GB 2312, rows 16 to 55 hold the common characters, rows 56 to 87 the others; GBK adds rare ones around
+   them. */
 static double rate_gb(unsigned first, unsigned second)
 {
     bool gb2312 = in(second, 0xa1, 0xfe);
@@ -85,7 +88,7 @@ static double rate_gb(unsigned first, unsigned second)
     return gb2312 && in(first, 0xa4, 0xa9) ? of_class(0.002, 500) : of_class(0.004, 14000);
 }
 
-/* KS X 1001 has 2,350 syllables, and Chinese characters, which are rare; cp949 adds rare syllables. */
+/* Rates a byte pair of cp949. KS X 1001 has 2,350 syllables, and Chinese characters, which are rare; cp949 adds rare syllables. */
 static double rate_ks(unsigned first, unsigned second)
 {
     bool ks = in(second, 0xa1, 0xfe);
@@ -110,7 +113,7 @@ static double rate_big5(unsigned first, unsigned second)
     return in(first, 0xa1, 0xa3) ? of_class(0.06, 400) : 0;
 }
 
-/* Half-width katakana are one byte; the kanji of JIS X 0208 have two frequency levels. */
+/* Rates a byte or byte pair of Shift JIS. Half-width katakana are one byte; the kanji of JIS X 0208 have two frequency levels. */
 static double rate_sjis(unsigned first, unsigned second)
 {
     if (in(first, 0xa1, 0xdf))
@@ -151,9 +154,9 @@ static const struct wide_model wide_models[] = {
 /* --- models of one-byte encodings ------------------------------------------------------------------------------------------- */
 
 struct narrow_model {
-    const char *name, *lower, *upper, *rare; /* letters, the most frequent first; rare letters */
+    const char *name, *lower, *upper, *rare; /* lower, upper: letters, the most frequent first; rare: rare letters */
     double prior;
-    bool latin; /* words in this encoding mix its own letters with ASCII */
+    bool latin; /* true: words in this encoding mix its own letters with ASCII letters */
 };
 
 static const char signs[] = "°³²µ«»–—·±№§“”„…’™®½×Ø";
@@ -181,13 +184,14 @@ static const struct narrow_model narrow_models[] = {
 enum byte_kind { ASCII_OTHER, ASCII_LOWER, ASCII_UPPER, HIGH_LOWER, HIGH_UPPER, HIGH_SIGN, HIGH_NONE };
 
 struct narrow_table {
-    double rate[256]; /* logarithm of the probability of a byte; 0 for ASCII */
+    double rate[256]; /* logarithm of the probability of each byte; 0 for ASCII */
     enum byte_kind kind[256];
 };
 
 typedef void take_encoded(void *data, const unsigned char *bytes, size_t count, int rank);
 
-/* Calls `each` for each character of a UTF-8 text that the encoding has, with its bytes and its rank in the text. */
+/* Calls each() for every character of a UTF-8 text that the encoding has, with its bytes in the encoding and its position in the text
+   (`rank`). */
 static void each_encoded(const char *utf8, const char *encoding, take_encoded *each, void *data)
 {
     for (int rank = 0; *utf8; rank++) {
@@ -235,7 +239,7 @@ static bool is_letter(enum byte_kind kind)
     return kind != ASCII_OTHER && kind != HIGH_SIGN && kind != HIGH_NONE;
 }
 
-/* Returns the score that the bytes before and after a high byte contribute. */
+/* Returns what the bytes before and after a high byte (0x80 and above) add to the score. */
 static double rate_around(const struct narrow_table *table, bool latin, const unsigned char *at, const unsigned char *from,
                           const unsigned char *to)
 {
@@ -296,7 +300,8 @@ static void add_frequent(void *data, const unsigned char *bytes, size_t count, i
     }
 }
 
-/* Penalises two-byte characters next to small ASCII letters: there each byte probably is a letter of a one-byte encoding. */
+/* Returns a penalty for a two-byte character next to lower-case ASCII letters: each of its bytes is then more likely a letter of a
+   one-byte encoding. */
 static double rate_beside(unsigned before, unsigned after)
 {
     return (islower(before) ? -2.5 : 0) + (islower(after) ? -2.5 : 0);
@@ -306,7 +311,7 @@ static double score_wide(const struct wide_model *model, const unsigned char *at
 {
     enum { DAMAGED = -18 };
     const unsigned char *to = at + count;
-    unsigned before = 0; /* the preceding ASCII byte, or 0 */
+    unsigned before = 0; /* the ASCII byte before; 0: none */
     struct frequent *set = mem_new(sizeof(*set));
     double score = model->prior;
     each_encoded(model->frequent, model->name, add_frequent, set);
@@ -322,7 +327,7 @@ static double score_wide(const struct wide_model *model, const unsigned char *at
         if (length == 2 && set->pairs[pair / 64] >> pair % 64 & 1)
             rate = frequent;
         if (length == 2 && second < 0x80)
-            rate += 3; /* an ASCII second byte, which the one-byte models do not score */
+            rate += 3; /* makes up for the second byte, which is ASCII and therefore not scored by the one-byte models */
         if (length == 1 && rate >= 0 && model->rate == rate_gb && in(second, 0x30, 0x39) && at + 3 < to && in(at[3], 0x30, 0x39)) {
             length = 4; /* a four-byte character of GB 18030 that GBK lacks */
             rate = -14;
@@ -337,7 +342,7 @@ static double score_wide(const struct wide_model *model, const unsigned char *at
 
 /* --- choosing an encoding ----------------------------------------------------------------------------------------------------- */
 
-/* Copies the parts of lines that have high bytes. */
+/* Copies those parts of the lines that have high bytes (0x80 and above), at most SAMPLE_BYTES. Returns their length. */
 static size_t take_sample(const char *bytes, size_t count, char sample[SAMPLE_BYTES])
 {
     size_t taken = 0;
@@ -361,7 +366,7 @@ static size_t take_sample(const char *bytes, size_t count, char sample[SAMPLE_BY
     return taken;
 }
 
-/* Returns the encoding that uchardet proposes, by our name; "" if it proposes none that we know. */
+/* Writes our name of the encoding that uchardet proposes; an empty name if it proposes none that we know. */
 static void ask_uchardet(const char *sample, size_t count, char name[CHARSET_NAME_BYTES])
 {
     uchardet_t detector = uchardet_new();

@@ -45,8 +45,8 @@ static int by_place(const void *pa, const void *pb)
 }
 
 enum { PLACES_BYTES = 100 };
-/* Number of similar findings that are printed one on a line. Of more errors, only the first 20 are printed; more warnings become one line
-   with all positions. */
+/* number of similar findings that are printed on one line each. Of more errors, only the first 20 are printed; more warnings become one
+   line with all positions */
 static const size_t most_alike[] = { [DIAG_ERROR] = 20, [DIAG_WARNING] = 3 };
 
 static bool is_alike(const struct diag_item *a, const struct diag_item *b)
@@ -54,7 +54,7 @@ static bool is_alike(const struct diag_item *a, const struct diag_item *b)
     return a->severity == b->severity && a->form == b->form && !strcmp(a->file, b->file);
 }
 
-/* Prints the lines of the findings that follow `shown` and are similar to it: "4-66, 70". */
+/* Prints the line numbers of the findings that follow `shown` and are similar to it, such as "4-66, 70". */
 static void print_places(const struct diag_item *const *sorted, size_t shown, size_t count, FILE *out)
 {
     size_t length = 0;

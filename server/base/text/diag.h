@@ -11,7 +11,7 @@ struct diag_item {
     char *file;
     int line, column; /* position, from 1; 0: none */
     char *text;
-    const char *form; /* format string, by which similar diagnostics are grouped */
+    const char *form; /* format string of the text; diagnostics with the same one are grouped as similar */
 };
 
 struct diag { /* zero-initialise */
@@ -20,15 +20,15 @@ struct diag { /* zero-initialise */
     int errors, warnings;
 };
 
-/* Adds a diagnostic; the text is formatted and copied. */
+/* Adds a diagnostic; the text is formatted from `form` and copied. */
 void diag_add(struct diag *diag, enum diag_severity severity, const char *file, int line, int column, const char *fmt, ...)
     __attribute__((format(printf, 6, 7)));
-/* Adds a copy of a diagnostic of another list. */
+/* Adds a copy of a diagnostic from another list. */
 void diag_copy(struct diag *diag, const struct diag_item *item);
 #define diag_error(diag, file, line, column, ...) diag_add(diag, DIAG_ERROR, file, line, column, __VA_ARGS__)
 #define diag_warning(diag, file, line, column, ...) diag_add(diag, DIAG_WARNING, file, line, column, __VA_ARGS__)
 /* Prints all diagnostics as `file:line:column: error: text`, ordered by file and position. Many similar warnings in one file become one
-   line that lists the positions; of many similar errors the first are printed one a line. */
+   line that lists the positions; of many similar errors the first ones are printed, one a line. */
 void diag_print(const struct diag *diag, FILE *out);
 void diag_finish(struct diag *diag);
 

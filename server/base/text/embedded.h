@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Text files embedded in the program: shaders and colour maps, by name relative to shaders/, and the fleet page, by its path. Immutable.
-   Thread: any. */
+/* Text files embedded in the program: shaders and colour maps, named relative to shaders/, and the fleet page, named by its path.
+   Immutable. Thread: any. */
 #ifndef BASE_TEXT_EMBEDDED_H
 #define BASE_TEXT_EMBEDDED_H
 

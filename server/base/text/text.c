@@ -55,7 +55,8 @@ void text_add_quoted(struct text *text, const char *cell)
     text_add(text, "\"");
 }
 
-/* A single character is no formula: a lone sign may be the unit of a dimensionless quantity. */
+/* Returns true if a spreadsheet would take the cell for a formula. A single character is no formula: a lone sign may be the unit of a
+   dimensionless quantity. */
 bool text_is_formula(const char *cell)
 {
     return *cell && strchr("=+-@\t\r", *cell) && cell[1];

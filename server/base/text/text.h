@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-struct text { /* zero-initialise; .at is NULL until the first byte is added, then always ends in 0 */
+struct text { /* zero-initialise; .at is NULL until the first byte is added, and always ends with a 0 byte afterwards */
     char *at;
     size_t length, capacity;
 };
@@ -20,11 +20,11 @@ void text_add_quoted(struct text *text, const char *cell); /* Appends a cell in 
 void text_add_cell(struct text *text, const char *cell, const char *special);
 bool text_is_formula(const char *cell);
 const char *text_cell_read(const char *cell);
-/* Appends text escaped as part of a URL: characters other than the unreserved ones of RFC 3986 become %XX. */
+/* Appends text percent-encoded for use in a URL: characters other than the unreserved ones of RFC 3986 become %XX. */
 void text_add_escaped(struct text *text, const char *part);
 void text_finish(struct text *text); /* Frees the text; leaves it empty. */
 
-/* Returns a pointer to the last component of a path. */
+/* Returns a pointer to the last component of a path, within `path`. */
 const char *text_base_name(const char *path);
 /* Reads a whole file of at most max_bytes and returns its content, followed by a 0 byte; free with mem_free(). Returns NULL on failure,
    with errno (EFBIG: too large). */

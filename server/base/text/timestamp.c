@@ -9,7 +9,8 @@
 
 #define US_PER_S INT64_C(1000000)
 
-/* Reads at least `least` and at most `most` digits. Returns false if there are fewer than `least`. */
+/* Reads at least `least` and at most `most` digits as a number, and advances *text. Returns false if there are fewer than `least`
+   digits. */
 static bool digits(const char **text, int least, int most, int *out)
 {
     int count = 0;
@@ -24,7 +25,7 @@ static bool sign(const char **text, char wanted)
     return *(*text)++ == wanted;
 }
 
-/* Reads a fraction such as `.5` as microseconds; finer digits are ignored. */
+/* Reads a fraction of a second such as `.5` and returns microseconds; finer digits are ignored. */
 static int64_t fraction(const char **text)
 {
     int64_t us = 0, unit = US_PER_S / 10;
@@ -59,8 +60,8 @@ static int days_of(int year, int month)
     return days[month - 1] + (month == 2 && leap);
 }
 
-/* Converts a local time of the process's zone. A time that the clocks show twice in autumn gives the earlier instant that is after
-   after_us. Returns false if the clocks skip that time. */
+/* Converts a local time of the process's time zone. If the clocks show that time twice, in autumn, chooses the earlier instant that is
+   later than after_us. Returns false if the clocks skip that time. */
 static bool from_local(const struct tm *shown, int64_t after_us, int64_t us, int64_t *t_us)
 {
     int64_t found_us[2];

@@ -9,8 +9,8 @@
    (1793491200.25), or a time before now (-90s, -30m, -8h, -7d, now). Refuses a date and time without a zone, which is ambiguous in
    autumn. Returns whether the text is a timestamp. */
 bool timestamp_parse(const char *text, int64_t now_us, int64_t *t_us);
-/* Parses a date and time with a zone, or without one in the zone set by timestamp_use_zone(). For a time that the clocks show twice it
-   returns the earlier instant that is later than after_us. Returns false if the text is no time, or a time that the clocks skip. */
+/* Parses a date and time with a zone, or without one in the zone set by timestamp_use_zone(). If the clocks show a time twice, *t_us
+   receives the earlier instant that is later than after_us. Returns false if the text is no time, or a time that the clocks skip. */
 bool timestamp_parse_local(const char *text, int64_t after_us, int64_t *t_us);
 void timestamp_use_zone(const char *iana_name); /* Sets the zone of the process (TZ); call it only while the process has one thread. */
 #define TIMESTAMP_FORMS "an instant such as 2026-11-20T10:00:00Z (or with an offset, +01:00), seconds since 1970, or -8h"

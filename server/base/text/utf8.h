@@ -4,9 +4,10 @@
 #define BASE_TEXT_UTF8_H
 #include <stddef.h>
 
-/* Returns the length in bytes of the first character of `text`, which has `left` bytes (at least 1); 0: invalid UTF-8, or the byte 0. */
+/* Returns the number of bytes of the first character of `text`, which has `left` bytes (at least 1); 0: invalid UTF-8, or the byte 0. */
 size_t utf8_length(const char *text, size_t left);
-/* Drops bytes that are not part of a character, such as the start of one that a format's precision ("%.60s") or a buffer cut. */
+/* Removes bytes that are not part of a character, such as the beginning of a character that a format's precision ("%.60s") or a buffer
+   cut off. */
 void utf8_drop_invalid(char *text);
 
 #endif
