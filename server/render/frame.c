@@ -15,7 +15,8 @@
 
 static const float MARK_PX = 48; /* Largest distance in pixels from a marker's position to any pixel of its drawn symbol. */
 
-/* Pool of released pixel buffers: fresh memory from the kernel costs more in page faults than filling a frame does. */
+/* Pool of released pixel buffers. Reusing them is faster: fresh memory from the kernel costs more time in page faults than filling a frame
+   takes. */
 enum { SPARES = 4 };
 static const size_t SPARE_BYTES = (size_t)16 << 20; /* largest buffer that the pool keeps; larger frames are rare */
 static struct {
@@ -142,7 +143,7 @@ static uint64_t hash_part(uint64_t content, const struct frame_part *part)
 struct frame *frame_cut(struct frame *whole, const struct frame_part *part)
 {
     struct frame *frame = mem_new(sizeof(*frame));
-    /* members before `view` are not copied: other threads change the reference count meanwhile */
+    /* members before `view` are not copied, because they hold the reference count, which other threads change meanwhile */
     size_t plain = offsetof(struct frame, view);
     assert(part->x_px >= 0 && part->y_px >= 0 && part->x_px + part->width_px <= whole->width_px &&
            part->y_px + part->height_px <= whole->height_px);
@@ -172,7 +173,9 @@ struct frame *frame_cut(struct frame *whole, const struct frame_part *part)
 
 /* The baseline that one half of a split view subtracts from its readings, if the half shows differences. */
 struct then {
-    bool wanted, distance; /* distance: the half shows distances, which are in the markers already and are not computed from readings */
+    /* wanted: the half shows differences; distance: the half shows distances, which its markers already hold and which are not computed
+       from readings */
+    bool wanted, distance;
     const struct snapshot *snapshot; /* readings of the baseline; NULL: the baseline no longer exists */
 };
 

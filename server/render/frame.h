@@ -20,10 +20,12 @@ struct frame_marker {
     uint8_t half; /* half of a split view that the marker is in: 0 left, 1 right */
 };
 
-struct frame_label { /* a visible point on an isoline where its label may be drawn, or the position of an arrow */
+struct frame_label { /* a visible point on an isoline, where the label of the isoline may be drawn; or the position of an arrow */
     double value;
     float x_px, y_px;
-    float dx, dy; /* arrows: direction in the frame, length up to 1, shorter where the arrow points away from the viewer; 0, 0: unknown */
+    /* arrows: direction in the frame; its length is up to 1, less where the arrow points towards or away from the viewer; 0, 0: direction
+       unknown */
+    float dx, dy;
     uint8_t half, arrow, uncertain;
     /* index of the stroke (a short streamline) within its half of the view, equal for all points of the stroke; 0: not a stroke but an
        arrow */
@@ -44,11 +46,11 @@ struct frame {
     struct frame *whole;          /* reference to the frame that owns the pixels; NULL: this frame owns them */
     struct frame_marker *markers; /* sensors of the shown group */
     size_t marker_count;
-    struct frame_label *labels; /* candidate points for isoline labels (more than there is room for), and arrows */
+    struct frame_label *labels; /* candidate points for isoline labels (more than can be drawn without overlap), and arrows */
     size_t label_count;
     int64_t data_utc_ns;   /* UTC of the snapshot that the frame shows */
     bool clock_unset;      /* true if the clock that gave data_utc_ns was not synchronised */
-    int64_t oldest_age_ns; /* age of the oldest reading used; INT64_MAX: no reading contributes */
+    int64_t oldest_age_ns; /* age of the oldest reading used, ns; INT64_MAX: no reading contributes */
     /* largest error, in engineering units and rounded up, of values in areas that the frame marks as uncertain; 0: no area is marked */
     double drawn_error;
     int64_t field_ns, render_ns, readback_ns; /* duration of each stage */
@@ -64,8 +66,8 @@ struct frame {
    this before other threads see the frame. baselines: for differences; NULL: there are none. */
 void frame_read_markers(struct frame *frame, const struct snapshot *snapshot, struct baselines *baselines);
 struct frame *frame_create(int width_px, int height_px); /* returns NULL when out of memory; the caller owns the frame (frame_unref) */
-/* Returns a frame that shows a part of `whole` and shares its pixels. The part must lie inside. Markers and labels near the part are
-   copied. Never NULL. */
+/* Returns a frame that shows a part of `whole` and shares its pixels. The part must lie inside `whole`. Markers and labels in the part or
+   near its edge are copied. Never NULL. */
 struct frame *frame_cut(struct frame *whole, const struct frame_part *part);
 struct frame *frame_ref(struct frame *frame);
 void frame_unref(struct frame **frame);

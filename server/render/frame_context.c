@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Helpers that all render backends use on a frame context. */
+/* Functions on a frame context (frame_context.h) that all render backends use. */
 #include "render/frame_context.h"
 
 #include "render/plan/lod_selection.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Everything that the passes need to know about the frame being drawn. Thread: the one of the GL context. */
+/* Frame context: everything that the render passes need to know about the frame being drawn. Thread: the one of the GL context. */
 #ifndef RENDER_FRAME_CONTEXT_H
 #define RENDER_FRAME_CONTEXT_H
 #include "gpu/target.h"
@@ -26,7 +26,7 @@ struct frame_context {
     /* largest error of a level of detail's surface, in pixels of the frame (render/plan/lod_selection.h); 0: finest levels only */
     double error_px;
     uint64_t shape; /* content_hash_shape() of the frame plan */
-    bool measured;  /* the frame holds the field's values as floats instead of colours */
+    bool measured;  /* true: the frame receives the field's values as floats instead of colours */
 };
 
 /* Returns the level of detail that the frame plan chose for an asset. */

@@ -62,8 +62,8 @@ const struct frame_planner *renderer_planner(const struct renderer *renderer)
     return &renderer->planner;
 }
 
-/* Fills in the context that every pass gets, except light, colour map and target. The context points into the plan, which must outlive
-   it. */
+/* Fills in the context that every pass gets. Light, colour map and target are set later. The context points into the plan, which must
+   outlive it. */
 static void init_context(struct renderer *renderer, const struct frame_plan *plan, struct frame_context *context)
 {
     *context = (struct frame_context){ .gpu_scene = &renderer->gpu_scene,
@@ -227,11 +227,12 @@ void renderer_abandon(struct renderer *renderer, struct render_job **job_ptr)
     *job_ptr = NULL;
 }
 
-/* After each frame: spends a while on baking the light that the view asks for. */
+/* Called after each frame: spends some time on baking the light that the view asks for. */
 static void bake_wanted_light(struct renderer *renderer, const struct view *view)
 {
     struct light_key wanted = frame_plan_wanted_light(view);
-    /* not while a user drags a section plane: each position of the plane would need another light set, outdated before it is ready */
+    /* bakes nothing while a user drags a section plane: each position of the plane needs another light set, which would be outdated before
+       it is ready */
     bool steady = visibility_equal(&wanted.shown, &renderer->shown);
     if (renderer->bake_budget_ns && steady)
         light_step(&renderer->light, &wanted, renderer->bake_budget_ns);

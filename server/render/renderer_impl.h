@@ -29,7 +29,7 @@ struct renderer {
     struct soft *by_soft; /* software backend; NULL: a GPU draws everything */
     bool always_gl;
     int64_t bake_budget_ns;  /* time that each preview spends on baking light, ns; 0: a preview waits until its light is baked */
-    struct visibility shown; /* which assets the last frame that was drawn at once shows */
+    struct visibility shown; /* visibility of assets in the last frame that was drawn in one call */
 };
 
 /* Uploads the context's fields to the GPU; context->fields must belong to the caller. A field that does not fit is replaced by one that

@@ -19,7 +19,8 @@ extern const uint8_t colormap_no_data[2][3];   /* sRGB of the two stripes of the
 extern const uint8_t colormap_no_limits[2][3]; /* sRGB of background and lines of the pattern for tags without alarm limits */
 extern const uint8_t colormap_uncertain[3];    /* sRGB of the dots of the uncertain pattern */
 
-/* Columns of colormap_shades: the map's 256 colours, below range, above range, then the patterns; each in every brightness step. */
+/* Columns of colormap_shades: the map's 256 colours, the colour below the range, the colour above it, then the colours of patterns. Each
+   row is one brightness step. */
 enum { SHADES_BELOW = 256, SHADES_ABOVE, SHADES_PATTERNS, SHADES_COLORS = SHADES_PATTERNS + PATTERN_COUNT };
 struct colormap_shades {
     uint8_t rgb[COLORMAP_ROWS][SHADES_COLORS][3];

@@ -18,10 +18,11 @@ struct tile {
     int x_px, y_px, width_px, height_px; /* rectangle in pixels, from the top left of the frame */
 };
 
-/* whole: a single tile covers the whole frame. */
+/* Divides the frame into tiles. whole: a single tile covers the whole frame; false: tiles of at most 16 cells. */
 void frame_tiles_init(struct frame_tiles *tiles, const struct frame_context *context, bool whole);
 void frame_tiles_finish(struct frame_tiles *tiles);
-int frame_tiles_cells(const struct frame_tiles *tiles); /* returns the number of cells that cover the frame, which each pass draws once */
+/* returns the number of cells that cover the frame; each pass (enum gl_pass) draws each cell once */
+int frame_tiles_cells(const struct frame_tiles *tiles);
 /* Returns the largest tile that begins with the next cell and has at most most_px pixels, or a tile of one cell if none is that small. A
    tile outside the frame has size 0. */
 struct tile frame_tiles_choose(struct frame_tiles *tiles, double most_px);

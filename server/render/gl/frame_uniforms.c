@@ -8,13 +8,13 @@
 #include "render/light/sky.h"
 #include "render/matrix.h"
 
-/* Returns the cell size of hatch and stipple patterns. */
+/* Returns the cell size of hatch and stipple patterns in pixels. */
 static double pattern_px(const struct view *view)
 {
     return fmax(PATTERN_LEAST_PX, view->height_px / (double)PATTERN_PERIODS);
 }
 
-/* Returns the width of an isoline. */
+/* Returns the width of an isoline in pixels. */
 static double line_px(const struct view *view)
 {
     return fmax(1.2, view->height_px / 640.0);

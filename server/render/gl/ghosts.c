@@ -64,7 +64,9 @@ static void find_part(const struct frame_context *context, double low[2], double
                 place[c] = corner >> c & 1 ? asset->bounds_max_m[c] : asset->bounds_min_m[c];
             matrix_point(context->constants.clip_from_plant, place, clip);
             for (int c = 0; c < 2; c++) {
-                low[c] = clip[3] > 0 ? fmin(low[c], clip[c] / clip[3]) : -1; /* a corner behind the eye may project anywhere */
+                /* for a corner behind the eye, the rectangle extends to the border, because the projection of edges at that corner is
+                   unbounded */
+                low[c] = clip[3] > 0 ? fmin(low[c], clip[c] / clip[3]) : -1;
                 high[c] = clip[3] > 0 ? fmax(high[c], clip[c] / clip[3]) : 1;
             }
             if (clip[3] <= 0)

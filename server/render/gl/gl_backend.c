@@ -17,7 +17,7 @@
 #include "render/renderer_impl.h"
 
 enum { REFINED_SAMPLES = 4 };
-/* Target duration of a tile where GL runs on the processor, and expected time per triangle there. */
+/* Target duration of a tile where GL runs on the processor, and expected time per triangle there, both in nanoseconds. */
 static const int64_t TILE_NS = 4 * NS_PER_MS;
 static const double TRIANGLE_NS = 36;
 enum { TILE_TRIANGLES = 80000 };
@@ -26,7 +26,7 @@ static const int64_t MAX_QUICK_NS = 12 * NS_PER_MS;
 /* Occlusion culling runs for frames with at least this many triangles, about half a millisecond of a slow GPU. On a processor, testing
    boxes costs more than it saves. */
 enum { OCCLUSION_MIN_TRIANGLES = 250000 };
-/* Expected time per pixel and pass of GL on a processor, until measured. */
+/* Expected time per pixel and pass of GL on a processor in nanoseconds, until measured. */
 static const double INITIAL_PIXEL_NS[GL_PASSES] = { 200, 20 };
 
 struct gl_job {

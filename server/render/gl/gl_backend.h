@@ -20,7 +20,7 @@ struct gl_backend {
     struct frames_in_flight frames_in_flight;
     GLuint frame_buffer; /* uniform buffer of struct frame_uniforms */
     struct targets targets;
-    double pixel_ns[GL_PASSES]; /* last measured time per pixel, by pass */
+    double pixel_ns[GL_PASSES]; /* last measured time per pixel, by pass (enum gl_pass) */
     int64_t refined_ns;         /* GPU time of the last refined frame; 0: unknown */
 };
 

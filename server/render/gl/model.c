@@ -65,7 +65,7 @@ static void make_level(struct model_level *level, const struct asset_view *view,
         }
 }
 
-/* Finds the index of the level's first cluster. */
+/* Finds the level's first cluster in the asset file's list of clusters. */
 static void find_clusters(struct model_level *level, const struct asset_view *view)
 {
     uint32_t first_index = level->primitive_count ? view->primitives[level->first_primitive].first_index : 0;
@@ -118,7 +118,8 @@ void model_draw_submesh(const struct model_submesh *submesh)
         glMultiDrawElements(GL_TRIANGLES, submesh->counts, GL_UNSIGNED_INT, submesh->offsets, submesh->draws);
 }
 
-/* Adds a draw, or extends the last one if the new indices follow directly. Returns the number of draws in the list afterwards. */
+/* Adds a draw of an index range, or extends the last draw if the range follows directly on it. Returns the number of draws in the list
+   afterwards. */
 static size_t add_draw(struct model_draws *draws, size_t count, uint32_t first_index, uint32_t index_count)
 {
     const void *offset = (const void *)((uintptr_t)first_index * 4);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Occlusion culling: bounding boxes, the draw commands that their test enables, and the GPU buffers of both. */
+/* Occlusion culling: bounding boxes, the draw commands that the test of a box enables, and the GPU buffers for boxes and commands. */
 #include "render/gl/occlusion.h"
 
 #include <limits.h>
@@ -60,7 +60,8 @@ static double rim_of(const struct view_constants *constants, const struct scene_
     return MARGIN_PART * sqrt(size) + MARGIN_PX * pixel_m;
 }
 
-/* Returns false if the box crosses the near plane, where its faces would be missing. */
+/* Computes an asset's bounding box with margins, for the test. Returns false if the box crosses the near plane, which would clip the faces
+   that the test draws. */
 static bool make_box(const struct view_constants *constants, const struct scene_asset *asset, struct occlusion_box *box)
 {
     double rim_m = rim_of(constants, asset), clip_from_box[16];
@@ -80,8 +81,8 @@ static bool make_box(const struct view_constants *constants, const struct scene_
     return true;
 }
 
-/* Adds an asset. Assets that are shifted towards the viewer (scene_asset.front) may extend beyond their box, so they are drawn without a
-   test. */
+/* Adds the occlusion state of an asset. Assets that are shifted towards the viewer (scene_asset.front) may extend beyond their box, so they
+   are drawn without a test. */
 static struct occlusion_asset add_asset(struct occlusion *occlusion, const struct frame_context *context, int index)
 {
     const struct scene_asset *asset = &context->gpu_scene->scene->assets[index];

@@ -12,7 +12,7 @@ struct occlusion_box { /* layout that shaders/occlusion.vert reads */
     /* first_place, place_count: range of the asset's draw commands (render/gl/draw_batches.h) */
     uint32_t first_place, place_count, unused[2];
 };
-struct occlusion_asset { /* occlusion state of one visible asset; an extra element ends the list */
+struct occlusion_asset { /* occlusion state of one visible asset; one extra element at the end holds the number of all boxes */
     size_t boxes_before;
     bool tested;
     int triangles;

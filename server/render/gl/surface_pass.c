@@ -16,8 +16,9 @@ enum { MATERIAL = 2, TEXTURES = 3 };
 static const double FORWARD_SLOPE = 0.05;
 enum { UNIT_COLORMAP = 0, UNIT_RAMPS = 1, UNIT_SUN_MAP = 2, UNIT_MAPS = 3, UNIT_LIGHTS = 12, UNIT_SCALARS = 13, UNIT_LINES = 15 };
 
-/* Returns whether a program is compiled at start; others are compiled when first used. Previews use textures only for the holes they cut.
-   Without SURFACE_FIELD, only the plain program and the textured one of refined frames are common. */
+/* Returns whether a program is compiled at start; others are compiled when first used. Compiled at start are variants that most plants use:
+   in previews, textures are used only for the holes they cut; without SURFACE_FIELD, only the plain program and the textured one of refined
+   frames are frequent. */
 static bool is_used(int tier, int variant)
 {
     if (variant & SURFACE_CLIP)

@@ -6,7 +6,7 @@
 
 enum { TARGETS = 6 };
 struct targets {               /* zero-initialise */
-    struct target at[TARGETS]; /* free targets, least recently used last; width 0: empty */
+    struct target at[TARGETS]; /* free targets (not in use by a frame), least recently used last; width 0: empty */
     size_t bound_bytes;        /* memory limit; one target is kept even if it exceeds the limit; 0: at most TARGETS targets, of any size */
 };
 
@@ -15,7 +15,7 @@ struct targets {               /* zero-initialise */
 bool targets_take(struct targets *targets, struct log *log, int width_px, int height_px, int samples, struct target *out);
 /* Puts a target back; the least recently used one is deleted when the cache is full. */
 void targets_give(struct targets *targets, const struct target *target);
-/* Returns the memory of the free targets. */
+/* Returns the bytes of GPU memory that the free targets take. */
 size_t targets_bytes(const struct targets *targets);
 /* Sets the memory limit and deletes the targets beyond it. */
 void targets_bound(struct targets *targets, size_t bytes);

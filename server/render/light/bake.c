@@ -82,7 +82,8 @@ void light_set_finish(struct light_set *set, const struct gpu_scene *gpu_scene)
 
 /* --- maps ---------------------------------------------------------------------------------------------------------------------- */
 
-/* Creates a depth texture for comparisons; points outside the map count as lit. */
+/* Creates a depth map: a texture whose lookups compare a depth with the stored one. Points outside the map count as lit. kind:
+   GL_TEXTURE_2D, or GL_TEXTURE_2D_ARRAY with `layers` layers. */
 static GLuint make_map(GLenum kind, int size_px, int layers)
 {
     static const float nothing[4] = { 0 };
@@ -107,7 +108,8 @@ static int sun_map_px(const struct gpu_scene *gpu_scene)
     return SUN_MAP_PX < gpu_scene->gl->max_texture_px ? SUN_MAP_PX : gpu_scene->gl->max_texture_px;
 }
 
-/* Draws one asset into a map if it is shown. layer: -1 if the texture is no array. error_m: largest error of the level of detail. */
+/* Draws the depth of one asset into a depth map, if the asset is shown. layer: layer of the map; -1: the map is no array. error_m: largest
+   error of the level of detail. */
 static void draw_on_map(struct bake *bake, GLuint map, int layer, int size_px, const double clip_from_plant[16],
                         const struct visibility *shown, double error_m)
 {
@@ -128,8 +130,8 @@ static void draw_on_map(struct bake *bake, GLuint map, int layer, int size_px, c
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
 }
 
-/* Directions evenly distributed over the sphere (Fibonacci lattice). Directions from below have less than half the brightness of the sky:
-   light reflected from the ground. */
+/* Returns the i-th of SKY_DIRECTIONS directions evenly distributed over the sphere (Fibonacci lattice). Directions from below have less
+   than half the brightness of the sky: light reflected from the ground. */
 static void sky_direction(const struct gpu_scene *gpu_scene, int i, double towards[3], float *brightness)
 {
     double height = 1 - (2 * i + 1.0) / SKY_DIRECTIONS, angle = i * 2.399963229728653, flat = sqrt(1 - height * height);

@@ -51,7 +51,7 @@ const struct light_key *bake_key(const struct bake *bake);
 /* Issues the next few milliseconds of work; the key's environment must be bound (render/light/environments.h). Returns true once all work
    is issued. */
 bool bake_step(struct bake *bake);
-/* Moves the result into *set (all but `used` and `holds`) and frees *bake. Returns false on a GL error, which is logged; *set is
+/* Moves the result into *set, except the members `used` and `holds`, and frees *bake. Returns false on a GL error, which is logged; *set is
    unchanged then. */
 bool bake_end(struct bake **bake, struct light_set *set);
 /* Frees *bake without a result and sets it to NULL. Accepts a pointer to NULL. */

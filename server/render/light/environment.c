@@ -9,7 +9,8 @@
 #include "base/mem.h"
 #include "render/light/ggx.h"
 
-/* size in pixels of the built-in sky's image. It varies with elevation only, but integrating the harmonics needs a few columns */
+/* size in pixels of the built-in sky's image. The sky varies with elevation only, but integrating the spherical harmonics needs a few
+   columns */
 enum { SKY_WIDTH = 8, SKY_HEIGHT = 256 };
 enum { BASE_PX = 256, PYRAMID = 6, SAMPLES = 128 };
 /* radiance is clipped at this multiple of the mean: brighter spots are sun or lamps, and the renderer adds the sun as a separate light */
@@ -18,11 +19,14 @@ static const double MAX_RADIANCE_FACTOR = 24;
    enlarged. */
 static const int layer_px[ENVIRONMENT_LAYERS] = { 128, 128, 128, 64, 64, 32, 32, 32 };
 
-struct environment_source { /* an environment map: first equirectangular like its image, then an octahedral pyramid in plant axes */
+/* an environment map being processed: first an equirectangular image, then a pyramid of octahedral maps (each level half the size) in plant
+   axes */
+struct environment_source {
     const float (*pixels)[4];
     int width, height;
     bool y_up, even;        /* y_up: +y of the plant is up, else +z; even: radiance depends on elevation only, as in the built-in sky */
-    double factor[3], most; /* factor: exposure and white balance; most: limit of the brightest channel before the factor */
+    /* factor: exposure and white balance, by colour channel; most: upper limit of the brightest channel before the factor is applied */
+    double factor[3], most;
     float (*pyramid[PYRAMID])[4];
 };
 
@@ -43,7 +47,7 @@ static void texel_direction(int x, int y, int side_px, double towards[3])
     towards[2] = z / size;
 }
 
-/* Returns the position of a direction in an octahedral square with this side: each coordinate is 0 to side_px - 1. */
+/* Returns the texel coordinates of a direction in an octahedral map of side_px x side_px texels: each 0 to side_px - 1. */
 static void texel_of(const double towards[3], int side_px, double *x, double *y)
 {
     double sum = fabs(towards[0]) + fabs(towards[1]) + fabs(towards[2]), u = towards[0] / sum, v = towards[1] / sum;
@@ -114,7 +118,7 @@ static void clipped(const struct environment_source *source, const float pixel[4
         out[i] *= scale * source->factor[i];
 }
 
-/* Real spherical harmonics without their constant factors (term_factors). */
+/* Writes the real spherical harmonics up to order 2 in the direction n, without their constant factors (term_factors). */
 static void terms_of(const double n[3], double terms[ENVIRONMENT_TERMS])
 {
     const double all[ENVIRONMENT_TERMS] = {
@@ -123,7 +127,8 @@ static void terms_of(const double n[3], double terms[ENVIRONMENT_TERMS])
     memcpy(terms, all, sizeof(all));
 }
 
-/* Squared constant factors of the real harmonics, times the cosine lobe's coefficient of each band, divided by pi. */
+/* For each of these harmonics: the square of its constant factor, times the cosine lobe's coefficient of its order (Ramamoorthi and
+   Hanrahan, 2001), divided by pi. */
 static const double term_factors[ENVIRONMENT_TERMS] = {
     0.079577472,
     0.238732415 * 2 / 3,
@@ -202,8 +207,8 @@ struct environment_job {
     const struct lobe *lobe; /* sample rays of the roughness layer; NULL for layer 0, a perfect mirror */
 };
 
-/* Returns the index of the representative texel: texels with equal light are computed once. A sky that depends on elevation only repeats in
-   the octahedral map: in eight equal triangles, or with y up in two halves. */
+/* Returns the index of the texel that represents this one: texels with equal light are computed once. A sky that depends on elevation only
+   repeats in the octahedral map: in eight equal triangles, or, with y up, in two halves. */
 static size_t twin_of(const struct environment_source *source, int side_px, size_t i)
 {
     int x = (int)(i % (size_t)side_px), y = (int)(i / (size_t)side_px);
@@ -223,7 +228,7 @@ static void copy_to_twins(const struct environment_source *source, int side_px, 
         memcpy(texels[i], texels[twin_of(source, side_px, i)], sizeof(*texels));
 }
 
-/* Fills rows of the pyramid's base: each texel is the mean of 4 x 4 points. */
+/* Fills rows of the pyramid's finest level: each texel is the mean of 4 x 4 points of the environment map. */
 static void base_rows(void *arg, size_t begin, size_t end)
 {
     struct environment_job *job = arg;
@@ -272,7 +277,8 @@ static void frame_of(const double n[3], double t[3], double b[3])
     vec_cross(n, t, b);
 }
 
-/* Returns the pyramid level whose texels are as large as the solid angle of a sample. */
+/* Returns the pyramid level whose texels cover the solid angle that one sample ray represents. alpha: roughness squared; n_h: cosine
+   between normal and half vector. */
 static int level_of(double alpha, double n_h)
 {
     double d = n_h * n_h * (alpha * alpha - 1) + 1, density = alpha * alpha / (M_PI * d * d) / 4;

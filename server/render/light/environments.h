@@ -14,7 +14,7 @@
 
 struct environment_slot {
     struct environment of;
-    GLuint irradiance, mirrored; /* GL copies of `of`: a uniform buffer and a 3D texture; 0: not loaded */
+    GLuint irradiance, mirrored; /* GL objects with the light in `of`: a uniform buffer and a 3D texture; 0: not loaded */
     struct environment_task *task;
 };
 struct environments {
@@ -39,7 +39,7 @@ void environments_finish(struct environments *environments);
 /* Waits up to timeout_ns for an environment to load. Returns true once its state is final: loaded, or unreadable, which is logged; the sky
    is used then. */
 bool environments_wait(struct environments *environments, int number, int64_t timeout_ns);
-/* Returns an environment's light, or the sky's until the environment is loaded. Valid until environments_finish(). */
+/* Returns an environment's light, or the built-in sky's until the environment is loaded. Valid until environments_finish(). */
 struct environment_light environments_get(const struct environments *environments, int number);
 /* Binds an environment for all programs that include shaders/environment.glsl. */
 void environments_bind(const struct environments *environments, int number);

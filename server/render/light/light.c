@@ -107,7 +107,7 @@ void light_drop(struct light *light, const struct light_key *usual)
             drop(light, &light->sets[i]);
 }
 
-/* Returns an empty slot, after dropping sets beyond the memory bound that nobody holds. NULL: all are held. */
+/* Returns an empty slot of the cache. Before, drops sets that exceed the memory bound and that nobody holds. NULL: all slots are held. */
 static struct light_set *make_room(struct light *light, size_t bytes)
 {
     for (;;) {
@@ -148,8 +148,8 @@ static bool begin(struct light *light, const struct light_key *key)
     return light->bake != NULL;
 }
 
-/* Starts to write openness to its file, once. Sets baked while assets were hidden are never written, because their openness was raised to a
-   lower bound. */
+/* Starts to write openness to its file, if that was not done before. Sets baked while assets were hidden are never written, because their
+   openness was raised to a lower bound. */
 static void keep_openness(struct light *light, const struct light_set *set)
 {
     if (light->kept || set->key.rough || bake_least_open(light->gpu_scene, &set->key.shown) > 0)

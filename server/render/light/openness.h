@@ -18,14 +18,16 @@ struct openness { /* the mapped file: openness of the ground's texels, then of t
 /* Opens the plant's file. Returns false if there is no valid one; openness_close() is then not needed. */
 bool openness_open(struct openness *openness, const struct gpu_scene *gpu_scene);
 void openness_close(struct openness *openness); /* a zeroed struct is fine */
-/* Uploads the next asset's openness into the third byte of each texel of its slice. Returns false when the GPU is out of memory, logged. */
+/* Uploads the next asset's openness into byte 2 of each texel of `slice`, the asset's range in the buffer of baked light. Returns false
+   when the GPU is out of memory, logged. */
 bool openness_upload(struct openness *openness, const struct gpu_scene *gpu_scene, const struct pool_slice *slice);
-/* Uploads the ground's openness into the second byte of each texel. */
+/* Uploads the ground's openness into byte 1 of each texel of its texture. */
 void openness_upload_ground(const struct openness *openness, GLuint ground);
 
 struct openness_writer; /* writes the openness file in a thread of its own */
-/* Starts to write the plant's file. slices: baked vertices, one per asset; ground: its texture; both are read during the call. A failure to
-   write is logged later. Returns NULL if the plant has no folder, or no thread could be started. */
+/* Starts to write the plant's openness file. slices: ranges with baked vertices in the GPU buffer, one per asset; ground: the ground's
+   texture; both are read during the call. A failure to write is logged later. Returns NULL if the plant has no folder, or no thread could
+   be started. */
 struct openness_writer *openness_write(const struct gpu_scene *gpu_scene, struct pool_slice *const *slices, GLuint ground);
 /* waits until the openness file is written and sets *writer to NULL; accepts a pointer to NULL */
 void openness_writer_finish(struct openness_writer **writer);

@@ -78,7 +78,8 @@ static void draw_ground(const struct sky *sky, const struct frame_context *conte
     glUniformMatrix4fv(1, 1, GL_FALSE, matrix);
     glBindTextureUnit(1, context->light->ground);
     glBindTextureUnit(2, context->light->sun_map);
-    glEnable(GL_DEPTH_CLAMP); /* the ground may lie beyond the far plane, which encloses the plant only */
+    /* depth is clamped instead of clipped: the ground may lie beyond the far plane, which encloses the plant only */
+    glEnable(GL_DEPTH_CLAMP);
     glEnable(GL_BLEND);
     glBlendFunc(GL_ZERO, GL_SRC_COLOR);
     glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);

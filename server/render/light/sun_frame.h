@@ -9,7 +9,8 @@ struct sun_frame {
     double width_m, depth_m;    /* width_m: length of the longer side; depth_m: length along the light's direction */
 };
 
-/* Fits the frustum. towards: direction to the sun. margin: added on every side, as a fraction of the width. */
+/* Fits the frustum around the shown assets. towards: direction to the sun. margin: space added on every side, as a fraction of the
+   width. */
 void sun_frame_fit(struct sun_frame *frame, const struct gpu_scene *gpu_scene, const double towards[3], const struct visibility *shown,
                    double margin);
 

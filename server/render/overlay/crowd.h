@@ -9,7 +9,7 @@ struct crowd_item {
     double x, y, depth_m;
     bool occluded;
     bool kept; /* drawn whatever is near */
-    bool held; /* the marker was drawn in the previous frame */
+    bool held; /* true: the marker was drawn in the previous frame */
 };
 
 /* Sets drawn[i] to whether items[i] is drawn. unit: size of one pixel at 1280x720. */

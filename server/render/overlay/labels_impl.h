@@ -38,7 +38,7 @@ struct label_layout {
 struct label_box layout_box(const struct label_item *item, int slot, double unit, double across, double down);
 /* Returns whether a box lies within the label area. */
 bool layout_is_inside(const struct label_layout *layout, const struct label_box *box);
-/* Returns whether a box covers only boxes of its owner and of kinds that it may cover. */
+/* Returns whether a box overlaps no occupied box. Boxes of `owner` and boxes that `over` allows to cover are ignored. */
 bool layout_is_free(const struct label_layout *layout, const struct label_box *box, int owner, enum label_over over);
 /* Places the label of these items and marks its box as occupied; more than one item makes it a call-out. */
 void layout_set(struct label_layout *layout, const int *members, size_t count, const struct label_box *box, int slot);

@@ -27,7 +27,7 @@ struct ring_group {         /* rings that share a label */
     int *members;           /* indices of items, by importance; points into rings.members */
     size_t count;
     struct label_box box;
-    int slot, mate; /* mate: if the group's label found no room, the index of the group to merge with; else LABEL_NONE */
+    int slot, mate; /* mate: if the group's label found no room: index of the group with which to merge; else LABEL_NONE */
 };
 
 struct rings {
@@ -86,7 +86,7 @@ static void join(int *first, int i, int k)
     first[a > b ? a : b] = a < b ? a : b;
 }
 
-/* Joins close rings. Returns the number of groups. */
+/* Joins rings that are close to each other into groups. first: by ring: parent in a union-find forest. Returns the number of groups. */
 static size_t join_close(const struct rings *rings, int *first)
 {
     size_t groups = 0;
@@ -201,7 +201,8 @@ static int find_slot(const struct rings *rings, const struct ring_group *group)
     return alone ? FORCED : NOWHERE;
 }
 
-/* Returns the label's box at the centre of its rings, moved into the label area even if it covers other things there. */
+/* Returns the label's box at the centre of its rings, moved into the label area. It may cover other things there: this is used when no free
+   position was found. */
 static struct label_box forced_box(const struct rings *rings, const struct ring_group *group)
 {
     const struct label_box *area = &rings->layout->area->box;

@@ -21,7 +21,7 @@ static int by_priority(const void *a, const void *b)
     return i->priority != k->priority ? (i->priority > k->priority) - (i->priority < k->priority) : (i->tag > k->tag) - (i->tag < k->tag);
 }
 
-/* Returns per tag whether a visible marker shows it. The caller frees the array. */
+/* Returns flags by tag: true if a visible marker shows the tag. The caller frees the array. */
 static bool *find_seen(struct pen *pen)
 {
     bool *seen = mem_array(pen->scene->plant->tag_count, sizeof(*seen));

@@ -5,7 +5,7 @@
 
 #include "render/overlay/overlay_pen.h"
 
-#define HALO 0.85 /* alpha of the white halo that makes dark lines visible on every colour */
+#define HALO 0.85 /* opacity of the white halo that makes dark lines visible on every colour */
 
 bool overlay_has_arrows(const struct pen *pen)
 {

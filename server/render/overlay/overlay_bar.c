@@ -7,7 +7,7 @@
 
 enum { MAX_TICKS = 40 };
 struct ticks {
-    double values[MAX_TICKS], places[MAX_TICKS]; /* places: position of the text, 0 at MIN, 1 at MAX */
+    double values[MAX_TICKS], places[MAX_TICKS]; /* places: position of each tick's text on the bar, 0 at MIN, 1 at MAX */
     int count;
 };
 static const double LINE_GAP = 1.12; /* minimum distance between lines of text, as a multiple of text_px */
@@ -56,7 +56,7 @@ static void line_ticks(struct ticks *ticks, const struct scale *scale, const dou
     add_tick(ticks, scale, scale->max);
 }
 
-/* Chooses both ends and all isolines as ticks, if their texts fit; else round numbers. */
+/* Chooses both ends of the range and all isolines as ticks, if their texts fit; else round numbers. */
 static void choose_ticks(struct ticks *ticks, const struct view *view, double most)
 {
     struct scale scale;
@@ -76,7 +76,7 @@ static void choose_ticks(struct ticks *ticks, const struct view *view, double mo
     }
 }
 
-/* Moves the tick labels apart so that they do not overlap; none leaves the bar. */
+/* Moves the tick labels apart until they do not overlap; all stay within the bar. */
 static void spread(double *places, int count, double gap)
 {
     for (int i = 1; i < count; i++)

@@ -76,7 +76,8 @@ static bool shows_unproven(const struct pen *pen)
     return false;
 }
 
-/* Returns whether the group has a tag with an assumed position. Its marker need not be visible: its equipment may be. */
+/* Returns whether the group has a tag with an assumed position, which the legend then explains. The tag's marker need not be visible, since
+   its reading also colours its equipment. */
 static bool shows_assumed(const struct pen *pen)
 {
     const struct plant *plant = pen->scene->plant;

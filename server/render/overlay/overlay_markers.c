@@ -170,7 +170,7 @@ static void draw_label(struct pen *pen, const struct label_box *box, const struc
     pen_text(pen, box->x + pad + text->name_width, box->y + pad + 0.72 * pen->text_px, text->value);
 }
 
-/* Returns the depth of a tag's sensor along the view direction. */
+/* Returns the depth of a tag's sensor along the view direction, in metres from the eye. */
 static double depth_of(const struct pen *pen, int tag)
 {
     const struct scene_asset *asset = &pen->scene->assets[pen->scene->plant->tags[tag].asset];
@@ -376,7 +376,8 @@ bool overlay_marker_seen(const struct pen *pen, const struct frame_marker *marke
     return !marker->occluded && is_inside(pen, marker) && !is_under(pen, pen->taken_count, &mark);
 }
 
-/* Returns whether the marker is exempt from thinning out. */
+/* Returns whether the marker is drawn even where markers overlap: it has an alarm, is Bad or uncertain, is the chosen sensor, or belongs to
+   the selected asset. */
 static bool is_kept(const struct pen *pen, const struct frame_marker *marker)
 {
     return has_alarm(pen, marker) || is_bad(marker) || quality_is_uncertain(marker->quality) ||
@@ -414,7 +415,7 @@ static size_t choose_markers(const struct pen *pen, int cards, size_t **chosen)
 
 void overlay_markers(struct pen *pen)
 {
-    int cards = pen->taken_count; /* number of occupied areas before any marker is drawn: the cards and banners */
+    int cards = pen->taken_count; /* number of occupied boxes before any marker is drawn: those of cards (legend, header) and banners */
     struct marker_labels wanted = { .pen = pen };
     size_t *chosen, count = choose_markers(pen, cards, &chosen);
     wanted.items = mem_array(count, sizeof(*wanted.items));

@@ -27,7 +27,7 @@ struct pen {
     const struct snapshot *snapshot;
     const struct loop_checks *loop_checks; /* NULL: none */
     bool bare;                             /* true: draws no markers, sensor labels and alarms */
-    bool calm;                             /* true: only alarms and Bad readings have labels */
+    bool calm;                             /* true: only markers with alarms or Bad readings get labels */
     double unit, text_px;
     struct burn_shift legend_shift;        /* shift of the legend, changed slowly against screen burn-in */
     struct label_box taken[PEN_MAX_TAKEN]; /* occupied areas */
@@ -56,9 +56,9 @@ void pen_text(struct pen *pen, double x, double y, const char *text);
 const char *pen_word(const struct pen *pen, enum overlay_word word);
 void pen_say(const struct pen *pen, enum overlay_word word, const char *a, const char *b, char *out, size_t size);
 
-/* Formats a value with as few decimals as distinguish a 5000th of the range. */
+/* Formats a value with as few decimals as suffice to distinguish a 5000th of the range. */
 void pen_number(double value, double range, char out[40]);
-/* Returns how many decimals distinguish a 500th of the range. */
+/* Returns how many decimals suffice to distinguish a 500th of the range. */
 int pen_decimals(double range);
 /* Returns the value rounded to this many decimals, and 0 instead of -0. */
 double pen_rounded(double value, int decimals);

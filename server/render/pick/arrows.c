@@ -69,14 +69,14 @@ static bool is_apart(const struct arrow_set *set, const struct asset_view *view,
     for (size_t i = 0; i < set->count; i++) {
         const float *a = set->places[i].normal, *b = place->normal;
         point_of(view, &set->places[i], there);
-        /* positions whose normals are opposite lie on the two sides of a wall, so they do not crowd each other */
+        /* positions with opposite normals lie on the two sides of a thin wall, so their distance does not matter */
         if (a[0] * b[0] + a[1] * b[1] + a[2] * b[2] > 0 && vec_distance(here, there) < least_m)
             return false;
     }
     return true;
 }
 
-/* Orders the positions so that those with the widest spacing come first, so that any prefix of the list is evenly spread. */
+/* Chooses positions in rounds with halved minimum distance, so that any prefix of the list is evenly spread. */
 static void select_spread(struct arrow_set *set, const struct arrow_candidates *candidates)
 {
     set->places = mem_array(MAX_POSITIONS, sizeof(*set->places));

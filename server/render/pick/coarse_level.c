@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-static const double MAX_ERROR_PART = 0.01; /* largest error of the coarse level, relative to the asset's size */
+static const double MAX_ERROR_PART = 0.01; /* largest geometric error of the coarse level, as a fraction of the asset's size */
 
 double coarse_size_m(const struct scene_asset *asset)
 {

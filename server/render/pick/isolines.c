@@ -12,10 +12,11 @@
 #include "render/pick/markers.h"
 
 enum { POINTS_PER_LINE = 16, MAX_POINTS = 2048, MAX_LABELS = 128, MAX_ARROWS = 192, MAX_STROKES = 48 };
-/* Bisection steps on a piece of an edge; largest number of pieces of an edge. */
+/* MAX_PIECES: pieces into which an edge is divided at most; MAX_BISECTIONS: steps of the bisection within one piece. */
 enum { MAX_BISECTIONS = 24, MAX_PIECES = 16 };
 static const double SPACING = 0.1;        /* minimum distance between points on isolines, relative to the asset's size */
-static const double SAME_LINE_FACTOR = 4; /* labels of one line keep this multiple of the distance between labels of different lines */
+/* on a frame, labels of the same isoline keep this multiple of the distance that labels of different isolines keep */
+static const double SAME_LINE_FACTOR = 4;
 
 void isolines_init(struct isolines *isolines, size_t asset_count)
 {
@@ -262,7 +263,8 @@ static void collect_arrows(struct isolines *isolines, const struct frame_context
     const struct scene *scene = context->gpu_scene->scene;
     const size_t most = out->count + 2 * MAX_POINTS;
     size_t longest = 0;
-    /* during a trial, the fields of assets that the trial does not change keep directions from before it */
+    /* fields of assets that the trial does not change still have directions of the time before the trial: a view with a trial shows no
+       arrows */
     if (!isolines_has_arrows(scene, context->view))
         return;
     for (size_t i = 0; i < context->visible_count; i++) {
@@ -320,8 +322,8 @@ bool isolines_start(struct point_visibility *queries, const struct frame_context
     return point_visibility_start(queries, context, count);
 }
 
-/* Returns whether there is room for another label. Labels are sent with each frame, so the frame's size limits how many there are in all
-   and on each isoline. */
+/* Returns whether the frame may get another label at this point. Labels are sent with each frame, so the frame's size limits how many
+   labels it has, and how near each other those of one isoline are. */
 static bool has_room(const struct frame *frame, const float place[4], const struct isoline_point *point)
 {
     double lines_px = fmax(40, frame->width_px / 32.0), arrows_px = FRAME_ARROW_PX(frame->width_px);
@@ -403,7 +405,8 @@ static void drop_short_stroke(struct frame *frame, uint16_t next)
         frame->label_count--;
 }
 
-/* places: result of the visibility test by point: x and y in pixels, then 1 if hidden, else 0. */
+/* Adds labels for the visible points to the frame. places: result of the visibility test, by point: x and y in pixels, then 1 if hidden,
+   else 0. */
 static void emit_labels(const struct frame_context *context, const struct isoline_points *points, float (*places)[4], struct frame *frame)
 {
     struct emitted_stroke stroke = { 0 };

@@ -5,7 +5,7 @@
 #include "render/frame.h"
 #include "render/pick/point_visibility.h"
 
-/* Iterates over all sensors and their positions: from the prepared asset file, or as moved by a trial. */
+/* Iterator over all sensors and their positions: positions from the prepared asset file, or as moved by a trial. */
 struct marker_iterator {
     const struct scene *scene;
     const struct trial *trial;   /* NULL: none */

@@ -12,7 +12,7 @@
 #include "value/quality.h"
 
 static const double MARKER_PX = 9; /* a marker is picked if it is nearer to the click than this, in pixels */
-/* a pick nearer to a sensor than the larger of these (pixels, metres) shows a measured value, not an interpolated one */
+/* a pick whose distance from a sensor is below the larger of these (pixels, metres) shows a measured value, not an interpolated one */
 static const double MEASURED_PX = 3, MEASURED_M = 0.005;
 
 struct pick_spot { /* state of one pick */

@@ -15,7 +15,7 @@ enum pick_state {
 enum { PICK_NEAREST = 4 };
 
 struct pick {
-    int asset; /* asset at the pixel; -1: none; of the members below, only `sensor` and the times are set then */
+    int asset; /* asset at the pixel; -1: none; then, of the members below, only `sensor` and the times are set */
     double position_m[3], normal[3];
     enum pick_state state;
     bool uncertain, inside;

@@ -6,9 +6,9 @@
 #include "render/frame_context.h"
 
 struct point_visibility {
-    GLuint program; /* shaders/point_visibility.comp, owned by the caller; zero-initialise the rest */
+    GLuint program; /* program of shaders/point_visibility.comp, owned by the caller; zero-initialise all other members */
     GLuint buffer;
-    float (*places)[4]; /* mapped memory that the GPU accesses, too */
+    float (*places)[4]; /* GPU memory mapped into this process: input, then result, of the test */
     size_t capacity;
 };
 

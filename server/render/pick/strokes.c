@@ -104,7 +104,7 @@ static bool step(const struct tracing *tracing, struct direction_place *place, c
 {
     double weights[3], v[3], at[3][3], normal[3], rates[3];
     uint32_t tri = place->triangle;
-    int from = -1; /* edge through which the current triangle was entered */
+    int from = -1; /* index of the edge through which the current triangle was entered; -1: none */
     for (int c = 0; c < 3; c++) {
         weights[c] = (double)place->weights[c];
         v[c] = (double)along[c];
@@ -186,7 +186,8 @@ static struct direction midway(const struct stroke_point *last, const struct dir
     return out;
 }
 
-/* Traces all strokes together, step by step, since directions are computed for many positions at once. */
+/* Traces all strokes of the asset together, one step of each at a time, because computing directions for many positions in one call is
+   faster. */
 static void trace(struct stroke_set *set, const struct tracing *tracing, const struct arrow_set *arrows, const struct scene *scene,
                   int asset, const struct fields_entry *field)
 {

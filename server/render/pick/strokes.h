@@ -19,7 +19,7 @@ struct stroke_set { /* strokes of one asset; zero-initialise, free with strokes_
     int *lengths; /* number of points per stroke; 0: the direction at its start is unknown */
     size_t count;
     bool sought;
-    uint64_t content; /* hash of the directions that the strokes follow */
+    uint64_t content; /* hash of the sensor directions that the strokes follow */
 };
 
 /* Updates the strokes from the arrows, which must be up to date. */

@@ -92,7 +92,7 @@ static bool take_slice(struct fields *fields, struct fields_entry *entry)
     return false;
 }
 
-/* Returns the largest difference between a vertex's newest and shown value; stops searching at `enough`. */
+/* Returns the largest difference between the newest and the shown value of a vertex; stops searching once it reaches `enough`. */
 static double error_of(const struct fields_entry *entry, const struct scalars *now, double enough)
 {
     float most = 0;
@@ -104,8 +104,8 @@ static double error_of(const struct fields_entry *entry, const struct scalars *n
     return most;
 }
 
-/* Returns whether the change is at least half a colour step. The field's bound on its change usually decides; if not, compares every
-   vertex. */
+/* Returns whether the change since the shown values is at least half a colour step. An upper bound of the change usually decides; if not,
+   all vertices are compared. */
 static bool can_be_seen(struct fields_entry *entry, const struct scalars *now, const struct pixel_field *pixels)
 {
     double half = 0.5 * entry->step;
@@ -293,8 +293,8 @@ bool fields_upload(struct fields *fields, const int *assets, size_t count, const
     return good;
 }
 
-/* Entries of the last frame are kept even beyond the bound: the next frame mostly shows the same, and they would be recomputed for each
-   frame. */
+/* Entries that the last frame used are kept even beyond the memory bound: the next frame mostly shows the same, and would have to compute
+   them again. */
 void fields_trim(struct fields *fields)
 {
     while (fields->bytes > fields->bound_bytes && fields->count > 0) {

@@ -53,7 +53,7 @@ void fields_init(struct fields *fields, struct log *log, struct field *field);
 void fields_finish(struct fields *fields);
 struct fields_ask {
     const int *assets;    /* indices, without duplicates */
-    const size_t *counts; /* by index in `assets`: the first counts[i] vertices at least must be ready */
+    const size_t *counts; /* by index in `assets`: number of vertices, from the first in the file on, whose values must be ready */
     size_t asset_count;
     const struct field_params *params;
     double step;
@@ -62,8 +62,8 @@ struct fields_ask {
 /* Writes the entry of each requested asset into `entries` (indexed by asset). NULL: the asset has nothing to show. An asset that there is
    no room for gets an entry that shows no data; logged. Valid until the next fields_trim(). */
 void fields_get(struct fields *fields, const struct fields_ask *ask, const struct fields_entry **entries);
-/* Uploads the entries of these assets; call before the GPU draws with them. Returns false if one did not fit (logged); its place in
-   `entries` then holds an entry that shows no data. */
+/* Uploads the entries of these assets; call before the GPU draws with them. Returns false if an entry did not fit, which is logged: its
+   element of `entries` then points to an entry that shows no data. */
 bool fields_upload(struct fields *fields, const int *assets, size_t count, const struct fields_entry **entries);
 /* Evicts entries beyond the bound. Call between frames. */
 void fields_trim(struct fields *fields);

@@ -4,12 +4,12 @@
 #define RENDER_PLAN_FRAME_PLANNER_H
 #include "render/plan/frame_plan.h"
 
-struct frame_planner { /* inputs of frame plans; all inputs outlive the plans */
+struct frame_planner { /* inputs from which frame plans are made; they must outlive the plans */
     const struct gpu_scene *gpu_scene;
     struct fields *fields;
     struct light *light;
-    bool near_light; /* previews use the most similar ready light until the one they ask for is baked */
-    bool finest;     /* plans use the finest levels of detail only */
+    bool near_light; /* true: a preview uses the most similar ready light until the light that its view asks for is baked */
+    bool finest;     /* true: plans use the finest level of detail of each asset only */
 };
 
 /* Plans everything about the view except its fields. The view must be valid and not split. The caller owns the plan. */

@@ -5,7 +5,7 @@
 #include "render/view.h"
 #include "scene/scene.h"
 
-struct view_constants { /* eye space: axes of the plant frame, origin at the camera */
+struct view_constants { /* matrices and planes of a view. Eye space has the axes of the plant frame and its origin at the camera */
     double eye_m[3];
     double clip_from_eye[16]; /* clip depth: 1 near, 0 far */
     double clip_from_plant[16];
@@ -20,8 +20,8 @@ struct view_constants { /* eye space: axes of the plant frame, origin at the cam
 
 /* Computes all constants for a view of the scene. Near and far planes enclose the scene's bounds. */
 void view_constants_init(struct view_constants *constants, const struct view *view, const struct scene *scene);
-/* Narrows the frustum planes to a rectangle of the frame; the matrices stay. low, high: its corners in normalised device coordinates (-1 to
-   1). */
+/* Narrows the frustum planes to a rectangle of the frame; the matrices stay unchanged. low, high: corners of the rectangle in normalised
+   device coordinates (-1 to 1). */
 void view_constants_narrow(struct view_constants *constants, const double low[2], const double high[2]);
 /* Returns whether the asset's bounds intersect the frustum. */
 bool view_constants_sees(const struct view_constants *constants, const struct scene_asset *asset);

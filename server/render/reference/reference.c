@@ -58,7 +58,7 @@ static struct sensors_head head_of(const struct reference *reference, int asset,
         .range = places ? 1 : (float)(group->max - group->min),
         .vertices = (float)reference->gpu_scene->of_asset[asset]->file->view.header->vertex_count,
         .paper = params->interpolation == INTERPOLATION_PAPER,
-        /* geodesic distances come from the asset file, also where the view uses heat distances */
+        /* uses the geodesic distances of the asset file even if the view uses heat distances, which the file does not contain */
         .geodesic = params->distance != DISTANCE_EUCLIDEAN,
         .fill = params->fill == FILL_NEIGHBOURS,
         .show = (int32_t)params->show,

@@ -14,7 +14,8 @@ struct reference_model { /* buffers of one asset file */
 struct reference {
     const struct gpu_scene *gpu_scene;
     struct field *field;
-    struct reference_model *models; /* by index in gpu_scene->models: buffers with the model's distances; 0: not made yet */
+    /* by index in gpu_scene->models: GPU buffers with the distances of the model's vertices; 0: not made yet */
+    struct reference_model *models;
 };
 
 void reference_init(struct reference *reference, const struct gpu_scene *gpu_scene, struct field *field);
