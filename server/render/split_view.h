@@ -9,12 +9,12 @@ struct split_plan { /* immutable */
     struct view view;
     int half_count;
     struct frame_plan *halves[2];
-    uint64_t content; /* content hash of all halves: the content of the frame */
+    uint64_t content; /* hash of what all halves show; frames with equal content look the same */
 };
 struct split_view; /* a frame being drawn: one job per half */
 
-/* Plans a frame of this view: one frame plan per half. Computes the field of each half for about budget_ns (INT64_MAX: until done). The
-   caller owns the plan (split_plan_destroy). NULL: a field is not ready yet. */
+/* Plans a frame of this view: one frame plan per half. Computes the field of each half for about budget_ns (INT64_MAX: until it is ready).
+   The caller owns the plan (split_plan_destroy). Returns NULL if a field is not ready yet. */
 struct split_plan *split_view_plan(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot, int64_t budget_ns);
 void split_plan_destroy(struct split_plan **plan); /* frees the plan and sets *plan to NULL; accepts a pointer to NULL */
 

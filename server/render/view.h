@@ -55,7 +55,7 @@ struct view {
     struct field_params field;
     int colormap;                /* index of the colour map */
     double ramp_interval;        /* width of a colour step in engineering units; 0: continuous */
-    double range_min, range_max; /* range of the colour map; the group's range unless the client overrides it */
+    double range_min, range_max; /* values at both ends of the colour map; those of the group unless the client sets others */
     struct color_scale color_scale;
     enum look look;
     enum tier tier;
@@ -63,7 +63,7 @@ struct view {
     double light_dir[3]; /* unit vector towards the sun, in the plant frame */
     bool dark;           /* dark backdrop; field colours are unchanged */
     enum directions_look directions;
-    enum language language; /* language of the texts in an overlay, where one is drawn */
+    enum language language; /* language of the texts in the overlay, if one is drawn */
     bool strip;             /* draws a machine-readable legend strip into the overlay */
     int environment;        /* index of the environment map: 0: the built-in sky; 1 and up: those of the plant file */
     struct visibility visibility;

@@ -7,7 +7,7 @@
 #include "base/mem.h"
 #include "render/soft/kernels.h"
 
-/* Returns whether a triangle of the part (a few neighbouring triangles, soft/parts.h) belongs to a closed body. */
+/* Returns whether a triangle of the part (group of neighbouring triangles, soft/parts.h) belongs to a closed body. */
 static bool bounds_bodies(const struct soft_parts *parts, const struct soft_part *part)
 {
     return parts->closed && memchr(parts->closed + part->first_vertex, 1, part->vertex_count);
@@ -84,7 +84,8 @@ bool soft_parts_close(struct soft_parts *parts, const struct asset_view *file, c
     }
     for (size_t r = 0; r < closed->run_count; r++)
         for (uint32_t i = 0; i < closed->runs[r].index_count; i++)
-            of_file[file->indices[closed->runs[r].first_index + i]] = 1; /* a plain flag suffices because no vertex belongs to two bodies */
+            /* one flag per vertex suffices, because no vertex belongs to both a closed body and another one */
+            of_file[file->indices[closed->runs[r].first_index + i]] = 1;
     parts->closed = mem_try_array(parts->vertex_count, 1);
     for (size_t i = 0; i < parts->vertex_count && parts->closed; i++)
         parts->closed[i] = of_file[parts->vertices[i]];

@@ -13,7 +13,9 @@ struct raster_edge {
     int32_t negative;   /* -1: pixels with negative values of the edge function are inside; 0: those with non-negative values */
 };
 
-struct plane { /* a value interpolated linearly over the frame; low, high: smallest and largest value at the corners */
+/* a value that is linear over the frame: at: value at the first corner; dx, dy: change per pixel; low, high: smallest and largest value at
+   the corners */
+struct plane {
     float at, dx, dy, low, high;
 };
 
@@ -36,20 +38,20 @@ SOFT_INLINE void edge_init(struct raster_edge *edge, const struct soft_vertex *p
     *edge = (struct raster_edge){ upper->x, upper->y, lower->x - upper->x, lower->y - upper->y, swap ? -1 : 0 };
 }
 
-/* Returns the part of the edge function that is constant along a row. */
+/* Returns the part of the edge function that is the same for all pixels of a row. y: the row's pixel centres. */
 SOFT_INLINE float edge_row(const struct raster_edge *edge, float y)
 {
     return edge->dx * (y - edge->y) + edge->dy * edge->x;
 }
 
-/* Returns lanes that are negative for pixels outside the edge. Only the sign bit counts, so that even a value of -0 is on exactly one side.
-   x: pixel centres. */
+/* Returns lanes that are negative for pixels outside the edge. Only the sign bit counts, so a pixel with the value -0 also is on exactly
+   one side. x: pixel centres. */
 SOFT_INLINE lanes_int edge_side(const struct raster_edge *edge, float row, lanes x)
 {
     return (lanes_int)(row - edge->dy * x) ^ edge->negative;
 }
 
-struct slopes { /* edge vectors of the triangle, divided by twice the triangle's area */
+struct slopes { /* vectors from the first corner of the triangle to the two others, divided by twice the triangle's area */
     float x1, y1, x2, y2;
 };
 

@@ -5,7 +5,7 @@
 
 #include "render/soft/kernels.h"
 
-#define FARTHEST 1e6f /* colour map columns are clamped to plus or minus this, far outside the scale */
+#define FARTHEST 1e6f /* columns of the colour map are clamped to this absolute value, which is far outside the scale */
 
 /* --- vertices --------------------------------------------------------------------------------------------------------------- */
 
@@ -54,8 +54,8 @@ void soft_place_part(struct soft_tile *tile, const struct soft_mesh *mesh, const
     corners->flat = most <= SOFT_LITTLE * least;
 }
 
-/* Computes columns and rows as colormap_column() and colormap_row() in shaders/field.glsl. numbers: indices of the vertices, padded to a
-   multiple of LANES. */
+/* Computes a and b of vertices with a field: column and row of the colour map, as colormap_column() and colormap_row() in
+   shaders/field.glsl. numbers: indices of the vertices, padded to a multiple of LANES. */
 SOFT_INLINE void carry_field(const struct raster *raster, const struct soft_mesh *mesh, const uint32_t *vertices, const uint8_t *numbers,
                              int count, struct soft_corners *corners)
 {
@@ -126,7 +126,7 @@ SOFT_INLINE void carry_context(const struct soft_mesh *mesh, const uint32_t *ver
     corners->all_flags = 0;
 }
 
-/* Lists the indices of all vertices, padded to a multiple of LANES. Returns their number. */
+/* Lists the indices of all vertices of the part, padded to a multiple of LANES. Returns the length of the list. */
 static int list_all(const struct soft_part *part, uint8_t numbers[PART_VERTICES + LANES])
 {
     for (int i = 0; i < PART_VERTICES + LANES; i++)
@@ -177,7 +177,8 @@ SOFT_INLINE lanes most_of(lanes a, lanes b, lanes c)
     return lanes_most(lanes_most(a, b), c);
 }
 
-/* Return the first and last pixel whose centre a range of x or y may cover, clamped to the tile. */
+/* first_pixel() returns the first pixel whose centre lies at or after x, last_pixel() the last one whose centre lies at or before x;
+   clamped to the tile. Also for y. */
 SOFT_INLINE lanes_int first_pixel(lanes x, int low)
 {
     return lanes_whole(lanes_clamp(x + 0.4999f, (float)low, 1e5f));
@@ -188,7 +189,8 @@ SOFT_INLINE lanes_int last_pixel(lanes x, int high)
     return lanes_whole(lanes_clamp(x + 0.5f, 0, (float)high + 1)) - 1;
 }
 
-/* Returns whether the face is behind the farthest depth of every 8 x 8 pixel block that it touches. */
+/* Returns whether the face is hidden: in every 8 x 8 pixel block that it touches, its nearest depth is behind the block's farthest
+   depth. */
 SOFT_INLINE bool is_hidden(const struct soft_tile *tile, const struct soft_face *face, float nearest)
 {
     unsigned top = (unsigned)(face->top - tile->rect.top) / BLOCK_PX, bottom = (unsigned)(face->bottom - tile->rect.top) / BLOCK_PX;
@@ -229,8 +231,8 @@ SOFT_INLINE void hide(const struct soft_tile *tile, struct eight *eight)
     eight->doubtful = hidden & wide;
 }
 
-/* Returns which of eight triangles may face the eye (eye_m on the outer side of the plane). The tolerance keeps rounding errors from
-   dropping a front face. */
+/* Returns a mask of those of eight triangles that may face the eye, because eye_m is on the outer side of their plane. A tolerance keeps
+   rounding errors from dropping a front face. */
 SOFT_INLINE lanes_int may_face(const float *planes, int rounded, const float eye_m[3])
 {
     float slack_m = 1e-5f * (1 + __builtin_fabsf(eye_m[0]) + __builtin_fabsf(eye_m[1]) + __builtin_fabsf(eye_m[2]));

@@ -42,7 +42,7 @@ SOFT_INLINE lanes line(lanes rise)
     return t * t * (3.0f - 2.0f * t);
 }
 
-/* Compares with the neighbouring pixel at dx, dy: returns line coverage where the neighbour is nearer. */
+/* Returns line coverage, 0..1, at eight pixels, where the neighbouring pixel at (dx, dy) is much nearer to the eye. */
 SOFT_INLINE lanes edge(const struct view_of_depth *view, int x, int y, lanes here, int dx, int dy)
 {
     lanes next = at(view, x + dx, y + dy), zero = { 0 }, lines = zero;

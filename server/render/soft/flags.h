@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Flags of a vertex's value: no data, uncertain, no limits. Private to soft/. */
+/* Flags of the field's value at a vertex: no data, uncertain, no limits; each selects a pattern. Private to soft/. */
 #ifndef RENDER_SOFT_FLAGS_H
 #define RENDER_SOFT_FLAGS_H
 #include "field/scalars.h"
 
-/* Bits 0 to 7 hold scalar.uncertain, 8 to 15 scalar.lacking, bit 16 no limits. SOFT_UNCERTAIN and SOFT_NO_DATA are the top bits of the two
-   numbers: set if the number is over half. */
+/* Bits 0 to 7 of the flags hold scalar.uncertain, bits 8 to 15 scalar.lacking (both 0..255), bit 16 "no alarm limits". SOFT_UNCERTAIN and
+   SOFT_NO_DATA are the top bits of these numbers: set if the number is above half. */
 enum { SOFT_LACKING = 8, SOFT_NO_DATA = 0x8000, SOFT_UNCERTAIN = 0x80, SOFT_NO_LIMITS = 0x10000 };
 enum { SOFT_PATTERNS = SOFT_NO_DATA | SOFT_UNCERTAIN | SOFT_NO_LIMITS };
 #define SOFT_NOTHING_KNOWN (255u << SOFT_LACKING)
@@ -13,7 +13,8 @@ static inline uint32_t soft_flags(const struct scalar *scalar)
 {
     return (uint32_t)scalar->lacking << SOFT_LACKING | scalar->uncertain | (scalar->no_limits ? SOFT_NO_LIMITS : 0);
 }
-/* Returns 0..1, for interpolation: above 0.5 the pixel shows no data, or is uncertain. */
+/* soft_lacking(), soft_uncertain() and soft_no_limits() return a flag as 0..1, for interpolation. Where the result is above 0.5, the pixel
+   shows the pattern. */
 static inline float soft_lacking(uint32_t flags)
 {
     return (float)(flags >> SOFT_LACKING & 0xff) * (1 / 255.0f);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Ghosted assets: lines where their depth has edges or creases, and thin level lines; ports shaders/ghost.frag. */
+/* Draws ghosted assets: lines where their depth has edges or creases, and a thin horizontal line every ten pixels; ports shaders/ghost.frag. */
 #include <math.h>
 #include <string.h>
 

@@ -50,7 +50,8 @@ struct sun_band { /* the band's rows of the sun map, plus the first row of the n
     int width_px, row_count;
 };
 
-/* Copies a tile's texels; the map's last row and column are repeated as lower and right neighbours. Returns the tile's bounds. */
+/* Copies the texels of tile (u, v) of the shadow map; the map's last row and column are repeated as lower and right neighbours. Returns the
+   tile's smallest and largest depth, as in soft_light.sun_bounds. */
 static uint32_t fill_sun_tile(const struct sun_band *band, int u, int v, uint16_t *to)
 {
     static const uint16_t nothing[SUN_TILE_TEXELS];
@@ -71,8 +72,8 @@ static uint32_t fill_sun_tile(const struct sun_band *band, int u, int v, uint16_
     return soft_sun_bounds(texels);
 }
 
-/* Reads band by band through one buffer. Empty tiles are not written: untouched zero pages cost no memory, and skipping them halves the
-   time for a half-empty map. */
+/* Reads the shadow map band by band through one buffer. Tiles without any surface are not written: untouched zero pages cost no memory, and
+   skipping them halves the time for a half-empty map. */
 static void fill_sun_tiles(struct soft_light *light, GLuint map, struct sun_band *band)
 {
     const int size = light->sun_map_px, tiles = light->sun_tiles;

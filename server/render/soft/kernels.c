@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The table of kernels of the instruction set that this file is compiled for. */
+/* The table of kernels (inner loops) for the instruction set that this file is compiled for. */
 #include "render/soft/kernels.h"
 
 const struct soft_kernels soft_kernels_of_set = {

@@ -23,7 +23,7 @@ typedef uint8_t lanes_bytes __attribute__((vector_size(8)));
 typedef int64_t lanes_pair __attribute__((vector_size(16)));
 
 #ifdef __AVX512VL__
-#define LANES_CHOOSE_AT_ONCE 1 /* lanes_choose() compiles to a single instruction */
+#define LANES_CHOOSE_AT_ONCE 1 /* 1: lanes_choose() compiles to a single instruction, so choosing is cheaper than branching */
 #else
 #define LANES_CHOOSE_AT_ONCE 0
 #endif
@@ -102,7 +102,7 @@ SOFT_INLINE lanes_int lanes_whole(lanes x)
     return __builtin_convertvector(x, lanes_int);
 }
 
-/* log2, to 1e-7; x below 1e-30 counts as 1e-30. The same polynomial as in field/kernels.c. */
+/* log2 with an error of 1e-7; x below 1e-30 counts as 1e-30. Same polynomial as in field/kernels.c. */
 SOFT_INLINE lanes lanes_log2(lanes x)
 {
     lanes tiny = (lanes){ 0 } + 1e-30f;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes the matrices with which pixels look up sun map, ground and sky. */
+/* Computes the matrices with which pixels look up the sun's shadow map, the ground and the sky. */
 #include <math.h>
 #include <string.h>
 
@@ -14,7 +14,7 @@ static void copy_columns(const double from[16], float to[4][4])
             to[c][r] = (float)from[4 * c + r];
 }
 
-/* Computes the matrix from pixels and depth to clip space, for w = 1. */
+/* Computes the matrix from (x, y in pixels, depth, 1) to clip space with w = 1. */
 static void clip_from_pixel(const struct raster *raster, double out[16])
 {
     matrix_identity(out);
@@ -81,7 +81,7 @@ static void choose_stretch(struct raster *raster)
     raster->stretch_px = n >= SOFT_STRETCH_LEAST ? n : 1;
 }
 
-/* Computes the 3x3 matrix from pixels to the ground plane's coordinates. */
+/* Computes the 3x3 matrix from pixels to texture coordinates on the ground plane. */
 static void aim_ground(struct raster *raster, const struct light *light)
 {
     double clip[16];

@@ -58,7 +58,8 @@ SOFT_INLINE void sun_aim(const struct soft_light *light, const lanes s_t_depth[3
     aim->open = wanted;
 }
 
-/* Prefetches the tile bounds that sun_bound() reads: usually all eight points lie in one cache line, so the ends suffice. */
+/* Prefetches the depth bounds of tiles that sun_bound() reads. Usually all eight points lie in one cache line, so prefetching for the first
+   and the last point suffices. */
 SOFT_INLINE void sun_prefetch_bounds(const struct soft_light *light, const struct sun_aim *aim)
 {
     lanes_int tile = aim->tile & aim->open;
@@ -154,7 +155,7 @@ SOFT_INLINE lanes_int backdrop_at(const struct raster *raster, const struct heig
     return gather(raster->soft->backdrops, tile * SKY_BACKDROPS + at);
 }
 
-/* Scales colours by factor / 256. */
+/* Multiplies colours by factor / 256. */
 SOFT_INLINE lanes_int darkened(lanes_int color, lanes_int factor)
 {
     lanes_uint by = (lanes_uint)factor, bgrx = (lanes_uint)color;

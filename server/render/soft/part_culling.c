@@ -11,9 +11,10 @@
 
 #define SLACK_PX 0.02f        /* boxes and vertices round differently */
 #define SLACK_DEPTH 1e-5f     /* relative to depth */
-#define IN_FRONT_OF_NEAR 2.0f /* depth used for points in front of the near plane */
+#define IN_FRONT_OF_NEAR 2.0f /* depth that is used for points in front of the near plane; larger than any real depth */
 
-/* Bounds a box's rectangle in the frame and its nearest depth. Returns false if the box is outside. */
+/* Computes a bounding rectangle, in pixels, of a box in the frame, and the box's nearest depth. Returns false if the box is outside the
+   frame. */
 SOFT_INLINE bool project(const struct raster *raster, const struct soft_mesh *mesh, const float low[3], const float high[3],
                          struct soft_rect *rect, float *near)
 {
@@ -101,7 +102,7 @@ static void find_meshes(void *arg, size_t begin, size_t end)
     }
 }
 
-/* Returns the parts of a level of detail, which are made on first use. NULL: out of memory. */
+/* Returns the parts (groups of triangles, soft/parts.h) of a level of detail, which are made on first use. NULL: out of memory. */
 static const struct soft_parts *parts_of(struct raster *raster, const struct gl_model *model, const struct model_level *level)
 {
     struct soft_parts **of_model = &raster->soft->parts[model - raster->soft->gpu_scene->models];

@@ -23,9 +23,9 @@ struct soft_part {
 struct soft_parts {
     struct soft_part *parts;
     uint32_t *vertices; /* indices of vertices in the file; the list of each part is padded to a multiple of LANES with its last vertex */
-    float *places_m;    /* positions of `vertices`, three floats each; per part all x, then all y, then all z */
-    uint8_t *corners;   /* local vertex numbers within the part */
-    float *planes;      /* planes of triangles, four floats each; per part all normals' x, y, z, then all distances */
+    float *places_m;    /* positions of `vertices` in metres; the list of each part has all x, then all y, then all z */
+    uint8_t *corners;   /* corners of triangles: indices of vertices within the part; see soft_part.first_corner for the order */
+    float *planes;      /* planes of triangles (n . p + d = 0); the list of each part has all n.x, then all n.y, all n.z, all d */
     uint8_t *closed;    /* by index in `vertices`: 1: the vertex belongs to a closed body, 0: not. NULL: not computed yet */
     bool blended;       /* at least one part is blended */
     size_t part_count, vertex_count, corner_count;
@@ -50,7 +50,7 @@ static inline void soft_part_triangle(const struct soft_parts *parts, const stru
         vertices[i] = parts->vertices[part->first_vertex + corners[i * part->rounded]];
 }
 
-/* Returns false when out of memory. Call soft_parts_finish() in either case. */
+/* Makes the parts of a level of detail. Returns false when out of memory. Call soft_parts_finish() in either case. */
 bool soft_parts_init(struct soft_parts *parts, const struct asset_view *file, const struct model_level *level);
 /* Computes `closed` if it is NULL. vertex_count: vertices of the level of detail. Returns false when out of memory. */
 bool soft_parts_close(struct soft_parts *parts, const struct asset_view *file, const struct closed_bodies *closed, uint32_t vertex_count);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Physically based shading of eight surfaces at a time; ports shaders/environment.glsl, pbr.glsl and light.glsl. Private to soft/. */
+/* Physically based shading (PBR) of eight surfaces at a time; ports shaders/environment.glsl, pbr.glsl and light.glsl. Private to soft/. */
 #ifndef RENDER_SOFT_PBR_H
 #define RENDER_SOFT_PBR_H
 #include "render/light/environments.h"
@@ -54,7 +54,7 @@ SOFT_INLINE four texel_between(const float (*texels)[4], float x, float y)
     return upper + (lower - upper) * b;
 }
 
-/* Returns the environment's reflection at this roughness, along r. */
+/* Returns the light that the environment reflects towards the viewer at this roughness. r: the mirrored view direction. */
 SOFT_INLINE vec mirrored(const struct environment_light *surroundings, vec r, lanes roughness)
 {
     const float(*texels)[4] = (const float(*)[4])surroundings->of->mirrored;
@@ -97,7 +97,7 @@ SOFT_INLINE vec reflected_more(vec f0, struct brdf brdf)
     return (vec){ out[0], out[1], out[2] };
 }
 
-struct sky_light { /* light that a surface gets from the sky, before its colour is applied */
+struct sky_light { /* light that a surface gets from sky and surroundings, before the surface's colour is applied */
     struct brdf brdf;
     vec irradiance, seen;
 };

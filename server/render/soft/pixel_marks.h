@@ -10,8 +10,8 @@ struct mark_ink {
     float pattern_px;
     bool rich; /* there are isolines, or the scale is logarithmic */
     bool log;
-    float low, over;    /* logarithmic scales: position on the scale = (log2(value) - low) * over */
-    float line_px;      /* width of isolines; 0: there are none */
+    float low, over;    /* logarithmic scales: position on the scale, 0..1 = (log2(value) - low) * over */
+    float line_px;      /* width of isolines in pixels; 0: there are no isolines */
     const float *lines; /* by position on the scale: the nearest position that has an isoline, from struct raster */
 };
 
@@ -48,7 +48,7 @@ SOFT_INLINE lanes_int context_mark(lanes ambient, lanes sun, uint32_t mark)
     return a << 8 | s | (int32_t)mark;
 }
 
-/* Diagonal hatch, as hatch() in shaders/field.glsl: returns -1 in dark stripes. */
+/* Diagonal stripes: pattern for no data, as hatch() in shaders/field.glsl. Returns -1 in dark stripes, else 0. */
 SOFT_INLINE lanes_int hatch(lanes x, float y, float pattern_px)
 {
     lanes at = (x + y) * (1 / (pattern_px * (float)HATCH_SLANT));
@@ -56,7 +56,8 @@ SOFT_INLINE lanes_int hatch(lanes x, float y, float pattern_px)
     return (phase < (float)-HATCH_EDGE) | (phase > (float)HATCH_EDGE);
 }
 
-/* Dots in rows, every other row shifted by half a cell, as stipple() in shaders/field.glsl. */
+/* Dots in rows, every other row shifted by half a cell: pattern for uncertain values, as stipple() in shaders/field.glsl. Returns -1 in
+   dots, else 0. */
 SOFT_INLINE lanes_int stipple(lanes x, float y, float pattern_px)
 {
     float row = y * (1 / pattern_px);
@@ -93,7 +94,8 @@ SOFT_INLINE lanes_int rich_mark(lanes value, lanes value_x, lanes value_y, lanes
     return marks | lanes_whole(part * MARK_LINE_WHOLE + 0.5f) << MARK_LINE;
 }
 
-/* Horizontal lines, widely spaced, as rule() in shaders/field.glsl. */
+/* Horizontal lines, widely spaced: pattern of tags without alarm limits, as rule() in shaders/field.glsl. Returns whether the row y is on a
+   line. */
 SOFT_INLINE bool rule(float y, float pattern_px)
 {
     float at = y * (1 / pattern_px), phase = at - (float)(int)at - 0.5f;

@@ -11,8 +11,8 @@
 #include "render/gl/ghosts.h"
 #include "render/pick/markers.h"
 
-/* Returns whether isolines are drawn. Isolines are computed with the triangles, so such a preview is redrawn, not recoloured, when readings
-   change. */
+/* Returns whether isolines are drawn. Isolines are computed while triangles are drawn, so a preview with isolines is drawn again, and not
+   only recoloured, when readings change. */
 static bool has_lines(const struct frame_context *context)
 {
     return context->colormap.lines || view_is_operator(context->view);
@@ -44,8 +44,8 @@ static bool complain(const struct raster *raster)
     return false;
 }
 
-/* Returns whether one of the last previews had this shape hash (content_hash_shape()), which means that the camera stands still. Stores the
-   hash. */
+/* Returns whether one of the last previews had this hash of geometry and light (content_hash_shape()), which means that the camera stands
+   still. Stores the hash. */
 static bool is_still(struct soft *soft, uint64_t shape)
 {
     for (size_t i = 0; i < SOFT_SHAPES; i++)

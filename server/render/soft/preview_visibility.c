@@ -11,15 +11,16 @@ struct keeping {
     struct visibility_buffer *buffer;
 };
 
-struct preview_triangle { /* a triangle projected into the frame */
+struct preview_triangle { /* a triangle projected into the frame, as cached while the buffer is filled */
     uint32_t id;
     uint32_t number;      /* number in the band */
-    double weights[3][3]; /* planes, as factors of x, y and 1, that give the weights of its corners up to a common factor */
+    /* factors of x, y and 1 that give the weight of each corner at the point (x, y), up to a common factor (soft_weights) */
+    double weights[3][3];
 };
 
 void soft_weights(const struct soft_mesh *mesh, const uint32_t vertices[3], double weights[3][3])
 {
-    double at[3][3]; /* the corners in homogeneous coordinates: x w and y w in pixels, w */
+    double at[3][3]; /* by corner: (x w, y w, w), with x and y in pixels */
     static const int rows[3] = { 0, 1, 3 };
     for (int i = 0; i < 3; i++) {
         const float *p = mesh->file->positions_m[vertices[i]];
@@ -72,7 +73,7 @@ static void keep_band(const struct keeping *keeping, int number)
     const struct raster *raster = keeping->raster;
     struct visibility_buffer *buffer = keeping->buffer;
     struct visibility_band *band = &buffer->bands[number];
-    /* cache of projected triangles by id: neighbouring pixels mostly show the same triangles */
+    /* cache of projected triangles by triangle id: neighbouring pixels mostly show the same triangles */
     struct preview_triangle spots[CACHED_TRIANGLES];
     for (int i = 0; i < CACHED_TRIANGLES; i++)
         spots[i].id = UINT32_MAX;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds equal ramps by sorting the rows; the first of equal rows is kept. */
+/* Finds equal colour ramps by sorting their rows; of equal rows the first is kept. */
 #include "render/soft/ramp_rows.h"
 
 #include <stdbool.h>
@@ -13,7 +13,7 @@ enum { WHOLE = 8 }; /* bits of a colour channel */
 struct ramp_search {
     const uint32_t *muted, *own;
     size_t steps;
-    int bits; /* WHOLE: compares all colours of the rows; a smaller value: compares only so many bits of each row's brightest colour */
+    int bits; /* WHOLE: compares all colours of two rows; a smaller value: compares only this many bits of each row's brightest colour */
 };
 
 static int by_number(uint32_t a, uint32_t b)
@@ -42,7 +42,7 @@ static int compare(const void *a, const void *b, void *arg)
     return order ? order : by_number(one, other);
 }
 
-/* Writes, for each row, the index of the first row that looks the same. Returns the number of distinct rows. */
+/* Writes, for each row, the index of the first row with equal colours. Returns the number of different rows. */
 static size_t find_first(const struct ramp_search *rows, size_t count, uint32_t *order, uint32_t *first)
 {
     size_t different = 0;

@@ -8,7 +8,7 @@
 #include "render/light/environments.h"
 
 struct ramp_material {
-    float mean[3]; /* base colour times the mean of its texture, linear */
+    float mean[3]; /* the material's base colour times the mean colour of its texture, in linear light */
     float metallic, roughness, emissive[3];
 };
 /* Fills `steps` colours (a multiple of 8) from dark to bright: blue | green << 8 | red << 16 | 0xff000000. up: the plant's up direction.

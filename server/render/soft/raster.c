@@ -20,7 +20,7 @@ SOFT_INLINE void keep_id(const struct soft_tile *tile, const struct soft_sample 
 /* --- any face --------------------------------------------------------------------------------------------------------------- */
 
 struct setup {
-    float x, y; /* position of the first corner, the origin of all planes below */
+    float x, y; /* position of the first corner in pixels, from which all linear functions below count x and y */
     struct raster_edge edges[3];
     struct plane depth, a, b, inverse_w;
     /* how much of each pattern a pixel has, 0..1, as linear functions over the frame; only set if the face has flags */
@@ -36,7 +36,7 @@ SOFT_INLINE struct soft_vertex vertex_of(const struct soft_corners *corners, int
                                  corners->a[i], corners->b[i], corners->flags[i] };
 }
 
-/* Makes the plane of a pattern's value over the face. part: value at each corner, 0..1. */
+/* Returns the linear function over the face that has the value part[i] at corner i. */
 SOFT_INLINE struct plane part_plane(const struct slopes *slopes, const struct soft_vertex v[3], const float part[3], bool flat)
 {
     float at[3];
@@ -129,7 +129,7 @@ SOFT_INLINE lanes_int marks_at(const struct setup *setup, const struct mark_ink 
     return pattern_marks(marks, none > 0.5f, little > 0.5f, (free > 0.5f) & -(int32_t)ink->rich, b, x, y, ink);
 }
 
-/* Narrows the range of a row to the pixels inside the edges, plus one at each end. */
+/* Narrows left..right, the columns of a row that may be inside the face, to the columns inside all edges, plus one at each end. */
 SOFT_INLINE void narrow(const struct setup *setup, float y, int *left, int *right)
 {
     for (int e = 0; e < 3; e++) {
@@ -145,7 +145,7 @@ SOFT_INLINE void narrow(const struct setup *setup, float y, int *left, int *righ
     }
 }
 
-/* Clears the lanes of pixels that are holes in the texture. */
+/* Clears the lanes of pixels at which the texture has a hole. */
 SOFT_INLINE lanes_int leave_out_holes(const struct soft_cutout *cutout, lanes x, float y, lanes_int seen)
 {
     for (uint32_t bits = lanes_bits(seen); bits; bits &= bits - 1) {
@@ -211,8 +211,8 @@ SOFT_INLINE void draw_by_one(const struct soft_tile *tile, const struct soft_sam
     draw_stamp(tile, sample, face, small, l, left, top < last_top ? top : last_top, mark, ink, true, true);
 }
 
-/* Draws the faces grouped by size, which keeps branches predictable. The order is the same on every machine, because at equal depth the
-   last face wins. */
+/* Draws the faces grouped by size, so that branches are well predicted. The order must be the same on every machine, because of faces at
+   equal depth the last one is visible. */
 SOFT_INLINE void draw_kinds(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *const faces[LANES],
                             const struct small *small, const struct kinds *kinds, uint32_t rows, uint32_t mark, const struct mark_ink *ink)
 {

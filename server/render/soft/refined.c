@@ -12,7 +12,8 @@
 #include "render/soft/refined_impl.h"
 #include "render/gl/ghosts.h"
 
-/* Number of bands (groups of pixel rows) that one step processes per core, in a few milliseconds: when shading, and in other work. */
+/* number of bands (groups of pixel rows) that one step processes per core, which takes a few milliseconds: SHADED_BANDS when shading, BANDS
+   in other work */
 enum { SHADED_BANDS = 1, BANDS = 8 };
 static const double OFF_SURFACE_TEXELS = 1 + SUN_SPREAD; /* as sun_visibility() in shaders/shadow.glsl */
 
@@ -79,7 +80,9 @@ static void aim(struct refined *refined, const struct light *light)
     double off_m = OFF_SURFACE_TEXELS * context->light->texel_m, matrix[16];
     raster_aim(raster, light);
     for (int c = 0; c < 4; c++)
-        for (int r = 0; r < 4; r++) /* previews move surfaces towards the sun; refined frames move them along their normals instead */
+        /* removes the bias of previews, which move surfaces towards the sun against shadow acne; refined frames move surfaces along their
+           normals instead */
+        for (int r = 0; r < 4; r++)
             refined->sun_from_pixel[c][r] =
                 raster->sun_from_pixel[c][r] - (r == 2 ? (float)frame_sun_slack(context) * raster->sun_from_pixel[c][3] : 0);
     for (int c = 0; c < 3; c++)
@@ -94,7 +97,7 @@ static void aim(struct refined *refined, const struct light *light)
     copy_columns(matrix, refined->sun_from_ground);
 }
 
-/* Continues the frame after other frames were drawn meanwhile. */
+/* Prepares the frame for its next step, after other frames were drawn. Returns false when out of memory. */
 static bool take_up(struct refined *refined, const struct frame_context *context, struct frame *frame)
 {
     struct raster *raster = &refined->raster;
@@ -109,14 +112,14 @@ static bool take_up(struct refined *refined, const struct frame_context *context
     raster_aim_cuts(raster);
     raster->out = frame->bgrx;
     raster->out_stride_bytes = (size_t)frame->stride_bytes;
-    /* sets the light of the meshes again, because this step finds other meshes than the step for section caps did */
+    /* sets the light of each mesh again: this step works on other meshes than the step for section caps did */
     if (refined->step > REFINED_FIND && refined->step < REFINED_INK)
         for (size_t m = 0; m < raster->mesh_count; m++)
             raster->meshes[m].baked = (const uint8_t(*)[4])raster->light->baked[raster->meshes[m].asset];
     return true;
 }
 
-/* Computes data of each found mesh that only refined frames need. */
+/* Computes data of each mesh that only refined frames need, such as the matrix for its normals. */
 static void note_meshes(struct refined *refined)
 {
     const struct raster *raster = &refined->raster;
@@ -222,7 +225,8 @@ static void ink_some(void *arg, size_t begin, size_t end)
         piece->refined->raster.soft->kernels->ink_band(piece->refined, (int)(piece->first + band));
 }
 
-/* Chooses the range of work items for this call: `some` per core, out of `all`. Returns true if it includes the last one. */
+/* Chooses the range of work items (bands or rows) for this step: `some` per core, out of `all`. Returns true if the range includes the last
+   item. */
 static bool advance(struct refined *refined, size_t all, size_t some, size_t *begin, size_t *end)
 {
     some *= (size_t)workers_count(refined->raster.soft->workers);

@@ -16,8 +16,8 @@ extern const float refined_samples[SAMPLES][2];
 #define ID_NOTHING 0xffffffffu
 #define ID_CAP 0xfffffffeu /* the sample shows a section cap: the cut face of a closed body */
 
-enum { NORMAL_X, NORMAL_Y, NORMAL_Z, AMBIENT, OPEN, TINT }; /* indices of vertex attributes, eight per vertex */
-enum { BASE, METALLIC = 3, ROUGHNESS, EMISSIVE };           /* indices of material attributes, eight per material */
+enum { NORMAL_X, NORMAL_Y, NORMAL_Z, AMBIENT, OPEN, TINT }; /* indices of vertex attributes in arrays of eight per vertex */
+enum { BASE, METALLIC = 3, ROUGHNESS, EMISSIVE };           /* indices of material attributes in arrays of eight per material */
 
 struct refined {
     struct raster raster;
@@ -35,16 +35,18 @@ struct refined {
     } step;
     size_t at; /* work done within the step */
     bool failed;
-    float (*normals)[9]; /* matrix per mesh that turns normals from file to plant, columns */
+    float (*normals)[9]; /* by mesh: matrix that rotates normals from the file to the plant frame, column by column */
     size_t mesh_capacity;
-    uint8_t *caps; /* section caps: one bit per sample, rows of pitch_px. NULL: nothing is cut */
+    uint8_t *caps; /* section caps: one bit per sample of each pixel, rows of pitch_px. NULL: no section plane cuts the scene */
     struct visibility_buffer *buffer;
     /* --- members for the frame being drawn, computed again at each step --- */
     const struct frame_context *context;
     struct environment_light surroundings;
     float sun_from_pixel[4][4], sun_from_ground[4][4]; /* matrices, as columns */
-    float sun_from_normal[3][3]; /* matrix, as columns: maps a normal to the offset on the sun's map that lifts the point off its surface */
-    float ground_step[3];        /* offset on the sun's map that lifts points off the ground */
+    /* matrix, column by column: maps a normal to an offset on the sun's map; adding it lifts the point off its own surface, against shadow
+       acne */
+    float sun_from_normal[3][3];
+    float ground_step[3];        /* offset on the sun's map that lifts points off the ground, against shadow acne */
 };
 
 struct refined_item { /* one surface within a pixel */
@@ -53,18 +55,19 @@ struct refined_item { /* one surface within a pixel */
     uint16_t share; /* area of the pixel that the surface covers, 0..VISIBILITY_SHARES */
 };
 
-struct shaded_items { /* results of shading, by index of the refined_item; only items that show the field */
+struct shaded_items { /* results of shading, by index of the refined_item; only for items that show the field */
     uint32_t *triangles, *weights;
     uint8_t *rows;
     struct visibility_gloss *gloss;
 };
 
-/* Finds the nearest opaque triangle at each sample of a band; rows are pitch_px elements apart. fragments: receives the blended triangles
-   in front of the opaque ones. */
+/* Finds the nearest opaque triangle at each sample of a band (group of pixel rows); rows are pitch_px elements apart. fragments: receives
+   the blended triangles in front of the opaque ones. */
 void refined_raster_band(const struct refined *refined, int band, const struct soft_sample samples[SAMPLES],
                          struct soft_fragments *fragments);
 bool refined_shade_band(const struct refined *refined, int band); /* false: out of memory */
-/* Adds the item's triangle to the band, and writes the triangle's index in the band and the item's weights to index `at` of `out`. */
+/* Adds the item's triangle to the band's list of triangles. Writes the index of the triangle in the list, and its corner weights w1 and w2,
+   to element `at` of `out`. */
 void refined_keep_place(const struct refined *refined, struct visibility_band *band, const struct refined_item *item, float w1, float w2,
                         const struct shaded_items *out, size_t at);
 

@@ -65,7 +65,7 @@ static float slope_of(const struct coloring *coloring, float by_x, float by_y, f
     return slope * (1 / COLUMNS_OF_RANGE);
 }
 
-/* Writes how much the weights of the second and third corner change per pixel, in x and y. */
+/* Writes by how much the weights of the second and third corner change per pixel, in x and y. w1, w2: these weights at the point (x, y). */
 static void weight_steps(const struct visibility_slopes *slopes, float w1, float w2, float x, float y, float steps[2][2])
 {
     float over = 1 / (slopes->sum_x * x + slopes->sum_y * y + slopes->sum);
@@ -193,7 +193,7 @@ SOFT_INLINE void transpose(const quad rows[4], quad columns[3])
 struct eight_shown { /* of pixels of the field */
     lanes w1, w2, carried;
     lanes_int known; /* -1: the fast path may colour the pixel; 0: a corner or the pixel has a flag */
-    struct eight_places places; /* positions for fields that are evaluated at pixels */
+    struct eight_places places; /* points at which fields are evaluated from sensors */
 };
 
 /* Computes the carried values (colour map columns; on a logarithmic scale values) of eight pixels, as field_color() in shaders/field.glsl
@@ -293,8 +293,8 @@ SOFT_INLINE lanes_int field_colors(const struct coloring *coloring, const struct
 /* 64-bit colour sums: blue from bit 0, red from bit 16, green from bit 32 */
 typedef uint64_t sums __attribute__((vector_size(32), aligned(8)));
 
-/* Surfaces of pixels that show several surfaces are coloured in advance, eight at a time, in the order of storage, which is also the order
-   of use. */
+/* Pixels that show several surfaces: their surfaces are coloured in advance, eight at a time, in the order of storage, which is also the
+   order of use. */
 enum { PARTS_AHEAD = 64 };
 struct ahead {
     size_t first, end;
@@ -399,7 +399,7 @@ SOFT_INLINE void color_mixed(const struct coloring *coloring, const struct visib
 
 /* --- pixels ------------------------------------------------------------------------------------------------------------------ */
 
-/* Returns one bit per nonzero byte; the lowest byte gives bit 0. */
+/* Returns a bit mask of the nonzero bytes of x; the lowest byte gives bit 0. */
 SOFT_INLINE uint32_t bits_of_bytes(uint64_t x)
 {
     uint64_t low = 0x7f7f7f7f7f7f7f7f, tops = ((x & low) + low) | x;

@@ -51,7 +51,7 @@ SOFT_INLINE lanes open_at(const struct refined *refined, lanes u, lanes v)
     return out * (1 / 255.0f);
 }
 
-/* Returns the brightness that shadow leaves the ground, 0..256, as shaders/ground.frag. */
+/* Returns the brightness of the ground after the shadow on it, 0..256; ports shaders/ground.frag. */
 SOFT_INLINE lanes_int ground_at(const struct refined *refined, lanes x, float y)
 {
     const float(*g)[3] = refined->raster.ground_from_pixel;

@@ -13,7 +13,7 @@
    AIMS: size of the ring buffer of started lookups. */
 enum { BOUNDS_AHEAD = 8 * LANES, SHADOWS_AHEAD = 4 * LANES, AIMS = 16 };
 
-/* Computes positions on the sun's map, 0..1, and their depths. */
+/* Computes positions on the sun's shadow map, 0..1, and depths there, of the surfaces that eight pixels show. */
 SOFT_INLINE void sun_place(const struct raster *raster, lanes x, float y, lanes depth, lanes place[3])
 {
     const float(*m)[4] = raster->sun_from_pixel;
@@ -25,7 +25,7 @@ SOFT_INLINE void sun_place(const struct raster *raster, lanes x, float y, lanes 
         place[r] = s[r] * over;
 }
 
-/* Starts the shadow lookups of eight pixels. Pixels whose surface faces away from the sun need no lookup. */
+/* Starts the shadow lookups of eight pixels. Pixels whose surface faces away from the sun are left out. */
 SOFT_INLINE void aim_at_sun(const struct raster *raster, int column, int row, struct sun_aim *aim)
 {
     size_t place = (size_t)row * (size_t)raster->pitch_px + (size_t)column;
@@ -94,7 +94,7 @@ SOFT_INLINE lanes_int lined(const uint32_t *marks, lanes_int color)
     return color;
 }
 
-/* Returns the brightness that shadow leaves the ground, 0..256. */
+/* Returns the brightness of the ground after the shadow on it, 0..256. */
 SOFT_INLINE lanes_int ground_at(const struct raster *raster, lanes x, float y)
 {
     const float(*m)[3] = raster->ground_from_pixel;

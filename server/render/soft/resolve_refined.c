@@ -22,17 +22,17 @@ struct mixed { /* a pixel that shows several surfaces, and the range of its item
     int column;
     uint8_t field_count, surface_count;
     uint16_t sky, cap; /* area of the pixel that shows sky, and area that shows section caps; 0..VISIBILITY_SHARES */
-    uint16_t over[3];  /* colour of blended triangles times share: blue, green, red */
+    uint16_t over[3];  /* sum of the colours of blended triangles, each times the area that it covers: blue, green, red */
     uint32_t first_field, first_surface;
 };
 
-struct refined_row { /* a row of pixels; item arrays hold SAMPLES per pixel */
+struct refined_row { /* a row of pixels; the arrays of items (surfaces to shade) have room for SAMPLES items per pixel */
     struct refined_item *field, *surfaces;
     /* by item: column of its pixel; -1: the pixel shows several surfaces and is composed after its items are shaded */
     int *field_columns, *surface_columns;
     struct mixed *mixed;
-    uint8_t *sky;  /* 1 for pixels that show some of the sky */
-    uint8_t *caps; /* 1 for pixels whose samples all show a section cap */
+    uint8_t *sky;  /* by column: 1 if the pixel shows some of the sky, else 0 */
+    uint8_t *caps; /* by column: 1 if all samples of the pixel show a section cap, else 0 */
     size_t field_count, surface_count, mixed_count;
     bool any_sky, any_cap;
     uint32_t *triangles, *weights, *colors, *sky_colors;
@@ -71,9 +71,9 @@ static bool row_init(struct refined_row *row, int pitch_px)
 /* --- triangles ----------------------------------------------------------------------------------------------------------------- */
 
 enum { RECENT_TRIANGLES = 512 };
-struct recent { /* cache of triangles by id: neighbouring pixels mostly show the same ones */
+struct recent { /* cache of triangles by id, since neighbouring pixels mostly show the same triangles */
     const struct refined *refined;
-    uint32_t mesh; /* mesh of the last triangle looked up */
+    uint32_t mesh; /* index of the mesh of the last triangle looked up, which is tried first */
     struct soft_triangle triangles[RECENT_TRIANGLES];
 };
 
@@ -97,8 +97,8 @@ static bool share_edge(const struct soft_triangle *a, const struct soft_triangle
     return a->mesh == b->mesh && shared >= 2;
 }
 
-/* Groups the samples of a pixel by surface. under: area of the pixel that each sample represents. triangles: receives the groups'
-   triangles. Returns the number of groups. */
+/* Groups the samples of a pixel by surface. under: by sample: area of the pixel that it represents. triangles: receives the triangle of
+   each group. Returns the number of groups. */
 static int group_samples(struct recent *recent, const struct soft_sample samples[SAMPLES], size_t at, const uint16_t under[SAMPLES],
                          struct soft_triangle triangles[SAMPLES], struct sample_group groups[SAMPLES])
 {
@@ -128,7 +128,7 @@ static int group_samples(struct recent *recent, const struct soft_sample samples
 
 struct layers {                      /* blended triangles of a band */
     struct soft_fragments fragments; /* sorted by pixel, nearest first */
-    struct refined_item *items;      /* items of blended triangles, one per triangle and pixel */
+    struct refined_item *items;      /* items (surfaces to shade) of blended triangles: one per triangle and pixel */
     uint32_t *colors;
     float *alphas;
     size_t count, item_capacity, color_capacity, alpha_capacity;
@@ -148,7 +148,8 @@ static int by_depth(const void *a, const void *b)
     return x->depth != y->depth ? (x->depth < y->depth ? 1 : -1) : (x->layer > y->layer) - (x->layer < y->layer);
 }
 
-/* Shades the blended triangles. Their depth replaces that of surfaces behind, so that feature edges there are hidden, too. */
+/* Shades the blended triangles. Their depth replaces the depth of surfaces behind, so that feature edges of those surfaces are hidden,
+   too. */
 static void shade_layers(struct recent *recent, struct layers *layers, int top, const struct soft_sample samples[SAMPLES])
 {
     const struct refined *refined = recent->refined;
@@ -254,7 +255,8 @@ static void add_mixed(struct recent *recent, struct refined_row *row, const stru
     row->any_sky |= mixed->sky > 0;
 }
 
-/* Sorts the pixels of a row by what they show. layered: index of the next blended fragment; on return it is past this row. */
+/* Sorts the pixels of a row by content: a single surface, several surfaces, sky or section cap. layered: index of the next blended
+   fragment; on return that of the first one after this row. */
 static void sort_row(struct recent *recent, struct refined_row *row, const struct soft_sample samples[SAMPLES], size_t start, int y,
                      const struct layers *layers, size_t *layered)
 {

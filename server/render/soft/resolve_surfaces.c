@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shades surfaces of refined frames, eight at a time, except fields whose light is a row of the colour map; ports shaders/refined.frag,
-   light.glsl, pbr.glsl and environment.glsl. */
+/* Shades surfaces of refined frames, eight at a time; ports shaders/refined.frag, light.glsl, pbr.glsl and environment.glsl. Fields whose
+   light is a row of the colour map are shaded in resolve_field.c. */
 #include "render/soft/kernels.h"
 #include "render/soft/pbr.h"
 #include "render/soft/section_colors.h"

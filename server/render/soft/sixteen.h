@@ -12,7 +12,7 @@ typedef int32_t sixteen_int __attribute__((vector_size(64), aligned(4)));
 
 enum { MANY = 16 };
 
-/* Loads a stamp of 16 pixels: rows of `width` (4, 8 or 16) pixels, `pitch` apart. width: a compile-time constant. */
+/* Loads a stamp of 16 pixels from rows of `width` (4, 8 or 16) pixels that are `pitch` elements apart. width: a compile-time constant. */
 SOFT_INLINE sixteen many_floats(const float *at, size_t pitch, int width)
 {
     if (width == MANY)
@@ -89,7 +89,7 @@ SOFT_INLINE sixteen many_value(const struct small *small, int l, int p, sixteen 
     return (sixteen)_mm512_min_ps(high, _mm512_max_ps(low, (__m512)value)); /* as lanes_clamp */
 }
 
-/* Truncates towards 0 and clamps to 0..high. */
+/* Truncates eight values towards 0, and clamps them to 0..high. */
 SOFT_INLINE sixteen_int many_within(sixteen x, int32_t high)
 {
     __m512i whole = _mm512_max_epi32(_mm512_cvttps_epi32((__m512)x), _mm512_setzero_si512());

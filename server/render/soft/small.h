@@ -9,7 +9,8 @@
 
 enum { SMALL_PX = 4 * LANES };
 
-/* Faces one or two pixels high count as small at any width, because few pixels of their stamps are wasted. */
+/* Returns whether a face counts as small. Faces one or two pixels high are small at any width, because stamps (blocks of pixels drawn as a
+   unit) fit them well. */
 SOFT_INLINE bool is_small(const struct soft_face *face)
 {
     return face->bottom - face->top < SMALL_PX && (face->right - face->left < SMALL_PX || face->bottom - face->top < 2);
@@ -49,7 +50,7 @@ SOFT_INLINE struct eight_faces read_faces(const struct soft_face *const faces[LA
     lanes_int pairs[4], words[4];
     for (int i = 0; i < 4; i++)
         pairs[i] = __builtin_shufflevector(*(const quad_int *)faces[i], *(const quad_int *)faces[i + 4], 0, 1, 2, 3, 4, 5, 6, 7);
-    for (int i = 0; i < 4; i += 2) { /* transposes eight faces of four words each */
+    for (int i = 0; i < 4; i += 2) { /* transposes eight faces of four 32-bit words each, so that lane l of each word belongs to face l */
         words[i] = __builtin_shufflevector(pairs[i], pairs[i + 1], 0, 8, 1, 9, 4, 12, 5, 13);
         words[i + 1] = __builtin_shufflevector(pairs[i], pairs[i + 1], 2, 10, 3, 11, 6, 14, 7, 15);
     }
@@ -188,8 +189,8 @@ SOFT_INLINE void draw_stamp(const struct soft_tile *tile, const struct soft_samp
                                         stamp_ints(sample->ids + place, pitch, two)));
 }
 
-/* Stamps stay within the tile, because other threads draw outside. The last stamps of a row or column therefore overlap earlier ones, which
-   is harmless: drawing a pixel twice has no effect. */
+/* Draws a face stamp by stamp. Stamps stay within the tile, because other threads draw outside. The last stamps of a row or column may
+   therefore overlap earlier ones, which is harmless: drawing a pixel twice has no effect. */
 SOFT_INLINE void draw_small(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *face,
                             const struct small *small, int l, uint32_t mark, const struct mark_ink *ink, bool two)
 {
@@ -207,9 +208,10 @@ SOFT_INLINE void draw_small(const struct soft_tile *tile, const struct soft_samp
     }
 }
 
-struct kinds {          /* classes of faces by size, as bit masks with one bit per face */
+struct kinds {          /* classes of faces by size; bit l of a mask: face l is in the class */
     uint32_t one, four; /* one: at most 4 x 2 pixels; four: larger, but at most 4 x 4 */
-    /* two: larger; two-row stamps (4 x 2) need fewer stamps than one-row stamps (8 x 1); low: the others that are one pixel high */
+    /* two: larger faces for which two-row stamps (4 x 2 pixels) need fewer stamps than one-row stamps (8 x 1); low: faces one pixel high
+       that are in none of the other classes */
     uint32_t two, low;
 };
 

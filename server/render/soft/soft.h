@@ -21,7 +21,7 @@ struct soft *soft_create(struct workers *workers, const struct gpu_scene *gpu_sc
                          const struct environments *environments);
 void soft_destroy(struct soft **soft); /* frees the software renderer and sets *soft to NULL; accepts a pointer to NULL */
 
-/* sets the bound of visibility buffers that a tier keeps for still cameras */
+/* sets the bound, in bytes, of the visibility buffers that a tier keeps for still cameras */
 void soft_bound(struct soft *soft, enum tier tier, size_t bytes);
 size_t soft_kept_bytes(const struct soft *soft);  /* bytes of kept visibility buffers */
 size_t soft_room_bytes(const struct soft *soft);  /* bytes of working memory, not counting that of refined frames still being drawn */
@@ -29,7 +29,7 @@ size_t soft_light_bytes(const struct soft *soft); /* bytes of baked light copied
 void soft_drop_spare(struct soft *soft);          /* frees the working memory that finished refined frames left for reuse */
 void soft_rest(struct soft *soft);                /* frees working memory, copied light and kept visibility buffers */
 
-/* Draws pixels, markers and labels. Returns false when out of memory; logged. */
+/* Draws a preview: pixels, markers and labels. Returns false when out of memory; logged. */
 bool preview_draw(struct soft *soft, const struct frame_context *context, const struct light *light, const struct isoline_points *points,
                   struct frame *frame);
 

@@ -33,7 +33,7 @@ enum { MOST_RAMPS = 1 << 14 };
 
 struct soft_vertex {
     float x, y, depth; /* x, y: pixels from the top left of the frame; depth: 1 near, 0 far */
-    float inverse_w;   /* 1/w; 0: the vertex is in front of the near plane or beyond the guard band (clip.h) */
+    float inverse_w;   /* 1 / clip w; 0: the vertex is in front of the near plane or beyond the guard band (clip.h) */
     /* with a field: a: column of the colour map (logarithmic scale: the value), b: row of the colour map; without a field: a: ambient
        light, b: sunlight */
     float a, b;
@@ -66,7 +66,7 @@ struct soft_rect { /* rectangle in pixels; right and bottom are included */
 };
 
 struct soft_item { /* a part (group of neighbouring triangles, parts.h) that may be visible in the frame */
-    float near;    /* depth of its nearest point; over 1: the part reaches in front of the near plane */
+    float near;    /* depth of the part's nearest point; above 1: the part reaches in front of the near plane */
     struct soft_rect rect;
     uint32_t part;
     bool cut;    /* true if a section plane cuts through the part */
@@ -79,7 +79,7 @@ struct soft_found { /* list of the parts of one mesh that may be visible; its me
     bool both_sides;
     float eye_m[3]; /* eye position in the file's coordinates */
     struct soft_rect rect;
-    uint32_t first_id; /* id of the first triangle of the first item; each item reserves PART_TRIANGLES ids */
+    uint32_t first_id; /* id of the first triangle of the first item; each further item's ids begin PART_TRIANGLES higher */
     struct soft_item *items;
     size_t count, capacity;
 };
@@ -87,10 +87,11 @@ struct soft_found { /* list of the parts of one mesh that may be visible; its me
 struct soft_light {       /* copy of a light_set, read back from the GPU */
     uint64_t id;          /* id of the light set; 0: an empty entry */
     uint8_t (**baked)[4]; /* per asset, then per vertex */
-    uint16_t *sun_map;    /* shadow map in square tiles of two cache lines, each tile row by row, so that neighbours share cache lines */
-    uint32_t *sun_bounds; /* by tile: smallest texel | largest texel << 16 */
-    int sun_map_px;       /* width and height of the map on the GPU */
-    int sun_tiles;        /* number of tiles in a row */
+    /* shadow map in square tiles of two cache lines, each tile row by row, so that neighbouring texels mostly share cache lines */
+    uint16_t *sun_map;
+    uint32_t *sun_bounds; /* by tile of the shadow map: smallest texel | largest texel << 16 */
+    int sun_map_px;       /* width and height of the shadow map on the GPU, in texels */
+    int sun_tiles;        /* number of tiles of the shadow map in a row */
     /* brightness of the ground, four bytes per texel: of the texel itself and of its right, lower and lower right neighbours; 0..255, 255:
        no shadow */
     uint32_t *ground;
@@ -151,7 +152,7 @@ struct raster { /* source and target of one frame's rasterization; its memory is
     int cut_count, entry_count;
     float shift_px[2];  /* offset of the samples from pixel centres */
     bool counts_bodies; /* the frame has section caps, for which the closed bodies at each pixel are counted (caps.c) */
-    bool blends;        /* true if some of the found parts are blended */
+    bool blends;        /* true: some of the parts found are blended (transparent) */
     bool has_ground;
     bool greys;                                                                /* context is drawn grey */
     float sun_from_pixel[4][4], ground_from_pixel[3][3], ray_from_pixel[3][3]; /* matrices, as columns */
@@ -207,7 +208,8 @@ bool raster_is_cut_off(const struct raster *raster, const float at[4], int plane
    plane cuts through the box. */
 bool raster_cuts_box(const struct raster *raster, const struct soft_mesh *mesh, int plane, const float low[3], const float high[3],
                      bool *cut);
-/* Returns the depth at which the ray through this point of the frame enters the uncut space. 0: it never does, or the eye is within. */
+/* Returns the depth at which the ray through the point (x, y) of the frame enters the space that section planes leave. 0: the ray never
+   enters it, or the eye is already inside. */
 float raster_entry_depth(const struct raster *raster, float x, float y);
 /* Lists the meshes and parts (groups of triangles) that may be visible. bodies: also lists parts that bound closed bodies which a section
    plane cuts open. Returns false when out of memory. */
@@ -226,8 +228,8 @@ enum soft_rim { RIM_NONE, RIM_LIGHT, RIM_DARK };
 /* returns an enum soft_rim per pixel, rows pitch_px apart: which pixels the outline of the selected asset covers; overwrites
    raster->depth */
 const uint8_t *raster_rim(const struct raster *raster);
-/* Returns a visibility buffer for recolouring the frame. Call while raster->ids is valid, before ink, rims and markers are drawn. NULL: out
-   of memory. */
+/* Returns a visibility buffer from which the frame can be recoloured. Call it while raster->ids is valid, and before edges, rims and
+   markers are drawn. NULL: out of memory. */
 struct visibility_buffer *raster_keep(struct raster *raster);
 /* adds the outline of the selected asset to the buffer's ink; overwrites raster->depth */
 void raster_keep_rim(const struct raster *raster, struct visibility_buffer *buffer);

@@ -15,7 +15,7 @@ struct eight_points {    /* eight surface points */
     lanes x, y, depth; /* position in the frame */
     lanes weights[3];
     lanes_int back;     /* -1: the surface looks away */
-    lanes_int mirrored; /* -1: the surface belongs to a mirrored mesh; else 0 */
+    lanes_int mirrored; /* -1: the surface belongs to a mesh whose placement mirrors it, which reverses the winding; else 0 */
     lanes_int cut;      /* -1: a section plane cuts the mesh, so back faces show the inner side; else 0. Set together with the material */
     vec normal;
 };
@@ -130,7 +130,7 @@ SOFT_INLINE quad quad_of_bytes(const uint8_t bytes[4])
     return __builtin_shufflevector(all_of, all_of, 0, 1, 2, 3);
 }
 
-/* Interpolates the vertex attributes NORMAL_X, ... at a point of the triangle. */
+/* Interpolates the vertex attributes NORMAL_X to TINT (refined_impl.h) at a point of the triangle. */
 SOFT_INLINE void attributes_at(const struct refined *refined, const struct soft_triangle *triangle, const float weights[3], bool with_tint,
                                float out[8])
 {
@@ -196,7 +196,8 @@ SOFT_INLINE vec view_of(const struct refined *refined, const struct eight_points
     return unit((vec){ ray[0], ray[1], ray[2] });
 }
 
-/* Returns -1 for points whose normal must be flipped: two-sided surfaces seen from behind, and normals that point away from the viewer. */
+/* Returns -1 for points whose normal must be reversed: two-sided surfaces seen from behind, and normals that point away from the viewer;
+   else 0. */
 SOFT_INLINE lanes_int is_turned(const struct eight_points *spot, vec view)
 {
     lanes towards = dot(spot->normal, view);

@@ -187,7 +187,7 @@ void soft_spread_coordinates(const float (*coordinates)[2], const uint32_t verti
     }
 }
 
-/* Returns the fractional mipmap level whose texels are as large as pixels. */
+/* Returns the mipmap level, with fraction, whose texels are as large as pixels of the frame. */
 static float level_at(const struct soft_texture *texture, float uv[3][2])
 {
     float square = 0;

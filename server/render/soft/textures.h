@@ -42,9 +42,10 @@ struct soft_spread {
 };
 /* weights: planes from soft_weights(). */
 void soft_spread_at(const double weights[3][3], double x, double y, struct soft_spread *spread);
-/* Computes texture coordinates at a point, and their change per pixel in x and y. coordinates: by vertex of the file; NULL: all 0. */
+/* Computes texture coordinates at a point and their change per pixel in x and y: uv[0], uv[1], uv[2]. coordinates: by vertex of the file;
+   NULL: all 0. */
 void soft_spread_coordinates(const float (*coordinates)[2], const uint32_t vertices[3], const struct soft_spread *spread, float uv[3][2]);
-/* Samples a texture: linear red, green, blue, and alpha, all 0..1. */
+/* Samples a texture. uv: from soft_spread_coordinates(). rgba: linear red, green, blue, and alpha, all 0..1. */
 void soft_texture_color(const struct soft_texture *texture, float uv[3][2], float rgba[4]);
 /* Returns the alpha of a surface point: material times vertex colour times texture. */
 float soft_alpha(const struct soft_material *material, const struct asset_view *file, const uint32_t vertices[3],

@@ -13,15 +13,15 @@ enum { MOST_FACES = NEAR_TRIANGLES * PART_TRIANGLES, MOST_CORNERS = PART_VERTICE
 /* faces whose nearest and farthest corner differ in depth by less than this factor are drawn without perspective correction */
 #define SOFT_LITTLE 1.02f
 
-struct soft_corners { /* vertices of a part, as struct soft_vertex, then those that clipping added */
+struct soft_corners { /* vertices of a part with the members of struct soft_vertex, followed by the vertices that clipping added */
     float x[MOST_CORNERS], y[MOST_CORNERS], depth[MOST_CORNERS], inverse_w[MOST_CORNERS], a[MOST_CORNERS], b[MOST_CORNERS];
-    /* vertices that clipping added have only SOFT_PATTERNS flags; their interpolated patterns are in cut_patterns */
+    /* vertices that clipping added have only the flags SOFT_PATTERNS; how much of each pattern they have is in cut_patterns */
     uint32_t flags[MOST_CORNERS];
     struct near_patterns cut_patterns[MOST_CORNERS - PART_VERTICES];
     int count, placed;  /* placed: number of vertices that clipping did not add; they come first */
     uint32_t all_flags; /* the OR of all flags */
     bool flat;          /* perspective is negligible */
-    bool cut;           /* some vertices are in front of the near plane or beyond the guard band */
+    bool cut;           /* some vertices are in front of the near plane or beyond the guard band (clip.h), so faces must be clipped */
 };
 
 struct soft_face { /* a triangle that faces the eye and covers a pixel centre of the tile; its area in pixels is positive */

@@ -7,8 +7,8 @@
 
 #include "base/mem.h"
 
-struct tile_entry { /* entry for one part in the list of parts that a tile may show */
-    uint64_t order; /* sort key: nearest first; equally near parts in the order in which they were found */
+struct tile_entry { /* entry for one part in a tile's list of the parts that may be visible in the tile */
+    uint64_t order; /* sort key: depth, nearest first; parts at equal depth in the order in which they were found */
     uint32_t mesh, item;
 };
 
@@ -97,7 +97,7 @@ static void begin_part(struct soft_tile *tile, const struct soft_found *found, c
     tile->cuts = cuts;
 }
 
-/* Fills vertices with zeros where no colours are drawn: no values, light or patterns. */
+/* Sets a, b and flags of all vertices to 0, for output without colours. */
 static void carry_nothing(struct soft_tile *tile)
 {
     size_t count = (size_t)tile->corners.count;

@@ -216,7 +216,7 @@ static float carried_of(const struct scalar *scalar, const float *scale)
 
 struct reading_job {
     struct visibility_buffer *buffer;
-    const struct scalar *scalars; /* scalars at the asset's vertices; NULL: the whole asset has no data */
+    const struct scalar *scalars; /* the field's values at the asset's vertices; NULL: the whole asset has no data */
     const float *scale;
     uint32_t first_vertex;
 };

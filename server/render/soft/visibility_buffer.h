@@ -83,9 +83,9 @@ struct visibility_mesh { /* an asset with a field */
 struct visibility_buffer {
     int width_px, height_px, band_rows, band_count;
     uint32_t *surfaces;             /* per pixel, as described above */
-    uint32_t *weights;              /* weights of the triangle's second and third corner, 16 bits each, for each pixel */
+    uint32_t *weights;              /* by pixel: corner weights of its triangle, 16 bits each: second corner | third corner << 16 */
     uint8_t *rows;                  /* row of the colour map (brightness) for each pixel */
-    struct visibility_gloss *gloss; /* light of glossy surfaces for each pixel; NULL: not glossy, brightness is in `rows` */
+    struct visibility_gloss *gloss; /* by pixel: light on it in the glossy look; NULL: another look, in which `rows` holds the brightness */
     const struct soft_tones *tones; /* set with gloss; not owned */
     /* ink of each pixel (VISIBILITY_INK: lines drawn over its colour). visibility_buffer_settle() draws ink and veil over colours that no
        reading changes, and sets both to 0 there */
@@ -100,11 +100,12 @@ struct visibility_buffer {
     bool evaluates;     /* some mesh's field is evaluated at pixels */
     float scale[4];     /* struct frame_uniforms.scale at the time when the vertices' values were read */
     uint32_t *vertices; /* kept vertices, mesh by mesh: index in the asset's file */
-    /* carried value of each kept vertex: column of the colour map (logarithmic scale: the value); NAN: it has a pattern's flag */
+    /* carried value of each kept vertex: column of the colour map (logarithmic scale: the field's value); NAN: a flag of the vertex selects
+       a pattern */
     float *carried;
     float *plain;                 /* the same without NAN */
     uint32_t *flags;              /* from soft_flags() */
-    struct frame_marker *markers; /* positions of markers, and whether they are occluded */
+    struct frame_marker *markers; /* positions of markers in the frame, and whether surfaces hide them */
     size_t marker_count;
 };
 
@@ -120,14 +121,14 @@ struct resolve_lines {
     const float *nearest; /* COLORMAP_PLACES entries, from struct shaded_colormap */
 };
 
-/* Adds a triangle, unless it equals the last one. Returns its index in the band. Runs on a worker. */
+/* Adds a triangle to the band's list, unless it equals the triangle added last. Returns its index in the list. Runs on a worker. */
 uint32_t visibility_add_triangle(struct visibility_band *band, const uint32_t vertices[3]);
 void visibility_buffer_add_mesh(struct visibility_buffer *buffer, const struct visibility_mesh *mesh);
 /* Completes the buffer once all pixels and ink are set: drops vertices that no pixel shows and renumbers the others. Returns false when out
    of memory. */
 bool visibility_buffer_settle(struct visibility_buffer *buffer, struct workers *workers);
 
-/* Reads the fields of the frame into buffer->carried and the other values of the kept vertices. */
+/* Reads the fields of the frame into buffer->carried, plain and flags of the kept vertices. */
 void resolve_read(struct visibility_buffer *buffer, const struct frame_context *context, struct workers *workers);
 /* Stores the slopes of the triangle that visibility_add_triangle() added last. weights: from soft_weights(). Runs on a worker. */
 void visibility_add_slopes(struct visibility_band *band, const double weights[3][3]);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A fixed array of buffers with a bound on their total size. */
+/* Store of visibility buffers: a fixed array of slots, with a bound on their total size. */
 #include "render/soft/visibility_store.h"
 
 static void empty(struct visibility_store *store, struct visibility_slot *buffer)
@@ -18,7 +18,7 @@ static struct visibility_slot *find(struct visibility_store *store, uint64_t sha
     return NULL;
 }
 
-/* Returns the least recently used slot. An empty slot counts as older than all others. */
+/* Returns the least recently used slot. empty_too: considers empty slots as well; these count as older than all others. */
 static struct visibility_slot *oldest(struct visibility_store *store, bool empty_too)
 {
     struct visibility_slot *found = NULL;

@@ -24,7 +24,7 @@ struct visibility_store { /* zero-initialise, then set bound_bytes */
     uint64_t uses;
 };
 
-/* Returns the buffer with that shape hash, valid until the next give or drop. NULL: none. */
+/* Returns the buffer with that hash, valid until the next visibility_store_give() or _drop(). NULL: none. */
 void *visibility_store_find(struct visibility_store *store, uint64_t shape);
 /* Takes ownership of a buffer and replaces any other of that shape. Destroys it at once if it exceeds the bound and keeps_newest is
    false. */
