@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parses attribute files line by line. Assigns an element to the node of that name below the enclosing element's node, or if there is none,
- * to any node of that name. */
+/* Parses attribute files line by line. Assigns an element of the file to the node of the same name below the node of the enclosing element;
+ * if there is none, to any node of that name. */
 #include "preprocess/import/cad_attributes.h"
 
 #include <stdio.h>
@@ -12,7 +12,7 @@
 
 enum { MAX_DEPTH = 1000 };
 
-struct node_key { /* node in the two sorted indexes: one by parent and name, one by name alone */
+struct node_key { /* an entry of one of two sorted indexes of the model's nodes: by parent and name, or by name alone */
     const char *name;
     int parent, node;
 };
@@ -67,7 +67,7 @@ static char *trim(char *text)
     return text;
 }
 
-/* Parses one or several "key:= value" entries, separated by `separator`, and adds them to the node. */
+/* Parses one or several "key:= value" entries, separated by `separator`, and adds them to the node's attributes. */
 static void take_line(struct cad_model *model, int node, char *line, const char *separator, struct attribute_counts *counts)
 {
     for (char *next; line; line = next) {

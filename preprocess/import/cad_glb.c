@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes one glTF node after the other, its positions relative to its own origin. */
+/* Writes the nodes of a model as glTF nodes, one after the other, with positions relative to each node's origin. */
 #include "preprocess/import/cad_glb.h"
 
 #include <jansson.h>
@@ -17,9 +17,9 @@ struct cad_writer {
     const struct cad_model *model;
     json_t *materials, *meshes, *nodes;
     struct glb_file file;
-    double (*origins)[3]; /* origin of each node, in the plant's frame */
-    int *material_of;     /* index of the glTF material of each model colour */
-    int plain, line;      /* indices of the default materials for faces and lines; -1: not created yet */
+    double (*origins)[3]; /* by node: origin in the plant's coordinates */
+    int *material_of;     /* by colour of the model: index of its glTF material */
+    int plain, line;      /* indices of the glTF materials for faces and for lines without a colour; -1: not created yet */
 };
 
 static int add_material(struct cad_writer *w, const double rgb[3])

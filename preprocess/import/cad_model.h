@@ -17,7 +17,7 @@ struct cad_attribute {
 };
 
 struct cad_node {
-    char *name; /* name of the node, UTF-8; "": the file gives none */
+    char *name; /* name of the node, UTF-8; "": the file states none */
     int parent; /* index of the parent, lower than the node's own; -1: a root */
     uint32_t material;
     struct cad_vertex *vertices;
@@ -38,7 +38,7 @@ struct cad_model {
     size_t node_count, node_room, color_count, color_room;
 };
 
-/* Creates an empty model. The caller owns it and frees it with cad_model_destroy(). */
+/* Creates an empty model, which the caller frees with cad_model_destroy(). */
 struct cad_model *cad_model_create(void);
 /* Frees the model and all it holds, and sets *model to NULL. *model may be NULL. */
 void cad_model_destroy(struct cad_model **model);
@@ -49,7 +49,7 @@ int cad_model_add_node(struct cad_model *model, int parent, const char *name);
 uint32_t cad_node_add_vertex(struct cad_node *node, const double position_m[3], const double normal[3]);
 void cad_node_add_triangle(struct cad_node *node, uint32_t a, uint32_t b, uint32_t c);
 void cad_node_add_line(struct cad_node *node, const double from_m[3], const double to_m[3]);
-/* Appends an attribute. Copies both texts. */
+/* Appends an attribute to the node. Copies both texts. */
 void cad_node_add_attribute(struct cad_node *node, const char *name, const char *value);
 void cad_model_add_color(struct cad_model *model, uint32_t material, const uint8_t rgb[3]);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast import`: converts models in a work folder and moves the ones that were converted to the plant's folder. */
+/* Implements `plantcast import`: converts models in a work folder, and moves those that could be converted to the plant's folder. */
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,7 +21,7 @@
 #include "preprocess/child/work_folder.h"
 #include "preprocess/match/file_set.h"
 
-enum { RVM_ITEM_LEVEL = 3 }; /* level of equipment in an RVM tree: file, sites, zones, equipment */
+enum { RVM_ITEM_LEVEL = 3 }; /* index of the tree level of equipment in RVM files: file (0), sites, zones, equipment (3) */
 
 struct import_command {
     const char *folder, *name;
@@ -31,9 +31,11 @@ struct import_command {
     struct conversion_params conversion;
     struct work_folder work;
     char **paths;
-    json_t *findings; /* array of findings.h results, one per model that was read */
+    json_t *findings; /* array of results of findings_read() (findings.h), one for each model that was read */
     struct plant_draft_model *models;
-    int count, unread; /* count: models to convert, later models converted (the length of `models`); unread: models that failed */
+    /* count: number of models to convert, later number of models converted (the length of `models`); unread: number of models that could
+     * not be converted */
+    int count, unread;
     bool anew, interrupted;
 };
 enum { EXIT_PARTLY = 3 };
@@ -79,8 +81,8 @@ static void print_lines(const char *path, const char *lines)
     }
 }
 
-/* Reads the outline of a converted model. Returns false with the reason in why; then there is no outline to free. Rejects a model without
- * triangles, which would give a plant without assets. */
+/* Reads the outline (nodes, sizes) of a converted model. Returns false with the reason in why; then there is no outline to free. Rejects a
+ * model without triangles, which would give a plant without assets. */
 static bool read_outline(struct model_outline *outline, const char *glb, char why[CONVERSION_WHY_BYTES])
 {
     if (!model_outline_read(outline, glb, why, CONVERSION_WHY_BYTES))
@@ -143,8 +145,8 @@ static enum found_plant find_plant(const struct import_command *import)
     return found;
 }
 
-/* Converts all models. If one fails, the plant keeps its current copy of that model. With `--anew` one failure fails the import, since the
- * plant would lose the model's assets. */
+/* Converts all models. If a model fails, the plant keeps its current copy of the model. With `--anew`, any failure fails the import, since
+ * the plant would lose the model's assets. */
 static int convert_all(struct import_command *import)
 {
     int count = import->count;
@@ -217,7 +219,8 @@ static int run(struct import_command *import)
         &(struct plant_folder_params){ .folder = import->folder, .own = import->work.path, .lent = import->lent }, &why);
     if (lock < 0)
         status = fail_at(import->folder, why);
-    /* the previous holder of the folder lock may have deleted this process's work folder as a remainder of a dead process */
+    /* ignore EEXIST and create the folder again if it is missing: the previous holder of the folder lock may have deleted it as a leftover
+     * of a dead process */
     else if (mkdir(import->work.path, 0700) != 0 && errno != EEXIST)
         status = fail_at(import->work.path, strerror(errno));
     mem_free(why);
@@ -240,7 +243,7 @@ static int run(struct import_command *import)
     return status == 0 && import->unread > 0 ? EXIT_PARTLY : status;
 }
 
-/* Returns whether two models have the same stem, so that their GLB files would have the same name. */
+/* Returns whether two models have the same file name without ending, so that their GLB files would have the same name. */
 static bool two_alike(char **paths, int count)
 {
     bool alike = false;

@@ -42,7 +42,7 @@ static bool fail(char why[CONVERSION_WHY_BYTES], const char *fmt, ...)
 
 /* --- RVM ---------------------------------------------------------------------------------------------------------------------------- */
 
-/* Finds the attribute file of an RVM model in the model's folder. Returns its path, which the caller frees, or NULL. */
+/* Finds the attribute file of an RVM model in the model's folder. Returns its path, which the caller frees, or NULL if there is none. */
 static char *attributes_beside(const char *path)
 {
     static const char *const endings[] = { ".att", ".ATT", ".txt", ".TXT" };
@@ -128,14 +128,16 @@ static bool convert_rvm(const char *path, const char *attributes, const char *gl
 
 struct model_reading {
     const struct import_format *format;
-    const char *path, *attributes; /* attributes: path of an RVM attribute file; NULL: none */
+    const char *path, *attributes; /* path: of the model; attributes: path of an RVM attribute file, NULL if there is none */
     const char *output;            /* path of the GLB file that the reader writes */
     const char *folder;
     const struct conversion_params *params;
-    char *encoding; /* result of find_encoding(): name of the encoding, in memory shared with the child; "": names need no conversion */
+    /* result of find_encoding(): name of the encoding, in memory shared with the child process; "": names need no conversion */
+    char *encoding;
 };
 
-/* Runs a built-in reader, in the child process. Returns the exit status of the child: 0, or 1 with the reason on stderr. */
+/* Runs a built-in reader (RVM or glTF); called in the child process. Returns the exit status of the child: 0, or 1 with the reason on
+ * stderr. */
 static int read_ourselves(void *arg)
 {
     const struct model_reading *reading = arg;
@@ -150,7 +152,7 @@ static int read_ourselves(void *arg)
     return good ? 0 : 1;
 }
 
-/* Prints a findings.h line about the nodes of a glTF model whose mesh has no triangles. */
+/* Prints a line of findings.h that counts the nodes of a glTF model whose mesh has no triangles. */
 static void say_empty_nodes(const struct gltf_model *model)
 {
     struct text names = { 0 };
@@ -170,8 +172,8 @@ static void say_empty_nodes(const struct gltf_model *model)
     text_finish(&names);
 }
 
-/* Checks the GLB file that a reader wrote, in a second child process because the file may come from a compromised reader. Rejects what
- * plantcast-prep would reject. */
+/* Checks the GLB file that a reader wrote; called in a second child process, because the file may come from a compromised reader. Rejects
+ * what plantcast-prep would reject. Returns the exit status of the child. */
 static int check(void *arg)
 {
     const struct model_reading *reading = arg;
@@ -209,7 +211,7 @@ static bool run(const struct model_reading *reading, struct child_params *child,
     return good;
 }
 
-/* Unpacks the model, in the child process, to the path that the reader will read. */
+/* Unpacks the model to the path that the reader will read; called in a child process. Returns the exit status of the child. */
 static int unpack_model(void *arg)
 {
     const struct model_reading *reading = arg;
@@ -220,8 +222,8 @@ static int unpack_model(void *arg)
     return good ? 0 : 1;
 }
 
-/* Unpacks a compressed model into the reading's folder. Returns the path, which the caller frees with mem_free, or NULL with the reason in
- * why. */
+/* Unpacks a compressed model into the folder of this conversion. Returns the path, which the caller frees with mem_free, or NULL with the
+ * reason in why. */
 static char *unpacked(const struct model_reading *packed, char why[CONVERSION_WHY_BYTES])
 {
     struct child_paths paths = { 0 };
@@ -240,7 +242,8 @@ static char *unpacked(const struct model_reading *packed, char why[CONVERSION_WH
     return path;
 }
 
-/* Detects the encoding of names, in the child process, for readers that cannot do it themselves. */
+/* Detects the encoding of the model's names, for readers that cannot do it themselves; called in a child process. Returns the exit status
+ * of the child. */
 static int find_encoding(void *arg)
 {
     const struct model_reading *reading = arg;
@@ -259,8 +262,8 @@ static int find_encoding(void *arg)
     return 0;
 }
 
-/* Detects the encoding in a child process. Copies its name only if it consists of letters, digits and punctuation that occur in encoding
- * names, because the child may be compromised. */
+/* Detects the encoding of the model's names in a child process. Accepts the result only if it consists of letters, digits and punctuation
+ * that occur in names of encodings, because the child may be compromised. */
 static bool ask_encoding(const struct model_reading *reading, char encoding[CHARSET_NAME_BYTES], struct text *said,
                          char why[CONVERSION_WHY_BYTES])
 {
@@ -283,8 +286,8 @@ static bool ask_encoding(const struct model_reading *reading, char encoding[CHAR
     return good;
 }
 
-/* Runs Open CASCADE on the solids of an IFC file that web-ifc cannot build. ifc.mjs then reads the result from the folder that it writes
- * to. Returns false only if the user interrupted it; if Open CASCADE fails, the model is read without these solids. */
+/* Runs Open CASCADE on the solids of an IFC file that web-ifc cannot build. It writes them to a folder from which ifc.mjs reads them
+ * afterwards. Returns false only if the user interrupted it; if Open CASCADE fails, the model is read without these solids. */
 static bool build_curved_solids(const struct model_reading *reading, const char *list, struct text *said, char why[CONVERSION_WHY_BYTES])
 {
     char *program = import_format_program(import_format_of("x.step"));
@@ -308,10 +311,10 @@ static bool build_curved_solids(const struct model_reading *reading, const char 
     return !interrupted;
 }
 
-/* An external reader program, from the table of formats. */
+/* an external reader program, from the table of formats (formats.h) */
 struct reader_program {
     char *program, *runtime;           /* paths of the reader and of its interpreter; runtime NULL: the reader is an executable */
-    char encoding[CHARSET_NAME_BYTES]; /* name of the encoding passed to the reader; "-": none */
+    char encoding[CHARSET_NAME_BYTES]; /* name of the encoding that is passed to the reader; "-": the reader chooses */
 };
 
 static bool run_reader(const struct model_reading *reading, const struct reader_program *reader, struct child_paths *paths,
@@ -381,8 +384,8 @@ static bool run_program(const struct model_reading *reading, struct child_paths 
     return good;
 }
 
-/* Moves the reader's output file to `glb`. Rejects anything but a regular file: a compromised reader may leave a symlink to one of the
- * daemon's files. */
+/* Moves the reader's output file to `glb`. Rejects anything but a regular file, because a compromised reader may leave a symlink to a file
+ * that only the daemon may read. */
 static bool take_output(const struct model_reading *reading, const char *glb, struct text *said, char why[CONVERSION_WHY_BYTES])
 {
     struct stat st;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Converts one model of any supported format to a GLB file. Thread: one conversion at a time per process, because child.h waits for
- * signals. */
+/* Converts one model of any supported format to a GLB file. Thread: one conversion at a time per process, because child.h waits for signals
+ * of the whole process. */
 #ifndef PREPROCESS_IMPORT_CONVERSION_H
 #define PREPROCESS_IMPORT_CONVERSION_H
 #include <stdbool.h>
@@ -14,14 +14,15 @@ struct conversion_params {
     double chord_m;
     const char *units, *up; /* units and up axis to assume for formats that do not state them; NULL: guess and print the guess */
     const char *mesh_units; /* units to assume for OBJ, STL, PLY and 3DS if `units` is NULL; NULL: guess and print the guess */
-    const char *encoding;   /* encoding of names in the model; NULL: as stated by the file, else detected and printed */
-    bool keep_covered;      /* RVM: keep faces that a neighbouring primitive's face covers; false: leave them out */
-    int timeout_s;          /* time limit for an external reader program, seconds */
-    size_t memory_bytes;    /* memory limit for an external reader program, bytes */
+    /* encoding of names in the model; NULL: the encoding that the file states, else a detected one, which is printed */
+    const char *encoding;
+    bool keep_covered;   /* RVM: true keeps faces that the face of a neighbouring primitive covers; false leaves them out */
+    int timeout_s;       /* time limit for an external reader program, seconds */
+    size_t memory_bytes; /* memory limit for an external reader program, bytes */
 };
 
-/* Reads the model at `path` and writes it to `glb` as glTF. Appends what the reader printed to `said`, line by line. Temporary files go to
- * `folder` and may remain there. Returns false with the reason, one line, in why. */
+/* Reads the model at `path` and writes it to `glb` as glTF. Appends the reader's output (findings.h) to `said`, line by line. Temporary
+ * files go to `folder` and may remain there. Returns false with the reason, one line, in why. */
 bool conversion_run(const char *path, const char *glb, const char *folder, const struct conversion_params *params, struct text *said,
                     char why[CONVERSION_WHY_BYTES]);
 

@@ -26,7 +26,7 @@ static char *clean(const char *text, size_t length)
     return out.at;
 }
 
-/* Splits a line at tabs in place. Missing fields become "". */
+/* Splits a line at its tabs, which it overwrites. Missing fields become "". */
 static void split(char *line, const char *fields[MAX_FIELDS])
 {
     for (int i = 0; i < MAX_FIELDS; i++) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Converts what a reader printed about a model into JSON for programs and lines for people. Thread: one per object. A reader prints plain
+/* Converts the output of a reader about a model into JSON for programs and lines for people. Thread: one per object. A reader prints plain
  * lines, and tab-separated records: "lost ID NAME CLASS GUID REASON" for an element that has a shape but no triangles; "error COUNT TEXT"
  * for an error that a library logged; "unit UNIT LENGTH" if the file states no unit and the reader assumed UNIT (LENGTH: longest side of
  * the model in units of the file). */
@@ -11,7 +11,7 @@
 
 /* Returns the findings of one model: {file, lost_count, lost (at most 20,000): [{id, name, class, guid, why}], errors: [{count, text}],
  * left_out: [text], unit: {taken, length} or null, failed: text or null}. said: the reader's output; failed: the reason why the model was
- * not imported, or NULL. Appends the lines to print to `plain`. */
+ * not imported, or NULL. Appends to `plain` the lines that are printed for users. */
 json_t *findings_read(const char *file, const char *said, const char *failed, struct text *plain);
 
 #endif

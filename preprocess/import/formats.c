@@ -14,7 +14,7 @@
 #define BY_ASSIMP "plantcast-import-assimp", NULL, "this Plantcast was built without Assimp: install libassimp-dev and build again"
 #define BY_WEB_IFC "plantcast-import-ifc/ifc.mjs", "node", "it is read by Node.js with web-ifc: install nodejs and npm, and build again"
 
-/* Endings of buffers and images that a glTF model may refer to. */
+/* file endings of buffers and images that a glTF model may refer to */
 #define OF_GLTF ".bin .buffer .dat .png .jpg .jpeg .webp .ktx .ktx2 .basis .dds .gif .bmp .tga .tif .tiff .exr .hdr"
 
 static const struct import_format formats[] = {

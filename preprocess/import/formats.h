@@ -11,23 +11,23 @@ struct import_format {
     const char *name;    /* name for people: "STEP" */
     const char *endings; /* file endings: ".step .stp", lower case */
     enum format_reader reader;
-    /* file name of the reader program (only for FORMAT_PROGRAM), in the folder of this program or in ../libexec/plantcast/ */
+    /* file name of the reader program, only for FORMAT_PROGRAM; searched in the folder of this program and in ../libexec/plantcast/ */
     const char *program;
     const char *runtime; /* interpreter that runs the reader, such as "node"; NULL: the reader is an executable */
     const char *missing; /* advice printed if the reader is not installed */
-    const char *beside;  /* endings of files that a model may refer to, lower case, such as ".mtl"; NULL: none */
+    const char *beside;  /* file endings of further files that a model may refer to, such as ".mtl", lower case; NULL: none */
     bool unitless;       /* the format states no units, so --units applies */
     bool upless;         /* the format does not state which axis is up, so --up applies */
 };
 
-/* Returns the format that the path's ending (in any case) belongs to, or NULL if there is none. */
+/* Returns the format to which the path's ending belongs (upper or lower case), or NULL if there is none. */
 const struct import_format *import_format_of(const char *path);
-/* Finds the reader program of a format. Returns its path, which the caller frees with mem_free, or NULL. */
+/* Finds the reader program of a format. Returns its path, which the caller frees with mem_free, or NULL if it is not installed. */
 char *import_format_program(const struct import_format *format);
 /* Finds the interpreter of a format's reader in PATH. Returns its path, which the caller frees with mem_free. NULL: the format needs none,
  * or it is not installed. */
 char *import_format_runtime(const struct import_format *format);
-/* Prints each format and whether this build can read it. */
+/* Prints the name of each format and whether this installation can read it. */
 void import_formats_print(FILE *out);
 
 #endif

@@ -16,7 +16,7 @@ struct pack {
     json_t *root;
     struct model_bytes binary;
     struct text bytes;
-    json_int_t *offsets; /* offset of each original buffer in `bytes` */
+    json_int_t *offsets; /* by original buffer: its offset in `bytes` */
     char *why;
 };
 
@@ -57,7 +57,7 @@ static bool take_buffers(struct pack *pack)
         const char *uri = uri_of(json_array_get(list, i));
         size_t size = pack->binary.size;
         if (!uri && standins[i])
-            continue; /* leave out an empty fallback buffer (EXT_meshopt_compression): compressed buffers hold its data */
+            continue; /* leave out an empty fallback buffer (EXT_meshopt_compression): its data is in compressed buffers */
         if (!uri && (i > 0 || !pack->binary.at)) {
             good = wrong(pack->why, "buffer %zu has no data: export the model as a GLB file from the program that made it", i);
             break;
@@ -73,7 +73,8 @@ static bool take_buffers(struct pack *pack)
     return good;
 }
 
-/* Rewrites the buffer and offset of a buffer view, or of the compressed view in its meshopt extension. */
+/* Changes the buffer index and the offset of a buffer view, or of the compressed view in its meshopt extension, to those in the merged
+ * buffer. Returns false if the view is invalid. */
 static bool move_view(struct pack *pack, json_t *view)
 {
     const json_t *number = json_object_get(view, "buffer");

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads nodes in depth-first order, then sums up triangles and boxes of subtrees from the last node to the first, so that children come
- * before parents. */
+/* Reads the nodes of a GLB file in depth-first order. Then adds each node's triangles and bounding box to those of its parent, from the
+ * last node to the first, so that children are complete before their parents. */
 #include "preprocess/import/model_outline.h"
 
 #include <stdio.h>
@@ -99,7 +99,7 @@ bool model_outline_extent(const struct model_box *box, double size[3], double ce
 {
     static const struct {
         int from, sign;
-        /* for each plant axis (Z up): index and sign of the glTF axis (Y up) that it comes from */
+        /* by plant axis (Z up): index and sign of the glTF axis (Y up) from which it comes */
     } axes[3] = { { 0, 1 }, { 2, -1 }, { 1, 1 } };
     for (int axis = 0; axis < 3; axis++) {
         int from = axes[axis].from;
@@ -111,8 +111,8 @@ bool model_outline_extent(const struct model_box *box, double size[3], double ce
     return true;
 }
 
-/* Returns whether the model was written by plantcast-import, so that its unit (metres) needs no question: the source format stated the
- * unit, or import has printed its guess. */
+/* Returns whether the model was written by plantcast-import, so that its unit, metres, is certain: the source file stated the unit, or the
+ * import has printed its guess. */
 static bool knows_units(const struct model_outline *outline)
 {
     const char *generator = json_string_value(json_object_get(json_object_get(outline->header.json, "asset"), "generator"));

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A GLB file as a tree of named nodes with triangle counts, boxes and properties, read from its JSON alone. Thread: any. */
+/* A GLB file as a tree of named nodes with triangle counts, boxes and properties, read from its JSON without loading vertices. Thread:
+ * any. */
 #ifndef PREPROCESS_IMPORT_MODEL_OUTLINE_H
 #define PREPROCESS_IMPORT_MODEL_OUTLINE_H
 #include <jansson.h>
@@ -11,14 +12,16 @@ struct outline_node {
     const char *name;       /* the node's own name, else its mesh's name, else ""; not owned */
     const json_t *extras;   /* glTF extras of the node; NULL: none */
     uint64_t triangles;     /* triangles of the node's own mesh */
-    uint64_t all_triangles; /* triangles of the node and of its whole subtree */
-    struct model_box all;   /* bounding box of the node and its subtree, in the model's units and axes; low > high: no geometry */
-    int depth;              /* number of levels above the node; 0: a root */
+    uint64_t all_triangles; /* triangles of the node and of all nodes below it */
+    struct model_box all;   /* bounding box of the node and all nodes below it, in the model's units and axes; low > high: no geometry */
+    int depth;              /* number of ancestors of the node; 0: it is a root */
     bool unnamed;           /* the node has no name of its own */
 };
 
 struct model_outline {
-    struct model_header header; /* by node: index of its parent, index after the last node of its subtree, and "#number" */
+    /* tree structure (plant/models/nodes.h): by node, the index of its parent, the index after the last node of its subtree, and
+     * "#number" */
+    struct model_header header;
     struct outline_node *nodes; /* array of header.count nodes */
     struct model_box box;
     uint64_t triangles;
@@ -29,7 +32,7 @@ struct model_outline {
 bool model_outline_read(struct model_outline *outline, const char *path, char *why, size_t why_bytes);
 void model_outline_finish(struct model_outline *outline);
 
-/* Returns the value of a text property of this name, from the first or second level of the node's extras, or NULL. */
+/* Returns the value of a text property of this name, from the node's extras or from a group in them, or NULL if there is none. */
 const char *model_outline_property(const struct outline_node *node, const char *name);
 
 /* Appends the text. Control characters and invalid UTF-8 become U+FFFD. */

@@ -105,7 +105,7 @@ static void print_head(const struct model_outline *outline, bool json, FILE *out
     text_finish(&summary);
 }
 
-/* Returns the last component of a node's path. A tree shows the rest by indentation. */
+/* Returns the last component of a node's path, which a tree prints in place of the whole path. */
 static const char *own_part(const struct model_outline *outline, size_t i, const struct text *path)
 {
     struct text above = { 0 };

@@ -8,8 +8,8 @@
 #include "preprocess/import/model_outline.h"
 
 struct node_list_params {
-    const regex_t *grep; /* filter: prints only nodes whose path or one of whose properties matches; NULL: prints all nodes */
-    int levels;          /* 0: prints a table of paths; N: prints a tree of N levels */
+    const regex_t *grep; /* regular expression: only nodes whose path or one of whose properties matches are printed; NULL: all nodes */
+    int levels;          /* number of levels of the tree that is printed; 0: a table of paths is printed */
     bool json;
 };
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Generates a readable plant file that people continue to edit by hand or with the tag matcher. */
+/* Generates the first plant file of an import, which people continue to edit by hand or with the tag matcher. */
 #include "preprocess/import/plant_draft.h"
 
 #include <errno.h>
@@ -53,8 +53,8 @@ static bool is_printable(const char *text)
 }
 
 struct draft_choice {    /* choices for each outline node */
-    bool *item, *unique; /* item[node]: the node becomes an asset; unique[node]: no other node has its name */
-    bool typed, classed; /* typed: the model has nodes of type ZONE; classed: it has IFC classes */
+    bool *item, *unique; /* by node: item: it becomes an asset; unique: no other node has the same name */
+    bool typed, classed; /* typed: the model has nodes whose type is ZONE; classed: it has nodes with IFC classes */
 };
 
 static int by_name(const void *a, const void *b)
@@ -77,7 +77,7 @@ static void find_unique(const struct model_outline *outline, bool *unique)
     mem_free(sorted);
 }
 
-/* Returns the level nearest to the root with at least two nodes that have geometry, or the deepest level if there is none. */
+/* Returns the tree level nearest to the root that has at least two nodes with geometry, or the deepest level if there is none. */
 static int branching_level(const struct model_outline *outline)
 {
     int deepest = 0, level = 0;
@@ -116,8 +116,8 @@ static bool is_spatial(const char *class)
     return false;
 }
 
-/* Chooses the nodes that become assets: children of a ZONE, else IFC elements, else the nodes of one level (equipment, pipes, structures).
- * A node above the chosen nodes is chosen too if it has triangles of its own. Descendants of a chosen node are not chosen. */
+/* Chooses the nodes that become assets: the children of ZONE nodes; else the IFC elements; else the nodes of one level (equipment, pipes,
+ * structures). A node above a chosen one is chosen too if it has triangles of its own. Nodes below a chosen node are not chosen. */
 static void choose(const struct plant_draft_model *from, struct draft_choice *choice)
 {
     const struct model_outline *outline = &from->outline;
@@ -159,7 +159,7 @@ static void add_asset(struct text *out, const struct plant_draft_model *from, si
     int parent = outline->header.nodes[i].parent;
     unsigned number = outline->header.nodes[i].number;
     char *id = unique ? mem_strdup(without_slash(name)) : mem_printf("%s #%u", *name ? name : "unnamed", number);
-    if (json_object_get(ids, id)) { /* an asset of another model already has this id */
+    if (json_object_get(ids, id)) { /* an asset of another model already uses this id */
         char *other = mem_printf("%s (%s #%u)", id, from->file, number);
         mem_free(id);
         id = other;

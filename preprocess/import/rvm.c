@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads RVM files in two passes: first chunks to primitives, then, once covered faces are known, primitives to triangles. */
+/* Reads RVM files in two passes. The first reads chunks into primitives. When it is known which faces are covered, the second turns
+ * primitives into triangles. */
 #include "preprocess/import/rvm.h"
 
 #include <math.h>
@@ -19,13 +20,14 @@ enum { MAX_DEPTH = 1000, HEADER = 24 };
 struct primitive {
     struct rvm_shape shape;
     int node;
-    size_t byte;                       /* byte offset in the file of the primitive's chunk */
-    size_t first_contour, first_point; /* first contour and point of the primitive, as indices because the arrays still grow */
+    size_t byte; /* byte offset in the file of the primitive's chunk */
+    /* indices of the primitive's first contour and first point; pointers would become invalid, because the arrays still grow */
+    size_t first_contour, first_point;
 };
 
 struct facet_face {
     struct rvm_face flat;
-    int axis[3]; /* normal of the face's plane, in hundredths, so that equal planes compare equal */
+    int axis[3]; /* normal of the face's plane in hundredths, rounded to integers so that equal planes compare equal */
     double offset_m;
     size_t primitive;
     int number;
@@ -43,7 +45,7 @@ struct rvm_reader {
     struct rvm_losses losses;
     size_t primitive_count, primitive_room, contour_count, contour_room, point_count, point_room, face_count, face_room;
     int stack[MAX_DEPTH], depth;
-    char *encoding; /* encoding stated in the file's header; NULL: none */
+    char *encoding; /* encoding that the file's header states; NULL: none */
     char *why;
     size_t why_bytes;
 };
@@ -293,7 +295,7 @@ static bool read_chunks(struct rvm_reader *r)
     return true;
 }
 
-/* Decodes all names in one encoding: a single short name has too few letters to detect its encoding. */
+/* Decodes all names together in one encoding, because a single short name has too few letters to detect the encoding. */
 static void decode_names(struct rvm_reader *r, size_t first, const char *asked)
 {
     struct text all = { 0 };
@@ -309,11 +311,11 @@ static void decode_names(struct rvm_reader *r, size_t first, const char *asked)
     text_finish(&all);
 }
 
-/* --- covered faces ----------------------------------------------------------------------------------------------------------------- */
+/* --- faces covered by a neighbour --------------------------------------------------------------------------------------------------- */
 
 static const double near_m = 0.001;
 
-/* Sorts faces by plane: first by normal, then by distance from the origin, so that coincident planes are neighbours. */
+/* Compares faces by plane: first by normal, then by distance from the origin. After sorting, faces in one plane are neighbours. */
 static int by_plane(const void *a, const void *b)
 {
     const struct facet_face *x = a, *y = b;
@@ -373,7 +375,7 @@ static void add_faces(struct rvm_reader *r, size_t primitive)
 }
 
 /* Marks faces that are covered by a face of another primitive: they lie inside the solid, where neither light nor heat reaches. A pair of
- * coincident faces is missed if their normals round to different hundredths. Then both faces stay in the model, which is harmless. */
+ * coincident faces is missed if their normals round to different hundredths; both then stay in the model, which is harmless. */
 static void leave_out_covered_faces(struct rvm_reader *r)
 {
     for (size_t p = 0; p < r->primitive_count; p++)
@@ -428,7 +430,7 @@ bool rvm_read(struct cad_model *model, const void *bytes, size_t count, const st
     for (size_t i = 0; i < r->primitive_count; i++)
         if (r->primitives[i].shape.contour_count > 0) {
             r->primitives[i].shape.contours = r->contours + r->primitives[i].first_contour;
-            if (r->points) /* NULL if the file has no points; then all contours are empty */
+            if (r->points) /* skipped if the file has no points: then all contours are empty */
                 r->primitives[i].shape.points = (const double(*)[3])(r->points + r->primitives[i].first_point);
         }
     if (!params->keep_covered)

@@ -9,23 +9,24 @@
 
 struct rvm_counts {
     size_t primitives;
-    size_t covered_faces;                 /* faces left out because they lie on a neighbour's face */
-    double covered_m2;                    /* total area of covered_faces, square metres */
-    size_t empty;                         /* primitives left out because they have no extent or contain non-finite numbers */
-    size_t unknown_chunks, unknown_kinds; /* count of unknown chunks and primitives of unknown kinds, all skipped */
+    size_t covered_faces; /* number of faces left out because a neighbouring primitive's face covers them */
+    double covered_m2;    /* total area of covered_faces, square metres */
+    /* number of primitives left out because they have no extent or contain numbers that are not finite */
+    size_t empty;
+    size_t unknown_chunks, unknown_kinds; /* number of unknown chunks, and of primitives of unknown kinds; all are skipped */
     char unknown_chunk[40];               /* the first unknown chunk, as "ABCD at byte 120" */
     struct charset_choice encoding;       /* encoding of the names */
 };
 
 struct rvm_params {
-    double chord_m;        /* chord error: largest allowed distance in metres between a chord and the true surface */
+    double chord_m;        /* largest allowed distance in metres between a chord and the true surface */
     bool keep_covered;     /* keep faces that a neighbouring primitive's face covers; false: leave them out */
-    const char *encoding;  /* the user's choice of encoding for the names; NULL: as stated by the file, else detected */
-    struct text *findings; /* receives the lost primitives as lines in the format of findings.h; NULL: not wanted */
+    const char *encoding;  /* encoding of the names that the user stated; NULL: the encoding that the file states, else a detected one */
+    struct text *findings; /* receives lines of findings.h about lost primitives; NULL: not wanted */
 };
 
-/* Appends the groups of an RVM file, wholly in memory at `bytes`, and their triangles to the model. Returns false if the file is broken:
- * `why` says what is wrong and at which byte, and the model may hold a part of the file. */
+/* Appends the groups of an RVM file, whose `count` bytes are in memory, and their triangles to the model. Returns false if the file is
+ * broken: `why` says what is wrong and at which byte, and the model may hold a part of the file. */
 bool rvm_read(struct cad_model *model, const void *bytes, size_t count, const struct rvm_params *params, struct rvm_counts *counts,
               char *why, size_t why_bytes);
 

@@ -5,11 +5,11 @@
 #include "base/text/text.h"
 #include "preprocess/import/cad_model.h"
 
-/* Extra values for rvm_loss.kind, beyond enum rvm_kind. */
+/* values of rvm_loss.kind that enum rvm_kind does not have */
 enum { RVM_UNKNOWN_KIND = 0, RVM_OBSTRUCTION = 1000, RVM_INSULATION };
 
 struct rvm_loss {
-    int node; /* index of the group's node; -1: outside every group */
+    int node; /* index of the node of the primitive's group; -1: outside of all groups */
     int kind;
     size_t byte; /* byte offset in the file where the primitive's chunk begins */
     const char *why; /* reason for the loss, a string literal; NULL for obstruction and insulation volumes */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tessellates surfaces of revolution ring by ring and flat primitives face by face. GLU's tessellator handles polygons with holes. */
+/* Tessellates the primitives of RVM files: surfaces of revolution ring by ring, flat primitives face by face, polygons with holes by GLU's
+ * tessellator. */
 #include "preprocess/import/rvm_shape.h"
 
 #include <GL/glu.h>
@@ -18,7 +19,7 @@ const int rvm_numbers[RVM_FACETS + 1] = {
 
 struct primitive_frame { /* transform from the primitive's frame to the plant's frame */
     const double *m;
-    double normal_of[9]; /* inverse transpose of the linear part, for normals; up to a factor, by columns */
+    double normal_of[9]; /* inverse transpose of the linear part up to a factor, by columns; transforms normals */
     double scale;        /* largest scale factor of lengths over the three axes */
     bool mirrored;
 };
@@ -77,8 +78,8 @@ static void add_quad(struct cad_node *node, const struct primitive_frame *frame,
     add_triangle(node, frame, a, c, d);
 }
 
-/* Returns the number of corners of a full circle. It is a multiple of 4, so that corners lie on both axes of the section, and the corners
- * of two primitives that meet coincide although one section is mirrored. */
+/* Returns the number of corners of a full circle. The number is a multiple of 4, so that corners lie on both axes of the section. Then the
+ * corners of two primitives that meet coincide even if one section is mirrored. */
 static int corners_of(double radius_m, double chord_m)
 {
     double cosine = radius_m > 0 ? 1 - chord_m / radius_m : -1;
@@ -105,7 +106,7 @@ static double phase_of(const struct primitive_frame *frame, const double x[3], c
 
 /* --- rings ------------------------------------------------------------------------------------------------------------------------ */
 
-struct corner_ring { /* a circle or ellipse of corners in the primitive's frame: centre + cos * x + sin * y */
+struct corner_ring { /* a circle or ellipse of corners in the primitive's frame; a corner at an angle is centre + cos * x + sin * y */
     double centre[3], x[3], y[3], phase;
 };
 
@@ -139,7 +140,7 @@ static void add_cap(struct cad_node *node, const struct primitive_frame *frame, 
             add_triangle(node, frame, first, first + i, first + i + 1);
 }
 
-/* Joins two rows of `corners` vertices around a closed section by triangles; row `high` lies further along the axis than row `low`. */
+/* Joins two rows of `corners` vertices around a closed section by triangles; row `high` lies farther along the axis than row `low`. */
 static void join_rows(struct cad_node *node, const struct primitive_frame *frame, uint32_t low, uint32_t high, uint32_t corners)
 {
     for (uint32_t i = 0; i < corners; i++) {
@@ -160,7 +161,7 @@ static void add_prism(struct cad_node *node, const struct primitive_frame *frame
         double u[3], v[3], n[3];
         for (int i = 0; i < 4; i++)
             p[i] = corners[faces[f][i]];
-        vec_sub(p[2], p[0], u); /* use the diagonals, so that the normal is also right if a side has zero length */
+        vec_sub(p[2], p[0], u); /* use the diagonals of the quadrilateral, so that the normal is right even if a side has zero length */
         vec_sub(p[3], p[1], v);
         vec_cross(u, v, n);
         if (vec_dot(n, n) == 0 || (open_faces >> f & 1))
@@ -201,7 +202,7 @@ static void add_rectangular_torus(struct cad_node *node, const struct primitive_
     double inner = n[0], outer = n[1], half = n[2] / 2, angle = n[3];
     int steps = steps_of(angle, outer * frame->scale, chord_m);
     const double section[4][2] = { { inner, -half }, { outer, -half }, { outer, half }, { inner, half } };
-    for (int side = 0; side < 4; side++) { /* the four sides of the section: below, outside, above, inside */
+    for (int side = 0; side < 4; side++) { /* the four sides of the rectangular section: below, outside, above, inside of the bend */
         const double *from = section[side], *to = section[(side + 1) % 4];
         double radial = to[1] - from[1], vertical = from[0] - to[0];
         if (radial == 0 && vertical == 0)
@@ -269,7 +270,7 @@ static void add_circular_torus(struct cad_node *node, const struct primitive_fra
     ends[1].phase = ends[0].phase + turn;
     if (fabs(angle) > 2 * M_PI - 1e-3)
         return;
-    /* The normal (x cross y) of a section points against the bend direction of a positive angle. */
+    /* the normal (x cross y) of a section points against the direction in which a bend of positive angle runs */
     for (int end = 0; end < 2; end++)
         if (!(open_faces >> end & 1))
             add_cap(node, frame, &ends[end], corners, (end == 1) == (angle > 0));
@@ -344,8 +345,8 @@ static void add_sphere(struct cad_node *node, const struct primitive_frame *fram
     }
 }
 
-/* Joins two rings by triangles. The rings may have different numbers of corners: each triangle advances to the next corner on the ring
- * where that corner has the smaller angle. A ring of radius 0 is a single point and contributes no edges. */
+/* Joins two rings by triangles. The rings may have different numbers of corners: each triangle advances on the ring whose next corner has
+ * the smaller angle. A ring of radius 0 is a single point and contributes no edges. */
 static void join_rings(struct cad_node *node, const struct primitive_frame *frame, const uint32_t rows[2], const int corners[2],
                        const double radii[2])
 {
@@ -363,8 +364,8 @@ static void join_rings(struct cad_node *node, const struct primitive_frame *fram
     }
 }
 
-/* Adds the side of a cone between two circles that may be offset and tilted. A circle of radius 0 gets as many corners as the other, all at
- * one point. */
+/* Adds the side of a snout: a cone between two circles that may be offset and tilted. A circle of radius 0 gets as many corners as the
+ * other circle, all at one point. */
 static void add_snout(struct cad_node *node, const struct primitive_frame *frame, const double *n, double chord_m, uint32_t open_faces)
 {
     double height = n[2], radii[2] = { n[0], n[1] };
@@ -411,7 +412,7 @@ struct tessellated_polygon { /* state shared by GLU's callbacks */
     const double (*corner)[3];
     uint32_t three[3];
     int count;
-    double (*made)[3]; /* vertices that GLU creates where edges cross */
+    double (*made)[3]; /* vertices that GLU requests where edges cross */
     size_t made_count;
 };
 
@@ -425,7 +426,7 @@ static void on_vertex(void *vertex, void *user)
     }
 }
 
-/* Registering this callback makes GLU emit separate triangles only, no fans or strips. */
+/* GLU emits only separate triangles, no fans or strips, if this callback is registered */
 static void on_edge_flag(GLboolean flag)
 {
     (void)flag;
@@ -438,7 +439,7 @@ static void on_combine(GLdouble at[3], void *of[4], GLfloat weight[4], void **ou
     (void)of;
     (void)weight;
     struct tessellated_polygon *polygon = user;
-    if (polygon->made_count == MAX_CROSSINGS) { /* GLU keeps pointers into the array, so it must not be reallocated */
+    if (polygon->made_count == MAX_CROSSINGS) { /* the array must not be reallocated, because GLU keeps pointers into it */
         *out = polygon->made[MAX_CROSSINGS - 1];
         return;
     }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Tessellates the primitives of RVM files (AVEVA PDMS, E3D, Marine). The number of corners of a round section depends only on its radius
- * and the chord error, and the direction of its first corner only on its plane. So primitives that meet with equal sections meet corner to
- * corner. Thread: any. */
+ * and the chord error. The direction of its first corner depends only on the section's plane. So two primitives that meet with equal
+ * sections have the same corners there. Thread: any. */
 #ifndef PREPROCESS_IMPORT_RVM_SHAPE_H
 #define PREPROCESS_IMPORT_RVM_SHAPE_H
 #include "preprocess/import/cad_model.h"
@@ -26,7 +26,7 @@ struct rvm_contour {
     bool begins_polygon; /* this contour begins a polygon; false: it belongs to the same polygon as the contour before */
 };
 
-/* One primitive. Its own frame is usually in millimetres; `to_plant` converts to the plant's frame in metres. */
+/* One primitive. Lengths in its own frame are usually millimetres; to_plant transforms to the plant's frame in metres. */
 struct rvm_shape {
     enum rvm_kind kind;
     double to_plant[12];                /* 3 x 4 matrix by columns; the last column is the translation */
@@ -34,10 +34,10 @@ struct rvm_shape {
     const struct rvm_contour *contours; /* contours of RVM_FACETS; NULL for other kinds */
     const double (*points)[3];          /* points of RVM_FACETS, in the primitive's own frame */
     size_t contour_count;
-    uint32_t open_faces; /* bit i set: face i of rvm_shape_faces() is covered by a neighbour and left out */
+    uint32_t open_faces; /* bit i set: face i of rvm_shape_faces() is left out, because a neighbour's face covers it */
 };
 
-extern const int rvm_numbers[RVM_FACETS + 1]; /* by kind of primitive: count of dimensions that follow the chunk's header */
+extern const int rvm_numbers[RVM_FACETS + 1]; /* by kind of primitive: number of dimensions that follow the chunk's header */
 
 /* A flat face of a primitive in the plant's frame: a circle or a rectangle. */
 struct rvm_face {
@@ -47,8 +47,9 @@ struct rvm_face {
 };
 enum { RVM_MAX_FACES = 6 };
 
-/* Finds the flat faces that a neighbour may cover, numbered as in `open_faces`, and returns their count. Candidates are both ends of round
- * or bent primitives, the base of a dish, the faces of a box, and top and bottom of a pyramid. Snouts with sheared ends have none. */
+/* Finds the flat faces that a neighbour may cover, in the order of the bits of `open_faces`. Returns their number. Such faces are both ends
+ * of round or bent primitives, the base of a dish, the faces of a box, and top and bottom of a pyramid. Snouts with sheared ends have
+ * none. */
 int rvm_shape_faces(const struct rvm_shape *shape, struct rvm_face faces[RVM_MAX_FACES]);
 
 /* Appends the primitive's triangles (or its line) to the node. Chords deviate from the true surface by at most chord_m, but a full turn

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Links the given files into the plant's folder of exports, prepares the current plant, and replaces this process by the daemon. */
+/* Links the given files into the plant's folder of exports, prepares the plant, and replaces this process by the daemon. */
 #include "preprocess/import/serve.h"
 
 #include <errno.h>
@@ -28,7 +28,8 @@ static int make_folder(const char *path)
     return mkdir(path, 0777) == 0 || errno == EEXIST ? 0 : fail_at(path, strerror(errno));
 }
 
-/* Adds a symlink to the file to the folder of exports. The original stays in place, because it may refer to files in its own folder. */
+/* Adds a symlink to the file to the folder of exports. The file itself stays where it is, because it may refer to files in its own
+ * folder. */
 static int add_link(const char *exports, const char *file)
 {
     char target[PATH_MAX];
@@ -95,7 +96,8 @@ int import_serve(const struct serve_params *params)
     int status = make_folder(params->folder);
     if (status == 0)
         status = make_folder(exports);
-    if (status == 0) { /* check that no other program holds the folder's lock; keep the lock until this process becomes the daemon */
+    /* take the folder's lock, to be sure that no other program holds it; keep it until this process becomes the daemon */
+    if (status == 0) {
         char *why = NULL;
         if (plant_folder_lock(&(struct plant_folder_params){ .folder = params->folder }, &why) < 0)
             status = fail_at(params->folder, why);

@@ -12,7 +12,7 @@
 
 enum {
     BLOCK_BYTES = 1 << 16,
-    /* largest ratio of unpacked to packed size; model texts shrink to about a tenth, so a file with a larger ratio is rejected as a
+    /* largest accepted ratio of unpacked to packed size; models shrink to about a tenth, so a file with a larger ratio is rejected as a
      * decompression bomb */
     MAX_RATIO = 200
 };
@@ -72,7 +72,7 @@ static bool finish(const struct archive_reading *from)
     return (!from->gzip || gzclose(from->gzip) == Z_OK) && good;
 }
 
-/* Opens the first file of the archive with this ending. Returns whether there is one. */
+/* Opens the first file of the archive with this ending. Returns false if there is none. */
 static bool find_file(unzFile zip, const char *ending)
 {
     char name[512];

@@ -32,12 +32,12 @@ namespace
 {
 
 constexpr size_t MOST_NAMED = 20;
-constexpr double LONGEST_IN_METRES = 300; /* metres; a model that would be longer is assumed to be in millimetres */
+constexpr double LONGEST_IN_METRES = 300; /* metres; a model whose size would exceed this in metres is assumed to be in millimetres */
 
 struct format {
     const char *ending;
-    const char *unit, *up; /* unit and up axis of the data that Assimp returns; NULL: the file does not state them */
-    bool own_normals;      /* trust the file's normals; false: they are facet normals, so smooth normals are computed */
+    const char *unit, *up; /* unit and up axis of the data that Assimp returns for this format; NULL: the file does not state them */
+    bool own_normals;      /* true: use the file's normals; false: they are normals of facets, so smooth normals are computed */
 };
 
 /* Assimp converts COLLADA and 3DS to Y up and applies the units of COLLADA. For FBX, older versions of Assimp convert neither axes nor
@@ -49,18 +49,19 @@ struct assimp_reader {
     const aiScene *scene;
     struct glb_scene *out;
     text_encoding encoding;     /* encoding of the names, which Assimp returns as the file's raw bytes */
-    std::vector<int> materials; /* by Assimp material: index of the output material (glb_scene.h); -2: not created yet */
-    /* index of the output mesh by list of Assimp meshes, so that nodes with the same list share a mesh */
+    /* by index of the Assimp material: index of the output material (glb_scene.h); -2: not created yet */
+    std::vector<int> materials;
+    /* index of the output mesh, by the list of Assimp meshes of a node; nodes with the same list share a mesh */
     std::map<std::vector<unsigned>, int> meshes;
-    size_t triangles = 0, lost = 0; /* lost: triangles left out because a corner is not finite */
-    std::vector<std::string> lines; /* names of nodes that are only lines or points */
+    size_t triangles = 0, lost = 0; /* lost: number of triangles left out because a corner is not finite */
+    std::vector<std::string> lines; /* names of nodes that consist only of lines or points */
 };
 
 /* --- files ---------------------------------------------------------------------------------------------------- */
 
-constexpr char BLANK = 0x1f; /* replaces a blank within a name of an OBJ or STL file; Assimp would end the name at a blank */
+constexpr char BLANK = 0x1f; /* character that replaces blanks within names of an OBJ or STL file, because Assimp ends a name at a blank */
 
-/* Replaces blanks inside names: in lines `o NAME` and `g NAME` of OBJ, `solid NAME` of STL. */
+/* Replaces the blanks inside names (BLANK): in lines `o NAME` and `g NAME` of an OBJ file, `solid NAME` of an STL file. */
 void keep_blanks(char *bytes, size_t count, bool stl)
 {
     const size_t word = stl ? 5 : 1;
@@ -95,8 +96,8 @@ std::string take_declared(std::string *text)
     return name;
 }
 
-/* Returns whether an STL file is text. Some binary files also begin with "solid", but their size is exactly 50 bytes per triangle plus the
- * header. */
+/* Returns whether an STL file is text. Some binary files also begin with "solid" as text files do, but their size is exactly 50 bytes per
+ * triangle plus the header. */
 bool is_text_of_stl(const std::string &bytes)
 {
     uint32_t triangles = 0;
@@ -108,7 +109,7 @@ bool is_text_of_stl(const std::string &bytes)
 /* Converts the keywords of an STL text to lower case, the only case Assimp accepts. The names of solids stay unchanged. */
 std::string with_small_words(std::string text)
 {
-    bool blank = true, named = false; /* blank: the current line consists of blanks so far */
+    bool blank = true, named = false; /* blank: the current line has only had blanks so far; named: the current position is in a name */
     for (size_t i = 0; i < text.size(); i++) {
         bool space = isspace(static_cast<unsigned char>(text[i])) != 0;
         if (text[i] == '\n' || text[i] == '\r') {
@@ -136,12 +137,12 @@ Assimp::IOStream *of_text(const std::string &text)
     return new Assimp::MemoryIOStream(copy, text.size(), true);
 }
 
-/* Gives Assimp file contents converted to UTF-8, with blanks in OBJ names replaced. The encoding found for the first file (the model)
- * applies to all others: names in material files must match those in the model. */
+/* Supplies Assimp with file contents that are converted to UTF-8 and have blanks in names replaced (BLANK). The encoding found for the
+ * first file (the model) applies to all others, because names in material files must match those in the model. */
 struct files : Assimp::DefaultIOSystem {
     text_encoding *encoding;
     const char *asked;
-    bool searched = false; /* for lost shapes: Assimp opens a file several times */
+    bool searched = false; /* the file was searched for lost shapes; searched only once, although Assimp opens it several times */
 
     files(text_encoding *encoding_of_all, const char *asked_for) : encoding(encoding_of_all), asked(asked_for)
     {
@@ -223,8 +224,8 @@ double longest_side(const aiScene *scene)
     return longest;
 }
 
-/* Returns centimetres per unit of an FBX file and its up axis. Returns 1 if the root node has a transform: newer versions of Assimp put
- * both into it. */
+/* Returns centimetres per unit of an FBX file, and its up axis. Returns 1 if the root node has a transform, because newer versions of
+ * Assimp put units and axes into that transform. */
 double fbx_axes(const aiScene *scene, const char **axis)
 {
     double centimetres = 1;
@@ -239,7 +240,7 @@ double fbx_axes(const aiScene *scene, const char **axis)
     return std::isfinite(centimetres) && centimetres > 0 ? centimetres : 1;
 }
 
-/* Computes the root transform from units and axes: the user's choice, else the file's, else a guess. */
+/* Computes the root transform from units and up axis: the user's choice, else what the file states, else a guess. */
 void root_matrix(const aiScene *scene, const format &from, const char *units, const char *up, double out[16])
 {
     const char *unit = strcmp(units, "-") != 0 ? units : from.unit;
@@ -326,7 +327,7 @@ void add_primitive(assimp_reader *r, int to, const aiMesh *mesh, const std::vect
     r->triangles += corners.size() / 3;
 }
 
-/* Returns the name in UTF-8. Names in angle brackets, such as <STL_BINARY>, are made up by Assimp and become "". */
+/* Returns the name in UTF-8. Names in angle brackets, such as <STL_BINARY>, come from Assimp and not from the file, so they become "". */
 std::string name_of(const assimp_reader *r, const aiString &from)
 {
     std::string name = from.C_Str()[0] == '<' ? "" : r->encoding.utf8(from.C_Str());
@@ -335,7 +336,7 @@ std::string name_of(const assimp_reader *r, const aiString &from)
     return name;
 }
 
-/* Reports a node with meshes that shows nothing. */
+/* Prints a line about a node that has meshes but no triangles. */
 void say_empty(assimp_reader *r, const aiNode *node)
 {
     std::string name = name_of(r, node->mName);
@@ -410,7 +411,7 @@ void matrix_of(const aiNode *node, const transform &place, double matrix[16])
         }
 }
 
-/* Appends the names and text properties of a node and its subtree, one a line, for detecting the encoding. */
+/* Appends to *out the names and text properties of a node and its subtree, one a line, from which the encoding is detected. */
 void collect(const aiScene *scene, const aiNode *node, std::string *out)
 {
     *out += std::string(node->mName.C_Str()) + "\n";
@@ -426,8 +427,8 @@ void collect(const aiScene *scene, const aiNode *node, std::string *out)
         collect(scene, node->mChildren[i], out);
 }
 
-/* Returns whether the node is an intermediate node of Assimp: it splits the transform of an FBX node into a chain of nodes, which are
- * merged again here. */
+/* Returns whether the node is one of the chain of nodes into which Assimp splits the transform of an FBX node. The reader merges such a
+ * chain into one node again. */
 bool is_step(const aiNode *node)
 {
     return strstr(node->mName.C_Str(), "_$AssimpFbx$_") != nullptr;
@@ -436,7 +437,7 @@ bool is_step(const aiNode *node)
 void add(assimp_reader *r, const aiNode *node, const transform &steps, int parent, int depth)
 {
     double matrix[16];
-    /* whether this is the root node that Assimp adds to every model */
+    /* true: the root node that Assimp adds to every model */
     bool made_up = depth == 0 && node->mNumMeshes == 0 && node->mTransformation.IsIdentity();
     bool step = is_step(node) && node->mNumMeshes == 0;
     transform place = steps * transform_of(node);
@@ -465,7 +466,7 @@ const format &format_of(const char *path)
     refuse("its ending is none of those that are read");
 }
 
-/* Rejects an STL text that is cut off: Assimp would accept what there is. */
+/* Rejects an STL text file that is cut off, because Assimp would accept its beginning without a message. */
 void check_end_of_stl(const char *path)
 {
     char head[512] = "", tail[512] = "";
@@ -481,7 +482,7 @@ void check_end_of_stl(const char *path)
         refuse("it is cut off: it does not end with endsolid");
 }
 
-/* Reports nodes that are only lines or points. */
+/* Prints the names of nodes that consist only of lines or points. */
 void say_lines(const std::vector<std::string> &names)
 {
     std::string all;
@@ -491,7 +492,7 @@ void say_lines(const std::vector<std::string> &names)
            names.size(), all.c_str(), names.size() > MOST_NAMED ? ", ..." : "");
 }
 
-/* Reports that textures are ignored: only the colours of materials are kept. */
+/* Prints that textures are ignored: the reader keeps only the colours of materials. */
 void say_textures(const aiScene *scene)
 {
     std::set<std::string> names;
@@ -516,7 +517,7 @@ void convert(const char *input, const char *output, const char *units, const cha
     importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_NORMALS);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, true); /* otherwise children inherit GeometricTranslation */
-    text_encoding of_file;                             /* encoding of text formats, which are decoded before Assimp reads them */
+    text_encoding of_file;                             /* encoding of the text in text formats, which is decoded before Assimp reads it */
     importer.SetIOHandler(new files(&of_file, asked)); /* Assimp takes ownership */
     std::map<std::string, size_t> logged;
     Assimp::DefaultLogger::create("", Assimp::Logger::NORMAL, 0);

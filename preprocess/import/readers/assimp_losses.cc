@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Assimp says nothing of some shapes that it skips, so their statements are searched in the text. */
+/* Finds shapes that Assimp skips without a message, by searching the text of the file for their statements. */
 #include "preprocess/import/readers/assimp_losses.hh"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ constexpr const char *LOSSES[] = { "ignoring unrecognized geometry", "ignoring e
                                    "incoming Model link, ignoring",  "ither Material, NodeAttribute", "Unable to find geometry",
                                    "Vertex index overflow" };
 
-/* Returns the value of an attribute of an XML tag, or "". */
+/* Returns the value of an attribute of an XML tag; "" if the tag has no such attribute. */
 std::string attribute(const std::string &tag, const std::string &name)
 {
     const size_t from = tag.find(" " + name + "=");
@@ -46,7 +46,7 @@ void assimp_log::write(const char *message)
         return;
     const size_t place = text.find(" (TOK_"), end = place == text.npos ? place : text.find(')', place);
     if (end != text.npos)
-        text.erase(place, end + 1 - place); /* a place in the file, which would make each text another one */
+        text.erase(place, end + 1 - place); /* remove the position in the file, so that equal errors are counted together */
     const size_t source = text.find(": "); /* after "Error, T0" */
     std::replace_if(text.begin(), text.end(), [](unsigned char c) { return c < ' '; }, ' ');
     counts[source == std::string::npos ? text : text.substr(source + 2)]++;

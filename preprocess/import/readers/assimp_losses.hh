@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shapes that Assimp leaves out of a model, as lines of findings.h. Thread: one. */
+/* Prints shapes that Assimp leaves out of a model, as lines of findings.h. Thread: one. */
 #ifndef PREPROCESS_IMPORT_READERS_ASSIMP_LOSSES_HH
 #define PREPROCESS_IMPORT_READERS_ASSIMP_LOSSES_HH
 #include <assimp/LogStream.hpp>
@@ -7,7 +7,7 @@
 #include <map>
 #include <string>
 
-/* Collects the errors that Assimp logs, and those of its warnings that tell of a lost shape, with a count for each distinct text. */
+/* Counts the errors that Assimp logs, by text, and those of its warnings that report a lost shape. */
 struct assimp_log : Assimp::LogStream {
     std::map<std::string, size_t> &counts;
 
@@ -17,10 +17,10 @@ struct assimp_log : Assimp::LogStream {
     void write(const char *message) override;
 };
 
-/* Prints free-form curves and surfaces of an OBJ file, which Assimp skips without a word. */
+/* Prints the number of free-form curves and surfaces of an OBJ file, which Assimp skips without a message. */
 void assimp_losses_of_obj(const std::string &text);
 
-/* Prints geometries of a COLLADA file that have no polygons: convex hulls, splines, boundary representations. */
+/* Prints the geometries of a COLLADA file that have no polygons: convex hulls, splines, boundary representations. */
 void assimp_losses_of_dae(const std::string &text);
 
 #endif

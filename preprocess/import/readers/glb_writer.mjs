@@ -25,7 +25,8 @@ function inverted(m) { // inverse of an affine matrix; null: not invertible
     return out;
 }
 
-// Returns inverse(frame) * place: the placement `place` relative to the placement `frame`. If `frame` is not invertible, returns `place`.
+// Returns inverse(frame) * place, which is the placement `place` relative to the placement `frame`. If `frame` is not invertible, returns
+// `place`.
 export function relativeTo(frame, place) {
     const inverse = inverted(frame);
     return inverse ? multiplied(inverse, place) : place;
@@ -62,8 +63,8 @@ export class GlbWriter {
         return this.materials.get(key);
     }
 
-    // Adds triangles, transformed by the matrix `place`, as a glTF primitive. vertices: six numbers each, position and normal. corners:
-    // vertex indices. Returns null if no triangle remains.
+    // Adds triangles, transformed by the matrix `place`, as a glTF primitive. vertices: six numbers per vertex, position and normal.
+    // corners: vertex indices. Returns null if no triangle remains.
     addPrimitive({ vertices, corners }, place, color) {
         const count = Math.floor(vertices.length / 6), positions = new Float32Array(count * 3), normals = new Float32Array(count * 3);
         const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity], good = new Uint8Array(count);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `node ifc.mjs INPUT OUTPUT.glb CHORD_MM UNITS UP ENCODING`: reads IFC with web-ifc, which is installed in the same folder, in its own
-// process. The spatial tree becomes nodes with GUID, class, storey and property sets; equal geometry of several elements is stored once. On
+// `node ifc.mjs INPUT OUTPUT.glb CHORD_MM UNITS UP ENCODING`: reads IFC in its own process, with web-ifc, which is installed in the same
+// folder. The spatial tree becomes nodes with GUID, class, storey and property sets; equal geometry of several elements is stored once. On
 // failure the last line on stderr is the reason.
 import { createRequire } from 'node:module';
 import { existsSync, readFileSync, writeFileSync } from 'node:fs';
@@ -50,7 +50,7 @@ class Model {
             yield ids.get(i);
     }
 
-    // Calls f(relating, related) with the ids of each pair of a relationship.
+    // Calls f(relating, related) for each pair of a relationship of this type, with the ids of both objects.
     relate(type, one, many, f) {
         for (const id of this.ofType(type)) {
             const line = this.line(id), relating = line?.[one]?.value, related = [line?.[many] ?? []].flat();
@@ -111,8 +111,8 @@ class Model {
     }
 }
 
-// Returns one mesh for an element, in the frame of its first piece of geometry. Elements whose pieces and relative positions are equal
-// share a mesh.
+// Returns one mesh for an element, in the frame of the first of its geometries (parts). Elements with equal parts at equal relative
+// positions share a mesh.
 function meshOf(glb, geometries, parts, name) {
     const frame = parts[0].flatTransformation;
     const placed = parts.map((part) => ({ ...part, place: relativeTo(frame, part.flatTransformation) }));
@@ -126,7 +126,7 @@ function meshOf(glb, geometries, parts, name) {
     return { mesh: geometries.made.get(key), matrix: frame };
 }
 
-// Copies all geometry while web-ifc streams its meshes; it is not available afterwards.
+// Copies all geometry while web-ifc streams its meshes, because it is not available afterwards.
 function readGeometry(api, id, model) {
     const shown = new Map(), known = new Map();
     const copy = (geometryId) => {
@@ -199,8 +199,8 @@ function inUtf8(bytes, encoding) {
     return Buffer.from(decoder.decode(bytes));
 }
 
-// Writes the list of elements that Open CASCADE should build; plantcast-import then runs this program a second time. An existing list means
-// that this is the second run.
+// Writes the list of elements that Open CASCADE should build; plantcast-import then runs this program a second time. If the list exists
+// already, this is the second run.
 function askForSolids(list, elements) {
     if (elements.length > 0 && !existsSync(list))
         writeFileSync(list, `${[...new Set(elements)].join('\n')}\n`);
@@ -246,7 +246,7 @@ async function main([input, output, , , , encoding]) {
 }
 
 main(process.argv.slice(2)).catch((error) => {
-    // an error that is not an Error object comes from web-ifc itself
+    // an exception that is not an Error object comes from web-ifc itself
     const reason = String(error?.message ?? error).split('\n')[0], ours = error?.constructor === Error;
     process.stderr.write(`${ours && reason ? reason : `its content could not be read (${reason || 'no reason is known'})`}\n`);
     process.exit(1);

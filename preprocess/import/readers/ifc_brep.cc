@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Builds an IfcAdvancedBrep. Its entities are those of STEP (ISO 10303-42) under other names, so they are written as a STEP file, which
+/* Builds an IfcAdvancedBrep. IFC has the entities of STEP (ISO 10303-42) under other names, so this code writes them as a STEP file, which
  * Open CASCADE reads and repairs. */
 #include <STEPControl_Reader.hxx>
 #include <TopExp_Explorer.hxx>
@@ -84,7 +84,7 @@ class step_writer
     const ifc_model &in;
     std::ostringstream out;
     std::set<int> done;
-    int made = 0; /* count of added statements without a counterpart in the IFC file; their ids are 2000000000, 1999999999, ... */
+    int made = 0; /* number of added statements without a counterpart in the IFC file; their ids are 2000000000, 1999999999, ... */
 
     void write(std::ostream &to, const value &from)
     {
@@ -145,7 +145,7 @@ class step_writer
         return to.str();
     }
 
-    /* Returns the reference to the curve of a swept surface's profile. Throws `unsupported` if the surface has a placement other than the
+    /* Returns the reference to the profile curve of a swept surface. Throws `unsupported` if the surface has a placement other than the
      * identity. */
     std::string swept_curve(const entity &surface)
     {
@@ -188,7 +188,7 @@ class step_writer
             std::string swept = swept_curve(from);
             return "SURFACE_OF_REVOLUTION(''," + swept + ',' + text_of(from[2]) + ')';
         }
-        if (type == "IFCCARTESIANPOINT" || type == "IFCDIRECTION") { /* always write three coordinates: IFC may omit the third */
+        if (type == "IFCCARTESIANPOINT" || type == "IFCDIRECTION") { /* always write three coordinates, because IFC may omit the third */
             for (size_t i = 0; i < 3; i++) {
                 to << (i > 0 ? "," : "");
                 write_number(to, i < from[0].list.size() ? file::number(from[0].list[i]) : 0);

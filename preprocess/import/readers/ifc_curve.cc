@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads points, placements and curves. A curve becomes pieces of Open CASCADE curves. */
+/* Reads points, placements and curves from an IFC file. A curve becomes a list of pieces, each an Open CASCADE curve. */
 #include <BRepBuilderAPI_MakeEdge.hxx>
 #include <BRepBuilderAPI_MakeWire.hxx>
 #include <GCPnts_AbscissaPoint.hxx>
@@ -31,8 +31,8 @@ namespace ifc
 namespace
 {
 
-constexpr double SHORTEST_MM = 1e-4; /* millimetres; shorter pieces of a curve are dropped, since sweeps along them fail */
-constexpr double JOINT_MM = 1;       /* millimetres; ends of neighbouring pieces that are closer are joined */
+constexpr double SHORTEST_MM = 1e-4; /* millimetres; shorter pieces of a curve are dropped, because sweeps along them fail */
+constexpr double JOINT_MM = 1;       /* millimetres; ends of consecutive pieces that are nearer to each other than this are joined */
 
 std::vector<curve_piece> pieces_within(const ifc_model &in, const entity &curve, int depth);
 
@@ -95,8 +95,8 @@ std::vector<curve_piece> indexed(const ifc_model &in, const entity &curve)
     return out;
 }
 
-/* Returns the parameter of an IfcTrimmingSelect in units of the curve. The select holds a parameter, a point or both. by_point: the file
- * prefers the point. */
+/* Returns the parameter, in units of the curve, that an IfcTrimmingSelect states. The select holds a parameter, a point or both. by_point:
+ * the file prefers the point. */
 double trim_at(const ifc_model &in, const curve_piece &basis, const value &select, bool by_point, double per_unit)
 {
     const value *parameter = nullptr, *point = nullptr;
@@ -113,7 +113,7 @@ double trim_at(const ifc_model &in, const curve_piece &basis, const value &selec
     return file::number(*parameter) * per_unit;
 }
 
-/* Returns the whole basis curve as one piece. Throws `unsupported` if the curve consists of several pieces. */
+/* Returns the whole basis curve of a trimmed curve as one piece. Throws `unsupported` if it consists of several pieces. */
 curve_piece basis_of(const ifc_model &in, const entity &curve);
 
 std::vector<curve_piece> trimmed_curve(const ifc_model &in, const entity &curve, int depth)
@@ -369,7 +369,7 @@ std::vector<curve_piece> rounded(const std::vector<gp_Pnt> &points, const std::v
 {
     std::vector<curve_piece> out;
     size_t count = points.size();
-    /* by corner: distances along the two lines at which the arc that rounds the corner begins and ends */
+    /* by corner: the points on its two lines at which the arc that rounds the corner begins and ends */
     std::vector<gp_Pnt> before = points, after = points;
     for (size_t i = closed ? 0 : 1; i + (closed ? 0 : 1) < count; i++) {
         gp_Vec in(points[i], points[(i + count - 1) % count]), on(points[i], points[(i + 1) % count]);

@@ -110,8 +110,8 @@ polygon loop_of(const ifc_model &in, const entity &bound)
     return out;
 }
 
-/* Reads a face. A face with several outer bounds becomes several faces. If no bound is marked as outer, the largest bound counts as
- * outer. */
+/* Reads a face. A face with several outer bounds becomes several faces. If no bound is marked as outer, the largest bound is taken as the
+ * outer one. */
 void take_face(const ifc_model &in, const entity &face, std::vector<flat_face> *out)
 {
     std::vector<polygon> inner;

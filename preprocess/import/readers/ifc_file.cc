@@ -15,7 +15,7 @@ namespace
 
 constexpr int MAX_NESTING = 64; /* nesting depth of lists */
 
-/* Returns the offset after the string, comment or single character at `at`. */
+/* Returns the offset after the string, the comment or the single character that begins at `at`. */
 size_t skip_one(const std::string &bytes, size_t at)
 {
     size_t end = at + 1;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads the statements of an IFC file (ISO 10303-21); each is parsed on demand. Thread: one. */
+/* Reads the statements of an IFC file (ISO 10303-21); the values of a statement are parsed on demand. Thread: one. */
 #ifndef PREPROCESS_IMPORT_READERS_IFC_FILE_HH
 #define PREPROCESS_IMPORT_READERS_IFC_FILE_HH
 #include <functional>
@@ -19,8 +19,9 @@ struct unsupported : std::runtime_error {
 struct value {
     enum kind_of { ABSENT, NUMBER, TEXT, NAME, REFERENCE, LIST } kind = ABSENT;
     double number = 0;
-    int id = 0;              /* REFERENCE: id of the statement that the value refers to */
-    std::string text;        /* TEXT: the text, still escaped; NAME: the name, such as ".T."; typed LIST: its type, such as "IFCLABEL" */
+    int id = 0;              /* kind REFERENCE: id of the statement to which the value refers */
+    /* kind TEXT: the text, still escaped; NAME: the name, such as ".T."; LIST with a type: the type, such as "IFCLABEL" */
+    std::string text;
     std::vector<value> list; /* LIST: the elements */
 
     bool absent() const { return kind == ABSENT; }
@@ -54,7 +55,7 @@ class file
     static double number(const value &from, double otherwise);
     /* Calls f(id, type) for each statement, in ascending order of ids. */
     void each(const std::function<void(int, const std::string &)> &f) const;
-    /* Returns whether a statement's values begin with a text (the GUID), as those of all products do. */
+    /* Returns whether a statement's first value is a text. Products begin with such a text, their GUID. */
     bool is_rooted(int id) const;
 
   private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reports losses of an IFC file: elements that have a shape but no triangles, and errors that web-ifc logs.
+// Reports losses of an IFC file: elements that have a shape but no triangles, and errors that web-ifc prints.
 const LINES = /Curve|Polyline|IfcLine|Circle|Ellipse|Point|Text|Annotation|GeometricSet|BoundingBox|Vertex|Edge|Alignment/;
 const REFERENCE = 5; // web-ifc's type code of values that refer to a statement
 // Formats a record of findings.h.
@@ -22,7 +22,8 @@ function reached(model, ids) {
 }
 
 // Captures the console output of web-ifc, its only way to report omissions. Returns { stop, at, lines }: stop() ends the capture; at()
-// returns the ids of statements with errors; lines() returns the lines to print, without errors in items that Open CASCADE built instead.
+// returns the ids of statements with errors; lines() returns the lines to print, without the errors in items that Open CASCADE built
+// instead.
 export function collectErrors() {
     const { log, error } = console, found = new Map();
     console.log = console.error = (...words) => {
@@ -43,8 +44,8 @@ export function collectErrors() {
     return { stop: () => Object.assign(console, { log, error }), at: () => new Set([...found.values()].flat()), lines };
 }
 
-// Returns the items of a shape, including those of mapped representations. Each representation is visited once, since a file may map one
-// into itself.
+// Returns the items of a shape, including those of mapped representations. Visits each representation once, because a damaged file may map
+// one into itself.
 function itemsOf(model, shape) {
     const items = new Set(), seen = new Set(), open = [model.line(shape)?.Representations ?? []].flat().map((one) => one?.value);
     while (open.length > 0) {

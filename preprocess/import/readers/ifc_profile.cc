@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Builds profiles: outlines of lines and arcs, or curves of the file. Slopes of flanges are ignored. */
+/* Builds profiles: outlines of lines and arcs, or outlines that are curves of the file. Ignores the slopes of flanges. */
 #include <BRepBuilderAPI_MakeEdge.hxx>
 #include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRepBuilderAPI_MakeWire.hxx>
@@ -68,7 +68,8 @@ std::vector<TopoDS_Face> faces_of(const TopoDS_Wire &outer, const std::vector<To
     return { fix.Face() };
 }
 
-using lengths = std::vector<double>; /* lengths of a parametrised profile in millimetres: its values from the third on; 0: absent */
+/* dimensions of a parametrised profile in millimetres: the values of its statement from the third on; 0: absent */
+using lengths = std::vector<double>;
 
 /* Builds an I profile whose flanges may differ in width. The fillet radii are those between the web and each flange. */
 TopoDS_Wire i_shape(double depth, double web, double bottom, double bottom_thick, double bottom_fillet, double top, double top_thick,
@@ -149,7 +150,7 @@ std::vector<TopoDS_Face> parametric(const std::string &type, const lengths &d)
     throw unsupported(type);
 }
 
-/* Returns points along the pieces, with chords that deviate from the curve by at most chord_mm. */
+/* Returns points along the pieces. The chords between them deviate from the curve by at most chord_mm. */
 std::vector<gp_Pnt> points_along(const std::vector<curve_piece> &pieces, double chord_mm)
 {
     std::vector<gp_Pnt> out = { pieces.front().start() };
@@ -172,7 +173,7 @@ TopoDS_Wire thickened(const std::vector<curve_piece> &pieces, double thickness, 
         size_t before = i > 0 ? i - 1 : 0, after = i + 1 < line.size() ? i : i - 1;
         gp_Vec in(line[before], line[before + 1]), on(line[after], line[after + 1]);
         gp_Vec left = gp_Vec(gp::DZ()).Crossed(in.Normalized()) + gp_Vec(gp::DZ()).Crossed(on.Normalized());
-        if (left.Magnitude() < 0.2) /* reject a mitre that would be longer than ten thicknesses */
+        if (left.Magnitude() < 0.2) /* reject a corner so acute that its mitre would be longer than ten thicknesses */
             throw unsupported("a centre line that turns back");
         gp_Vec side = left.Normalized() * (thickness / 2 / (left.Magnitude() / 2));
         out.push_back({ line[i].X() + side.X(), line[i].Y() + side.Y(), 0 });

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Builds solids through cross-sections that lie along a curve. */
+/* Builds solids that pass through cross-sections along a curve. */
 #include <BRepAlgoAPI_Cut.hxx>
 #include <BRepBuilderAPI_Transform.hxx>
 #include <BRepOffsetAPI_ThruSections.hxx>
@@ -106,7 +106,7 @@ station station_of(const ifc_model &in, const value &reference, const value &pro
     return { length(0), gp_Vec(length(1), length(2), length(3)), profile.id };
 }
 
-/* Adds intermediate stations between two with the same profile, where the curve between them is not straight. */
+/* Adds stations between two stations that have the same profile, where the curve between them is not straight. */
 void add_between(const ifc_model &in, const std::vector<curve_piece> &pieces, station from, const station &to, std::vector<station> *out)
 {
     double at = 0;
@@ -117,7 +117,7 @@ void add_between(const ifc_model &in, const std::vector<curve_piece> &pieces, st
         if (high - low < 1e-6)
             continue;
         double turn = straight ? 0 : std::acos(std::fmax(-1, std::fmin(1, part.tangent(false).Dot(part.tangent(true)))));
-        /* half the angle in radians by which the curve may turn along one chord */
+        /* half the angle in radians by which the curve may turn along one chord without exceeding chord_mm */
         double chord = std::acos(1 - std::fmin(0.5, in.chord_mm * turn / length));
         int steps = straight ? 1 : std::max(8, static_cast<int>(std::ceil(turn / chord)));
         for (int i = 1; i <= steps; i++) {

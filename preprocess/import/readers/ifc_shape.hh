@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Builds shapes of Open CASCADE, in millimetres, from representation items of an IFC file. All functions throw ifc::unsupported or
- * Standard_Failure for items that they cannot build. Thread: one. */
+/* Builds shapes of Open CASCADE, in millimetres, from representation items (geometry statements) of an IFC file. All functions throw
+ * ifc::unsupported or Standard_Failure for items that they cannot build. Thread: one. */
 #ifndef PREPROCESS_IMPORT_READERS_IFC_SHAPE_HH
 #define PREPROCESS_IMPORT_READERS_IFC_SHAPE_HH
 #include <Geom_Curve.hxx>
@@ -15,7 +15,7 @@
 namespace ifc
 {
 
-/* longest chain of curves, booleans and placements that refer to each other; a longer one is taken for a cycle */
+/* maximum number of curves, booleans or placements that refer to each other in a chain; a longer chain is taken for a cycle */
 constexpr int MAX_CHAIN = 200;
 
 struct ifc_model {
@@ -31,7 +31,7 @@ struct triangles {
     std::vector<uint32_t> corners;
 };
 
-/* A section of a curve. `span` is the length of its parameter range in the file's units. */
+/* A section of a curve. `span`: length of its parameter range in the units of the IFC file. */
 struct curve_piece {
     Handle(Geom_Curve) curve;
     double first, last; /* parameter range; first > last: the piece runs against the curve's direction */
@@ -44,7 +44,7 @@ struct curve_piece {
 
 /* --- ifc_triangles.cc */
 triangles triangles_of(const ifc_model &in, const TopoDS_Shape &shape);
-/* Returns the volume that the triangles enclose in cubic millimetres, negative if they face inwards. */
+/* Returns the volume in cubic millimetres that the triangles enclose; negative if they face inwards. */
 double volume_of(const triangles &all);
 
 /* --- ifc_curve.cc */
@@ -59,17 +59,17 @@ gp_Trsf placement_of(const ifc_model &in, const value &reference);
 /* Returns the transform of an IfcCartesianTransformationOperator2D or 3D. */
 gp_GTrsf operator_of(const ifc_model &in, const entity &from);
 std::vector<curve_piece> pieces_of(const ifc_model &in, const entity &curve);
-/* Returns the pieces between two parameters. Parameters count the spans of all pieces from the start of the curve; an absent parameter
- * means the curve's end on that side. If a parameter is outside the curve, sets *whole and returns all pieces. */
+/* Returns the part of a curve between two parameters. A parameter is the sum of the spans of all pieces from the start of the curve. An
+ * absent parameter means the start or the end of the curve. If a parameter is outside the curve, sets *whole and returns all pieces. */
 std::vector<curve_piece> trimmed(const std::vector<curve_piece> &pieces, const value &from, const value &to, bool *whole);
-/* Returns straight lines through the points, with arcs of these radii at the corners. */
+/* Returns straight lines between the points, with corners rounded by arcs of these radii. */
 std::vector<curve_piece> rounded(const std::vector<gp_Pnt> &points, const std::vector<double> &radii, bool closed);
 TopoDS_Wire wire_of(const std::vector<curve_piece> &pieces);
 
 /* --- ifc_profile.cc */
 /* Returns the faces of a profile, in the XY plane. */
 std::vector<TopoDS_Face> profile_of(const ifc_model &in, const entity &profile);
-/* Returns the faces of a profile; for an open profile, its curve, which sweeps a surface. */
+/* Returns the faces of a profile. For an open profile, returns its curve instead, which sweeps a surface and not a solid. */
 std::vector<TopoDS_Shape> profile_shapes_of(const ifc_model &in, const entity &profile);
 
 /* --- ifc_sweep.cc */
@@ -79,7 +79,7 @@ TopoDS_Shape swept(const std::vector<TopoDS_Face> &faces, const std::vector<curv
 TopoDS_Shape disk_of(const ifc_model &in, const entity &item);
 
 /* --- ifc_sections.cc */
-/* Joins successive faces by a solid, outline to outline and holes to holes. */
+/* Joins consecutive faces to a solid: outline to outline and hole to hole. */
 TopoDS_Shape through_faces(const std::vector<TopoDS_Face> &faces);
 TopoDS_Face moved(const TopoDS_Face &face, const gp_Trsf &place);
 /* Builds an IfcSectionedSpine or IfcSectionedSolidHorizontal. */
@@ -91,14 +91,14 @@ TopoDS_Shape brep_of(const ifc_model &in, const entity &item);
 
 /* --- ifc_faces.cc */
 bool has_flat_faces(const std::string &type);
-/* Returns whether the faces of such an item are bounded by edges and not only by points. ifc_brep.cc reads those with edges. */
+/* Returns whether the faces of an item are bounded by edges (curves), and not only by points. ifc_brep.cc reads items with edges. */
 bool has_edges(const ifc_model &in, const entity &item);
 TopoDS_Shape flat_faces_of(const ifc_model &in, const entity &item);
 
 /* --- ifc_solid.cc */
-/* Returns whether items of this type are always built here. Items of other types are built only if web-ifc fails on them. */
+/* Returns whether this program always builds items of this type. Items of other types are built only if web-ifc fails on them. */
 bool is_built(const std::string &type);
-/* Builds a solid item, or a boolean result of solid items. */
+/* Builds a solid item, or the boolean result of solid items. depth: number of items that refer to this one in a chain (MAX_CHAIN). */
 TopoDS_Shape solid_of(const ifc_model &in, const entity &item, int depth);
 
 } // namespace ifc

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds the items to build, from products through their representations, and tessellates each item once. */
+/* Finds the items to build by following products to their representations, and tessellates each item once. */
 #include "preprocess/import/readers/ifc_shapes.hh"
 
 #include <Standard_Failure.hxx>
@@ -16,7 +16,7 @@ namespace ifc
 namespace
 {
 
-constexpr size_t REPRESENTATION = 6, PLACEMENT = 5; /* indices of a product's representation and placement among its values */
+constexpr size_t REPRESENTATION = 6, PLACEMENT = 5; /* indices, in a product statement's values, of its representation and its placement */
 
 /* --- units */
 
@@ -67,16 +67,18 @@ ifc_model model_of(const file &in, double chord_mm)
 
 struct ifc_part {
     int mesh;
-    double origin[3]; /* origin of the mesh's vertices, millimetres; it keeps precision for an item far from its element's origin */
+    /* origin of the mesh's vertices, millimetres; near the item, so that single-precision positions of an item far from its element's
+     * origin stay exact */
+    double origin[3];
 };
 
 struct ifc_writer {
     const ifc_model &in;
     struct glb_scene *scene;
     std::map<int, ifc_part> parts; /* built items, by statement id */
-    /* by statement id of an item or element that could not be built and is left to web-ifc: the reason */
+    /* by statement id of an item or element that could not be built, and so is left to web-ifc: the reason */
     std::map<int, std::string> failed;
-    std::set<int> asked; /* ids of elements that web-ifc builds not at all or only in part */
+    std::set<int> asked; /* ids of elements that web-ifc cannot build, or only in part */
     size_t elements = 0;
 };
 
@@ -110,7 +112,7 @@ ifc_part add_mesh(ifc_writer *w, const TopoDS_Shape &shape, int id)
     return out;
 }
 
-/* Tessellates an item, once per file. Returns false if the item could not be built; the reason is reported once. */
+/* Builds and tessellates an item, unless that was done before. Returns false if the item could not be built; reports the reason once. */
 bool build(ifc_writer *w, const entity &item)
 {
     std::string why;
@@ -132,7 +134,7 @@ bool build(ifc_writer *w, const entity &item)
 
 /* --- elements */
 
-/* Returns whether an item, or an operand of a boolean item, is of a type that is built here. */
+/* Returns whether an item, or an operand of a boolean item, is of a type that this program always builds (is_built()). */
 bool wanted(const ifc_model &in, const entity &item, int depth)
 {
     if (depth > MAX_CHAIN)
@@ -147,8 +149,8 @@ struct placed_item {
     gp_GTrsf place;
 };
 
-/* Collects the items of a representation and of the representations it maps. Sets *whole to false if any item is left to web-ifc. all:
- * collects items of every type, not only those that need Open CASCADE. */
+/* Collects the items of a representation and of the representations it maps. Sets *whole to false if any item is left to web-ifc. all: true
+ * collects items of every type, false only those that is_built() names. */
 void collect(ifc_writer *w, const entity &representation, const gp_GTrsf &above, int depth, bool all, std::vector<placed_item> *out,
              bool *whole)
 {
@@ -181,7 +183,7 @@ gp_Trsf object_placement(const ifc_model &in, const value &reference, int depth)
     return object_placement(in, from[0], depth + 1) * placement_of(in, from[1]);
 }
 
-/* Computes the 4 x 4 matrix of a placement, from millimetres with Z up to metres with Y up. */
+/* Computes the 4 x 4 matrix of a placement and converts it: millimetres to metres, Z up to Y up. */
 void matrix_of(const gp_GTrsf &place, double scale, bool turn, const double shift[3], double out[16])
 {
     static const int rows[3] = { 0, 2, 1 };
@@ -197,7 +199,7 @@ void matrix_of(const gp_GTrsf &place, double scale, bool turn, const double shif
         out[4 * column + 3] = column == 3;
 }
 
-/* Returns whether a representation shows the body, and not the axis, plan or clearance space of an element. */
+/* Returns whether a representation shows the body of an element, not its axis, plan or clearance space. */
 bool is_body(const entity &representation)
 {
     static const char *const others[] = {

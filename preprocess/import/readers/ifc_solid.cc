@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Builds the remaining kinds of solid items, and boolean operations on them. */
+/* Builds those kinds of solid items that no other file here builds, and boolean operations on solids. */
 #include <BRepAlgoAPI_Common.hxx>
 #include <BRepAlgoAPI_Cut.hxx>
 #include <BRepAlgoAPI_Fuse.hxx>
@@ -34,7 +34,7 @@ namespace
 
 constexpr double FAR_MM = 1e6; /* millimetres; a half space with a boundary extends this far from its plane */
 
-/* Calls build(face) for each face and returns a compound of the results. */
+/* Calls build(face) for each face and returns a compound of the results; the result itself if there is only one face. */
 template <typename builder> TopoDS_Shape each(const std::vector<TopoDS_Shape> &faces, const builder &build)
 {
     TopoDS_Compound out;

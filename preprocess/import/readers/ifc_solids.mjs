@@ -16,8 +16,8 @@ function parseGlb(path) {
     return { json, read };
 }
 
-// Returns { elements, failed }. elements: a Map from element id to { parts, whole }, its built items and whether they are all of its
-// geometry. failed: a Map from the id of an item that could not be built to the reason.
+// Returns { elements, failed }. elements: a Map from element id to { parts, whole }. parts: the element's built items; whole: true if these
+// are all of its geometry. failed: a Map from the id of an item that could not be built to the reason.
 export function readSolids(path) {
     const elements = new Map(), failed = new Map();
     if (!existsSync(path))
@@ -43,7 +43,7 @@ export function readSolids(path) {
     return { elements, failed };
 }
 
-// Returns a function that gives the colour of an item from its style, if it has one.
+// Returns a function that returns the colour of an item from its style, or nothing if the item has no style.
 function styles(model, type) {
     const found = new Map();
     const colorOf = (id, depth) => {
@@ -61,7 +61,7 @@ function styles(model, type) {
 }
 
 // Replaces web-ifc's geometry of an item by the solid that Open CASCADE built. An element with openings keeps web-ifc's geometry, if it has
-// any, because only web-ifc cuts the openings out. Sets solids.said to findings.h lines about problems.
+// any, because only web-ifc cuts the openings out. Sets solids.said to lines of findings.h about problems.
 export function takeSolids(model, solids, { shown, known }, { styledItem, voids }) {
     const colorOf = styles(model, styledItem), cut = new Set();
     model.relate(voids, 'RelatingBuildingElement', 'RelatedOpeningElement', (element) => cut.add(element));

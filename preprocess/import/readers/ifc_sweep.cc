@@ -29,7 +29,7 @@ namespace ifc
 namespace
 {
 
-/* relative tolerance of a sweep's volume against area times length; triangles with 24 corners to a circle lose 1.1 % */
+/* relative tolerance between the volume of a sweep and area times length; tessellation with 24 corners to a circle alone loses 1.1 % */
 constexpr double VOLUME_SLACK = 0.04;
 
 TopoDS_Shape wire_swept(const TopoDS_Wire &outline, const TopoDS_Wire &spine, const gp_Dir *up)
@@ -44,11 +44,12 @@ TopoDS_Shape wire_swept(const TopoDS_Wire &outline, const TopoDS_Wire &spine, co
     pipe.Build();
     if (!pipe.IsDone())
         throw unsupported("a profile that cannot be swept along its curve");
-    pipe.MakeSolid(); /* ignore the result: it is false for a closed curve, whose tube has no ends to close */
+    pipe.MakeSolid(); /* the result is ignored: it is false for a closed curve, whose tube has no ends to close */
     return pipe.Shape();
 }
 
-/* Returns the placement of the XY plane perpendicular to the first piece at its start. */
+/* Returns a placement at the start of the first piece whose XY plane is perpendicular to the piece. up: direction of the X axis, as far as
+ * possible; NULL: any. */
 gp_Trsf start_of(const std::vector<curve_piece> &pieces, const gp_Dir *up)
 {
     gp_Dir along(pieces.front().tangent(false));
@@ -108,9 +109,9 @@ TopoDS_Shape mitred(const TopoDS_Face &face, const std::vector<curve_piece> &pie
     return along(face, pieces, nullptr, nullptr);
 }
 
-/* Sweeps a disk along all pieces. The expected volume is known: area times length. If the volume from one sweeping method differs, some of
- * its triangles are wrong, and the next method is tried. The last method sweeps each piece separately, with closed ends and without mitred
- * corners. */
+/* Sweeps a disk along all pieces. The expected volume is known: area times length. If the volume that a sweeping method gives differs from
+ * that, some triangles are wrong, and the next method is tried. The last method sweeps each piece separately, with closed ends and without
+ * mitred corners. */
 TopoDS_Shape disk_along(const ifc_model &in, const TopoDS_Face &face, double area, const std::vector<curve_piece> &pieces)
 {
     using way = TopoDS_Shape (*)(const TopoDS_Face &, const std::vector<curve_piece> &);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Walks the entities of an IGES file from the roots down, in parallel with the shapes that Open CASCADE made from them. */
+/* Follows the entities of an IGES file from the roots down, in parallel with the shapes that Open CASCADE made of the entities. */
 #include "preprocess/import/readers/iges_tree.hh"
 
 #include <BRepBuilderAPI_Transform.hxx>
@@ -49,7 +49,7 @@ struct iges_tree {
     Handle(XCAFDoc_ColorTool) colors;
     Handle(XCAFDoc_LayerTool) layers;
     const struct text_encoding *encoding;
-    Handle(Transfer_TransientProcess) process; /* Open CASCADE's transfer map: finds the shape that an entity was read into */
+    Handle(Transfer_TransientProcess) process; /* map of Open CASCADE that finds the shape into which an entity was read */
     double unit_mm;
     std::map<const Standard_Transient *, TDF_Label> made;
 };
@@ -121,7 +121,7 @@ std::vector<entity> members_of(const entity &from)
     return out;
 }
 
-/* Returns the subfigure definition that the entity is an instance of, or the entity itself if it is no instance. */
+/* Returns the subfigure definition of which the entity is an instance; the entity itself if it is no instance. */
 entity product_of(const entity &from)
 {
     Handle(IGESBasic_SingularSubfigure) place = Handle(IGESBasic_SingularSubfigure)::DownCast(from);
@@ -146,15 +146,15 @@ TopoDS_Shape shape_of(const iges_tree &t, const entity &from)
     return binder.IsNull() ? TopoDS_Shape() : TransferBRep::ShapeResult(binder);
 }
 
-/* An entity with its placed Open CASCADE shape. */
+/* an entity and its shape, placed, in Open CASCADE's form */
 struct iges_item {
     entity from;
     TopoDS_Shape shape;
 };
 
-/* Returns the members of a group with their shapes. The shapes are taken out of the group's own shape, since the shape recorded for a
- * single surface may lack its placement. Members without a shape are left out. For an instance with a scale, which the group's shape lacks,
- * the shape of its definition is used. */
+/* Returns the members of a group with their shapes. The shapes are taken from the group's own shape, because the shape recorded for a
+ * single surface may lack its placement. Members without a shape are left out. An instance with a scale is missing from the group's shape,
+ * so the shape of its definition is used. */
 std::vector<iges_item> items_of(const iges_tree &t, const iges_item &group)
 {
     std::vector<iges_item> out;
@@ -180,7 +180,7 @@ void describe_layer(const iges_tree &t, const TDF_Label &label, const std::strin
         t.layers->SetLayer(label, TCollection_ExtendedString(t.encoding->utf8(layer).c_str(), Standard_True));
 }
 
-/* Copies the name, colour and layer of an entity to a label. Does not change the values that the entity lacks. */
+/* Copies the name, colour and layer of an entity to a label. What the entity does not have stays unchanged at the label. */
 void describe(const iges_tree &t, const TDF_Label &label, const entity &from)
 {
     Quantity_Color color;
@@ -199,8 +199,8 @@ bool has_faces(const TopoDS_Shape &shape)
 
 enum class shape_kind { nothing, surface, part };
 
-/* Returns how an entity becomes a part of the model: a loose surface is joined with others of its group, a solid or a group becomes a
- * separate part. */
+/* Returns how an entity becomes a part of the model. A loose surface is joined with other loose surfaces of its group; a solid or a group
+ * becomes a part of its own. */
 shape_kind kind_of(const iges_item &what)
 {
     if (!has_faces(what.shape))
@@ -228,7 +228,7 @@ TDF_Label add_surfaces(const iges_tree &t, const std::vector<iges_item> &surface
     return label;
 }
 
-/* Groups loose surfaces by layer; each layer becomes one part. */
+/* Sorts loose surfaces by layer; the surfaces of each layer become one part. */
 std::map<std::string, std::vector<iges_item>> by_layer(const std::vector<iges_item> &loose)
 {
     std::map<std::string, std::vector<iges_item>> out;
@@ -248,7 +248,7 @@ TDF_Label add_whole(const iges_tree &t, const TopoDS_Shape &shape)
 
 TDF_Label label_of(iges_tree *t, const iges_item &what, int depth);
 
-/* Adds a scaled instance as a separate part with scaled geometry, because an XCAF placement cannot scale. */
+/* Adds a scaled instance as a part of its own with scaled geometry, because a placement in XCAF cannot scale. */
 TDF_Label add_scaled(iges_tree *t, const iges_item &what)
 {
     gp_Trsf larger;
@@ -274,7 +274,8 @@ void add_component(iges_tree *t, const TDF_Label &to, const iges_item &what, int
         describe(*t, component, what.from);
 }
 
-/* Descends into a group that holds a single part, while that part has no name and no placement, and returns the innermost group. */
+/* Skips groups that only wrap one part: while a group holds a single part that has no name and no placement, descends into that part.
+ * Returns the part where this ends. */
 iges_item without_wrappings(const iges_tree &t, iges_item what)
 {
     for (int depth = 0; depth < MAX_DEPTH && is_group(what.from); depth++) {
@@ -310,7 +311,7 @@ TDF_Label add_group(iges_tree *t, const iges_item &group, int depth)
     return label;
 }
 
-/* Returns the label of a part's shape without placement; all instances of the part share it. */
+/* Returns the label of a part's shape without placement, which all instances of the part share. Creates the label at the first call. */
 TDF_Label label_of(iges_tree *t, const iges_item &what, int depth)
 {
     if (depth > MAX_DEPTH)

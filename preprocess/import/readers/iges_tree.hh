@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Converts the entity tree of an IGES file to an XCAF assembly, the form that STEP files are read into. */
+/* Converts the entity tree of an IGES file to an XCAF assembly, the form into which Open CASCADE reads STEP files. */
 #ifndef PREPROCESS_IMPORT_READERS_IGES_TREE_HH
 #define PREPROCESS_IMPORT_READERS_IGES_TREE_HH
 #include <IGESControl_Reader.hxx>

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* `plantcast-import-occt INPUT OUTPUT.glb CHORD_MM UNITS UP ENCODING`: reads STEP and IGES with Open CASCADE, in its own process. The
- * assembly tree becomes nodes; each part is tessellated once and shared by its placements. For IFC files it builds some solids only
- * (ifc_shapes.hh); UNITS is then the path of a list of elements. Prints its findings; on failure the last line on stderr is the reason. */
+ * assembly tree becomes nodes; each part is tessellated once and shared by its placements. For IFC files, this program builds some solids
+ * only (ifc_shapes.hh), and UNITS is the path of a list of elements. Prints lines of findings.h. On failure the last line on stderr is the
+ * reason. */
 #include <IGESControl_Reader.hxx>
 #include <Interface_Static.hxx>
 #include <Message.hxx>
@@ -44,7 +45,7 @@
 namespace
 {
 
-/* maximum number of output nodes: assemblies that contain one another repeatedly multiply the nodes exponentially */
+/* maximum number of output nodes; assemblies that contain others several times can have exponentially many */
 constexpr size_t MAX_NODES = 2'000'000;
 constexpr size_t MOST_NAMED = 20;
 constexpr double ANGLE_RAD = 0.5; /* largest angle in radians between neighbouring facets, where the chord error would allow more */
@@ -104,7 +105,8 @@ void matrix_of(const TopLoc_Location &location, const double shift[3], double ou
 
 struct occt_part { /* a tessellated shape */
     int mesh;
-    double origin[3]; /* origin of the mesh's vertices; it keeps precision for a part far from its own origin */
+    /* origin of the mesh's vertices; near the part, so that single-precision positions of a part far from its own origin stay exact */
+    double origin[3];
 };
 
 struct color_group { /* the triangles of one colour */
@@ -119,10 +121,11 @@ struct occt_reader {
     Handle(XCAFDoc_LayerTool) layers;
     struct glb_scene *scene;
     double chord_mm;
-    std::map<std::string, occt_part> parts;         /* tessellated parts, by XCAF label and colour inherited from the assembly */
+    /* tessellated parts, by XCAF label and by the colour that the part inherits from its assembly */
+    std::map<std::string, occt_part> parts;
     std::map<std::string, step_external> externals; /* of STEP, as step_files.hh says */
     size_t nodes = 0, places = 0, skipped_faces = 0;
-    std::vector<std::string> lines; /* names of parts that are only curves or points */
+    std::vector<std::string> lines; /* names of parts that consist only of curves or points */
 };
 
 using key = std::array<double, 4>;
@@ -189,7 +192,7 @@ void write_groups(occt_reader *r, const std::map<key, color_group> &groups, cons
     }
 }
 
-/* Returns the reason why a shape has no faces, for a message; "" if it consists only of curves or points, which is no loss. */
+/* Returns why a shape has no faces, as a text for a message; "" if it consists only of curves or points, which is no loss. */
 std::string reason_without_faces(const occt_reader *r, const TopoDS_Shape &shape)
 {
     if (!shape.IsNull() && TopExp_Explorer(shape, TopAbs_VERTEX).More())
@@ -198,7 +201,7 @@ std::string reason_without_faces(const occt_reader *r, const TopoDS_Shape &shape
     return missing ? "its shape is empty, or in a file that is missing" : "its shape is empty";
 }
 
-/* Reports a part that lost all or some of its faces. */
+/* Prints a line about a part that lost some or all of its faces. */
 void say_lost_part(occt_reader *r, const TDF_Label &label, const char *id, const mesh_outcome &of)
 {
     std::string name = name_of(label), why;
@@ -216,8 +219,8 @@ void say_lost_part(occt_reader *r, const TDF_Label &label, const char *id, const
         printf("lost\t%s\t%s\tpart\t\t%s\n", id, name.c_str(), why.c_str());
 }
 
-/* Returns the tessellated mesh of a shape without sub-assemblies, one for each colour that it inherits. mesh is -1 if the shape has no
- * faces. */
+/* Returns the tessellated mesh of a shape without sub-assemblies. A shape has a separate mesh for each colour that it inherits. mesh is -1
+ * if the shape has no faces. */
 occt_part part_of(occt_reader *r, const TDF_Label &label, const XCAFPrs_Style &style)
 {
     TCollection_AsciiString entry;
@@ -295,7 +298,7 @@ bool has_ending(const char *path, const char *ending)
     return length > count && !strcasecmp(path + length - count, ending);
 }
 
-/* Reads a STEP file into the document. Returns the units stated by the file. */
+/* Reads a STEP file into the document. Returns the units that the file states. */
 std::string read_step(const char *path, const char *output, Handle(TDocStd_Document) document, const char *asked,
                       std::map<std::string, step_external> *externals)
 {
@@ -357,7 +360,7 @@ void say_lines(const occt_reader &r)
                r.lines.size() > MOST_NAMED ? ", ..." : "");
 }
 
-/* Computes the root matrix: millimetres to metres, and Z up to Y up unless the model is Y up already. */
+/* Computes the root matrix: millimetres to metres, and Z up to Y up (y_up false) or no rotation (y_up true). */
 void root_matrix(bool y_up, double out[16])
 {
     const double z_up[16] = { 1e-3, 0, 0, 0, 0, 0, -1e-3, 0, 0, 1e-3, 0, 0, 0, 0, 0, 1 };
@@ -402,7 +405,7 @@ void convert(const char *input, const char *output, double chord_mm, bool y_up, 
         printf("left out: %zu faces with corners that are not finite\n", r.skipped_faces);
 }
 
-/* Runs convert(). Translates Open CASCADE's exceptions, which do not derive from std::exception, to refuse(). */
+/* Runs convert(), and calls refuse() for exceptions of Open CASCADE, which do not derive from std::exception. */
 void convert_or_refuse(char **arguments)
 {
     double chord_mm = strtod(arguments[2], nullptr);

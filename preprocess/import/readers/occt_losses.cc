@@ -39,7 +39,7 @@ namespace
 
 using entity = Handle(Standard_Transient);
 
-constexpr size_t MOST_KINDS = 100; /* maximum number of kinds of errors that are printed */
+constexpr size_t MOST_KINDS = 100; /* maximum number of different errors that are printed */
 constexpr size_t MOST_IDS = 5;     /* maximum number of entity ids in one printed line */
 constexpr size_t MOST_VISITED = 10000;
 
@@ -66,8 +66,8 @@ std::string without_number(const std::string &text)
     return end == std::string::npos ? text : text.substr(0, from) + text.substr(end + (text[end] == ' '));
 }
 
-/* Returns whether another part of the reader handles an error: step_files.hh reports missing files, and iges_tree.cc builds scaled
- * instances of subfigures. */
+/* Returns whether another part of the reader reports or repairs this error: step_files.hh reports missing files, and iges_tree.cc builds
+ * scaled instances of subfigures. */
 bool is_dealt_with(const entity &from, const std::string &text)
 {
     Handle(IGESBasic_SingularSubfigure) place = Handle(IGESBasic_SingularSubfigure)::DownCast(from);
@@ -152,13 +152,14 @@ std::string product_name(const entity &from)
     return name.IsNull() ? "" : one_line(name->ToCString());
 }
 
-/* Owner of a face: `body` is the body that contains it, or the face itself if there is none; `name` is the name of its product. */
+/* owner of a face. body: the body that contains the face, or the face itself if there is none; name: of the product that contains the
+ * body. */
 struct face_owner {
     entity body;
     std::string name;
 };
 
-/* Finds a face's body and product by following references backwards, breadth first, until the first product. */
+/* Finds the body and the product that contain a face by following references backwards, breadth first, until the first product. */
 face_owner owner_of(const Interface_Graph &graph, const entity &face)
 {
     face_owner out = { face, "" };
@@ -207,7 +208,7 @@ void say_lost(const file_losses &of, const lost_faces &lost)
 
 void say_lost_faces(const file_losses &of, const Interface_Graph &graph)
 {
-    std::map<int, lost_faces> bodies; /* by the body entity's index in the model */
+    std::map<int, lost_faces> bodies; /* lost faces, by index of the body entity in the model */
     for (int i = 1; i <= of.model->NbEntities(); i++) {
         const entity face = of.model->Value(i);
         if (!is_face(face) || has_shape(of, face))
@@ -221,7 +222,7 @@ void say_lost_faces(const file_losses &of, const Interface_Graph &graph)
         say_lost(of, entry.second);
 }
 
-/* Reports instances of products that are missing although the product itself was read. */
+/* Prints a line about instances of a product that are missing although the product itself was read. */
 void say_lost_places(const file_losses &of)
 {
     for (int i = 1; i <= of.model->NbEntities(); i++) {

@@ -7,7 +7,7 @@
 #include <string>
 
 /* Prints the errors that Open CASCADE found in the file and in its transfer, and a line for each body or surface that lacks faces.
- * file: the name of an external file with ": " after it, or "". Call it after the transfer. */
+ * file: the name of an external file followed by ": ", or "" for the main file. Call after the transfer. */
 void occt_losses_say(const Handle(XSControl_WorkSession) & session, const std::string &file);
 
 #endif

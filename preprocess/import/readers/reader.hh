@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shared by the C++ readers: rejecting a file, decoding names, writing the scene, the main function. Thread: one. */
+/* Functions that all C++ readers use: they reject a file, decode names, write the scene, and contain the main function. Thread: one. */
 #ifndef PREPROCESS_IMPORT_READERS_READER_HH
 #define PREPROCESS_IMPORT_READERS_READER_HH
 #include <cerrno>
@@ -35,7 +35,8 @@ inline void refuse(const char *fmt, ...)
 struct text_encoding {
     struct charset_choice choice = { "UTF-8", "", true };
 
-    /* Chooses the encoding. asked: the user's choice, "-" for none. said: the encoding stated by the file, or "". */
+    /* Chooses the encoding from the texts of a file. asked: the encoding that the user stated, "-" for none. said: the encoding that the
+     * file states, or "". */
     void choose(const std::string &texts, const char *asked, const char *said)
     {
         choice = encoding_choose(texts.data(), texts.size(), strcmp(asked, "-") != 0 ? asked : nullptr, said);
@@ -75,8 +76,8 @@ inline std::string read_whole(const char *path)
     return out;
 }
 
-/* Writes the scene, destroys it and sets *scene to NULL. advice: appended to the error message about a file over 4 GiB, says how to make it
- * smaller; may be "". */
+/* Writes the scene, destroys it and sets *scene to NULL. advice: text appended to the error message about a file over 4 GiB, on how to make
+ * it smaller; may be "". */
 inline void write_scene(struct glb_scene **scene, const char *output, const char *advice)
 {
     int status = glb_scene_write(*scene, output);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Copies STEP files so that Open CASCADE can read assemblies of several files. Open CASCADE opens an external file only by its exact
- * name, in the folder of the main file, and if declared as AP203 or AP214. So the copies get simple names and refer to each other by
+/* Copies STEP files so that Open CASCADE can read assemblies of several files. Open CASCADE opens an external file only by its exact name,
+ * in the folder of the main file, and only if it is declared as AP203 or AP214. So the copies get simple names and refer to each other by
  * these names. */
 #include "preprocess/import/readers/step_files.hh"
 
@@ -23,7 +23,7 @@ struct preparing {
     std::string input_folder, output_folder;
     const char *asked;
     step_files out;
-    /* file names of copies, by path of the original, or by stated name if the original is missing */
+    /* file names of the copies, by path of the original; by the name that the model states if the original is missing */
     std::map<std::string, std::string> names;
     std::vector<std::string> open; /* paths of external files that are not copied yet */
 };
@@ -88,8 +88,8 @@ std::string without_escapes(const std::string &text)
     return out;
 }
 
-/* Finds a file that a model names, in the model's folder and ignoring case: tries spellings, because the confined reader cannot list the
- * folder. Returns its path, or "" if there is none. */
+/* Finds a file that a model names, in the model's folder and ignoring upper and lower case. Tries several spellings, because the confined
+ * reader cannot list the folder. Returns its path, or "" if there is none. */
 std::string find_beside(const preparing &p, const std::string &named)
 {
     const std::string base = named.substr(named.find_last_of("/\\") == std::string::npos ? 0 : named.find_last_of("/\\") + 1);
@@ -102,7 +102,7 @@ std::string find_beside(const preparing &p, const std::string &named)
     return "";
 }
 
-/* Returns the name under which copies refer to an external file, and queues the file for copying. */
+/* Returns the name by which the copies refer to an external file, and adds the file to the list of files to copy. */
 std::string external_name(preparing *p, const std::string &literal)
 {
     const std::string named = without_escapes(literal), path = find_beside(*p, named), &known = path.empty() ? named : path;
@@ -127,8 +127,8 @@ bool names_files(const std::string &statement)
     return false;
 }
 
-/* Converts one quoted string for the copy: a file name, a data format or a name. before: text of the copy before the string. statement:
- * offset in `before` at which the string's statement begins. */
+/* Returns the form that one quoted string (a file name, a data format or a name) gets in the copy. before: text of the copy before the
+ * string. statement: offset in `before` at which the string's statement begins. */
 std::string converted_string(preparing *p, const std::string &before, size_t statement, const std::string &text)
 {
     if (is_step_name(text) && names_files(before.substr(statement, MOST_BEFORE)))

@@ -8,21 +8,22 @@
 #include <vector>
 
 struct step_external {
-    std::string named; /* as the file that refers to it writes it */
+    std::string named; /* name of the file as the STEP file that refers to it states it */
     bool found;
 };
 
 struct step_files {
-    std::string main;                               /* path to read: the file itself or its copy */
-    std::map<std::string, step_external> externals; /* by the name that copies use for it, such as "external_1.stp" */
+    std::string main;                               /* path to read: that of the original file, or of its copy */
+    std::map<std::string, step_external> externals; /* external files, by the name that copies use for them, such as "external_1.stp" */
     std::vector<std::string> copies;                /* paths to remove after reading */
 };
 
-/* Prepares a STEP file and all STEP files that it refers to and that lie in its folder. Writes copies into `folder`. Prints the encoding
- * of the names. asked: the encoding that the user wants, or "-". Refuses what cannot be read. */
+/* Prepares a STEP file and all STEP files that it refers to and that lie in its folder. Writes copies into `folder`. Prints the encoding of
+ * the names. asked: the encoding that the user stated, or "-". Calls refuse() if a file cannot be read. */
 step_files step_files_prepare(const std::string &path, const std::string &folder, const char *asked);
 
-/* Open CASCADE takes a name whose last character is not ASCII for an empty name. Copies end such names with a mark: removes it. */
+/* Returns the name without the mark at its end. Open CASCADE would read a name whose last character is not ASCII as an empty name, so
+ * copies have such names with a mark after them. */
 std::string step_name_without_mark(std::string name);
 
 #endif

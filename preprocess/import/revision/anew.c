@@ -17,7 +17,7 @@ enum { TEXTS = 3 };
 
 struct one_text {
     const char *name;
-    char *before, *after; /* before: current text, NULL if the file does not exist; after: new text, NULL if the file stays unchanged */
+    char *before, *after; /* before: current text, NULL if the file does not exist; after: new text, NULL if the file does not change */
     char *kept;           /* path where the file's previous version is kept; NULL: not kept */
 };
 
@@ -34,8 +34,8 @@ static int fail_at(const char *path, const char *why)
     return 1;
 }
 
-/* Adds one text file to the transaction and takes ownership of `after`. versioned: keeps the current file under a new name, because a
- * person may have written it. */
+/* Adds one text file to the transaction and takes ownership of `after`. versioned: also keeps the current file under another name (NAME.1,
+ * ...), because a person may have written it. */
 static int add_text(struct revision_making *making, struct one_text *one, const char *name, char *after, bool versioned)
 {
     char *path = mem_printf("%s/%s", making->params->folder, name);

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Edits the assets of a plant file within its text, so that everything else, such as order and comments, stays unchanged. Pure. Thread:
- * any. */
+/* Edits the assets of a plant file within its text, so that everything else, such as order and comments, stays unchanged. No side effects.
+ * Thread: any. */
 #ifndef PREPROCESS_IMPORT_ASSET_EDIT_H
 #define PREPROCESS_IMPORT_ASSET_EDIT_H
 #include <stdbool.h>
 #include <stddef.h>
 
-struct asset_edit { /* one asset's edit; all zero: the asset stays unchanged */
+struct asset_edit { /* changes of one asset; all zero: the asset stays unchanged */
     bool removed;
     char *tag; /* new tag of the asset; NULL: unchanged */
-    /* array of new texts, one per node pattern of the asset, NULL for a deleted pattern; nodes itself is NULL if no pattern changes */
+    /* nodes[i]: new text of the asset's node pattern i; NULL: the pattern is deleted. nodes NULL: no pattern changes */
     char **nodes;
     size_t node_count;
 };
@@ -17,7 +17,7 @@ struct asset_edit { /* one asset's edit; all zero: the asset stays unchanged */
 enum { ASSET_EDIT_WHY_BYTES = 200 };
 
 /* Applies edits[i] to asset i of the file, and appends the lines `added` to the list of assets (NULL: none). Returns the new text, which
- * the caller frees with mem_free. Returns NULL with the reason in why if the list is not in block style, one item a line. */
+ * the caller frees with mem_free. Returns NULL with the reason in why if the list of assets is not in block style, one item a line. */
 char *asset_edit_apply(const char *text, const struct asset_edit *edits, size_t count, const char *added, char why[ASSET_EDIT_WHY_BYTES]);
 
 #endif

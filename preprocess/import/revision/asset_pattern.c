@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Looks up plain names in a sorted list; matches other patterns against all nodes. */
+/* Finds the nodes that a pattern matches: looks up plain names in a sorted list, and tests other patterns on all nodes. */
 #include "preprocess/import/revision/asset_pattern.h"
 
 #include <stdio.h>
@@ -46,7 +46,7 @@ void asset_patterns_finish(struct asset_patterns *patterns)
     *patterns = (struct asset_patterns){ 0 };
 }
 
-/* Returns the index in the sorted names of the first node of this name; *count receives the number of nodes. */
+/* Returns the index, in the nodes sorted by name, of the first node with this name; *count receives the number of such nodes. */
 static size_t find_name(const struct model_header *header, const uint32_t *names, const char *name, size_t *count)
 {
     size_t low = 0, high = header->count;
@@ -75,7 +75,7 @@ static size_t find(struct asset_patterns *patterns, const struct model_header *h
     return count;
 }
 
-/* Returns a pattern that matches this new node and no other: its name if that is unique, else "#number". */
+/* Returns a pattern that matches this node of the new model and no other: its name if that is unique, else "#number". */
 static char *exact_pattern(struct asset_patterns *patterns, uint32_t node)
 {
     const char *name = patterns->after->nodes[node].name;

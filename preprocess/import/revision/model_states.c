@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Compares two shapes vertex by vertex if their vertex counts are equal, and otherwise by their bounding boxes. */
+/* Compares the shapes of a part in the old and in the new model: vertex by vertex if their vertex counts are equal, otherwise by their
+ * bounding boxes. */
 #include "preprocess/import/revision/model_states.h"
 
 #include <math.h>
@@ -11,7 +12,8 @@
 #include "preprocess/geometry/rigid_fit.h"
 #include "surface/mesh/bvh.h"
 
-enum { SAMPLES = 64 }; /* number of vertices per primitive used to fit the motion; the fitted motion is then checked on all vertices */
+/* number of vertices per primitive from which the rigid motion is fitted; the motion is then checked on all vertices */
+enum { SAMPLES = 64 };
 
 /* --- reading ------------------------------------------------------------------------------------------------------------------ */
 
@@ -67,8 +69,7 @@ void model_states_finish(struct model_states *states)
     *states = (struct model_states){ 0 };
 }
 
-/* --- lists of parts: a part is one primitive of one instance
- * ------------------------------------------------------------------------------------- */
+/* --- lists of parts (a part is one primitive of one instance of a node) --- */
 
 struct state_part {
     const struct gltf_primitive *primitive;
@@ -102,7 +103,8 @@ static void vertex_of(const struct state_part *part, uint32_t vertex, double out
     transform_point(part->world, (const double[3]){ (double)at[0], (double)at[1], (double)at[2] }, out);
 }
 
-/* Returns whether the parts of both lists from a_first and b_first on are equally many and pairwise equal in vertex and index counts. */
+/* Returns whether both lists, from the indices a_first and b_first on, contain the same number of parts, and corresponding parts have equal
+ * vertex and index counts. */
 static bool alike(const struct state_parts *a, size_t a_first, const struct state_parts *b, size_t b_first)
 {
     bool same = a->count - a_first == b->count - b_first;
@@ -115,8 +117,8 @@ static bool alike(const struct state_parts *a, size_t a_first, const struct stat
 
 /* --- motion ------------------------------------------------------------------------------------------------------------------- */
 
-/* Tests for a pure translation: all vertices moved by the same vector within the tolerance. Tested before fitting a rotation, which would
- * add small errors to the translation. */
+/* Tests for a pure translation: whether all vertices moved by the same vector within the tolerance. Tested before a rotation is fitted,
+ * because the fit would add a small rotation to a pure translation. */
 static bool find_shift(const double (*from)[3], const double (*to)[3], size_t count, double tolerance, double motion[16])
 {
     double shift[3], other[3], apart[3];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Compares a model before and after a revision, with vertices: how far each part of the model has moved. Lengths and axes are in the
- * model's units and frame. Thread: any, one per struct. */
+/* Compares a model before and after a revision, by their vertices: finds how far each part of the model has moved. Lengths and axes are in
+ * the model's units and frame. Thread: any, one per struct. */
 #ifndef PREPROCESS_IMPORT_MODEL_STATES_H
 #define PREPROCESS_IMPORT_MODEL_STATES_H
 #include "preprocess/import/revision/node_pairs.h"
@@ -9,7 +9,7 @@
 struct model_state { /* the old or the new model, loaded */
     struct model_outline outline;
     struct gltf_model model;
-    /* by outline node: index of its first instance in `model`; further instances follow it and have the same node number */
+    /* by node of the outline: index in `model` of its first instance; further instances follow it and have the same node number */
     uint32_t *first;
     bool read;
 };
@@ -26,17 +26,17 @@ void model_states_finish(struct model_states *states);
 enum states_change {
     STATES_SAME,
     STATES_MOVED,
-    STATES_CHANGED /* the shape of a part differs; the motion is that of the bounding box, known only if the box kept its size */
+    STATES_CHANGED /* the shape of a part differs; the motion is then that of the bounding box, known only if the box kept its size */
 };
 struct states_motion {
     enum states_change change;
     bool known; /* the motion could be determined */
     double motion[16], moved;
-    /* parts: count of nodes with geometry; different: count of those that are missing from the new model or have another shape */
+    /* parts: number of nodes with geometry; different: number of those that are missing from the new model or have another shape there */
     size_t parts, different;
 };
-/* Determines the motion of an asset: the common motion of the old model's nodes marked in `taken`. Distances below `tolerance` count as no
- * change. */
+/* Determines the motion of an asset: the motion that the old model's nodes marked in `taken` have in common. Distances below `tolerance`
+ * count as no change. */
 struct states_motion model_states_motion(const struct model_states *states, const bool *taken, double tolerance);
 /* Returns the node, among the old model's nodes marked in `taken`, whose triangles are nearest to a point. Returns -1 if they have no
  * triangles. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Applies pairing methods from the most to the least certain; a pair once made is kept. */
+/* Applies methods of pairing nodes, from the most to the least certain. A pair once made is never changed. */
 #include "preprocess/import/revision/node_pairs.h"
 
 #include <math.h>
@@ -12,7 +12,7 @@
 struct node_pairing {
     const struct model_outline *old_outline, *new_outline;
     struct node_pairs *pairs;
-    int *olds, *news; /* unpaired nodes that the current pairing method compares; each array has room for all nodes */
+    int *olds, *news; /* unpaired nodes of the old and the new model that the current method compares; each array has room for all nodes */
     size_t old_count, new_count;
 };
 
@@ -56,7 +56,7 @@ static int by_name(const void *a, const void *b, void *outline_ptr)
     return order ? order : x - y;
 }
 
-/* Compares nodes by the size of their subtree, not by triangle counts: those may differ if covered faces were left out. */
+/* Compares nodes by the size of their subtree. Triangle counts are not used, because they may differ if covered faces were left out. */
 static int by_size(const void *a, const void *b, void *outline_ptr)
 {
     const struct model_outline *outline = outline_ptr;
@@ -92,13 +92,14 @@ static void take_unpaired(struct node_pairing *p)
             p->news[p->new_count++] = (int)i;
 }
 
-/* --- pairing runs of candidates that compare equal
- * --------------------------------------------------------------------------------------------------- */
+/* --- pairing runs of candidates (unpaired nodes) that compare equal --- */
 
 enum run_rule {
     RUN_SINGLE, /* pair a run only if it has exactly one old and one new candidate */
     RUN_PLACED, /* pair candidates of a run whose bounding boxes are at the same position */
-    RUN_ORDERED /* pair single candidates, then those at the same position, then the remaining ones in order if as many are old as new */
+    /* pair a run with one old and one new candidate; else those at the same position, then the remaining ones in order if there are as many
+     * old as new ones */
+    RUN_ORDERED
 };
 
 static void pair_placed(struct node_pairing *p, const int *olds, size_t old_count, const int *news, size_t new_count)
@@ -137,7 +138,8 @@ static void pair_run(struct node_pairing *p, const int *olds, size_t old_count, 
         pair_in_order(p, olds, old_count, news, new_count);
 }
 
-/* Walks two sorted candidate lists in parallel and pairs the nodes within each run of nodes that compare equal. */
+/* Goes through the sorted candidates of the old and the new model in parallel, and pairs nodes within each run of nodes that compare equal,
+ * by the rule. */
 static void pair_runs(struct node_pairing *p, int (*compare)(const struct node_pairing *p, int old_node, int new_node), enum run_rule rule)
 {
     for (size_t i = 0, k = 0; i < p->old_count && k < p->new_count;) {
@@ -236,7 +238,7 @@ static void pair_down_by_name(struct node_pairing *p)
         }
 }
 
-/* Pairs nodes by subtree size, level by level: below a renamed parent, parts often have new names too. */
+/* Pairs nodes by subtree size, level by level from the roots, because below a renamed parent the children often have new names too. */
 static void pair_down_by_size(struct node_pairing *p)
 {
     take_children(p, -1, -1);

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Finds which node of a new export corresponds to which node of the old one: by GUID, else by names from the roots down, else by a name
- * that occurs once, else (renamed nodes) by an equal box and an equal number of descendants below the same parent. Pure. Thread: any. */
+ * that occurs once, else (renamed nodes) by an equal box and an equal number of descendants below the same parent. No side effects. Thread:
+ * any. */
 #ifndef PREPROCESS_IMPORT_NODE_PAIRS_H
 #define PREPROCESS_IMPORT_NODE_PAIRS_H
 #include "preprocess/import/model_outline.h"
 
-struct node_pairs { /* by outline node (depth first): index of its counterpart in the other model; -1: none */
+struct node_pairs { /* by node of the outline (in depth-first order): index of its counterpart in the other model; -1: none */
     int *to_new, *to_old;
 };
 

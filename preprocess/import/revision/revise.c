@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Plans a revision, checks the new plant file by loading it in a temporary folder, and replaces the files. */
+/* Implements revise() and revise_undo(): plans a revision, checks the new plant file by loading it in a temporary folder, and replaces the
+ * files. */
 #include "preprocess/import/revision/revise.h"
 
 #include <errno.h>
@@ -47,7 +48,7 @@ static int fail_at(const char *path, const char *why)
 
 /* --- reading ------------------------------------------------------------------------------------------------------------------ */
 
-/* Reads a text file. Returns NULL if it does not exist, or with *status set on an error. */
+/* Reads a text file. Returns NULL if it does not exist, or on an error, which sets *status to 1. */
 static char *read_text(const char *path, int *status)
 {
     size_t bytes;
@@ -57,7 +58,8 @@ static char *read_text(const char *path, int *status)
     return text;
 }
 
-/* Finds the tag list, following a symlink. If the list lies in another folder, that folder must be writable. */
+/* Finds the tag list, following a symlink. Returns the exit status: 1 with an error printed if the list lies in another folder that is not
+ * writable. */
 static int find_tags(struct revising *r)
 {
     char folder[PATH_MAX], path[PATH_MAX];
@@ -168,8 +170,8 @@ static void write_review(struct revising *r)
 
 /* --- the files ------------------------------------------------------------------------------------------------------------------ */
 
-/* Adds a text file to the transaction. text: new text; NULL: the file stays unchanged. before: text that the file must still have; NULL:
- * not checked, because only this program writes the file. */
+/* Adds a text file to the transaction. text: new text; NULL: the file stays unchanged. before: text that the file must still have when it
+ * is replaced; NULL: not checked, because only this program writes the file. */
 static int add_text(struct revising *r, const char *name, const char *text, const char *before)
 {
     struct revision_file *file = &r->files[r->file_count++];
@@ -183,7 +185,7 @@ static const char *if_other(const char *text, const char *before)
     return text && strcmp(text, before) != 0 ? text : NULL;
 }
 
-/* Replaces the files, plant.yaml last. In this order, the daemon can load the folder after each single replacement. */
+/* Replaces the files, plant.yaml last. In this order the daemon can load the folder even if it reads it between two replacements. */
 static int apply(struct revising *r)
 {
     const char *changed;

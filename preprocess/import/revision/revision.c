@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Processes one model after the other: its assets first, then the assets' tags. */
+/* Plans the revision of one model after the other: first its assets, then the tags on these assets. */
 #include "preprocess/import/revision/revision.h"
 
 #include <math.h>
@@ -20,7 +20,7 @@ static const double tolerance_m = 0.002; /* tolerance of positions in metres: ex
 struct planning {
     struct revision *revision;
     const struct revision_input *input;
-    struct asset_edit *assets; /* array of planned edits, one per asset of the plant */
+    struct asset_edit *assets; /* planned edits, by asset of the plant */
     struct tag_edit *tags;
     size_t tag_count, tag_room;
     struct text added;
@@ -31,9 +31,9 @@ struct planning {
     const char *file;
     struct model_states states;
     struct asset_patterns patterns;
-    bool *before, *after; /* nodes of the current asset, in the old and the new model */
-    bool *covered;        /* nodes of the new model that belong to an asset */
-    bool *roots;          /* nodes of the old model that an asset's row of the review already mentions */
+    bool *before, *after; /* before: by node of the old model, after: by node of the new model: whether it belongs to the current asset */
+    bool *covered;        /* by node of the new model: whether it belongs to any asset */
+    bool *roots;          /* by node of the old model: whether a review row about an asset already mentions it */
     char *why;
 };
 
@@ -66,7 +66,7 @@ static char *path_of(const struct model_outline *outline, size_t node)
     return path.at;
 }
 
-/* Adds review rows for nodes that were added, removed or renamed, only the topmost node of each subtree. */
+/* Adds review rows about nodes that were added, removed or renamed. Of a whole subtree, only its topmost node gets a row. */
 static void review_nodes(struct planning *p)
 {
     const struct model_outline *old = &p->states.before.outline, *new = &p->states.after.outline;
@@ -97,7 +97,7 @@ static void review_nodes(struct planning *p)
 
 /* --- frames --------------------------------------------------------------------------------------------------------------------- */
 
-/* Computes the transform from the model's units and axes to the frame of X, Y, Z in the tag list. */
+/* Computes the transform from the model's units and axes to the coordinates X, Y, Z of the tag list. */
 static void model_to_list(const struct plant_asset *asset, double out[16])
 {
     const double u = asset->unit_m;
@@ -136,7 +136,7 @@ static struct tag_edit *edit_tag(struct planning *p, const struct plant_tag *tag
     return edit;
 }
 
-/* Records that a tag loses its exact position and is placed at its equipment instead. */
+/* Records that a tag loses its exact position, and gets its equipment as its position instead. */
 static void lose_place(struct planning *p, const struct plant_tag *tag, const char *detail)
 {
     edit_tag(p, tag)->place = "equipment";
@@ -162,7 +162,7 @@ static void follow_node(struct planning *p, const struct plant_tag *tag)
         if (tag->place_assumed)
             edit->place = "equipment";
         say(p, REVISION_TAG, "renamed", tag->name, "its node %s is now %s", tag->node, pattern);
-        return; /* `pattern` belongs to the edit from here on, which frees it later */
+        return; /* the edit now owns `pattern` and frees it */
     }
     case ASSET_PATTERN_GONE: {
         char *detail = mem_printf("its node %s is no longer in the model", tag->node);
@@ -222,7 +222,7 @@ static void follow_asset(struct planning *p, size_t index, const struct states_m
 
 /* --- assets --------------------------------------------------------------------------------------------------------------------- */
 
-/* Returns the root node of the asset: the first of its nodes. The asset is usually named after it. */
+/* Returns the first of the asset's nodes in the old model, after which the asset is usually named. */
 static int root_of(const struct planning *p)
 {
     size_t i = 0;
@@ -258,7 +258,7 @@ static void review_asset(struct planning *p, const struct plant_asset *asset, st
 
 enum taken { TAKEN, TAKEN_NOW /* the new model has nodes of the asset, the old model had none */, TAKEN_NOTHING };
 
-/* Marks the asset's nodes in the old and the new model, and records edited patterns. */
+/* Marks the nodes of the asset in the old and the new model (before[], after[]), and records changes of its patterns. */
 static enum taken take(struct planning *p, const struct plant_asset *asset, struct asset_edit *edit)
 {
     const struct model_outline *old = &p->states.before.outline, *new = &p->states.after.outline;
@@ -335,14 +335,15 @@ static void add_assets(struct planning *p, const struct revision_model *model, c
     }
 }
 
-/* Adds assets for new equipment: nodes of the new model without an old counterpart, outside all assets, and with no asset below them. */
+/* Adds an asset for new equipment: for a node of the new model that has no counterpart in the old model, belongs to no asset, and has no
+ * node of an asset below it. */
 static void add_new(struct planning *p, const struct revision_model *model, const struct plant_asset *like)
 {
     const struct model_outline *new = &p->states.after.outline;
     bool *wanted = mem_array(new->header.count + 1, sizeof(*wanted)), placed = false;
     for (int i = 0; i < 16; i++)
         placed |= fabs(like->placement[i] - transform_identity[i]) > 0;
-    if (!placed) /* if the model's existing assets have a placement, the placement of a new asset is unknown, so no asset is added */
+    if (!placed) /* if existing assets of the model have a placement, that of a new asset cannot be guessed, so none is added */
         for (size_t i = 0; i < new->header.count; i++) {
             wanted[i] = p->states.pairs.to_old[i] < 0;
             for (size_t k = i; k < new->header.nodes[i].end && wanted[i]; k++)

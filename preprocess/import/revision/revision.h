@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Plans how a new export of a plant's models changes its plant file and tag list: assets follow their nodes, sensors their equipment;
- * equipment that is gone is removed, new equipment is added. Also composes a review of these changes for people. Thread: one. */
+ * assets of removed equipment are removed, assets for new equipment are added. Also composes a review of these changes for users. Thread:
+ * one. */
 #ifndef PREPROCESS_IMPORT_REVISION_H
 #define PREPROCESS_IMPORT_REVISION_H
 #include "plant/plant.h"
@@ -9,14 +10,16 @@
 #include "preprocess/model/refusal.h"
 
 struct revision_model {
-    char *before, *after;                  /* paths of the old and the new file; before NULL: the plant has no model of this name yet */
+    /* paths of the old and the new model file; before NULL: the plant has no model of this name yet */
+    char *before, *after;
     const struct plant_draft_model *draft; /* describes the new model */
 };
 
 enum revision_kind { REVISION_ASSET, REVISION_NODE, REVISION_TAG };
 struct revision_row {
     enum revision_kind kind;
-    /* change that the row describes (static string): "added", "removed", "renamed", "moved", "changed", "place lost", "equipment lost" */
+    /* kind of change that the row describes (static string): "added", "removed", "renamed", "moved", "changed", "place lost", "equipment
+     * lost" */
     const char *change;
     char *name, *detail;
 };
@@ -24,7 +27,7 @@ struct revision_row {
 struct revision {                 /* zero-initialise */
     char *plant_text, *tags_text; /* new texts of plant.yaml and the tag list; NULL: no change */
     struct revision_row *rows;    /* the review, in reading order */
-    const char **lost;            /* names of tags whose equipment is gone; the strings belong to the plant */
+    const char **lost;            /* names of tags whose equipment was removed; the strings belong to the plant */
     size_t row_count, row_room, lost_count, lost_room;
 };
 

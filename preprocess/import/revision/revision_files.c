@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Both apply and undo first rename one prepared folder, which is atomic. From then on plant_folder.c completes the transaction, also after
- * a crash. */
+/* Replaces files of a plant folder, and undoes that. Both first rename one prepared folder, which is atomic. From then on plant_folder.c
+ * completes the transaction, also after a crash. */
 #include "preprocess/import/revision/revision_files.h"
 
 #include <errno.h>
@@ -25,8 +25,8 @@ static int move(const char *from, const char *to)
 
 /* --- beginning ------------------------------------------------------------------------------------------------------------------ */
 
-/* Saves a file for undo. Text files are copied, since an editor may overwrite them in place. Models are large and only replaced as a whole,
- * so they are hard-linked, or copied if the file system has no hard links. */
+/* Saves a file for undo. Text files are copied, because an editor may overwrite them in place. Models are large and only ever replaced as a
+ * whole, so they are hard-linked; they are copied if the file system has no hard links. */
 static int keep(const char *from, const char *to)
 {
     char *bytes;
@@ -82,8 +82,8 @@ static int add_file(const char *folder, const char *next, const struct revision_
     return status == 0 && kept != -ENOENT ? kept : status;
 }
 
-/* Returns whether the file still has the text that was read. Called last before the transaction, so that a later edit by a user is
- * unlikely. */
+/* Returns whether the file still has the text that was read (file->before). Called immediately before the transaction, so that an edit by a
+ * user in between is unlikely. */
 static bool is_as_read(const char *folder, const struct revision_file *file)
 {
     size_t bytes;

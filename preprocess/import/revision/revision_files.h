@@ -11,13 +11,14 @@
 
 struct revision_file {
     const char *name; /* name of the file in the folder, or its absolute path if it lies elsewhere */
-    /* path of the new file, inside the folder; NULL: the file does not change, but is saved for undo since others may change it */
+    /* path of the new file, inside the folder; NULL: the file does not change, but is saved for undo, because a later change by others must
+     * be detected */
     char *made;
     const char *before; /* text that the file had when it was read; NULL: not checked */
 };
 
-/* Saves the current files for undo, in place of the last saved ones, then replaces them in this order. `work` is a folder inside `folder`.
- * -ESTALE: a file differs from its `before` text; *changed receives its name, and nothing was done. */
+/* Saves the current files for undo, in place of those saved before, then replaces them in the order of the array. `work` is a folder inside
+ * `folder`. -ESTALE: a file differs from its `before` text; *changed receives its name, and nothing was done. */
 int revision_files_apply(const char *folder, const char *work, const struct revision_file *files, size_t count, const char **changed);
 
 /* Restores the files saved by the last revision. Appends the names of files that changed since to `changed`, separated by ", ". If there
