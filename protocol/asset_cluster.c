@@ -5,8 +5,8 @@
 
 #include "protocol/asset_format_impl.h"
 
-/* minimum cosine of a normal cone's half angle; wider cones are stored as "normals in all directions", because they hardly ever face
- * away entirely */
+/* minimum cosine of the half angle of a normal cone. Wider cones hardly ever face away from the eye entirely, so they are stored as
+ * "normals in all directions" */
 #define MIN_CONE_COSINE 0.1
 
 double asset_length(const float v[3])
@@ -14,7 +14,7 @@ double asset_length(const float v[3])
     return sqrt((double)v[0] * (double)v[0] + (double)v[1] * (double)v[1] + (double)v[2] * (double)v[2]);
 }
 
-/* Returns false for a triangle without area, which is invisible from all sides. */
+/* Computes the unit normal of a triangle. Returns false for a triangle without area, which is invisible from all sides. */
 static bool face_normal(const float (*positions_m)[3], const uint32_t v[3], double n[3])
 {
     double u[3], w[3];

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Geodesic distances as an asset file stores them: 16 bits each, in blocks of vertices, so that data used together is contiguous. A code
-   has 5 bits of exponent and 11 of fraction, like a half-precision float without sign, but for larger numbers: the relative error is at
-   most 2^-12 from 61 um to 131 km; below, the error is 15 nm. Layout: [block][sensor][ASSET_DISTANCE_BLOCK]. Thread: any. */
+   has 5 bits of exponent and 11 bits of fraction, like a half-precision float without sign, but for larger numbers: the relative error
+   is at most 2^-12 from 61 um to 131 km; below 61 um the error is at most 15 nm. Layout: [block][sensor][ASSET_DISTANCE_BLOCK]. Thread:
+   any. */
 #ifndef PROTOCOL_ASSET_DISTANCE_H
 #define PROTOCOL_ASSET_DISTANCE_H
 #include <math.h>
@@ -11,12 +12,12 @@
 
 #include "protocol/asset_format.h"
 
-#define ASSET_DISTANCE_BLOCK 256u       /* vertices; the last block is padded with ASSET_DISTANCE_NONE */
+#define ASSET_DISTANCE_BLOCK 256u       /* number of vertices per block; the last block is padded with ASSET_DISTANCE_NONE */
 #define ASSET_DISTANCE_NONE 0xffffu     /* infinity: not reachable */
 #define ASSET_DISTANCE_MOST_M 130000.0f /* metres; longer distances are stored as this distance */
 
-/* Returns the distance of a code in metres; INFINITY for ASSET_DISTANCE_NONE. Always inlined, so that loops compiled for several processor
- * variants contain it. */
+/* Returns the distance in metres that a code encodes; INFINITY for ASSET_DISTANCE_NONE. Always inlined, so that a loop compiled for
+ * several processors does not call it. */
 static inline __attribute__((always_inline)) float asset_distance_of(uint16_t code)
 {
     uint32_t bits = (uint32_t)code << 12;
@@ -35,7 +36,7 @@ static inline uint16_t asset_distance_code(float distance_m)
     return distance_m <= 0x1p127f ? (uint16_t)(bits >> 12) : ASSET_DISTANCE_NONE;
 }
 
-/* Returns the number of codes for all distances of these sensors and vertices. */
+/* Returns the number of codes that store the distances of all vertices from all sensors. */
 static inline size_t asset_distance_count(size_t sensor_count, size_t vertex_count)
 {
     return sensor_count * ((vertex_count + ASSET_DISTANCE_BLOCK - 1) / ASSET_DISTANCE_BLOCK) * ASSET_DISTANCE_BLOCK;

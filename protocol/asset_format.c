@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Checks the bytes of an asset file and makes a view: pointers to its sections. */
+/* Checks the bytes of an asset file and makes a view: pointers to the file's sections. */
 #include "protocol/asset_format.h"
 
 #include <math.h>
@@ -208,7 +208,7 @@ static bool levels_good(struct format_check *c)
     return true;
 }
 
-/* Checks a cluster's box and cone: a box or cone that is too small would make culling leave holes in frames. */
+/* Checks a cluster's bounding box and normal cone. With a box or cone that is too small, culling would leave holes in frames. */
 static bool cluster_good(struct format_check *c, uint32_t number)
 {
     const struct asset_view *v = &c->view;
@@ -312,7 +312,7 @@ static bool materials_good(struct format_check *c)
     return true;
 }
 
-/* Checks sensors. Distances need no check, since every code is valid. */
+/* Checks the positions and indices of sensors. Their geodesic distances need no check, since every code is a valid distance. */
 static bool sensors_good(struct format_check *c)
 {
     const struct asset_view *v = &c->view;

@@ -11,13 +11,13 @@
 #define ASSET_VERSION 5u
 #define ASSET_ALIGN 64u
 #define ASSET_NO_TEXTURE UINT32_MAX
-#define ASSET_SECOND_MASK 0x1eu /* mask of the bits of asset_material.second that may be set: textures 1 to 4 */
+#define ASSET_SECOND_MASK 0x1eu /* mask of the bits that may be set in asset_material.second: bits 1 to 4, for textures 1 to 4 */
 
 enum asset_section {
-    ASSET_POSITIONS,        /* float[3] per vertex: asset frame (metres, Z up) minus header.origin_m */
+    ASSET_POSITIONS,        /* float[3] per vertex: position in metres, Z up, minus header.origin_m */
     ASSET_NORMALS,          /* float[3] per vertex, unit length */
     ASSET_TEXCOORDS,        /* float[2] per vertex; empty section: the asset has no textures */
-    ASSET_SECOND_TEXCOORDS, /* float[2] per vertex; empty section: no material uses a second set */
+    ASSET_SECOND_TEXCOORDS, /* float[2] per vertex; empty section: no material uses the second texture coordinates */
     ASSET_COLORS,           /* uint8[4] per vertex, linear RGBA; empty section: no vertex colours */
     ASSET_INDICES,          /* uint32 per corner */
     ASSET_PRIMITIVES,       /* struct asset_primitive */
@@ -25,15 +25,15 @@ enum asset_section {
     ASSET_CLUSTERS,         /* struct asset_cluster, primitive by primitive */
     ASSET_MATERIALS,        /* struct asset_material */
     ASSET_TEXTURES,         /* struct asset_texture */
-    ASSET_TEXELS,           /* RGBA8 texels, rows from the top, described by asset_texture */
-    ASSET_SENSORS,          /* struct asset_sensor, in the order of the tag list's rows for this asset */
-    ASSET_GEODESIC,         /* uint16[block][sensor][vertex of the block]: geodesic distances, see asset_distance.h */
+    ASSET_TEXELS,           /* RGBA8 texels of all textures, rows from the top, described by struct asset_texture */
+    ASSET_SENSORS,          /* struct asset_sensor for each sensor, in the order of the asset's rows in the tag list */
+    ASSET_GEODESIC,         /* uint16[block][sensor][vertex of the block]: geodesic distances as codes (asset_distance.h) */
     ASSET_NAMES,            /* strings, each ended by a 0 byte */
     ASSET_SECTION_COUNT
 };
 
 struct asset_section_entry {
-    uint64_t offset, bytes; /* offset in bytes from the start of the file */
+    uint64_t offset, bytes; /* offset from the start of the file, and size, in bytes */
 };
 
 struct asset_header {
@@ -41,32 +41,35 @@ struct asset_header {
     uint32_t version, header_bytes;
     uint64_t file_bytes;
     uint64_t checksum;  /* XXH3-64 of the file computed with this field set to 0 */
-    uint64_t key;       /* XXH3-64 of all inputs: model bytes, node pattern, units, sensor positions, the program's format version */
+    uint64_t key;       /* XXH3-64 of everything that the file was made from: model bytes, node pattern, units, sensor positions, the
+                           program's format version */
     double origin_m[3]; /* in the asset frame */
     float bounds_min_m[3], bounds_max_m[3]; /* bounding box of all positions, relative to origin_m */
     uint32_t vertex_count, index_count, primitive_count, level_count, material_count, texture_count, sensor_count, cluster_count;
     struct asset_section_entry sections[ASSET_SECTION_COUNT];
 };
 
-struct asset_primitive {               /* a run of triangles with one material, from one node of the model */
+struct asset_primitive {               /* a range of triangles with one material, from one node of the model */
     uint32_t first_index, index_count; /* range in ASSET_INDICES; index_count is a multiple of 3 */
     uint32_t material;
     uint32_t name; /* offset in ASSET_NAMES: the node's name */
 };
 
-struct asset_level { /* a level of detail: its primitives, and its vertex count; it uses the first vertices of the file */
+struct asset_level { /* a level of detail: its primitives and its number of vertices, which are the first vertices of the file */
     uint32_t first_primitive, primitive_count, vertex_count;
-    /* count of vertices that preparation added; they are the last of the level's vertices that the next coarser level does not use */
+    /* number of vertices that preparation added by subdivision: the last ones of those vertices that this level uses and the next
+       coarser level does not */
     uint32_t added_count;
-    float error_m; /* largest distance of the level's surface from the finest level's; 0 for the finest level */
+    float error_m; /* largest distance in metres of the level's surface from that of the finest level; 0 for the finest level */
 };
 
-/* Triangles of one primitive that are close together and have similar normals, so that they can be culled together. A primitive's clusters
-   are contiguous and cover all its indices; clusters are in the order of primitives. */
+/* Triangles of one primitive that are close together and have similar normals, so that they can be culled together. The clusters of a
+   primitive are contiguous and cover all its indices. Clusters are in the order of primitives. */
 struct asset_cluster {
     uint32_t first_index, index_count; /* range in ASSET_INDICES; index_count is a positive multiple of 3 */
     float low_m[3], high_m[3];         /* bounding box of its vertices */
-    float cone_axis[3], cone_cutoff;   /* normal cone, see asset_cluster_turned_away(); cutoff 1: normals in all directions */
+    float cone_axis[3], cone_cutoff;   /* normal cone for asset_cluster_turned_away(): axis and cutoff; cutoff 1: normals in all
+                                          directions */
 };
 
 enum asset_alpha { ASSET_ALPHA_OPAQUE, ASSET_ALPHA_MASK, ASSET_ALPHA_BLEND };
@@ -77,7 +80,7 @@ struct asset_material { /* glTF 2.0 metallic-roughness; factors linear */
     float emissive[3], alpha_cutoff;
     uint32_t base_color_texture, metallic_roughness_texture, normal_texture, occlusion_texture, emissive_texture; /* or ASSET_NO_TEXTURE */
     uint32_t alpha, double_sided, name;
-    /* bit n set: the n-th texture above (0: base colour) uses the second texture coordinates; bit 0 is never set */
+    /* bit n set: the n-th of the five textures above (0: base colour) uses the second texture coordinates; bit 0 is never set */
     uint32_t second;
 };
 
@@ -87,11 +90,11 @@ struct asset_texture {
 };
 
 struct asset_sensor {
-    float position_m[3];      /* configured position, or that of the configured model node; relative to origin_m */
-    float surface_m[3];       /* nearest point of the surface, relative to origin_m */
+    float position_m[3];      /* position as configured, or that of the configured model node; relative to header.origin_m */
+    float surface_m[3];       /* point of the surface nearest to position_m, relative to header.origin_m */
     float surface_distance_m; /* distance between both */
     uint32_t nearest_vertex;
-    uint64_t node_hash; /* XXH3-64 of the node name that gave the position; 0: the position was configured as X, Y, Z */
+    uint64_t node_hash; /* XXH3-64 of the name of the model node that gave the position; 0: the position was configured as X, Y, Z */
 };
 
 /* A checked asset file in memory. Its pointers point into the bytes, which must outlive the view. */
@@ -114,18 +117,18 @@ struct asset_view {
     const char *names;
 };
 
-/* Checks an asset file completely (magic, version, size, checksum, section bounds, every index, finiteness) and makes a view. bytes must be
- * aligned to ASSET_ALIGN and outlive the view. Returns false if the file is invalid, with the reason in `why`. */
+/* Checks an asset file completely (magic, version, size, checksum, section bounds, every index, finiteness) and makes a view.
+ * bytes must be aligned to ASSET_ALIGN and outlive the view. Returns false if the file is invalid, with the reason in `why`. */
 bool asset_view_init(struct asset_view *view, const void *bytes, size_t size, char why[200]);
-/* Makes a view of bytes that asset_build() has just made: checks them like asset_view_init(), but not their checksum. */
+/* Like asset_view_init(), but does not check the checksum: for bytes that asset_build() has just made. */
 bool asset_view_fresh(struct asset_view *view, const void *bytes, size_t size, char why[200]);
 
 /* Computes the bounding box and the normal cone of a cluster from its triangles. */
 void asset_cluster_measure(struct asset_cluster *cluster, const float (*positions_m)[3], const uint32_t *indices);
-/* Returns whether an eye at eye_m (relative to origin_m) sees only back faces of the cluster. */
+/* Returns true if an eye at eye_m (relative to header.origin_m) sees only back faces of the cluster's triangles. */
 bool asset_cluster_turned_away(const struct asset_cluster *cluster, const float eye_m[3]);
 
-/* Contents of an asset file to build. The caller keeps ownership of all arrays. Zero-initialise. */
+/* Contents of an asset file that asset_build() shall make. The caller keeps ownership of all arrays. Zero-initialise. */
 struct asset_parts {
     uint64_t key;
     double origin_m[3];
@@ -143,9 +146,11 @@ struct asset_parts {
     const uint8_t *texels;
     const struct asset_sensor *sensors;
     const float *geodesic_m;                            /* [sensor * vertex_count + vertex] */
-    void (*write_geodesic)(void *arg, uint16_t *codes); /* writes the distances in place, as an alternative to geodesic_m */
+    void (*write_geodesic)(void *arg, uint16_t *codes); /* instead of geodesic_m: callback that writes the codes of the distances
+                                                           directly into the file's section */
     void *write_arg;
-    void *(*make_room)(void *arg, size_t bytes); /* allocates the bytes, aligned to ASSET_ALIGN. NULL: aligned_alloc() */
+    void *(*make_room)(void *arg, size_t bytes); /* callback that allocates the file's bytes, aligned to ASSET_ALIGN. NULL:
+                                                    aligned_alloc() */
     void *room_arg;
     const char *names; /* NULL: one empty name */
     uint32_t vertex_count, index_count, primitive_count, level_count, material_count, texture_count, sensor_count, cluster_count;

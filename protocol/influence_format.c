@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Checks the bytes of an influence file and makes a view: pointers to its arrays. */
+/* Checks the bytes of an influence file and makes a view: pointers to the file's arrays. */
 #include "protocol/influence_format.h"
 
 #include <math.h>
@@ -20,7 +20,7 @@ static bool entry_good(const struct influence_view *view, const struct influence
         return false;
     const double *precision = influence_array(view, entry->precision);
     const float *shares = influence_array(view, entry->shares);
-    bool good = true, open = entry->interpolation >= INFLUENCE_HEAT; /* distances and transport angles may be INFINITY */
+    bool good = true, open = entry->interpolation >= INFLUENCE_HEAT; /* distances and transport angles may be INFINITY, weights may not */
     for (uint64_t i = 0; i < sensors * sensors; i++)
         good &= isfinite(precision[i]);
     for (uint64_t i = 0; i < sensors * vertices; i++)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The legend strip's code: contents, and Reed-Solomon over GF(256) (polynomial 0x11d, first root alpha^0). */
+/* Encodes and decodes the legend strip's contents, with Reed-Solomon over GF(256) (polynomial 0x11d, first root alpha^0). */
 #include "protocol/strip_format.h"
 
 #include <math.h>
@@ -37,7 +37,7 @@ static uint8_t inverse(uint8_t a)
     return x;
 }
 
-/* Evaluates a polynomial, lowest coefficient first. */
+/* Evaluates a polynomial of `count` coefficients over GF(256) at x; polynomial[0] is the constant term. */
 static uint8_t value_at(const uint8_t *polynomial, int count, uint8_t x)
 {
     uint8_t sum = 0;
@@ -48,8 +48,8 @@ static uint8_t value_at(const uint8_t *polynomial, int count, uint8_t x)
 
 /* --- Reed-Solomon ------------------------------------------------------------------------------------------------------------- */
 
-/* Computes the parity bytes: the remainder of the contents divided by the generator polynomial. code[0] is the coefficient of the highest
- * power. */
+/* Computes the parity bytes: the remainder when the contents, as a polynomial, are divided by the generator polynomial. code[0] is the
+ * coefficient of the highest power. */
 static void add_parity(uint8_t code[STRIP_BYTES])
 {
     uint8_t generator[STRIP_PARITY + 1] = { 1 }, rest[STRIP_PARITY] = { 0 }; /* highest coefficient first */
@@ -79,7 +79,7 @@ static bool find_syndromes(const uint8_t code[STRIP_BYTES], uint8_t syndromes[ST
     return wrong;
 }
 
-/* Berlekamp-Massey: finds the polynomial whose roots are the error positions. Returns its degree. */
+/* Finds the error locator, the polynomial whose roots give the positions of wrong bytes (Berlekamp-Massey). Returns its degree. */
 static int find_locator(const uint8_t syndromes[STRIP_PARITY], uint8_t locator[STRIP_PARITY + 1])
 {
     uint8_t before[STRIP_PARITY + 1] = { 1 }, kept[STRIP_PARITY + 1], last = 1;
@@ -110,7 +110,7 @@ static int find_locator(const uint8_t syndromes[STRIP_PARITY], uint8_t locator[S
     return degree;
 }
 
-/* Corrects errors in the code. Returns the number of corrected bytes; -1: too many errors; the code may then be changed. */
+/* Corrects wrong bytes in the code. Returns their number; -1: too many are wrong, and the code may have been changed. */
 static int correct_errors(uint8_t code[STRIP_BYTES])
 {
     uint8_t syndromes[STRIP_PARITY], locator[STRIP_PARITY + 1], evaluator[STRIP_PARITY] = { 0 }, slope[STRIP_PARITY] = { 0 };
@@ -167,7 +167,7 @@ static float get_float(const uint8_t *from)
     return value;
 }
 
-/* Copies as much of the text as fits, in whole UTF-8 characters. */
+/* Copies as much of the text as fits into `room` bytes, in whole UTF-8 characters. */
 static void put_text(uint8_t *to, int room, const char *text)
 {
     int length = (int)strnlen(text, (size_t)room + 1);

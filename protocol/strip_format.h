@@ -1,20 +1,21 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The legend strip: rows of cells along a picture's lower edge, from which programs read which value a colour means, also after JPEG
-   compression or from a screenshot. Layout and code: PROTOCOL.md, *Legend strip*. Pure. Thread: any. */
+/* The legend strip: rows of coloured cells along a picture's lower edge. From them programs read which value a colour means, also after
+   JPEG compression or from a screenshot. Layout and code: PROTOCOL.md, *Legend strip*. Pure. Thread: any. */
 #ifndef PROTOCOL_STRIP_FORMAT_H
 #define PROTOCOL_STRIP_FORMAT_H
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Sizes in cells. At the left and right end is a finder, a pattern by which programs find the strip: dark and light columns (1, 1, 3, 1, 1
- * between light ones). Between the finders are three rows of colours, each two cells high and in a different brightness, then the rows of
- * the code. A light row is above all rows and one below. */
+/* Sizes in cells. At the left and right end is a finder, a pattern of columns by which programs find the strip: dark, light, dark,
+ * light, dark columns 1, 1, 3, 1, 1 cells wide, between light ones. Between the finders are three rows of colours, each two cells high
+ * and in a different brightness, then the rows of the code. A light row is above all these rows and one is below. */
 enum { STRIP_COLUMNS = 200, STRIP_FINDER = 9, STRIP_INNER = STRIP_COLUMNS - 2 * STRIP_FINDER };
 enum { STRIP_SHADES = 3, STRIP_SHADE_CELLS = 2, STRIP_CODE_ROWS = 3, STRIP_ROWS = 2 + STRIP_SHADES * STRIP_SHADE_CELLS + STRIP_CODE_ROWS };
-/* count of colour columns beyond each end of the range (STRIP_BEYOND), and within the range (STRIP_RAMP) */
+/* STRIP_BEYOND: number of columns that show the colour beyond each end of the range; STRIP_RAMP: number of columns within the range */
 enum { STRIP_BEYOND = 4, STRIP_RAMP = STRIP_INNER - 2 * STRIP_BEYOND };
 enum { STRIP_LEAST_PX = 3 }; /* smallest size of a cell */
-/* The code: STRIP_DATA bytes of contents, then STRIP_PARITY bytes of Reed-Solomon, which can correct up to STRIP_PARITY / 2 wrong bytes. */
+/* Sizes of the code in bytes: STRIP_DATA of contents, then STRIP_PARITY of Reed-Solomon parity, which can correct up to STRIP_PARITY / 2
+   wrong bytes. */
 enum { STRIP_DATA = 44, STRIP_PARITY = 24, STRIP_BYTES = STRIP_DATA + STRIP_PARITY };
 enum { STRIP_GROUP = 22, STRIP_UNIT = 10 };
 
@@ -25,16 +26,16 @@ struct strip {
     char group[STRIP_GROUP + 1], unit[STRIP_UNIT + 1]; /* truncated between characters if longer */
 };
 
-/* Returns whether a column of the finder is dark; column: 0..STRIP_FINDER - 1 (the right finder is mirrored). */
+/* Returns true if a column of the left finder is dark; column: 0..STRIP_FINDER - 1. The right finder is its mirror image. */
 bool strip_finder_dark(int column);
 /* Writes contents and parity. */
 void strip_encode(const struct strip *strip, uint8_t code[STRIP_BYTES]);
 /* Reads a code and corrects errors. *mended receives the number of corrected bytes. Returns false if there are too many errors, the version
  * differs, or the contents are invalid. */
 bool strip_decode(const uint8_t code[STRIP_BYTES], struct strip *strip, int *mended);
-/* Returns whether a cell of the code is dark; row: 0..STRIP_CODE_ROWS - 1, column: 0..STRIP_INNER - 1. */
+/* Returns true if a cell of the code is dark; row: 0..STRIP_CODE_ROWS - 1, column: 0..STRIP_INNER - 1. */
 bool strip_cell_dark(const uint8_t code[STRIP_BYTES], int row, int column);
-/* Sets the bit of one cell of a code; the code must be zeroed before the first call. */
+/* Sets the bit of the code that a cell shows. The code must be zeroed before the first call. */
 void strip_set_cell(uint8_t code[STRIP_BYTES], int row, int column, bool dark);
 
 #endif

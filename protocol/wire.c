@@ -92,7 +92,8 @@ static bool rectangle_valid(const struct wire_frame *frame)
            frame->y_px + frame->height_px <= frame->full_height_px;
 }
 
-/* Reads the field of view and the height. In perspective the height is reserved and may have any value. */
+/* Reads the field of view and the height of an orthographic picture. For a perspective picture the height is reserved and may have any
+   value. Returns false if either is out of range. */
 static bool get_lens(const uint8_t **at, struct wire_frame *frame)
 {
     frame->fov_deg = get_f32(at);

@@ -8,7 +8,7 @@
 
 #define WIRE_SUBPROTOCOL "plantcast.v1"
 #define WIRE_FRAME_HEADER_BYTES 112u
-#define WIRE_MAX_MESSAGE_BYTES 65536u /* bytes of the largest text message that a client may send */
+#define WIRE_MAX_MESSAGE_BYTES 65536u /* largest text message in bytes that a client may send */
 #define WIRE_MAX_FRAME_PX 8192u       /* largest width or height */
 #define WIRE_MAX_PAYLOAD_BYTES (64u * 1024 * 1024)
 #define WIRE_NO_AGE UINT32_MAX
@@ -25,20 +25,20 @@ enum wire_flags {
     WIRE_FLAG_SIGNED = 64,
 };
 
-struct wire_frame { /* frame header; members are in the order of the bytes on the wire */
+struct wire_frame { /* header of a frame; the members are in the order of the bytes on the wire */
     uint8_t type, codec;
     uint16_t flags;
     uint32_t payload_bytes;
     uint32_t seq;
-    uint32_t camera_seq, params_seq;     /* sequence numbers of the client's newest camera and parameters that this frame shows */
+    uint32_t camera_seq, params_seq;     /* sequence numbers of the newest camera and parameters of the client that this frame shows */
     uint32_t oldest_age_ms;              /* age of the oldest reading that the frame shows; WIRE_NO_AGE: it shows no reading */
     uint64_t data_time_us, sent_time_us; /* UTC microseconds since 1970, by the server's clock */
-    /* microseconds: from the client's input to the start of rendering, then the duration of each stage */
+    /* durations in microseconds: from the client's input to the start of rendering, then of computing the field, rendering and encoding */
     uint32_t wait_us, field_us, render_us, encode_us;
-    uint16_t x_px, y_px, width_px, height_px; /* rectangle of the picture that the payload contains */
+    uint16_t x_px, y_px, width_px, height_px; /* rectangle of the view that the payload contains */
     uint16_t full_width_px, full_height_px;
-    float eye_m[3], target_m[3], up[3]; /* camera of this frame, in the plant frame */
-    float fov_deg;                      /* vertical field of view in degrees, 1..120; 0: orthographic, height_m applies */
+    float eye_m[3], target_m[3], up[3]; /* camera of this frame, in plant coordinates */
+    float fov_deg;                      /* vertical field of view in degrees, 1..120; 0: orthographic, and height_m applies */
     float height_m;                     /* height of the visible area of an orthographic picture, metres; 0: perspective */
 };
 
@@ -47,8 +47,7 @@ void wire_put_frame(const struct wire_frame *frame, uint8_t out[WIRE_FRAME_HEADE
 /* Reads the header of a message. bytes: the whole message, header and payload. Checks length, ranges and finiteness; accepts unknown flags.
    Returns false if the message is no frame of this protocol; *frame is then undefined. */
 bool wire_get_frame(const uint8_t *bytes, size_t count, struct wire_frame *frame);
-/* Returns whether a message that begins with this header and has `count` bytes in all is a frame that the server aborted, shorter than its
-   header says. */
+/* Returns true if a message of `count` bytes is a frame that the server aborted: it is shorter than the header in its first bytes says. */
 bool wire_is_given_up(const uint8_t bytes[WIRE_FRAME_HEADER_BYTES], size_t count);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Answers each connection with one line. It reads nothing from clients, so they cannot attack it. */
+/* Answers each connection with one line. It reads nothing from clients, so they cannot attack it through input. */
 #include "agent.h"
 
 #include <errno.h>
@@ -21,14 +21,14 @@ struct agent {
     struct thread thread;
     /* --- below: protected by thread.lock */
     struct agent_state state;
-    int64_t told_ns; /* monotonic time of the last agent_tell() */
+    int64_t told_ns; /* monotonic time of the last call of agent_tell() */
 };
 
 enum { PAUSE_MS = 100 };
 static const int64_t STATE_TIMEOUT_NS = 5 * NS_PER_S;
 
-/* Without readings the line gives weight 1 of 100: HAProxy then prefers other nodes, but if all nodes have lost the core, users still reach
-   a node, whose page shows that the core is lost. */
+/* Writes the line for the load balancer. If this daemon has no readings, the weight is 1 of 100: HAProxy then prefers other nodes. If
+   all nodes have lost the core, users still reach a node, whose page says that the core is lost. */
 static int print_line(const struct agent_state *state, char *line, size_t size)
 {
     int free_percent = state->busy_percent < 99 ? 100 - state->busy_percent : 1;
@@ -41,7 +41,8 @@ static void answer(struct agent *agent)
 {
     char line[64];
     int fd = accept4(agent->fd, NULL, NULL, SOCK_CLOEXEC | SOCK_NONBLOCK);
-    if (fd < 0) { /* accept() failed, for example for lack of descriptors: waits a little, so that the loop does not spin */
+    if (fd < 0) { /* accept() failed, for example for lack of descriptors: waits PAUSE_MS, so that the loop does not use the processor in
+                     vain */
         poll(&(struct pollfd){ .fd = agent->stop_fd, .events = POLLIN }, 1, PAUSE_MS);
         return;
     }
@@ -51,7 +52,7 @@ static void answer(struct agent *agent)
         state.has_core = false;
     pthread_mutex_unlock(&agent->thread.lock);
     int count = print_line(&state, line, sizeof(line));
-    (void)!send(fd, line, (size_t)count, MSG_NOSIGNAL); /* always fits into the buffer of a new socket */
+    (void)!send(fd, line, (size_t)count, MSG_NOSIGNAL); /* result ignored: the line always fits into the buffer of a new socket */
     close(fd);
 }
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tells a load balancer how much capacity this daemon has left: each connection to the port is sent one line of HAProxy's agent check
-   and then closed. Uses a thread of its own. */
+/* Tells a load balancer how much capacity this daemon has left. Each connection to the agent's port receives one line of HAProxy's agent
+   check and is closed. Uses a thread of its own. */
 #ifndef AGENT_H
 #define AGENT_H
 #include <stdbool.h>
@@ -10,14 +10,15 @@
 struct agent_state {
     int busy_percent; /* percentage of the render thread's time that is used */
     bool has_core;    /* readings arrive */
-    bool drains;      /* the daemon is being drained: it sends its sessions to other daemons */
+    bool drains;      /* true: the daemon is being drained (it sends its sessions to other daemons) */
 };
 
 struct agent;
-/* Starts the thread. Returns NULL if the port cannot be bound or the thread cannot start (logged). address: numeric. */
+/* Starts the thread. address: numeric address to listen on. Returns NULL if the port cannot be bound or the thread cannot start
+   (logged). */
 struct agent *agent_start(struct log *log, const char *address, int port);
 void agent_stop(struct agent **agent); /* &NULL is allowed; sets *agent to NULL */
-/* Sets the state to report from now on. Any thread. */
+/* Sets the state that connections are told from now on. Thread: any. */
 void agent_tell(struct agent *agent, const struct agent_state *state);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Runs the programs of an import one after the other, as a user would run them by hand. */
+/* Runs the programs of an import one after the other, as a user would from the command line. */
 #include "import_job.h"
 
 #include <inttypes.h>
@@ -16,7 +16,8 @@
 #include "plant/plant_folder.h"
 #include "sibling.h"
 
-enum { FILES = 3, MAX_ARGUMENTS = 300, OWN_MB = 512 /* memory in MB of plantcast-import itself, without its readers */ };
+enum { FILES = 3, MAX_ARGUMENTS = 300, OWN_MB = 512 /* memory limit in MB of plantcast-import itself, without the processes that read
+                                                       files for it */ };
 static const size_t max_bytes = (size_t)256 << 20;
 
 struct texts {
@@ -26,10 +27,11 @@ struct texts {
 struct import_job {
     struct import_job_params params;
     char *folder, *paths[FILES];
-    struct texts first, read, last; /* the files' contents at the beginning, after the models were read, and after the tags were matched */
-    ino_t revision;                 /* inode of the newest revision before the import; 0: there was none */
+    struct texts first, read, last; /* contents of the files at three times: at the beginning, after the models were read, and after the
+                                       tags were matched */
+    ino_t revision;                 /* inode of the newest revision folder before the import (find_revision()); 0: there was none */
     bool prepares;                  /* preparing the models was begun */
-    bool undoes;                    /* an undo is running; params.stop is ignored meanwhile */
+    bool undoes;                    /* true: an undo is running, which params.stop does not end */
 };
 
 struct arguments {
@@ -53,8 +55,8 @@ static void forget(struct texts *texts)
         mem_free(texts->at[i]);
 }
 
-/* Returns the inode of the folder in which plantcast import keeps the previous files; 0: there is none. A new revision is created next
-   to the old one, so its inode differs. */
+/* Returns the inode of the folder in which plantcast import keeps the previous files (the revision); 0: there is none. A new revision is
+   created before the old one is removed, so its inode differs. */
 static ino_t find_revision(const struct import_job *job, const char *name)
 {
     struct stat st;
@@ -98,7 +100,8 @@ static void add(struct arguments *list, const char *argument)
         list->at[list->count++] = argument;
 }
 
-/* Adds an exported file to the arguments. A symlink is resolved, because files that the model needs are in the folder of the real file. */
+/* Adds an exported file to the program's arguments. A symlink is resolved, because the files that a model refers to are in the folder of
+   the real file. */
 static void add_export(struct arguments *list, const struct import_job *job, const char *name)
 {
     char real[PATH_MAX], *path = mem_printf("%s/%s", plant_import_exports(job->params.import), name);
@@ -120,7 +123,7 @@ static bool stop(void *arg)
     return !job->undoes && job->params.stop(job->params.arg);
 }
 
-/* Discards the output of preparing, which is meant for manual tuning. */
+/* Callback for the output of plantcast-prep: discards it, because it only helps to tune preparation by hand. */
 static void say_nothing(void *arg, const char *text)
 {
     (void)arg;
@@ -155,14 +158,14 @@ static void add_limit(struct arguments *list, const char *option, int64_t limit)
     add(list, list->own[list->owned++]);
 }
 
-/* Adds the limits of each process that reads a file; run() limits these processes together. */
+/* Adds options that limit each process that reads a file; run() limits all these processes together. */
 static void add_limits(struct arguments *list, const struct import_job *job)
 {
     add_limit(list, "--timeout", job->params.quotas->at[QUOTA_IMPORT_S]);
     add_limit(list, "--memory", job->params.quotas->at[QUOTA_IMPORT_MB]);
 }
 
-/* Adds the option by which a program knows that this daemon has locked the plant's folder for it. */
+/* Adds the option that tells a program that this daemon has locked the plant's folder for it, and lends it the lock. */
 static void add_lent(struct arguments *list)
 {
     list->own[list->owned] = mem_printf("%d", SIBLING_LENT);
@@ -178,8 +181,8 @@ static void add_option(struct arguments *list, const char *option, const char *v
     }
 }
 
-/* Reads the models. Returns NULL on success, else an error message (free with mem_free()). *remark: the models that could not be read, if
-   only some could (mem_free). */
+/* Reads the models. Returns NULL on success, else an error message (free with mem_free()). If only some models could be read, *remark
+   receives the names of the others (mem_free). */
 static char *read_models(struct import_job *job, const struct import_order *order, const struct export_list *exports, char **remark)
 {
     struct arguments list = { 0 };
@@ -213,7 +216,7 @@ static void add_source(struct arguments *list, const struct import_source *sourc
     add_option(list, "--address-base", source->base);
 }
 
-/* Returns the file name of the exported tag list; NULL: there is none. */
+/* Returns the file name of the tag list in the exports folder; NULL: there is none. */
 static const char *find_tags(const struct export_list *exports)
 {
     const char *tags = NULL;
@@ -262,7 +265,7 @@ char *import_job_run(struct import_job *job, const struct import_order *order, c
     struct export_list exports = { 0 };
     export_folder_list(plant_import_exports(job->params.import), &exports);
     char *why = NULL, *unread = NULL;
-    /* only plantcast match, which needs a tag list, writes the data source into a new plant file */
+    /* not possible: the data source is written into a new plant file by plantcast match alone, which needs a tag list */
     if (order->anew && *order->source.host && !find_tags(&exports))
         why = mem_printf("the plant's source %s would be lost: there is no tag list among the exports; add it first", order->source.host);
     else if (order->models)
@@ -292,7 +295,7 @@ static bool same(const char *a, const char *b)
     return a && b ? !strcmp(a, b) : a == b;
 }
 
-/* Restores the earlier contents of those files that nobody changed after the programs of this import. */
+/* Restores the earlier contents of the files, except those that another program changed after the programs of this import. */
 static void put_texts(const struct import_job *job, const struct texts *texts)
 {
     struct texts now = { 0 };
@@ -307,8 +310,8 @@ static void put_texts(const struct import_job *job, const struct texts *texts)
     forget(&now);
 }
 
-/* Returns whether there is a newer revision than at the beginning. A revision counts even if the program that wrote it was killed while
-   replacing files: the next program completes it. */
+/* Returns true if there is a newer revision (folder with the previous files) than at the beginning. It counts even if the program that
+   wrote it was killed while replacing files: the next program completes the replacement. */
 static bool has_revised(const struct import_job *job)
 {
     ino_t now = find_revision(job, ".revision");

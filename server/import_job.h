@@ -9,23 +9,24 @@ struct import_job_params {
     struct plant_import *import;
     const char *plant_path, *tags_path;
     const char *prepared;        /* folder of prepared assets */
-    int lock;                    /* descriptor of the lock on the plant's folder, which is lent to the programs */
+    int lock;                    /* descriptor of the lock on the plant's folder; it is lent to the programs */
     const struct quotas *quotas; /* resource limits of the programs */
-    bool (*stop)(void *arg);     /* returns whether the import must end */
+    bool (*stop)(void *arg);     /* callback; true: the import must end */
     void *arg;
 };
 
 struct import_job;
-/* Stores the present plant file, tag list and matches, and the last revision of the models, for an undo. params itself need not outlive
-   the call, but everything it points to must. */
+/* Stores what an undo needs: the present plant file, tag list and matches, and the identity of the newest revision of the models.
+   `params` itself need not outlive the call, but everything that its members point to must. */
 struct import_job *import_job_begin(const struct import_job_params *params);
-/* Runs the programs. Returns NULL on success, else one line that says what went wrong (free with mem_free()). *remark: set if the models
-   are good but the tag list is not: what is wrong with the list (mem_free); the models can then be used without it. */
+/* Runs the programs. Returns NULL on success, else one line that says what went wrong (free with mem_free()). *remark is set if the
+   models are good and can be used but the tag list is faulty: it receives the fault of the list (mem_free). */
 char *import_job_run(struct import_job *job, const struct import_order *order, char **remark);
-/* If import_job_run() changed anything, restores all files, including the models. A file that another program saved meanwhile is renamed to
-   NAME.undone. params.stop does not end it. Returns NULL on success, else one line that says what went wrong (mem_free). */
+/* If import_job_run() changed anything, restores all files, including the models. A file that another program saved after the import
+   changed it is renamed to NAME.undone. params.stop does not end the undo. Returns NULL on success, else one line that says what went
+   wrong (mem_free). */
 char *import_job_undo(struct import_job *job);
-/* Returns whether preparing the models was begun. */
+/* Returns true if plantcast-prep, which prepares the models, was started. */
 bool import_job_prepares(const struct import_job *job);
 void import_job_end(struct import_job **job); /* sets *job to NULL */
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* plantcastd: reads a plant, renders it and serves it. This file: the command line. */
+/* Command line of plantcastd, which reads a plant, renders it and serves the pictures. */
 #include <arpa/inet.h>
 #include <getopt.h>
 #include <stdio.h>
@@ -278,7 +278,7 @@ static bool add_origin(struct access_params *access, const char *url)
     return true;
 }
 
-/* Handles an option on access. Returns -1 if the program continues, otherwise the exit code. */
+/* Handles a command-line option about access. Returns -1 if the program continues, otherwise the exit code. */
 static int take_access_option(int option, struct access_params *access)
 {
     switch (option) {
@@ -299,7 +299,7 @@ static int take_access_option(int option, struct access_params *access)
     }
 }
 
-/* Handles an option on the audit trail. Returns -1 if the program continues, otherwise the exit code. */
+/* Handles a command-line option about the audit trail. Returns -1 if the program continues, otherwise the exit code. */
 static int take_audit_option(int option, struct server_params *params)
 {
     struct audit_params *audit = &params->audit;
@@ -338,7 +338,7 @@ static bool add_core(struct server_params *params, const char *url)
     return true;
 }
 
-/* Handles an option on the daemon's role. Returns -1 if the program continues, otherwise the exit code. */
+/* Handles a command-line option about the daemon's role. Returns -1 if the program continues, otherwise the exit code. */
 static int take_role_option(int option, struct server_params *params)
 {
     switch (option) {
@@ -352,7 +352,7 @@ static int take_role_option(int option, struct server_params *params)
     }
 }
 
-/* Checks that the options on the role fit together. Returns NULL if they do, else what is wrong. */
+/* Checks that the command-line options about the role fit together. Returns NULL if they do, else what is wrong. */
 static const char *role_wrong(const struct server_params *params)
 {
     bool render = params->role == SERVER_RENDER;
@@ -367,7 +367,8 @@ static const char *role_wrong(const struct server_params *params)
     return NULL;
 }
 
-/* Handles any option. Returns -1 if the program continues, otherwise the exit code. */
+/* Handles any command-line option. Returns -1 if the program continues, otherwise the exit code. *task receives what the program does
+   instead of serving, if the option asks for that. */
 static int take_option(int option, struct server_params *params, int (**task)(const struct server_params *params))
 {
     int megabytes;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The parts of the daemon that depend on the plant: creates, starts, hands over and ends them. */
+/* Creates, starts, hands over and ends the parts of the daemon that depend on the plant. */
 #include "plant_runtime.h"
 
 #include <string.h>
@@ -70,7 +70,7 @@ struct plant_runtime *plant_runtime_read(const struct plant_runtime_context *con
 
 /* --- life cycle ----------------------------------------------------------------------------------------------------------- */
 
-/* Returns whether another daemon owns the alarms and polls the devices. */
+/* Returns true if another daemon polls the devices and owns the alarms. */
 static bool follows(const struct plant_runtime *runtime)
 {
     return runtime->context->params->role == SERVER_RENDER || *runtime->context->follows;
@@ -136,7 +136,7 @@ static bool start_other_plants(struct plant_runtime *runtime)
            (runtime->other_plants = other_plants_start(runtime->context->log, runtime->plant));
 }
 
-/* Creates the service that places sensors, from data loaded already; it does no work until a session uses it. */
+/* Creates the service for placing sensors from data that is already loaded; it starts no work before a session uses it. */
 static void start_placing(struct plant_runtime *runtime)
 {
     const struct plant_runtime_context *context = runtime->context;
@@ -169,7 +169,7 @@ bool plant_runtime_start_recording(struct plant_runtime *runtime, struct plant_r
 {
     if (before)
         store_adopt(runtime->store, before->store);
-    if (!before) /* after a reload the event loop opens these lists at the switch, because sessions change the files until then */
+    if (!before) /* after a reload, sessions change these files until the switch, so the event loop opens them at the switch */
         plant_runtime_open_lists(runtime);
     if (runtime->history)
         runtime->loop_checks = loop_checks_open(runtime->context->log, runtime->plant, runtime->history);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The thread that reloads the plant: reads it, compares it with the old one, and switches. */
+/* The thread that reloads the plant: reads it again, compares it with the old one, and switches the daemon to it. */
 #include "reload.h"
 
 #include <jansson.h>
@@ -20,7 +20,7 @@
 #include "sibling.h"
 
 enum { MAX_FIRST_VIEWS = 16 }; /* maximum number of views that are drawn with the new plant before the switch */
-enum { WAIT_MS = 3000 };       /* maximum wait in milliseconds for another program that changes the plant's folder */
+enum { WAIT_MS = 3000 };       /* maximum wait in milliseconds until another program has finished changing the plant's folder */
 
 struct reload {
     const struct plant_runtime_context *context;
@@ -28,14 +28,14 @@ struct reload {
     struct net *net;
     struct supervision *supervision;
     struct plant_import *import;   /* NULL: import is off */
-    int64_t begun_ns;              /* monotonic start of the running reload */
+    int64_t begun_ns;              /* monotonic time when the running reload was begun */
     char by[TOKEN_NAME_BYTES];     /* user who asked for the running reload */
-    const struct tag_save *saving; /* tag list that the running reload installs; NULL: none */
-    const char *kept;              /* content of the tag list before it was replaced */
-    struct refusal refusal;        /* why the tag list was not written; REFUSAL_NONE: it was */
-    /* held while the runtime is replaced or takes the lead (becomes the core that polls devices), so that the two do not overlap */
+    const struct tag_save *saving; /* tag list that the running reload saves; NULL: none */
+    const char *kept;              /* path under which the previous version of the tag list is kept */
+    struct refusal refusal;        /* reason why the tag list was not saved; REFUSAL_NONE: it was */
+    /* held while the runtime is replaced, or takes the lead (becomes the core that polls devices): the two must not overlap */
     pthread_mutex_t put_lock;
-    struct thread leader; /* thread that takes the lead without waiting for a running reload. Protected by its lock: */
+    struct thread leader; /* thread that makes this core the leader without waiting for a running reload. Protected by its lock: */
     bool leads;
     struct thread thread;
     /* --- below: protected by thread.lock */
@@ -58,7 +58,7 @@ struct verdict {
     bool good;
     char *text;
     uint64_t client; /* id of the client that saved a tag list */
-    char *saved;     /* text for that client; NULL: no tag list was saved */
+    char *saved;     /* message for that client about the saved tag list; NULL: no tag list was saved */
 };
 
 static void say(void *arg)
@@ -69,7 +69,7 @@ static void say(void *arg)
         net_report_save(verdict->net, verdict->client, verdict->saved);
 }
 
-/* Returns the text for the client that saved a tag list. */
+/* Returns the message for the client that saved a tag list. */
 static char *saved_text(const struct reload *reload, bool good, const json_t *object)
 {
     json_t *said = json_pack("{s:s,s:I,s:b}", "type", "tags_saved", "seq", (json_int_t)reload->saving->seq, "saved", good);
@@ -95,7 +95,7 @@ static void record(const struct reload *reload, bool good, const json_t *object)
     mem_free(what);
 }
 
-/* Reports the reload's result to all clients that asked for a reload; takes ownership of the object. */
+/* Reports the reload's result to all clients that asked for it; takes ownership of `object`. */
 static void answer(struct reload *reload, bool good, json_t *object)
 {
     struct verdict verdict = { reload->net, good, NULL, 0, NULL };
@@ -157,7 +157,7 @@ static void look_at_views(void *arg)
     swap->first_count = net_views(swap->net, &plant, swap->first, MAX_FIRST_VIEWS);
 }
 
-/* Starts the new plant's render service while the old one still draws, so that the new one is quick from its first frame. */
+/* Starts the new plant's render service while the old one still draws, so that the new one's first frames come quickly. */
 static bool start_render_service(struct reload *reload, struct plant_runtime *after)
 {
     struct swap swap = { .net = reload->net, .after = after };
@@ -196,8 +196,8 @@ static void say_difference(struct reload *reload, const struct plant_diff *diff,
                      changes));
 }
 
-/* Switches to the new plant. The old sources end here, so there is no way back: if a thread of the new plant cannot be created, the daemon
-   ends. begun_ns: when the reload was asked for. */
+/* Switches the daemon to the new plant. The old plant's sources end in this function, so it cannot be undone: if a thread of the new
+   plant cannot be created, the daemon ends. begun_ns: when the reload was asked for. */
 static void put_in_force(struct reload *reload, struct plant_runtime *after, const struct plant_diff *diff, int64_t begun_ns)
 {
     struct plant_runtime *before = *reload->runtime;
@@ -228,7 +228,8 @@ static void put_in_force(struct reload *reload, struct plant_runtime *after, con
 
 /* --- the plant's folder ------------------------------------------------------------------------------------------------- */
 
-/* Locks the plant's folder. Returns a descriptor, or a negative number with the reason in *why (mem_free). */
+/* Locks the plant's folder against other programs. Returns a descriptor of the lock, or a negative number with the reason in *why
+   (mem_free). */
 static int lock_folder(const struct reload *reload, char **why)
 {
     char *folder = plant_folder_of(reload->context->params->plant_path), *cause = NULL;
@@ -240,7 +241,7 @@ static int lock_folder(const struct reload *reload, char **why)
     return lock;
 }
 
-/* Reloads the plant. Returns false if nothing has changed because of an error; the error was reported. */
+/* Reloads the plant. Returns false if an error left everything unchanged; the error was reported. */
 static bool reload_now(struct reload *reload)
 {
     struct diag diag = { 0 };
@@ -263,7 +264,7 @@ static bool reload_now(struct reload *reload)
     return good;
 }
 
-/* Reloads the plant once no other program is replacing its files. */
+/* Reloads the plant as soon as no other program is replacing its files; waits at most WAIT_MS. */
 static void reload_settled(struct reload *reload)
 {
     struct diag none = { 0 };
@@ -307,7 +308,7 @@ static void put_back(struct reload *reload, const struct tag_save *save, const c
     if (!tag_file_put_back(save, kept, &why))
         log_err(reload->context->log, "tag list: %s", why);
     else
-        prepare(reload); /* preparing is quick, because the earlier prepared files still exist */
+        prepare(reload); /* prepares again for the restored tag list; quick, because the earlier prepared files still exist */
     mem_free(why);
 }
 
@@ -351,12 +352,12 @@ static bool is_cancelled(void *arg)
     return plant_import_cancelled(reload->import) || is_stopping(reload);
 }
 
-/* Undoes a failed import. Takes ownership of the reason and returns it, extended by errors of the undo. */
+/* Undoes a failed import. Takes ownership of the reason `why` and returns it, extended by errors of the undo. */
 static char *undo_import(struct reload *reload, struct import_job *job, char *why)
 {
     char *worse = import_job_undo(job), *both = worse ? mem_printf("%s; and it cannot be undone: %s", why, worse) : NULL;
     if (!worse && import_job_prepares(job))
-        prepare(reload); /* preparing is quick, because the earlier prepared files still exist */
+        prepare(reload); /* prepares again for the restored files; quick, because the earlier prepared files still exist */
     if (both)
         mem_free(why);
     mem_free(worse);
@@ -377,7 +378,7 @@ static void record_import(const struct reload *reload, const struct import_order
                                                              .why = why });
 }
 
-/* Runs an import while the plant's folder is locked by this daemon, from the first program to the last. */
+/* Runs an import; this daemon has locked the plant's folder for all programs of the import. */
 static void import_locked(struct reload *reload, struct import_order *order, int lock)
 {
     const struct plant_runtime_context *context = reload->context;
@@ -391,7 +392,7 @@ static void import_locked(struct reload *reload, struct import_order *order, int
                                               .stop = is_cancelled,
                                               .arg = reload };
     struct import_job *job = import_job_begin(&params);
-    if (order->anew) /* the new plant file keeps the data source of the old one */
+    if (order->anew) /* a plant file made from scratch gets the data source of the present plant */
         order->source = import_source_of_plant((*reload->runtime)->plant);
     char *remark, *why = import_job_run(job, order, &remark);
     if (!why) {
@@ -548,7 +549,7 @@ void reload_lead(struct reload *reload)
 void reload_save(struct reload *reload, struct tag_save *save)
 {
     pthread_mutex_lock(&reload->thread.lock);
-    tag_save_free(reload->save); /* no earlier save can be pending here, because the event loop accepts only one at a time */
+    tag_save_free(reload->save); /* always NULL here in practice, because the event loop accepts only one save at a time */
     reload->save = save;
     pthread_cond_signal(&reload->thread.wake);
     pthread_mutex_unlock(&reload->thread.lock);

@@ -7,22 +7,22 @@
 #include "supervision.h"
 
 struct reload;
-/* Starts the reload thread, and a second one that can take the lead from another core. Each reload replaces *runtime. import NULL:
-   import is off. Returns NULL if a thread cannot start, already logged. */
+/* Starts the reload thread, and a second thread that can make this core the leader. Each reload replaces *runtime. import NULL: imports
+   are off. Returns NULL if a thread cannot start, already logged. */
 struct reload *reload_create(const struct plant_runtime_context *context, struct plant_runtime **runtime, struct net *net,
                              struct supervision *supervision, struct plant_import *import);
 /* Ends the threads; the event loop must have ended. &NULL is allowed; sets *reload to NULL. */
 void reload_destroy(struct reload **reload);
-/* Asks for a reload and does not wait; if one is running, another follows it. who: the user who asks, copied. Any thread. */
+/* Asks for a reload and does not wait; if a reload is running, another one follows it. who: the user who asks, copied. Thread: any. */
 void reload_ask(struct reload *reload, const char *who);
-/* Makes this core take the lead from the core that it followed, even while a reload is reading or preparing; does not wait. Any thread. */
+/* Makes this core take the lead from the core that it followed, even while a reload is reading or preparing; does not wait. Thread: any. */
 void reload_lead(struct reload *reload);
-/* Installs another tag list: the file replaces the tag list, plantcast-prep runs, and the plant is reloaded; if any of that fails, the old
-   list is restored. Takes ownership of save; one at a time. Any thread. */
+/* Saves another tag list: its file is replaced, plantcast-prep runs, and the plant is reloaded; if any of these steps fails, the old
+   list is restored. Takes ownership of `save`; one save at a time. Thread: any. */
 void reload_save(struct reload *reload, struct tag_save *save);
-/* Carries out the accepted import order (plant_import_order) on behalf of user `who`, and does not wait. Any thread. */
+/* Carries out the import order that plant_import_order() accepted, on behalf of user `who`, and does not wait. Thread: any. */
 void reload_import(struct reload *reload, const char *who);
-/* Sets the metric that says which configuration the daemon uses. */
+/* Sets the metric that shows the hash of the configuration in use. in_force: whether the daemon uses this configuration. */
 void reload_count(struct counters *counters, const char *hash, bool in_force);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Builds the daemon from its parts, runs it, and takes it down. */
+/* Creates the parts of the daemon, runs it, and destroys the parts again. */
 #include "server.h"
 
 #include <errno.h>
@@ -45,25 +45,25 @@ struct server {
     struct plant_runtime_context context;
     struct plant_runtime *runtime;
     struct reload *reload;
-    struct seat seat;            /* position of this core in a pair of cores */
-    struct lease_keeper *keeper; /* leadership lease of a core in a pair; NULL: this core is alone */
-    bool follows, lost;          /* follows: another core polls the devices; lost: this core had the lease and lost it */
-    bool divided;                /* child processes that read files get cgroups of their own */
+    struct seat seat;            /* unique identity of this core, among cores of the same name too (corelink/seat.h) */
+    struct lease_keeper *keeper; /* keeps the lease that decides which of two cores leads; NULL: this core is alone */
+    bool follows, lost;          /* follows: another core polls the devices; lost: this core had the lease to lead and lost it */
+    bool divided;                /* true: child processes that read files get cgroups of their own */
     struct supervision *supervision;
     struct agent *agent;             /* answers load balancers; NULL: off */
     struct signing_key *signing_key; /* NULL: pictures are not signed */
     struct audit *audit;             /* NULL: nothing is recorded */
     struct plant_import *import;     /* NULL: import is off */
-    pthread_mutex_t wake_lock;       /* held while the render thread wakes `net`, so that `net` is not destroyed meanwhile */
+    pthread_mutex_t wake_lock;       /* held while the render thread wakes the event loop, so that `net` is not destroyed in the meantime */
     struct net *net;
     char *web;        /* folder of the web client's files; NULL: none */
-    int64_t begun_ns; /* monotonic: when the daemon began to start */
+    int64_t begun_ns; /* monotonic time when the daemon began to start */
 };
 
 static struct net *_Atomic to_stop;
 static _Atomic bool preparing, told_to_end;
 
-/* Handles signals until the event loop runs. As process 1 of a container, the daemon would otherwise ignore signals without a handler. */
+/* Handles signals until the event loop runs: without a handler, a daemon that is process 1 of a container would ignore them. */
 static void on_early_signal(int number)
 {
     atomic_store(&told_to_end, true);
@@ -95,7 +95,8 @@ static void on_drain(int number)
     errno = cause;
 }
 
-/* Reloads the plant. The files of tokens and certificate are checked once a second in any case. */
+/* Handles SIGHUP: asks the event loop to reload the plant and to read the files of tokens and certificate again, which it otherwise
+   checks once a second. */
 static void on_hangup(int number)
 {
     (void)number;
@@ -166,7 +167,7 @@ static unsigned find_codecs(const struct server *server)
     return codecs;
 }
 
-/* Called in the event loop, which starts after server->reload was created. */
+/* Asks for a reload. Called in the event loop, which starts only after server->reload was created. */
 static void ask_reload(void *arg, const char *who)
 {
     reload_ask(((struct server *)arg)->reload, who);
@@ -242,15 +243,15 @@ static bool start_import(struct server *server)
     return server->import != NULL;
 }
 
-/* Sets the time zone of the clocks in pictures to the plant's. Call it while there is only one thread, because it changes the
-   environment. */
+/* Sets the time zone of the process, which clocks in pictures use, to the plant's. It changes the environment, so call it while there is
+   only one thread. */
 static void set_time_zone(const struct plant *plant)
 {
     setenv("TZ", plant->time_zone, 1);
     tzset();
 }
 
-/* Logs each line of the findings as one entry. */
+/* Logs each line of the findings as a log entry of its own. */
 static void log_findings(struct log *log, const struct diag *diag)
 {
     char *lines = NULL;
@@ -272,8 +273,8 @@ static bool is_told_to_end(void *arg)
     return atomic_load(&told_to_end);
 }
 
-/* Prepares the plant if the prepared files belong to another plant file or other models: the plant was imported and not prepared since.
-   Does nothing if the folder has no prepared files at all: it may be the wrong folder. */
+/* Prepares the plant if the prepared files belong to another plant file or other models, that is, if the plant was imported but not
+   prepared since. No-op if the folder has no prepared files at all, because it may be the wrong folder. */
 static bool prepare(struct server *server)
 {
     struct diag diag = { 0 };
@@ -300,7 +301,8 @@ static bool prepare(struct server *server)
     return good;
 }
 
-/* Waits until the plant file, models and tag list belong to one revision. */
+/* Waits until plant file, models and tag list belong to one revision, that is, until no import is replacing them. Returns false on
+   failure. */
 static bool settle_folder(struct server *server)
 {
     const char *finished = NULL;
@@ -316,7 +318,7 @@ static bool settle_folder(struct server *server)
     return settled;
 }
 
-/* Reads the plant; prints findings, errors and warnings. */
+/* Reads the plant; prints what it found, errors and warnings. Returns false on errors. */
 static bool read_plant(struct server *server)
 {
     struct diag diag = { 0 };
@@ -373,7 +375,7 @@ static bool load_signing_key(struct server *server)
     return true;
 }
 
-/* Called by the lease keeper's thread when this core becomes the leader. */
+/* Called by the lease keeper's thread when this core becomes the leader of the pair. */
 static void on_won(void *arg)
 {
     struct server *server = arg;
@@ -383,7 +385,8 @@ static void on_won(void *arg)
     pthread_mutex_unlock(&server->wake_lock);
 }
 
-/* Called when the lease is lost. The kernel ends the process if stopping takes too long. */
+/* Called by the lease keeper's thread when this core lost the lease: ends the daemon. The kernel ends the process if that takes too
+   long. */
 static void on_lost(void *arg)
 {
     struct server *server = arg;
@@ -406,7 +409,7 @@ static bool take_seat(struct server *server, char name[LEASE_NODE_BYTES])
     return good;
 }
 
-/* Creates the lease keeper. Each of two cores starts as a follower. */
+/* Creates the lease keeper of a core in a pair. Each of the two cores starts as a follower. Returns false on failure. */
 static bool make_keeper(struct server *server)
 {
     const struct plant *plant = server->runtime->plant;
@@ -471,7 +474,7 @@ static bool server_start(struct server *server)
            start_net(server) && (!server->keeper || lease_keeper_start(server->keeper));
 }
 
-/* Destroys the parts in the order consumers first, producers last. */
+/* Destroys the parts of the daemon, consumers before producers. */
 static void server_finish(struct server *server)
 {
     pthread_mutex_lock(&server->wake_lock);
@@ -486,7 +489,7 @@ static void server_finish(struct server *server)
     audit_stop(&server->audit);
     plant_import_destroy(&server->import);
     plant_runtime_destroy(&server->runtime);
-    lease_keeper_destroy(&server->keeper); /* releases the lease, as nothing polls devices any more */
+    lease_keeper_destroy(&server->keeper); /* gives the lease back; nothing polls devices any more */
     seat_leave(&server->seat);
     workers_destroy(&server->workers);
     supervision_destroy(&server->supervision);
@@ -540,7 +543,7 @@ int server_run(const struct server_params *params)
     server.divided = cgroup_divide();
     confine_hide_memory();
     signal(SIGPIPE, SIG_IGN);
-    signal(SIGXFSZ, SIG_IGN); /* a file that reached its size limit gives a write error, like a full disk */
+    signal(SIGXFSZ, SIG_IGN); /* without SIGXFSZ, a file that reached its size limit gives a write error like a full disk */
     handle_early_signals();
     bool good = server_start(&server);
     if (good) {
@@ -592,7 +595,7 @@ static int check_prepared(const struct server_params *params, const struct plant
     return status;
 }
 
-/* Counts the tags that are sensors. A plant without sensors is only a warning: they may be placed on the page. */
+/* Counts the tags that are sensors. A plant without sensors is only a warning, because users may place sensors on the page. */
 static size_t count_sensors(const struct plant *plant, struct diag *diag)
 {
     size_t count = 0;

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The daemon: builds the layers in order, serves, and takes them down again. */
+/* The daemon: creates its parts, serves until it is told to end, and destroys them again. */
 #ifndef SERVER_SERVER_H
 #define SERVER_SERVER_H
 #include "server_params.h"
 
-/* The functions return the exit code: 0 for success, 1 for any error, printed on stderr. */
+/* Each function returns the exit code: 0 for success, 1 for any error, which is printed on stderr. */
 int server_run(const struct server_params *params);       /* runs until SIGINT or SIGTERM */
 int server_check(const struct server_params *params);     /* reads everything, starts nothing */
-int server_dump_plan(const struct server_params *params); /* prints the requests that will be sent to field devices */
+int server_dump_plan(const struct server_params *params); /* prints the requests that the daemon would send to field devices */
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Starts a child process, applies its limits, and reads the two pipes that it prints to. */
+/* Starts another program as a child process, applies its limits, and reads what it prints to two pipes. */
 #include "sibling.h"
 
 #include <errno.h>
@@ -32,7 +32,7 @@ struct sibling {
     struct text written; /* output of the program on stderr */
     char *cgroup;        /* path of the program's cgroup; NULL: none */
     int64_t until_ns, kill_ns;
-    bool told, timed_out; /* the program was told to end: told: by the caller; timed_out: by the time limit */
+    bool told, timed_out; /* told: the caller told the program to end; timed_out: the time limit did */
 };
 
 static void close_end(int *fd)
@@ -42,12 +42,12 @@ static void close_end(int *fd)
     *fd = -1;
 }
 
-/* Applies the limits. The caller does so within a millisecond of the start, before the program has read any input. */
+/* Applies priority and memory limits. This happens within a millisecond of the start, before the program has read any input. */
 static void limit(struct sibling *sibling)
 {
     size_t bytes = sibling->params->memory_bytes;
     setpriority(PRIO_PROCESS, (id_t)sibling->child, 10);
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) /* the shadow memory of sanitizers counts as data, so no limit is set */
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) /* not under sanitizers, whose shadow memory would count as data */
     if (bytes > 0)
         prlimit(sibling->child, RLIMIT_DATA, &(struct rlimit){ bytes, bytes }, NULL);
 #endif
@@ -104,7 +104,7 @@ static void read_end(struct sibling *sibling, int which)
         text_add(&sibling->written, "%s", piece);
 }
 
-/* Tells the program to end when the caller or the time limit says so, and kills one that does not. */
+/* Tells the program to end when the caller asks for it or the time limit is over, and kills a program that does not end. */
 static void end_in_time(struct sibling *sibling)
 {
     int64_t now_ns = clock_mono_ns();
@@ -121,15 +121,15 @@ static void end_in_time(struct sibling *sibling)
     }
 }
 
-/* Reads the program's output and checks its limits now and then. Returns its exit status once it has ended; its pipes may still be held
-   open by other processes. */
+/* Reads the program's output and watches stop and time limit, until the program has ended. Returns its exit status. Other processes may
+   still hold its pipes open. */
 static int attend(struct sibling *sibling)
 {
     int status = 0;
     sibling->until_ns = clock_mono_ns() + sibling->params->timeout_s * NS_PER_S;
     for (bool ended = false; !ended;) {
         struct pollfd polled[PIPES] = { { sibling->ends[STDOUT][0], POLLIN, 0 }, { sibling->ends[STDERR][0], POLLIN, 0 } };
-        ended = waitpid(sibling->child, &status, WNOHANG) != 0; /* the program has ended; its last output is still read below */
+        ended = waitpid(sibling->child, &status, WNOHANG) != 0; /* true once the program has ended; its last output is then still read */
         int ready = poll(polled, PIPES, ended ? 0 : POLL_MS);
         for (int i = 0; i < PIPES && ready > 0; i++)
             if (polled[i].revents)

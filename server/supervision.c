@@ -14,9 +14,9 @@
 #include "commit.h"
 #include "version.h"
 
-/* interval between checks of the render thread, and minimum time between two watchdog messages */
+/* interval at which the render thread is checked, and minimum time between two watchdog messages */
 static const int64_t CHECK_INTERVAL_NS = 2 * NS_PER_S;
-enum { START_LIMIT_S = 600 }; /* maximum duration of one step of the start */
+enum { START_LIMIT_S = 600 }; /* seconds that one step of the daemon's start may take */
 
 struct supervision {
     struct log *log;
@@ -24,10 +24,11 @@ struct supervision {
     struct {
         counter *reload_good, *reloaded_s;
     } counters;
-    struct service_patience *patience; /* keeps the service manager waiting until the daemon is ready */
+    struct service_patience *patience; /* asks the service manager to wait until the daemon is ready */
     char *runtime;                     /* runtime folder of the service; NULL: there is none */
     int64_t watchdog_ns;               /* interval of the service manager's watchdog; 0: off */
-    _Atomic bool refused, reloaded;    /* refused: the last reload failed; reloaded: a reload has ended whose result was not reported yet */
+    _Atomic bool refused, reloaded;    /* refused: the last reload failed; reloaded: a reload has ended and its result was not yet
+                                          reported */
     /* --- below: used only by the event loop */
     int64_t looked_ns;
     bool ready, stuck, said_refused;
@@ -93,8 +94,8 @@ static void say_status(struct supervision *supervision, size_t sessions, bool la
                    lacks_standby ? "; no standby follows this core: the log says why" : "");
 }
 
-/* Feeds the watchdog from the event loop, and only while the render thread is alive too: if either hangs, the service manager restarts
-   the daemon. */
+/* Sends the watchdog message from the event loop, and only while the render thread is alive: if either hangs, the service manager
+   restarts the daemon. */
 static void look(struct supervision *supervision, struct render_service *render_service, int64_t now_ns)
 {
     bool stuck = render_service_is_stuck(render_service, now_ns);

@@ -120,8 +120,8 @@ static void queue(struct core_link *link, char *text)
     mem_free(text);
 }
 
-/* Packs an act (a user's forwarded action) into a message. Returns NULL if the message would be too long: the core would end the link
-   because of it. */
+/* Packs an act (a user's forwarded action) into a message. Returns NULL if the message would be too long, because the core would
+   then end the link. */
 static char *pack_act(const struct core_act *act, uint64_t id)
 {
     json_t *message = json_loads(act->text, 0, NULL);

@@ -25,10 +25,10 @@ struct core_link_params {
     int url_count;
     const char *token_path, *ca_path; /* token_path: token file, NULL: none; ca_path: file of trusted certificates, NULL: the system's */
     const char *version, *node;       /* version of this program; name of this renderer for the core's log */
-    struct lease_keeper *keeper;      /* of a standby core: makes the lease promises that the leader requests. NULL: this node is a
+    struct lease_keeper *keeper;      /* standby core only: makes the lease promises that the leader requests. NULL: this node is a
                                          renderer */
-    struct historian *historian;      /* of a standby core: records the leader's samples. NULL: nothing is recorded */
-    const char *folder;               /* of a standby core: folder in which the state of the leader's notifier is stored. NULL: not
+    struct historian *historian;      /* standby core only: records the leader's samples. NULL: nothing is recorded */
+    const char *folder;               /* standby core only: folder in which the state of the leader's notifier is stored. NULL: not
                                          stored */
     void (*notify)(void *arg);        /* called by the link's thread when core_link_collect() has new messages */
     void *notify_arg;

@@ -18,7 +18,8 @@ static const struct name names_action[] = { { "acknowledge", ALARM_ACKNOWLEDGE }
                                             { "in_service", ALARM_PUT_BACK },
                                             { NULL, 0 } };
 
-/* Returns the index of the tag with that name, or for ALARM_LINK (connection alarms) of the device with that name; -1: none. */
+/* Returns the index of the tag with that name; for ALARM_LINK (alarms about connections), the index of the device with that name; -1:
+   none. */
 static int find_named(const struct plant *plant, const char *name, enum alarm_kind kind)
 {
     if (kind != ALARM_LINK)

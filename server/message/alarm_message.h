@@ -7,8 +7,9 @@
 
 /* Parses the message into out->alarm. Returns false with *error saying what is wrong. */
 bool alarm_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
-/* Carries the request out for each alarm whose state allows it. who: the user's name, for the journal. Returns the answer, `alarmed`,
-   with the number of alarms changed and the reasons for refusing others; free with mem_free(). The caller must check the user's rights. */
+/* Carries the request out for each of its alarms whose state allows it. who: the user's name, for the journal. Returns the answer,
+   `alarmed`, with the number of alarms changed and the reasons for which the others were refused; free with mem_free(). The caller must
+   check the user's rights. */
 char *alarm_do(struct alarm_service *alarm_service, const struct plant *plant, const struct message *message, const char *who);
 
 #endif

@@ -7,34 +7,34 @@
 #include "base/text/text.h"
 #include "message/message.h"
 
-/* The last text, reused for the next session that needs the same text. Zero-initialise; end with alarm_text_cache_finish(). Thread: the
-   loop. */
+/* Cache of the newest message `alarms`, reused for each session that needs the same text. Zero-initialise; end with
+   alarm_text_cache_finish(). Thread: the loop. */
 struct alarm_text_cache {
     char *text;
     uint64_t since, number;
 };
 void alarm_text_cache_finish(struct alarm_text_cache *cache);
-/* Returns the message `alarms`: the changes with sequence numbers above *number (0: all alarms that are not normal). Sets *number to the
-   newest change's. cache NULL: the text is not cached. */
+/* Returns the message `alarms` with the alarms whose change number is greater than *number; *number 0: with all alarms that are not
+   normal. Sets *number to the newest change number. cache NULL: the text is not cached. */
 char *alarms_text(struct alarm_text_cache *cache, struct alarm_service *alarm_service, const struct plant *plant, int64_t now_utc_ns,
                   uint64_t *number);
 
-/* A query of /api/v1/alarms or /api/v1/alarms/journal. */
+/* A query of /api/v1/alarms or /api/v1/alarms/journal over HTTP. */
 struct alarm_query {
     bool csv;
     int limit;                         /* maximum number of rows */
-    int64_t offset;                    /* for alarms: number of rows to skip */
-    char tag[256];                     /* name of a tag or a device; "": all */
+    int64_t offset;                    /* for /api/v1/alarms: number of alarms to skip */
+    char tag[256];                     /* name of a tag or a device; empty: all */
     int64_t from_us, to_us, before_id; /* for the journal */
 };
-/* Parses decoded arguments such as `limit=100`, `format=csv`. journal: accepts the journal's arguments too. Returns false with *error
-   saying what is wrong. */
+/* Parses decoded arguments such as `limit=100`, `format=csv`. journal: also accepts the arguments of /api/v1/alarms/journal. Returns
+   false with *error saying what is wrong. */
 bool alarm_query_parse(const struct plant *plant, bool journal, const char *const *args, size_t count, int64_t now_us,
                        struct alarm_query *query, struct message_error *error);
 /* Returns the alarms that are not normal, as JSON or CSV. */
 char *alarms_api_text(struct alarm_service *alarm_service, const struct plant *plant, const struct alarm_query *query, int64_t now_utc_ns);
-/* Appends the rows of the journal that the query selects, as CSV if query->csv, else as JSON. Reads the disk; any thread. Returns false,
-   with *out emptied, if the journal cannot be read (logged). */
+/* Appends the rows of the journal that the query selects, as CSV if query->csv, else as JSON. Reads the disk. Returns false, with *out
+   emptied, if the journal cannot be read (logged). Thread: any. */
 bool alarms_journal_text(struct log *log, const char *folder, const struct alarm_query *query, struct text *out);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Cameras that frame an asset, a tag or the whole plant. */
+/* Cameras that show an asset, a tag or the whole plant, from the messages `camera` and `fit`. */
 #include "message/fit_message.h"
 
 #include <math.h>
@@ -36,7 +36,7 @@ void fit_apply(const struct scene *scene, const struct fit_message *fit, const s
     framing_look(scene, &fit->framing, (double)half.width_px / half.height_px, camera);
 }
 
-/* Returns the plant's initial camera in the form of a client's message. */
+/* Returns the plant's initial camera as the JSON of a `camera` message. */
 static json_t *camera_json(const struct camera *camera)
 {
     return json_pack("{s:o,s:o,s:o,s:f}", "eye", vector(camera->eye_m), "target", vector(camera->target_m), "up", vector(camera->up), "fov",
@@ -59,7 +59,8 @@ static json_t *given_json(const json_t *list, struct message_error *error)
     return camera;
 }
 
-/* Sets the camera of a view from the members of a query. lens: true: applies the members `projection` and `height_m`, too. */
+/* Sets the camera of a view from the members of a query. lens: true: also applies the members `projection` and `height_m`. Returns false
+   with *error naming the wrong member. */
 static bool parse_given(const json_t *o, bool lens, struct view *view, struct message_error *error)
 {
     const json_t *list = json_object_get(o, "camera"), *height = json_object_get(o, "height_m");
@@ -77,7 +78,7 @@ static bool parse_given(const json_t *o, bool lens, struct view *view, struct me
     return good;
 }
 
-/* Returns whether a query states a camera. */
+/* Returns true if a query has a member that states a camera. */
 static bool has_camera(const json_t *o)
 {
     return json_object_get(o, "camera") || json_object_get(o, "projection") || json_object_get(o, "height_m");

@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Checked members of a JSON object. Each reader returns false, with *error saying what was expected, if the member is wrong. Pure; any
-   thread. */
+/* Readers of checked members of a JSON object. Each returns false, with *error saying what was expected, if the member is wrong. Pure.
+   Thread: any. */
 #ifndef MESSAGE_JSON_FIELDS_H
 #define MESSAGE_JSON_FIELDS_H
 #include "message/message.h"
 #include "message/names.h"
 
-/* Names: need_...: a missing member is an error; may_...: a missing member leaves *out unchanged and returns true. *given, if not NULL,
-   receives whether the member was present. */
+/* Names of the readers: need_...: a missing member is an error; may_...: a missing member leaves *out unchanged and the reader returns
+   true. *given, if not NULL, receives whether the member was present. */
 bool need_number(const json_t *o, const char *name, double low, double high, double *out, struct message_error *error);
 bool may_number(const json_t *o, const char *name, double low, double high, double *out, bool *given, struct message_error *error);
-/* Reads "seq", an integer of 1..2^32-1. */
+/* Reads the member "seq", an integer of 1..2^32-1. */
 bool need_seq(const json_t *o, uint32_t *out, struct message_error *error);
 bool need_vector(const json_t *o, const char *name, double out[3], struct message_error *error);
 bool may_vector(const json_t *o, const char *name, double out[3], bool *given, struct message_error *error);
@@ -18,9 +18,10 @@ bool may_vector(const json_t *o, const char *name, double out[3], bool *given, s
 bool may_name(const json_t *o, const char *name, const struct name *names, int *out, bool *given, struct message_error *error);
 /* Reads a text of 1 to size - 1 printable ASCII characters. */
 bool may_text(const json_t *o, const char *name, char *out, size_t size, bool *given, struct message_error *error);
-/* Reads free text of less than `size` bytes without control characters (has_controls()). needed: the text must hold more than blanks. */
+/* Reads free text of less than `size` bytes without control characters (has_controls()). needed: a text that is empty or blank is an
+   error. */
 bool need_words(const json_t *o, const char *name, bool needed, char *out, size_t size, struct message_error *error);
-/* Returns whether the text has characters that would garble a line of text: control characters, and overrides of the writing direction. */
+/* Returns true if the text has characters that would garble a line of text: control characters, and overrides of the writing direction. */
 bool has_controls(const char *text);
 /* Copies a client's text into `out` for a log line or an answer: at most 40 bytes, control characters and invalid UTF-8 replaced by '?'.
    Returns `out`. */

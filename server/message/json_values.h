@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Values as messages write them. Each function returns a new JSON value, which the caller owns. Pure; any thread. */
+/* Numbers, texts and vectors as messages write them. Each function returns a new JSON value, which the caller owns. Pure. Thread: any. */
 #ifndef MESSAGE_JSON_VALUES_H
 #define MESSAGE_JSON_VALUES_H
 #include <jansson.h>
@@ -10,7 +10,7 @@ json_t *number(double value);
 json_t *string(const char *text);
 /* Returns an array of three numbers. */
 json_t *vector(const double v[3]);
-/* Returns an array of numbers; null if count is 0. */
+/* Returns an array of `count` numbers; null if count is 0. */
 json_t *number_list(const double *values, int count);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Loop checks: the result depends on the reading that arrives at this daemon, not on a value that a user enters. */
+/* Records loop checks. The result depends on the reading that arrives at this daemon, not on a value that a user enters. */
 #include "message/loop_check_message.h"
 
 #include <math.h>

@@ -53,7 +53,7 @@ static bool same_places(const struct frame *frame, const struct known_markers *k
     return true;
 }
 
-/* Returns the next label of isolines, or of arrows, at or after index *at; NULL: none. */
+/* Returns the next label of isolines (or of arrows) from index *at on, and advances *at; NULL: no more labels. */
 static const struct frame_label *next_label(const struct frame_label *labels, size_t count, size_t *at, bool arrow)
 {
     while (*at < count && labels[*at].arrow != arrow)
@@ -87,7 +87,7 @@ static json_t *all_markers(const struct frame *frame)
     return list;
 }
 
-/* Lists the values of the markers whose values changed, for a client that knows their positions. */
+/* Returns a list of those markers whose values changed, without positions, for a client that knows the positions. */
 static json_t *changed_values(const struct frame *frame, const struct known_markers *known)
 {
     json_t *list = json_array();
@@ -163,7 +163,7 @@ static void add_list(struct text *text, const char *name, const char *list)
     text_add_bytes(text, list, strlen(list));
 }
 
-/* Appends the markers that the client needs: all markers with positions, or only changed values if the client knows the positions. */
+/* Appends the markers that the client needs: all with their positions or, if the client knows the positions, only changed values. */
 static void add_markers(struct text *text, struct frame *frame, const struct known_markers *known, struct marker_text_cache *lists)
 {
     if (!same_places(frame, known)) {

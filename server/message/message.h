@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A client's message: JSON text parsed into a checked struct. The only place where clients' input is read and checked. Pure; any thread. */
+/* A client's message: its JSON text is parsed into a checked struct. No other code reads and checks clients' input. Pure. Thread: any. */
 #ifndef MESSAGE_MESSAGE_H
 #define MESSAGE_MESSAGE_H
 #include <jansson.h>
@@ -51,12 +51,13 @@ enum message_type {
     MESSAGE_SIGN
 };
 
-enum signed_frames { SIGNED_NONE, SIGNED_REFINED, SIGNED_ALL }; /* which frames of a session are signed */
+enum signed_frames { SIGNED_NONE, SIGNED_REFINED, SIGNED_ALL }; /* which frames of a session the server signs */
 
-/* RESUME_MOST_CHARS: maximum length of a resume token; it is long if it contains a view */
+/* RESUME_CHARS: length of a resume token (with which a client continues its session) without a view; RESUME_MOST_CHARS: largest length,
+   with a view */
 enum { TOKEN_MAX_CHARS = 128, RESUME_CHARS = 32, RESUME_MOST_CHARS = 8191 };
 
-enum params_given { /* bit mask of the members in a params message */
+enum params_given { /* bits: which members a params message has */
                     GIVEN_GROUP = 1 << 0,
                     GIVEN_INTERPOLATION = 1 << 1,
                     GIVEN_DISTANCE = 1 << 2,
@@ -94,13 +95,13 @@ enum baseline_change { BASELINE_STAYS, BASELINE_NONE, BASELINE_NAMED, BASELINE_N
 struct params_change {
     uint32_t seq;
     unsigned given;            /* bit mask of enum params_given */
-    struct field_params field; /* only those of the following members are set that `given` names */
+    struct field_params field; /* members from here on are set only if their bit is in `given` */
     int colormap;
     double ramp_interval;
     struct color_scale color_scale;
-    double isoline_step; /* distance between isolines, in the unit of the values; 0: color_scale lists the isolines */
+    double isoline_step; /* difference between neighbouring isolines, in the unit of the values; 0: color_scale lists the isolines */
     bool breaks_of_group, breaks_of_limits;
-    bool range_of_group; /* the message had `range: null`: use the group's range */
+    bool range_of_group; /* true: the message had `range: null`, which means the group's range */
     double range_min, range_max;
     enum look look;
     bool dark, strip;
@@ -109,9 +110,9 @@ struct params_change {
     double light_dir[3];
     int environment;
     int selected_asset;
-    /* with GIVEN_SENSORS: field.overrides lists the sensors that the message names. An omitted strength or decay is FIELD_AS_CONFIGURED; if
-       both are, the sensor's override is removed */
-    bool only_these_sensors; /* the message had `sensors: null`: all other overrides are removed */
+    /* if GIVEN_SENSORS is set, field.overrides has the sensors that the message names. FIELD_AS_CONFIGURED: strength or decay was
+       omitted; if both were, the sensor's override is removed */
+    bool only_these_sensors; /* true: the message had `sensors: null`, so all other overrides are removed */
     enum baseline_change baseline;
     char baseline_name[BASELINE_NAME_BYTES];
     struct visibility visibility;
@@ -129,31 +130,31 @@ struct split_change {
 
 struct pick_request {
     double x_px, y_px;
-    bool has_camera; /* true: `camera` is set; false: the pick refers to the newest camera */
+    bool has_camera; /* true: the pick is for `camera`; false: the pick is for the client's newest camera */
     struct camera camera;
 };
 
 enum { ALARM_REQUEST_MOST = 256 };
 struct alarm_request {
     int action;                          /* enum alarm_event */
-    int tags[ALARM_REQUEST_MOST], count; /* ALARM_LINK: index of a device (alarm/devices.h) */
-    uint8_t kinds[ALARM_REQUEST_MOST];   /* indices of tags; for ALARM_LINK of devices (alarm/devices.h) */
+    int tags[ALARM_REQUEST_MOST], count; /* indices of the tags; for ALARM_LINK, indices of devices (alarm/devices.h) */
+    uint8_t kinds[ALARM_REQUEST_MOST];   /* enum alarm_kind of each alarm, in the order of `tags` */
     double for_s;
     char reason[ALARM_REASON_BYTES], name[ALARM_NAME_BYTES - 24];
 };
 
 #define TIME_MOST_SPEED 3600
 struct time_request {
-    bool has_at;   /* true: at_us is set; false: play starts from the instant shown now */
+    bool has_at;   /* true: at_us is set; false: playback starts from the instant shown now */
     int64_t at_us; /* microseconds UTC; 0: the present */
-    double speed;  /* seconds of history per second of play; negative: backwards; 0: paused */
+    double speed;  /* seconds of history per second of playback; negative: backwards; 0: paused */
 };
 
 enum { CODEC_LIST_MOST = 4 };
-struct codec_list { /* codecs that a client decodes, in order of preference */
+struct codec_list { /* codecs that a client can decode, in order of preference */
     enum wire_codec at[CODEC_LIST_MOST];
     int count;
-    bool choose; /* true: the server may choose any of these codecs, and change its choice later */
+    bool choose; /* true: the server may choose any of these codecs, and change the choice later */
 };
 
 struct place_request {
@@ -162,14 +163,14 @@ struct place_request {
 };
 
 struct coverage_request {
-    int group;    /* index of the group; -1: the group that the view shows */
-    double far_m; /* metres beyond which a surface counts as uncovered; 0: the default */
+    int group;    /* index of the group; -1: the group shown in the view */
+    double far_m; /* metres from the nearest sensor beyond which a surface counts as uncovered; 0: the default */
 };
 
 struct loop_check_request {
     int tag;
     double expected, tolerance;
-    bool fail; /* true: the loop check is recorded as failed, whatever the value is */
+    bool fail; /* true: the loop check is recorded as failed, whatever the reading is */
     char remark[LOOP_CHECK_REMARK_BYTES];
 };
 
@@ -178,7 +179,7 @@ struct note_request {
     int tag, asset; /* index of the tag or asset to which the note is attached; -1: none */
     bool has_position;
     double position_m[3];
-    int64_t until_us; /* end of the note, microseconds UTC; 0: until it is removed */
+    int64_t until_us; /* time at which the note ends, microseconds UTC; 0: when a user removes it */
 };
 
 struct wall_request {
@@ -189,76 +190,80 @@ struct wall_request {
 };
 
 struct pair_request {
-    char digits[7], device[64]; /* pair: digits that the display shows; unpair: name of the device */
+    char digits[7], device[64]; /* pair: the digits that the display shows; unpair: name of the display's device */
 };
 
 struct message {
     enum message_type type;
-    int width_px, height_px;                                        /* hello, resize: size of the view; 0: as in the resumed session */
-    struct codec_list codecs;                                       /* hello, codecs; empty: as in the resumed session */
-    double pixel_ratio;                                             /* hello, resize: device pixels per page pixel; 0: not stated */
+    int width_px, height_px;                                        /* in hello and resize: size of the view; 0: as in the resumed
+                                                                       session */
+    struct codec_list codecs;                                       /* in hello and codecs: what the client can decode; empty: as in the
+                                                                       resumed session */
+    double pixel_ratio;                                             /* in hello and resize: device pixels per page pixel; 0: not stated */
     char token[TOKEN_MAX_CHARS + 1], resume[RESUME_MOST_CHARS + 1]; /* hello; "": none */
-    double idle_ms;                  /* hello: milliseconds since the user was last active; negative: not stated */
-    bool tokens;                     /* hello: the server sends the view as a token whenever it changes */
-    bool anew;                       /* hello: resume only the session's id and the sessions that follow it, not its view */
-    char named[NAMED_VIEW_ID_BYTES]; /* hello, look: id of a view in the plant file; hello: "": none */
+    double idle_ms;                  /* in hello: milliseconds since the user was last active; negative: not stated */
+    bool tokens;                     /* in hello: true: the server shall send the view as a token whenever it changes */
+    bool anew;                       /* in hello: true: resume only the session's id and the sessions that follow it, not its view */
+    char named[NAMED_VIEW_ID_BYTES]; /* in hello and look: id of a view in the plant file; empty (only in hello): none */
     bool has_camera, has_params;     /* hello */
     struct camera camera;            /* camera, hello */
-    uint32_t seq;                    /* sequence number in camera (hello: of its camera), ack, fit, pick, look */
+    uint32_t seq;                    /* sequence number in camera, ack, fit, pick and look; in hello that of its camera */
     struct params_change params;     /* params, hello */
     struct split_change split;       /* params, hello; applied after `params` */
     struct fit_message fit;
     struct pick_request pick;
     bool visible;
-    double decode_ms; /* ack: milliseconds for decoding; negative: not stated */
+    double decode_ms; /* in ack: milliseconds that the client needed for decoding; negative: not stated */
     double t;         /* ping */
-    bool active;      /* ping: the user was active since the last ping */
-    uint64_t follow;  /* follow, lead: id of a session; 0: none */
+    bool active;      /* in ping: true: the user was active since the last ping */
+    uint64_t follow;  /* in follow and lead: id of a session; 0: none */
     struct alarm_request alarm;
     struct time_request time; /* time, hello */
     struct place_request place;
     struct coverage_request coverage;
-    char confirm[17];             /* save_tags, accept_places, restore_tags: hash of the list that the user saw; "": none yet */
+    char confirm[17];             /* in save_tags, accept_places and restore_tags: hash of the tag list that the user saw and confirms;
+                                     empty: not confirmed yet */
     struct assumed_filter accept; /* accept_places */
-    char kept[65];                /* restore_tags: name of the stored version */
+    char kept[65];                /* in restore_tags: name of the stored version of the tag list */
     struct loop_check_request loop_check;
-    struct named_view_edit view_edit; /* save_view: all members; remove_view: only the id; send_to_wall: only view and title */
+    struct named_view_edit view_edit; /* save_view sets all members; remove_view only the id; send_to_wall only view and title */
     struct note_request note;         /* note, remove_note */
     struct wall_request wall;         /* display, send_to_wall, point */
     struct pair_request pair;         /* pair, unpair */
-    struct wall_place tile;           /* hello: the tile of one picture across many displays; display 0: none */
+    struct wall_place tile;           /* in hello: which tile this display shows of a picture across many displays; display 0: none */
     enum signed_frames signed_frames; /* hello, sign */
 };
 
-/* Reads a timestamp (timestamp.h) from the argument `name` into *out, in microseconds UTC. Returns false, with *error set, for any other
-   text. */
+/* Reads a timestamp (timestamp.h) from the text of the argument `name`; *out receives microseconds UTC. Returns false, with *error set,
+   if the text is no timestamp. */
 bool message_take_time(const char *name, const char *text, int64_t now_us, int64_t *out, struct message_error *error);
 
-/* Reads the members of a params message from an object that may have other members. Returns false with *error naming the wrong member. */
+/* Reads the members of a params message from an object, which may also have other members. Returns false with *error naming the wrong
+   member. */
 bool params_parse(const struct plant *plant, const json_t *object, struct params_change *out, struct message_error *error);
 struct params_context {
     const struct scene *scene;
     struct baselines *baselines;     /* NULL: no baselines here */
-    const struct snapshot *snapshot; /* readings that can be stored as a baseline; NULL: none */
+    const struct snapshot *snapshot; /* readings that the change may store as a baseline; NULL: none */
     int64_t now_us;                  /* UTC; for queries */
-    bool bare;                       /* for queries: the picture has no legend and no clock */
+    bool bare;                       /* for queries: true: the picture has no legend and no clock */
 };
-/* Applies a change to a view. If part of the change is wrong, returns false with *error and leaves the view unchanged. A change of the
-   group first resets the view to that group's settings. */
+/* Applies a change to a view. If part of the change is wrong, returns false with *error and leaves the view unchanged. If the group
+   changes, the view first gets that group's settings. */
 bool params_apply(const struct params_context *context, const struct params_change *change, struct view *view, struct message_error *error);
-/* Called by params_parse() and params_apply() for the members `show`, `sensor`, `baseline` and `sensors` (params_show.c). */
+/* For params_parse() and params_apply(): handle the members `show`, `sensor`, `baseline` and `sensors` (params_show.c). */
 bool params_parse_show(const struct plant *plant, const json_t *o, struct params_change *out, struct message_error *error);
 bool params_apply_show(const struct params_context *context, const struct params_change *change, const struct view *before,
                        struct view *view, struct message_error *error);
-/* Stores or removes the baseline that a change names. Called last, because it cannot be undone, after all checks of the change. */
+/* Stores or removes the baseline that a change names. Call it last, after all checks of the change, because it cannot be undone. */
 void params_apply_baseline(const struct params_context *context, const struct params_change *change, struct view *view);
-/* Called by params_parse() and params_apply() for the members `scale`, `breaks` and `isolines` (params_paint.c). */
+/* For params_parse() and params_apply(): handle the members `scale`, `breaks` and `isolines` (params_paint.c). */
 bool params_parse_paint(const json_t *o, struct params_change *out, struct message_error *error);
 bool params_apply_paint(const struct plant *plant, const struct params_change *change, struct view *view, struct message_error *error);
-/* Parse and apply `split`, the right half of a split view (params_split.c). */
+/* split_parse() and split_apply() handle the member `split`, which describes the right half of a split view (params_split.c). */
 bool split_parse(const struct plant *plant, const json_t *o, struct split_change *out, struct message_error *error);
 bool split_apply(const struct params_context *context, const struct split_change *change, struct view *view, struct message_error *error);
-/* Returns whether a view may have that size. */
+/* Returns true if a view may have that size. */
 bool view_size_valid(double width_px, double height_px);
 
 #endif

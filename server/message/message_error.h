@@ -7,19 +7,19 @@
 struct message_error {
     const char *code; /* error code of PROTOCOL.md, static */
     char text[REFUSAL_TEXT_BYTES];
-    struct refusal refusal; /* code of the refusal; REFUSAL_NONE: an error in the client program, described only by the English text */
-    char about[24];         /* type of the refused message; "": unknown */
-    int retry_after_s;      /* seconds until the client should retry; 0: not stated */
+    struct refusal refusal; /* code of the refusal; REFUSAL_NONE: the client program made an error, which only the English text describes */
+    char about[24];         /* type of the refused message; empty: unknown */
+    int retry_after_s;      /* seconds that the client should wait before it tries again; 0: not stated */
 };
 
-/* Fills the error with a code (static) and a formatted English text, truncated to fit. Leaves `about` unchanged. */
+/* Sets the error's code (a static text) and its formatted English text, which is cut to fit. Leaves `about` unchanged. */
 void message_fail(struct message_error *error, const char *code, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
-/* Fills the error with a refusal that has no arguments. field: name of the refused member, or NULL. */
+/* Sets the error to a refusal without arguments. field: name of the refused member, or NULL. */
 void message_refuse(struct message_error *error, const char *code, const char *field, enum refusal_code refusal);
-/* Fills the error with a refusal; `args` as for refusal_set(). */
+/* Sets the error to a refusal with arguments; `args` as for refusal_set(). */
 void message_refuse_with(struct message_error *error, const char *code, const char *field, enum refusal_code refusal, const char *args, ...)
     __attribute__((format(printf, 5, 6)));
-/* Prefixes the text with "field: ". */
+/* Inserts "field: " at the beginning of the error's text. */
 void message_error_within(struct message_error *error, const char *field);
 
 #endif

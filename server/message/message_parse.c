@@ -54,7 +54,7 @@ static void add_codec(struct codec_list *list, int codec)
         list->at[list->count++] = (enum wire_codec)codec;
 }
 
-/* Ignores unknown names, which may be from a later version. */
+/* Reads a list of codecs. Ignores unknown names, which may be from a later version of the protocol. */
 static bool parse_codecs(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
 {
     (void)plant;
@@ -82,7 +82,7 @@ static bool parse_key_frame(const struct plant *plant, const json_t *o, struct m
     return true;
 }
 
-/* A double represents the microseconds of any valid instant exactly. */
+/* Reads the message `time`. Its microseconds come as a double, which represents those of any valid instant exactly. */
 static bool parse_time(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
 {
     const json_t *at = json_object_get(o, "at_us");

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The names that messages use for enumerated values (PROTOCOL.md). */
+/* Tables of the names that messages use for enumerated values (PROTOCOL.md). */
 #ifndef MESSAGE_NAMES_H
 #define MESSAGE_NAMES_H
 #include "protocol/wire.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Notes: each is attached to one thing, a tag, an asset or a position. */
+/* Reads and carries out messages about notes. Each note is attached to one thing: a tag, an asset or a position. */
 #include "message/note_message.h"
 
 #include "base/mem.h"

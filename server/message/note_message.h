@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The messages `note` and `remove_note`. Thread: the loop. */
+/* The messages `note` and `remove_note`: parsing them and carrying them out. Thread: the loop. */
 #ifndef MESSAGE_NOTE_MESSAGE_H
 #define MESSAGE_NOTE_MESSAGE_H
 #include "message/message.h"
 
-/* Parse the messages into out->note. Return false with *error saying what is wrong. */
+/* note_parse() and its sibling parse the messages into out->note. They return false with *error saying what is wrong. */
 bool note_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 bool remove_note_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
-/* Creates or ends the note. who: the user's name; now_us: UTC. Returns the answer; free with mem_free(). */
+/* Creates the note or ends it. who: the user's name; now_us: UTC. Returns the answer; free with mem_free(). */
 char *note_do(struct notes *notes, const struct plant *plant, const struct message *message, const char *who, int64_t now_us);
 
 #endif

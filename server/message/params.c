@@ -192,7 +192,7 @@ bool params_parse(const struct plant *plant, const json_t *o, struct params_chan
            params_parse_paint(o, out, error) && visibility_parse(plant, o, out, error);
 }
 
-/* Sets the defaults of a group; a view that shows values relative to alarm limits keeps doing so. */
+/* Sets the group and its default parameters in a view; a view that shows values relative to alarm limits keeps doing so. */
 static void take_group(const struct scene *scene, int group, bool is_operator, struct view *view)
 {
     field_params_default(scene->plant, group, &view->field);

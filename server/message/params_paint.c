@@ -20,7 +20,7 @@ static bool parse_scale(const json_t *o, struct params_change *out, struct messa
     return true;
 }
 
-/* Reads a list of ascending numbers. */
+/* Reads a list of ascending numbers. Returns false if it is not one, or has more than `most` numbers. */
 static bool take_list(const json_t *list, double *numbers, int most, int *count)
 {
     *count = 0;
@@ -34,7 +34,7 @@ static bool take_list(const json_t *list, double *numbers, int most, int *count)
     return json_is_array(list);
 }
 
-/* Fills *error with the reason for which take_list() returned false. */
+/* Sets *error to the reason for which take_list() refused the list. */
 static void fail_list(const json_t *list, const char *name, int most, struct message_error *error)
 {
     for (size_t i = 0; i < json_array_size(list); i++)

@@ -11,7 +11,7 @@ static const char *const NOW = "now";
 
 /* --- reading --------------------------------------------------------------------------------------------------------------- */
 
-/* Returns -1 with *error on failure. */
+/* Returns the index of the tag with a name; -1 with *error if there is none. */
 static int find_tag(const struct plant *plant, const char *field, const char *tag, struct message_error *error)
 {
     char name[48];
@@ -145,8 +145,8 @@ static bool apply_sensors(const struct params_change *change, struct field_param
     return true;
 }
 
-/* Finds the id of the baseline that the change names; a baseline that is not stored yet gets a placeholder id, which
-   params_apply_baseline() replaces. */
+/* Sets field->baseline to the id of the baseline that the change names. A baseline that is not stored yet gets a placeholder id, which
+   params_apply_baseline() replaces. Returns false with *error if there is no such baseline. */
 static bool find_baseline(const struct params_context *context, const struct params_change *change, struct field_params *field,
                           struct message_error *error)
 {
@@ -174,7 +174,7 @@ static bool find_baseline(const struct params_context *context, const struct par
     return true;
 }
 
-/* If the change selects another quantity, sets that quantity's range and colours. */
+/* If the change shows another quantity, sets the range and colours that fit it. */
 static void take_quantity(const struct params_context *context, const struct field_params *before, struct view *view)
 {
     const struct field_params *now = &view->field;
@@ -187,8 +187,8 @@ static void take_quantity(const struct params_context *context, const struct fie
         view->colormap = now->show == SHOW_DIFFERENCE ? colormap_find("diverging") : 0;
 }
 
-/* Returns whether the view can be drawn correctly. Where surfaces are not subdivided for a single sensor (plant_cuts_singles()), `paper`
-   and distances from that sensor cannot. If not, fills *error. */
+/* Returns true if the view can be drawn correctly. `paper`, and distances from a sensor, cannot be drawn on an asset that has that
+   single sensor and whose surface is therefore not subdivided (plant_cuts_singles()). If not, fills *error. */
 static bool may_show(const struct plant *plant, const struct field_params *field, struct message_error *error)
 {
     char group[48], asset[48];

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The second set of parameters of a split view. */
+/* The member `split` of params: the second set of parameters of a split view. */
 #include <string.h>
 
 #include "message/json_fields.h"
 
-/* parameters that both halves share; not allowed inside `split` */
+/* parameters that both halves of a split view share, so they are not allowed inside `split` */
 static const char *const common[] = { "light",    "environment", "backdrop", "strip", "language", "arrows",
                                       "selected", "hidden",      "isolate",  "ghost", "clip",     "split" };
 

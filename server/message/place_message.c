@@ -73,7 +73,7 @@ bool save_tags_parse(const struct plant *plant, const json_t *o, struct message 
     return need_seq(o, &out->seq, error) && may_text(o, "confirm", out->confirm, sizeof(out->confirm), NULL, error);
 }
 
-/* Returns whether a glob pattern has few enough stars to be matched quickly: each star multiplies the time that a long name may take. */
+/* Returns true if a glob pattern has few enough stars to be matched quickly: each star multiplies the time that a long name may take. */
 static bool is_simple(const char *pattern)
 {
     int stars = 0;
@@ -141,7 +141,8 @@ static void add_far(json_t *list, const struct plant *plant, int tag, int asset,
         json_array_append_new(list, json_pack("[s,s,f,f]", plant->tags[tag].name, plant->assets[asset].id, distance_m, limit_m));
 }
 
-/* Lists the group's sensors that are too far from their asset's surface; sensors moved on trial count at their trial position. */
+/* Lists the group's sensors that are too far from their asset's surface. Sensors that the user moves on trial count at their trial
+   position. */
 static json_t *far_list(const struct scene *scene, const struct place_set *set, int group)
 {
     const struct placed *placed = NULL;
@@ -202,7 +203,7 @@ static json_t *lines_of(const char *before, const char *after, size_t *more)
     return list;
 }
 
-/* Returns the tag list with the moves applied; NULL with the reason in *why. */
+/* Returns the tag list `before` with the moves of the set applied (mem_free); NULL with the reason in *why. */
 static char *edited(const struct plant *plant, const char *before, const struct place_set *set, struct refusal *why)
 {
     struct tag_edit edits[PLACING_MOVES];
@@ -239,7 +240,7 @@ static char *conflict_text(const struct plant *plant, const struct message *mess
                      9);
 }
 
-/* Returns a request to save `after` if the message confirms its hash, else NULL. Takes ownership of `after`. */
+/* Returns a request to save the tag list `after` if the message confirms its hash, else NULL. Takes ownership of `after`. */
 static struct tag_save *order_of(const struct plant *plant, const char *before, char *after, const struct message *message, const char *who)
 {
     char hash[17], real[PATH_MAX];
@@ -257,7 +258,7 @@ static struct tag_save *order_of(const struct plant *plant, const char *before, 
     return order;
 }
 
-/* Returns the tag list that the message asks for (mem_free); NULL with the reason in *why. */
+/* Returns the tag list that the message asks for, made from the list `before` (mem_free); NULL with the reason in *why. */
 static char *wanted_list(const struct scene *scene, const char *before, const struct place_set *set, const struct message *message,
                          uint8_t *outcome, struct refusal *why)
 {

@@ -5,7 +5,8 @@
 #include "message/message.h"
 #include "placing/tag_file.h"
 
-/* Parse a message into out->place, out->coverage, out->confirm, out->accept, out->kept. Return false with *error saying what is wrong. */
+/* The functions parse messages into out->place, out->coverage, out->confirm, out->accept and out->kept. They return false with *error
+   saying what is wrong. */
 bool place_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 bool coverage_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 bool save_tags_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
@@ -16,12 +17,13 @@ bool restore_tags_parse(const struct plant *plant, const json_t *o, struct messa
 char *placed_text(const struct plant *plant, const struct place_set *set, uint32_t seq);
 /* Returns `gaps`, the answer to `coverage`, with the surfaces that no sensor covers; free with mem_free(). */
 char *coverage_text(const struct scene *scene, const struct place_set *set, const struct sensor_coverage_answer *answer);
-/* Returns how the current list, `before`, would be changed by the message: save_tags (applies the moves of `set`), accept_places or
-   restore_tags, for the client to confirm; free with mem_free(). If the message already confirms that very list, *order is a request to
-   save it (tag_save_free); else NULL. set: NULL for accept_places and restore_tags. who: the user's name. */
+/* Returns how a message would change the current tag list, `before`, for the client to show and confirm; free with mem_free(). The
+   message is save_tags (applies the moves of `set`), accept_places or restore_tags; for the latter two `set` is NULL. If the message
+   already confirms the resulting list by its hash, *order receives a request to save it (tag_save_free); else NULL. who: the user's
+   name. */
 char *tags_diff_text(const struct scene *scene, const char *before, const struct place_set *set, const struct message *message,
                      const char *who, struct tag_save **order);
-/* Returns `tags_saved` for a list that was not saved; free with mem_free(). */
+/* Returns the message `tags_saved` for a list that was refused; free with mem_free(). */
 char *tags_refused_text(uint32_t seq, const struct refusal *why);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which messages each role may send. */
+/* Decides which messages each role may send. */
 #include "message/role.h"
 
 #include "message/names.h"
@@ -9,7 +9,7 @@ const struct name names_role[] = {
     { "viewer", ROLE_VIEWER }, { "operator", ROLE_OPERATOR }, { "engineer", ROLE_ENGINEER }, { NULL, 0 },
 };
 
-/* Parameters of the field computation: each combination of values makes the server compute another field, and using them needs
+/* Parameters that only engineers may change: each combination of values makes the server compute another field, and using them needs
    expertise. */
 static const unsigned ENGINEERS = GIVEN_FILL | GIVEN_STRENGTH | GIVEN_DECAY | GIVEN_POWER | GIVEN_RADIUS | GIVEN_REACH | GIVEN_SENSORS;
 

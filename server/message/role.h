@@ -7,15 +7,15 @@
 
 enum role {
     ROLE_NOBODY,   /* not authenticated yet */
-    ROLE_RENDERER, /* another daemon, a renderer: may open /core and request history, nothing else */
-    ROLE_STANDBY,  /* another daemon, a standby core: has the rights of a renderer */
+    ROLE_RENDERER, /* a renderer daemon: may open /core and request history, nothing else */
+    ROLE_STANDBY,  /* a standby core: has the rights of a renderer */
     ROLE_OPEN,     /* anyone, under --open-viewers */
     ROLE_VIEWER,
     ROLE_OPERATOR,
-    ROLE_ENGINEER, /* engineers, and any user on the daemon's own machine */
+    ROLE_ENGINEER, /* engineers, and every user on the daemon's own machine */
 };
 
-/* Returns whether tokens of a role are for daemons, not for people. */
+/* Returns true if tokens of a role are for daemons, not for people. */
 static inline bool role_is_node(enum role role)
 {
     return role == ROLE_RENDERER || role == ROLE_STANDBY;
@@ -23,14 +23,14 @@ static inline bool role_is_node(enum role role)
 
 extern const struct name names_role[]; /* ends with a NULL text */
 
-/* Returns whether a client of that role may send the message. If not, fills *error with the refusal to answer. */
+/* Returns true if a client of that role may send the message. If not, *error receives the refusal to send. */
 bool role_may_send(enum role role, const struct message *message, struct message_error *error);
 
-/* Returns the plant for looking up names in a message of that role. For roles below viewer it is *copy, the same plant without tags, so
-   that refusals do not reveal which tags exist. *copy shares everything else with `plant`. */
+/* Returns the plant in which names of a message from that role are looked up. For roles below viewer it is *copy, the same plant without
+   tags, so that refusals do not reveal which tags exist. *copy shares everything else with `plant`. */
 const struct plant *role_plant(enum role role, const struct plant *plant, struct plant *copy);
 
-/* Returns whether a renderer forwards messages of that type to its core: those that change shared state. */
+/* Returns true if a renderer must forward messages of that type to its core, because they change state that the core owns. */
 bool message_is_handed_on(const struct message *message);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Translates the names and forms of the page's URL (clients/web/core/address.js) into those of a query. */
+/* Translates the fields of the page's URL (clients/web/core/address.js) into arguments of a query. */
 #include "message/view_address.h"
 
 #include <stdio.h>
@@ -8,11 +8,11 @@
 
 #include "base/mem.h"
 
-/* a camera's numbers, in the order of the address: eye, target, up, angle, and the height of a parallel projection */
+/* number of a camera's numbers in the address: 3 each for eye, target and up, the angle, and the height of a parallel projection */
 enum { CAMERA_NUMBERS = 11 };
 
 static const struct {
-    const char *name, *of_query; /* name in a query; NULL: the field is dropped */
+    const char *name, *of_query; /* name in the address; name in a query, NULL: the field is dropped */
 } names[] = {
     { "group", "group" },
     { "interpolation", "interpolation" },
@@ -71,7 +71,7 @@ static void decode(char *text)
     *to = 0;
 }
 
-/* Reads comma-separated numbers. Returns their number; 0: none, more than `most`, or other text. */
+/* Reads comma-separated numbers into `out`. Returns how many were read; 0 if there are none, more than `most`, or other text. */
 static int read_numbers(const char *text, double *out, int most)
 {
     for (int count = 0; count < most;) {
@@ -112,7 +112,7 @@ static bool add_clip(struct view_address *out, const char *value)
     return view_address_add(out, !strchr(value, ';') && commas == 5 ? "clip_box" : "clip", value);
 }
 
-/* Adds the right half of a split view. `same` (both halves show the same) becomes an empty argument. */
+/* Adds the parameters of the right half of a split view. The value `same` (both halves show the same) becomes an empty argument. */
 static bool add_split(struct view_address *out, char *value)
 {
     for (char *at = value, *colon; (colon = strchr(at, ':')); at = colon + strcspn(colon, ";"))

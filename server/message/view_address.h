@@ -9,7 +9,7 @@
 
 /* Callback for one field, decoded; value "" if the field has none. Returns false to stop. */
 typedef bool view_address_field(void *arg, const char *name, char *value);
-/* Calls `take` for each field of an address. Returns false if a call of `take` returned false. */
+/* Calls `take` for each field of an address. Returns false if `take` returned false, after which no more fields are passed. */
 bool view_address_each(const char *address, view_address_field *take, void *arg);
 
 enum { VIEW_ADDRESS_ARGS = 40 };
@@ -19,10 +19,10 @@ struct view_address {
     size_t count;
 };
 
-/* Reads an address. Returns false with *error if a picture cannot show it. The selected tag and the tilt of the camera are dropped. Call
-   view_address_finish() in any case. */
+/* Reads an address into arguments of a query. The selected tag and the tilt of the camera are dropped, because pictures do not show
+   them. Returns false with *error if a picture cannot show the address. Call view_address_finish() in any case. */
 bool view_address_read(struct view_address *out, const char *address, struct message_error *error);
-/* Adds an argument. Returns false if the array is full. */
+/* Adds an argument. Returns false if there is no room for more. */
 bool view_address_add(struct view_address *address, const char *name, const char *value);
 void view_address_finish(struct view_address *address);
 

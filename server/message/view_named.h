@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Turns the address of a named view into a view, and finds items in it that this plant lacks. Pure. */
+/* Turns the address of a named view into a view, and finds names in it that the plant does not have. Pure. */
 #ifndef MESSAGE_VIEW_NAMED_H
 #define MESSAGE_VIEW_NAMED_H
 #include "message/message.h"
 #include "plant/walls/wall.h"
 
-/* Builds *view from an address with all rights of an engineer, because its author's rights do not matter. Returns false with *error saying
-   what is wrong with the address. */
+/* Builds *view from an address with all rights of an engineer: the rights of the view's author do not matter. Returns false with *error
+   saying what is wrong with the address. */
 bool view_named_read(const struct params_context *context, const char *address, int width_px, int height_px, struct view *view,
                      struct message_error *error);
 /* Checks that the plant has everything that an address names, except baselines, which are temporary. Returns false with *error saying

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Converts the query of /snapshot.png to the JSON of a message, which is then checked like a message. */
+/* Converts the query of /snapshot.png to the JSON of messages, so that the same code checks both. */
 #include "message/view_query.h"
 
 #include <stdlib.h>
@@ -63,7 +63,7 @@ static const struct {
     { "at", STRING },
 };
 
-/* Reads a number. Returns NULL if the text does not begin with one. */
+/* Reads a number at the beginning of `text`; *end receives the rest. Returns NULL if there is no number. */
 static json_t *number(const char *text, const char **end)
 {
     char *stop;
@@ -178,7 +178,7 @@ static json_t *strings(const char *text)
     return array;
 }
 
-/* Reads planes of four numbers each, separated by semicolons. */
+/* Reads clipping planes: four numbers each, separated by semicolons. Returns NULL if the form is wrong. */
 static json_t *planes(const char *text)
 {
     json_t *array = json_array();

@@ -7,13 +7,13 @@
 
 #include "message/role.h"
 
-/* Converts the text of one argument to the JSON value of the protocol's `camera` and `params`. The caller owns the value. NULL: wrong
-   form, or unknown argument. */
+/* Converts the text of one argument to the JSON value that the protocol's `camera` or `params` has for it. The caller owns the value.
+   NULL: wrong form, or unknown argument. */
 json_t *view_query_value(const char *name, const char *text);
 
-/* Builds *view from `args`, decoded `name=value` texts, refusing arguments that the role may not use. An instant (`at`) is stored in
+/* Builds *view from `args`, decoded texts NAME=VALUE. Refuses arguments that the role may not use. An instant (`at`) is stored in
    view->at_us; its readings are not loaded yet. place: receives the required `x` and `y` of a pick; NULL: these arguments are refused.
-   Returns false with error saying what is wrong. */
+   Returns false with *error saying what is wrong. */
 bool view_query_parse(const struct params_context *context, enum role role, const char *const *args, size_t count, struct view *view,
                       double place[2], struct message_error *error);
 

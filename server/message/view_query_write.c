@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes a view as a query. Defaults of the plant are written out too, since they may change later. */
+/* Writes a view as a query. Values that equal the plant's defaults are written too, since the defaults may change later. */
 #include "message/view_query_write.h"
 
 #include <math.h>
@@ -9,7 +9,7 @@
 #include "field/colormap.h"
 #include "message/names.h"
 
-static const double ROUNDING = 1e-12; /* tolerance for unit vectors, which are normalised again when read */
+static const double ROUNDING = 1e-12; /* tolerance when comparing unit vectors, because reading the query normalises them again */
 
 /* --- lists of arguments ------------------------------------------------------------------------------------------------------- */
 
@@ -24,7 +24,7 @@ static void add_numbers(struct text *text, const double *values, size_t count)
         add_number(text, i > 0 ? "," : "", values[i]);
 }
 
-/* Adds the argument NAME=text, and empties the text buffer for the next one. */
+/* Adds the argument NAME=TEXT, and empties the text buffer for the next argument. Returns false if there is no room. */
 static bool flush(struct view_address *out, const char *name, struct text *text)
 {
     bool good = view_address_add(out, name, text->length > 0 ? text->at : "");
@@ -50,7 +50,7 @@ static bool put_numbers(struct view_address *out, const char *name, const double
     return good;
 }
 
-/* Adds a list of numbers, or `none` if it is empty. */
+/* Adds a list of numbers as an argument, or `none` if the list is empty. */
 static bool put_list(struct view_address *out, const char *name, const double *values, int count)
 {
     return count > 0 ? put_numbers(out, name, values, (size_t)count) : view_address_add(out, name, "none");
@@ -112,7 +112,7 @@ static bool put_half(struct view_address *out, const struct params_context *cont
            view_address_add(out, "look", name_of(names_look, (int)half->look));
 }
 
-/* Adds the right half of a split view as NAME=VALUE;... */
+/* Adds the right half of a split view as one argument NAME=VALUE;... */
 static bool put_split(struct view_address *out, const struct params_context *context, const struct view *view, struct message_error *error)
 {
     struct view_address right = { .count = 0 };

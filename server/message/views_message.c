@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Saved views, and the content of control-room displays. */
+/* Reads and carries out messages about saved views, and describes the content of control-room displays. */
 #include "message/views_message.h"
 
 #include <string.h>
@@ -51,7 +51,7 @@ char *view_edit_do(struct named_views *views, const struct message *message, con
     return json_text(answer, 0);
 }
 
-/* Describes a pane. A tour is sent as a sequence of views, each with its own duration. */
+/* Describes a pane of a wall as JSON. A tour is sent as a list of views, each with its own duration. */
 static json_t *pane_of(const struct plant *plant, const struct wall_pane *pane)
 {
     const struct tour *tour = pane->kind == PANE_TOUR ? tour_find(plant, pane->items[0]) : NULL;
@@ -137,7 +137,8 @@ static json_t *display_of(const struct plant *plant, const struct walls_reader *
     return json_pack("{s:o,s:o}", "grid", rows, "panes", panes);
 }
 
-/* Lists the displays of a wall. A display that the reader may not see is listed without content, so that each display keeps its number. */
+/* Lists the displays of a wall as JSON. A display that the reader may not see is listed without content, so that the others keep their
+   numbers. */
 static json_t *displays_of(const struct plant *plant, const struct walls_reader *reader, const struct wall *wall)
 {
     json_t *displays = json_array();

@@ -1,19 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The messages `save_view` and `remove_view` for named views. Thread: the loop. */
+/* The messages `save_view` and `remove_view`, with which users edit named views. Thread: the loop. */
 #ifndef MESSAGE_VIEWS_MESSAGE_H
 #define MESSAGE_VIEWS_MESSAGE_H
 #include "message/message.h"
 
-/* Parse the messages into out->view_edit. Return false with *error saying what is wrong. */
+/* save_view_parse() and its sibling parse the messages into out->view_edit. They return false with *error saying what is wrong. */
 bool save_view_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 bool remove_view_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 /* Saves or removes the view. who: the user's name; time_us: UTC. Returns the answer; free with mem_free(). */
 char *view_edit_do(struct named_views *views, const struct message *message, const char *who, int64_t time_us);
-/* Limits of a client's token on the walls that the client may read. */
+/* The part of the walls that a client's token allows the client to see. */
 struct walls_reader {
-    const char *wall; /* wall of a paired device, and its display; NULL: all walls */
+    const char *wall; /* wall and display of a paired device, which may see nothing else; NULL: all walls */
     int display;
-    /* for a token limited to some views: returns whether a pane may show that view; clocks and texts are always allowed. NULL: no limit */
+    /* for a token that is limited to some views: returns true if the client may see that view in a pane; panes with clocks and texts are
+       always allowed. NULL: no limit */
     bool (*sees)(const void *arg, const char *view);
     const void *arg;
 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which parts of the plant are shown: converts between JSON and struct visibility. */
+/* Converts between JSON and struct visibility, which says which assets of the plant are shown. */
 #include "message/visibility.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Hidden, isolated and ghosted assets, and clipping, in JSON. Pure. */
+/* Members of messages about hidden, isolated and ghosted assets, and about clipping. Pure. */
 #ifndef MESSAGE_VISIBILITY_H
 #define MESSAGE_VISIBILITY_H
 #include "message/message.h"

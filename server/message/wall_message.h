@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Messages of control-room displays, of desks that send views to them, and of engineers who pair them. Thread: the loop. */
+/* Messages of control-room displays, of desks that send views to displays, and of engineers who pair displays. Thread: the loop. */
 #ifndef MESSAGE_WALL_MESSAGE_H
 #define MESSAGE_WALL_MESSAGE_H
 #include "message/message.h"
 
-/* Parse the messages into out->wall or out->pair; `send_to_wall` also writes view and title into out->view_edit. Return false with
-   *error saying what is wrong. */
+/* The functions parse messages into out->tile, out->wall or out->pair; send_to_wall_parse() also writes view and title into
+   out->view_edit. They return false with *error saying what is wrong. */
 /* Reads the optional member `tile` of hello. */
 bool tile_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 bool display_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
@@ -13,7 +13,7 @@ bool send_to_wall_parse(const struct plant *plant, const json_t *o, struct messa
 bool point_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 bool pair_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 bool unpair_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
-/* Carries out `send_to_wall`. who: the user's name; now_us: UTC. Returns the answer; free with mem_free(). */
+/* Carries out the message `send_to_wall`. who: the user's name; now_us: UTC. Returns the answer; free with mem_free(). */
 char *send_to_wall_do(struct wall_remote *remote, const struct message *message, const char *who, int64_t now_us);
 
 #endif

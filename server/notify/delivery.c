@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Delivers messages by SMTP and HTTP through libcurl. */
+/* Sends messages by SMTP and HTTP through libcurl. */
 #include "notify/delivery.h"
 
 #include <curl/curl.h>
@@ -21,7 +21,7 @@ struct transfer {
     char why[CURL_ERROR_SIZE];
     struct log *log;
     const char *name;  /* name of the recipient */
-    char mailbox[256]; /* mailbox in the last RCPT command; "": the last command was another one */
+    char mailbox[256]; /* mailbox in the last RCPT command; empty: the last command was another one */
 };
 
 struct delivery {
@@ -91,8 +91,8 @@ static size_t drop_answer(char *bytes, size_t size, size_t count, void *arg)
     return size * count;
 }
 
-/* Debug callback that logs the refusal of a single mailbox: the mail counts as delivered if others accept it, so nothing else reports
-   the refusal. */
+/* Debug callback of libcurl that logs the refusal of a single mailbox: the mail counts as delivered if other mailboxes accept it, so
+   nothing else reports the refusal. */
 static int hear_refusals(CURL *handle, curl_infotype type, char *bytes, size_t count, void *arg)
 {
     static const char ask[] = "RCPT TO:";
@@ -120,7 +120,7 @@ static void set_common(struct delivery *delivery, struct transfer *transfer, con
     curl_easy_setopt(handle, CURLOPT_CONNECTTIMEOUT, (long)CONNECT_S);
     curl_easy_setopt(handle, CURLOPT_TIMEOUT_MS, (long)(delivery->notify->timeout_s * 1000));
     curl_easy_setopt(handle, CURLOPT_SSLVERSION, (long)CURL_SSLVERSION_TLSv1_2);
-    curl_easy_setopt(handle, CURLOPT_QUICK_EXIT, 1L); /* keeps a hanging name server from delaying the end of the daemon */
+    curl_easy_setopt(handle, CURLOPT_QUICK_EXIT, 1L); /* so that a hanging name server does not delay the end of the daemon */
     if (ca_file)
         curl_easy_setopt(handle, CURLOPT_CAINFO, ca_file);
 }
@@ -145,7 +145,7 @@ static char *set_mail(struct delivery *delivery, struct transfer *transfer, cons
     for (size_t i = 0; i < recipient->addresses.count; i++)
         transfer->list = curl_slist_append(transfer->list, recipient->addresses.at[i]);
     curl_easy_setopt(handle, CURLOPT_MAIL_RCPT, transfer->list);
-    /* sends the mail to the other mailboxes if the server refuses one */
+    /* so that the mail is still sent to the other mailboxes if the server refuses one */
     curl_easy_setopt(handle, CURLOPT_MAIL_RCPT_ALLLOWFAILS, 1L);
     curl_easy_setopt(handle, CURLOPT_DEBUGFUNCTION, hear_refusals);
     curl_easy_setopt(handle, CURLOPT_DEBUGDATA, transfer);
@@ -206,8 +206,8 @@ char *delivery_start(struct delivery *delivery, int recipient, char *body, size_
 
 /* --- waiting for results ---------------------------------------------------------------------------------------------------- */
 
-/* Returns NULL if an ended transfer reached its recipient; else the reason, which the caller frees with mem_free(). A redirection counts as
-   failure: it may lead to a login page. */
+/* Returns NULL if the recipient accepted the message of an ended transfer; else the reason, which the caller frees with mem_free(). A
+   redirection counts as failure, because it may lead to a login page. */
 static char *why_not(const struct transfer *transfer, CURLcode code)
 {
     long status = 0;

@@ -30,16 +30,16 @@ struct notifier {
     _Atomic bool stopping;
     _Atomic uint64_t kept_number;
     pthread_mutex_t kept_lock;
-    char *kept; /* content of the file, under `kept_lock`; NULL: none yet */
+    char *kept; /* content of notify.json, protected by kept_lock; NULL: none yet */
     struct delivery *delivery;
     /* --- below: used by the notifier's thread only */
     struct outbox *outbox;
     struct recipient_counters *counters; /* by index of the recipient */
     counter *lost, *spool_good;
-    bool *failing;   /* by index of the recipient: its last delivery failed */
-    uint64_t number; /* sequence number of the last alarm change processed */
+    bool *failing;   /* by index of the recipient; true: the last delivery failed */
+    uint64_t number; /* change number of the newest alarm change that was processed */
     bool looked, unsaved;
-    int64_t lost_before; /* alarms lost by outboxes before a reload */
+    int64_t lost_before; /* number of alarms that the outboxes before a reload lost */
 };
 
 static int64_t now_us(void)
@@ -60,7 +60,7 @@ static int put_file(const char *path, const char *text, bool durable)
     return error;
 }
 
-/* Publishes the file's content for a standby core. Takes ownership of `text`. */
+/* Makes `text`, the content of notify.json, available for a standby core, and takes its ownership. */
 static void publish(struct notifier *notifier, char *text)
 {
     pthread_mutex_lock(&notifier->kept_lock);
@@ -99,7 +99,7 @@ static void save(struct notifier *notifier)
     if (!notifier->unsaved)
         return;
     char *text = json_text(outbox_save(notifier->outbox), 0);
-    publish(notifier, mem_strdup(text)); /* publishes for the standby core first, because writing to disk may take long */
+    publish(notifier, mem_strdup(text)); /* a standby core gets the text first, because writing it to disk may take long */
     int error = put_file(notifier->path, text, true);
     mem_free(text);
     if (error)
@@ -139,7 +139,7 @@ static void on_end(void *arg, int recipient, const char *why)
             log_err(log, "notify: %s cannot be reached: %s; messages wait, and are sent again", id, why);
     } else {
         outbox_sent(notifier->outbox, recipient, now_us());
-        save(notifier); /* saves at once: if the daemon were killed before saving, the next one would send the message again */
+        save(notifier); /* saved immediately: if the daemon were killed before saving, the next one would send the message again */
         counter_inc(notifier->counters[recipient].sent, 1);
         if (notifier->failing[recipient])
             log_info(log, "notify: %s accepts messages again", id);
@@ -162,8 +162,8 @@ static char *compose(const struct notifier *notifier, int recipient, const struc
     return json ? json : mail.at;
 }
 
-/* Sends all messages that are due. A message is saved before it is sent, so that a restarted daemon repeats the same message, not a new
-   one. */
+/* Sends all messages that are due. Each message is saved before it is sent, so that a restarted daemon repeats the same message and does
+   not make another one. */
 static void send_due(struct notifier *notifier)
 {
     for (int i = 0; i < (int)notifier->params.plant->notify->recipient_count; i++) {

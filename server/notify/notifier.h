@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Notifies people and external programs of alarms, as the plant file's `notify` says. Its thread wakes when an alarm changes, stores
-   pending messages in notify.json in the history's folder, and delivers them; no other thread waits for it. Thread: one. */
+   pending messages in notify.json in the folder of the history, and sends them; no other thread waits for it. Thread: one. */
 #ifndef NOTIFY_NOTIFIER_H
 #define NOTIFY_NOTIFIER_H
 #include "alarm/alarm_service.h"
@@ -12,22 +12,23 @@ struct notifier_params {
     struct counters *counters;
     const struct plant *plant;           /* must have a `notify` */
     struct alarm_service *alarm_service; /* plant and alarm service must outlive the notifier */
-    const char *folder;                  /* folder of notify.json; the journal creates it */
-    void (*kept)(void *arg);             /* called by the notifier's thread when the file's content changed; NULL: no callback */
+    const char *folder;                  /* folder of notify.json; the alarm journal creates it */
+    void (*kept)(void *arg);             /* called by the notifier's thread when the content of notify.json changed; NULL: no callback */
     void *kept_arg;
 };
 
 struct notifier;
-/* Returns a number that increases with each change of the file's content. Any thread. */
+/* Returns a sequence number that increases with each change of the content of notify.json. Thread: any. */
 uint64_t notifier_number(struct notifier *notifier);
-/* Returns the file's content; free with mem_free(). Any thread. */
+/* Returns the content of notify.json; free with mem_free(). Thread: any. */
 char *notifier_kept(struct notifier *notifier);
-/* Writes the content of another daemon's file to this daemon's file, for its next notifier. Returns 0 or -errno. */
+/* Stores the content of another daemon's notify.json in this daemon's file, for the notifier that starts when this daemon takes the
+   lead. Returns 0 or -errno. */
 int notifier_put_kept(const char *folder, const char *text);
 /* Starts a notifier. Returns NULL if it cannot be started (logged). */
 struct notifier *notifier_start(const struct notifier_params *params);
-/* Aborts messages in progress, which are sent again after the next start, and waits until the file is written. &NULL is fine; leaves
-   NULL. */
+/* Aborts messages that are being sent, which are sent again after the next start, and waits until notify.json is written. &NULL is fine;
+   sets *notifier to NULL. */
 void notifier_stop(struct notifier **notifier);
 
 #endif

@@ -11,8 +11,8 @@
 #include "base/text/json_text.h"
 #include "base/text/timestamp.h"
 
-/* BASE64_LINE: bytes of a base64 line of 76 characters. WORD: bytes of an encoded word that fits, with the header's name, a line of
-   77 characters. */
+/* BASE64_LINE: number of bytes that a base64 line of 76 characters encodes. WORD: number of bytes in an encoded word (RFC 2047) that
+   fits into a line of 77 characters behind the header's name. */
 enum { BASE64_LINE = 57, WORD = 42 };
 
 static const struct plant_tag *tag_of(const struct plant *plant, const struct outbox_item *item)
@@ -57,7 +57,8 @@ static bool is_plain(const char *text)
     return true;
 }
 
-/* Adds a mail header: unchanged if its value is short ASCII, else as encoded words (RFC 2047) that do not split characters. */
+/* Adds a mail header. A short ASCII value is written as it is; any other value as encoded words (RFC 2047), none of which ends within a
+   character. */
 static void add_header(struct text *out, const char *name, const char *value)
 {
     text_add(out, "%s:", name);

@@ -8,10 +8,11 @@
 
 enum { NOTIFY_LINES = 50 /* maximum number of alarms listed in an e-mail; further ones are only counted */ };
 
-/* Appends a complete e-mail, header and body, with CRLF line ends. now_us: its date. */
+/* Appends a complete e-mail, header and body, with CRLF line ends. now_us: the date in its header. */
 void notify_mail_text(struct text *out, const struct plant *plant, const struct notify_recipient *recipient,
                       const struct outbox_message *message, int64_t now_us);
-/* Return the JSON body; free with mem_free(). */
+/* Returns the JSON body of the message for a webhook; free with mem_free(). The sibling notify_alerts_text() returns it for
+   Alertmanager. */
 char *notify_webhook_text(const struct plant *plant, const struct notify_recipient *recipient, const struct outbox_message *message);
 char *notify_alerts_text(const struct plant *plant, const struct outbox_message *message, int64_t now_us);
 

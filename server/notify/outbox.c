@@ -99,7 +99,8 @@ static void queue_item(struct outbox *outbox, int recipient, const struct episod
 {
     struct recipient_box *box = &outbox->boxes[recipient];
     int index = (int)(episode - outbox->episodes);
-    bool may_wait = step > 0 || episode->told_us; /* if the alarm is in the queue already, it is not queued again */
+    bool may_wait = step > 0 || episode->told_us; /* a repeated notification or an escalation is not queued if the alarm is still in the
+                                                     queue */
     for (size_t i = 0; may_wait && i < box->waiting.count; i++)
         if (box->waiting.at[i].episode == index)
             return;
@@ -138,7 +139,7 @@ static void tell(struct outbox *outbox, struct episode *episode, const struct no
     }
 }
 
-/* Queues the notifications of all escalation steps that are due. */
+/* Queues the notifications of all escalation steps of an alarm that are due. */
 static void advance(struct outbox *outbox, struct episode *episode, int64_t now_us)
 {
     const struct plant_notify *notify = outbox->plant->notify;
@@ -263,7 +264,7 @@ void outbox_tick(struct outbox *outbox, int64_t now_us)
     }
     for (size_t i = 0; i < outbox->plant->notify->recipient_count; i++) {
         struct recipient_box *box = &outbox->boxes[i];
-        /* messages to Alertmanager always contain the current alarms, so they are never too old to send */
+        /* messages to Alertmanager are never dropped for their age, because they always contain the present alarms */
         bool keeps = outbox->plant->notify->recipients[i].kind == NOTIFY_ALERTMANAGER;
         if (!keeps && box->batch_count > 0 && box->attempts > 0 && now_us - box->batch_us > OUTBOX_KEEP_US)
             give_up(outbox, box);
@@ -291,7 +292,7 @@ static bool is_due(const struct outbox *outbox, const struct recipient_box *box,
     return box->waiting.count > 0 && gathered && (!paused || best < box->last_priority);
 }
 
-/* Makes a message of the queued alarms, with their current states; skips alarms that have been shelved or suppressed meanwhile. */
+/* Makes a message of the queued alarms, with their present states. Skips alarms that were shelved or suppressed after they were queued. */
 static void make_batch(struct outbox *outbox, int recipient, int64_t now_us)
 {
     struct recipient_box *box = &outbox->boxes[recipient];
@@ -342,7 +343,8 @@ static bool goes_to(const struct plant_notify *notify, const struct episode *epi
     return false;
 }
 
-/* Makes an Alertmanager message of all active alarms, and of those that have ended since the last message. Returns whether it has any. */
+/* Makes an Alertmanager message of all active alarms, and of the alarms that have ended since the last message. Returns false if there
+   are none. */
 static bool make_alerts(struct outbox *outbox, int recipient, int64_t now_us)
 {
     struct recipient_box *box = &outbox->boxes[recipient];

@@ -76,7 +76,8 @@ static double value_of(const json_t *object, const char *key)
     return json_is_number(value) ? json_number_value(value) : NAN;
 }
 
-/* Reads the name and kind of an alarm; the tag is -1 for a device's alarm. Returns whether the plant still has that alarm. */
+/* Reads the name and kind of an alarm; *tag receives its tag's index, or -1 for a device's alarm. Returns true if the plant still has
+   that alarm. */
 static bool read_alarm(const struct outbox *outbox, const json_t *object, const char **name, int *tag, enum alarm_kind *kind)
 {
     const char *kind_name = json_string_value(json_object_get(object, "kind"));

@@ -25,7 +25,7 @@ static const int64_t CONNECT_NS = 10 * NS_PER_S;
 
 struct topic {
     char *name, *unit;       /* unit: a JSON object */
-    int64_t received_utc_ns; /* by tag: time of the last published reading */
+    int64_t received_utc_ns; /* UTC time of the reading that was published last */
     uint32_t quality;
     bool is_published; /* published on the current connection */
 };
@@ -43,19 +43,20 @@ struct publisher {
     struct topic *topics; /* by tag index */
     uint64_t alarm_number;
     bool connected, alarms_published;
-    char said[200]; /* last problem that was logged; "": no problem */
+    char said[200]; /* text of the last problem that was logged; empty: no problem */
 };
 
 /* --- published messages ------------------------------------------------------------------------------------------------------- */
 
-/* Appends a name as one level of a topic: characters that separate levels or are wildcards are escaped as in URLs. */
+/* Appends a name as one level of an MQTT topic: characters that separate levels, and wildcards, are percent-encoded. */
 static void add_level(struct text *text, const char *name)
 {
     for (const char *c = name; *c; c++)
         text_add(text, strchr("/+#%", *c) ? "%%%02X" : "%c", (unsigned char)*c);
 }
 
-/* Publishes a text. A refused message is logged and does not stop the others. Returns false if the connection has ended. */
+/* Publishes a text to a topic. If the broker refuses the message, that is logged, and other messages are still sent. Returns false if
+   the connection has ended. */
 static bool publish(struct publisher *publisher, const char *topic, const char *text)
 {
     int status = mqtt_client_publish(publisher->client, topic, text);
@@ -118,7 +119,7 @@ static void add_alarm(void *arg, const struct alarm *alarm)
     json_array_append_new(arg, one);
 }
 
-/* Publishes all alarms that are not normal in one message, so that the broker retains none that has ended. */
+/* Publishes all alarms that are not normal in one message; so the broker retains no alarm that has ended. */
 static bool publish_alarms(struct publisher *publisher)
 {
     const struct plant_publish *config = publisher->params.plant->publish;
@@ -158,7 +159,8 @@ static void on_message(void *arg, const struct mqtt_message *message)
     (void)message;
 }
 
-/* Runs one connection until it ends. Returns -ECANCELED when the publisher must stop, else another code with the reason in `why`. */
+/* Publishes over one connection until it ends. Returns -ECANCELED when the publisher must stop, else another negative code with the
+   reason in `why`. */
 static int run_session(struct publisher *publisher, char why[200])
 {
     const struct plant_publish *config = publisher->params.plant->publish;
@@ -221,7 +223,7 @@ static void make_topics(struct publisher *publisher)
     }
 }
 
-/* Returns the configured client id or makes a random one: a broker ends the connection of another client with the same id. */
+/* Returns the configured client id or makes a random one, because a broker ends the connection of another client with the same id. */
 static char *make_client_id(const struct plant_publish *config)
 {
     unsigned random = 0;

@@ -14,9 +14,9 @@ struct publisher_params {
 };
 
 struct publisher;
-/* Starts a publisher. Returns NULL if the thread cannot be started (logged). */
+/* Starts a publisher and its thread. Returns NULL if the thread cannot be started (logged). */
 struct publisher *publisher_start(const struct publisher_params *params);
-/* Ends the connection; the broker then publishes our last-will message "offline". &NULL is fine; leaves NULL. */
+/* Ends the connection; the broker then publishes our last-will message "offline". &NULL is fine; sets *publisher to NULL. */
 void publisher_stop(struct publisher **publisher);
 
 #endif

@@ -9,10 +9,10 @@
 #include "plant/plant.h"
 #include "plant/sections/notification.h"
 
-/* Returns whether the shift is active at that time, by the local wall clock: on nights when the clocks change, a shift is longer or
-   shorter by an hour. */
+/* Returns true if the shift is on at that time, by the local wall clock. In nights when the clocks change, a shift is an hour longer or
+   shorter. */
 bool shift_is_on(const struct notify_shift *shift, int64_t utc_us);
-/* Returns a bit mask of the rules for an alarm of that name and priority. tag: index, or -1 for a device's alarm. */
+/* Returns a bit mask of the rules that apply to an alarm of that name and priority. tag: index of its tag; -1: the alarm is a device's. */
 uint32_t rules_for(const struct plant *plant, const char *name, int tag, int priority, int64_t utc_us);
 
 #endif

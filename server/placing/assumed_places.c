@@ -15,7 +15,8 @@
 
 /* --- facts about each tag's position ------------------------------------------------------------------------------------------ */
 
-/* Returns per tag the distance of its position from its asset's surface; NaN: the tag is not on a surface. The caller frees the array. */
+/* Returns an array by tag: distance in metres of the tag's position from its asset's surface; NaN: the tag is not on an asset. The
+   caller frees the array. */
 static double *surface_distances(const struct scene *scene)
 {
     double *distance_m = mem_array(scene->plant->tag_count + 1, sizeof(*distance_m));
@@ -27,7 +28,8 @@ static double *surface_distances(const struct scene *scene)
     return distance_m;
 }
 
-/* Returns per tag the matcher's confidence; NaN: unknown. The caller frees the array. */
+/* Returns an array by tag: confidence with which `plantcast match` assigned the tag to its equipment; NaN: unknown. The caller frees the
+   array. */
 static double *confidences(const struct plant *plant)
 {
     double *confidence = mem_array(plant->tag_count + 1, sizeof(*confidence));

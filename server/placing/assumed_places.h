@@ -10,15 +10,16 @@
 #include "scene/scene.h"
 
 struct assumed_filter {
-    int asset, group;  /* indices in the plant; -1: any */
-    char pattern[101]; /* glob over the tag's name; without * and ? a substring of its name or description; case-insensitive; "": any */
-    double within_m;   /* largest distance from the asset's surface; negative: any distance */
+    int asset, group;  /* indices in the plant of an asset and a group; -1: any */
+    char pattern[101]; /* glob for the tag's name; a text without * and ? is searched in the tag's name and description;
+                          case-insensitive; empty: any */
+    double within_m;   /* largest distance in metres of the position from the asset's surface; negative: any distance */
     /* smallest confidence of the match between tag and equipment, 0..1, from matches.csv next to the tag list; negative: any */
     double confidence;
 };
 
 enum assumed_outcome {
-    ASSUMED_NOT_MEANT, /* the tag's position is not assumed, or the filter's asset, group or pattern does not match the tag */
+    ASSUMED_NOT_MEANT, /* the filter does not select the tag: its position is not assumed, or its asset, group or name does not match */
     ASSUMED_ACCEPTED,
     ASSUMED_NOWHERE, /* the tag's row has neither a node nor X, Y, Z */
     ASSUMED_MISSING, /* its asset has no model */
@@ -27,12 +28,12 @@ enum assumed_outcome {
     ASSUMED_OUTCOMES
 };
 
-/* Writes an enum assumed_outcome for each tag of the plant. Returns the number of accepted tags. */
+/* Writes for each tag of the plant whether its position is accepted (enum assumed_outcome). Returns the number of accepted tags. */
 size_t assumed_places_choose(const struct scene *scene, const struct assumed_filter *filter, uint8_t *outcome);
-/* Returns the tag list with `Place` cleared in the rows of the accepted tags and nothing else changed. NULL on failure, with the reason in
-   *why. The caller frees the result (mem_free). */
+/* Returns the tag list with the column `Place` cleared in the rows of the accepted tags and nothing else changed. NULL on failure, with
+   the reason in *why. The caller frees the result (mem_free). */
 char *assumed_places_accept(const struct plant *plant, const char *list, const uint8_t *outcome, struct refusal *why);
-/* Writes the filter in words, for the audit trail. */
+/* Describes the filter as text, for the audit trail. */
 void assumed_filter_text(const struct plant *plant, const struct assumed_filter *filter, char *out, size_t size);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds the stored surface of an asset and starts its relocation object. */
+/* Finds the stored surface of an asset and creates the relocation object that computes distances on it. */
 #include "placing/mover.h"
 
 #include <stdlib.h>

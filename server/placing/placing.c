@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Manages the users' sets of moved sensors, the relocation objects of the assets concerned, and results from workers. */
+/* Manages the users' sets of moved sensors, the relocation objects (which compute distances on an asset), and results from workers. */
 #include "placing/placing.h"
 
 #include <math.h>
@@ -15,16 +15,16 @@
 #include "surface/relocation.h"
 #include "value/quality.h"
 
-enum { MOVERS = 4 }; /* limit of relocation objects kept in memory; those of assets with moved sensors are kept beyond it */
+enum { MOVERS = 4 }; /* relocation objects kept in memory at most; those of assets with moved sensors are kept in any case */
 
-struct distance_ask { /* pending request for the distances of one moved sensor */
+struct distance_ask { /* pending request for the geodesic distances of one moved sensor */
     struct placing *placing;
     uint64_t number;
-    float *along_m; /* geodesic distances per vertex; NULL: failed */
+    float *along_m; /* geodesic distance of each vertex; NULL: computing them failed */
     struct distance_ask *next;
 };
 
-struct placing_entry { /* private part of a moved sensor; set->placed holds the public part */
+struct placing_entry { /* private data of a moved sensor; set->placed has the data that callers see */
     uint64_t asked;    /* sequence number of the sensor's pending request; 0: none */
     uint64_t ticket;
     struct trial_sensor sensor;
@@ -131,8 +131,8 @@ static bool is_moved_on(const struct placing *placing, int asset)
     return false;
 }
 
-/* Frees the least recently used relocation object of an asset without moved sensors, if more than MOVERS are in memory. Does not free one
- * whose surface is still being built, because that would mean waiting. keep: index of an asset whose object stays. */
+/* Frees the least recently used relocation object of an asset without moved sensors, if more than MOVERS are in memory. Does not free an
+ * object whose surface is still being built, because the caller would have to wait. keep: index of an asset whose object is not freed. */
 static void cool(struct placing *placing, int keep)
 {
     int count = 0, oldest = -1;
@@ -185,7 +185,7 @@ static void to_file(const struct scene_asset *asset, const double plant_m[3], do
     transform_point(file_from_plant, plant_m, out);
 }
 
-/* Projects the moved sensor onto its asset. Returns false if the point is too far away. */
+/* Projects the moved sensor onto its asset's surface. Returns false if the position is too far from the asset. */
 static bool find_place(struct placing *placing, const struct place_move *move, struct placing_entry *entry, struct placed *placed)
 {
     const struct scene_asset *asset = &placing->params.scene->assets[move->asset];
@@ -261,7 +261,7 @@ void place_set_destroy(struct place_set **pointer)
     *pointer = NULL;
 }
 
-/* Returns the index of an equal move in the set; -1: none. */
+/* Returns the index of a move in the set that equals `move`; -1: none. */
 static int find_same(const struct place_set *set, const struct place_move *move)
 {
     for (size_t i = 0; i < set->count; i++) {

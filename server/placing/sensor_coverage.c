@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes gaps between sensors, from the distances of every vertex and the area that it represents. */
+/* Computes how well sensors cover a surface, from the distance of every vertex to its nearest sensor and the area that the vertex
+   represents. */
 #include "placing/sensor_coverage.h"
 
 #include <math.h>
@@ -66,7 +67,7 @@ static void find_next(const struct field_layout *layout, enum distance_mode mode
     }
 }
 
-struct nearest_block { /* for a block of vertices: distance to the nearest sensor, and whether that sensor's reading is usable */
+struct nearest_block { /* by vertex of a block: distance to the nearest sensor, and whether that sensor's reading is usable */
     float m[KERNEL_BLOCK];
     bool good[KERNEL_BLOCK];
 };

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sensor coverage: how far an asset's surface is from its sensors, and how much of its area no usable sensor covers. Pure. Thread: any. */
+/* Sensor coverage: how far the points of an asset's surface are from its sensors, and how much of the area no usable sensor covers.
+   Pure. Thread: any. */
 #ifndef PLACING_SENSOR_COVERAGE_H
 #define PLACING_SENSOR_COVERAGE_H
 #include "field/layout.h"
@@ -10,7 +11,8 @@ struct sensor_coverage_query {
     int asset, group;
     enum distance_mode mode;
     double reach_m; /* INFINITY: no limit */
-    /* distance from which a point counts as far from all sensors; 0: half of the reach, or without a reach a fifth of the asset's size */
+    /* metres; a point at least this far from all sensors counts as far. 0: half of the reach or, without a reach, a fifth of the asset's
+       size */
     double far_m;
     const uint8_t *good; /* by tag: 1 if the sensor's reading is usable now */
 };
@@ -18,19 +20,21 @@ struct sensor_coverage_query {
 struct sensor_coverage {
     size_t sensors;
     double far_m;            /* the limit used */
-    double farthest_m;       /* metres from the farthest connected surface point to its nearest sensor */
-    double farthest_at_m[3]; /* position of that point, in the plant frame */
-    double far_share;        /* fraction of the surface's area that is far, 0..1 */
+    double farthest_m;       /* metres from the farthest surface point to its nearest sensor, among points that a path connects to a
+                                sensor */
+    double farthest_at_m[3]; /* position of that point, in plant coordinates */
+    double far_share;        /* fraction of the surface's area that counts as far (far_m), 0..1 */
     double lost_share;       /* fraction of the area that no sensor reaches, or whose nearest sensor has no usable reading */
-    double next_m;           /* largest distance from a sensor to its nearest other sensor; 0: there is only one sensor */
-    int next_tags[2];        /* indices of the tags of these two sensors; -1: none */
+    double next_m;           /* metres from a sensor to its nearest other sensor, for the sensor where that is largest; 0: there is only
+                                one sensor */
+    int next_tags[2];        /* indices of the tags of the two sensors of next_m; -1: none */
 };
 
 /* Computes the coverage for a query into *out. Returns false if no sensor of the group is on the asset. */
 bool sensor_coverage_find(const struct sensor_coverage_query *order, struct sensor_coverage *out);
 
-/* Returns the area that each vertex represents: a third of each adjacent triangle of the finest level, in square metres. The caller frees
-   it (mem_free). */
+/* Returns an array by vertex: the area in square metres that the vertex represents, which is a third of each adjacent triangle of the
+   finest level. The caller frees it (mem_free). */
 double *sensor_coverage_areas(const struct asset_view *view);
 
 #endif

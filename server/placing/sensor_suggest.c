@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Suggests positions for new sensors. Candidates are ranked by an upper bound of their gain, from straight-line distances, which are never
-   longer than geodesic ones; so geodesic distances are computed for the first few only. */
+/* Suggests positions for new sensors. Candidates are ranked by an upper bound of their gain. The bound uses straight-line distances,
+   which are never longer than geodesic ones, so that geodesic distances must be computed only for the candidates with the highest
+   bounds. */
 #include "placing/sensor_suggest.h"
 
 #include <math.h>
@@ -18,28 +19,28 @@
 
 /* maximum number of candidate positions per asset, spread evenly over the area where hot spots are hard to detect */
 #define MAX_CANDIDATES 1500
-/* maximum number of candidates per suggestion for which geodesic distances are computed, in order of their upper bounds */
+/* maximum number of candidates per suggestion, those with the highest bounds, for which geodesic distances are computed */
 #define MAX_MEASURED 40
-#define MIN_GAIN 1e-6 /* smallest gain, as a part of the measure, for which a sensor is suggested */
+#define MIN_GAIN 1e-6 /* smallest reduction of the measure (sensor_suggest.h) for which a sensor is suggested */
 
 struct suggest_asset { /* an asset */
     int asset;
     size_t count;
     const float (*at_m)[3];
     double *area_m2, whole_m2;
-    float *near_m;            /* metres from each vertex to its nearest sensor */
+    float *near_m;            /* by vertex: metres to its nearest sensor */
     struct relocation *mover; /* NULL: not needed yet */
 };
 
 struct candidate {
     size_t part;
     uint32_t vertex;
-    double bound; /* upper bound of the candidate's gain: square metres times the measure */
+    double bound; /* upper bound of the candidate's gain: reduction of the measure times the area in square metres */
 };
 
 struct suggesting {
     const struct suggest_query *query;
-    double seen_m; /* distance from a sensor up to which a hot spot of the group's whole range is detectable */
+    double seen_m; /* metres from a sensor within which a hot spot of the group's whole range is detectable */
     struct suggest_asset *parts;
     size_t part_count;
     double whole_m2;
@@ -134,7 +135,8 @@ static int by_bound(const void *a, const void *b)
     return (first->bound < second->bound) - (first->bound > second->bound);
 }
 
-/* Lists candidates, spread evenly over the area where hot spots are hard to detect. Deterministic. The caller frees the list. */
+/* Lists candidate positions, spread evenly over the area where hot spots are hard to detect. Deterministic. *count receives their
+   number. The caller frees the list. */
 static struct candidate *find_candidates(const struct suggesting *suggesting, size_t *count)
 {
     struct candidate *list = mem_array(suggesting->part_count * (MAX_CANDIDATES + 1), sizeof(*list));
@@ -179,7 +181,7 @@ static void on_distances(void *arg, struct relocation_result *result)
     pthread_mutex_unlock(&waiting->lock);
 }
 
-/* Computes geodesic distances from a vertex. The caller frees the result (mem_free). NULL on failure. */
+/* Computes the geodesic distance of every vertex from a vertex. The caller frees the result (mem_free). NULL on failure. */
 static float *distances_from(const struct suggesting *suggesting, struct suggest_asset *part, uint32_t vertex)
 {
     const struct suggest_query *query = suggesting->query;
@@ -200,7 +202,7 @@ static float *distances_from(const struct suggesting *suggesting, struct suggest
     return waiting.result.status == RELOCATION_DONE ? waiting.result.geodesic_m : NULL;
 }
 
-/* Finds the best candidate and applies its effect. Returns false if no candidate gains more than MIN_GAIN. */
+/* Finds the candidate with the largest gain and adds it as a sensor. Returns false if no candidate gains more than MIN_GAIN. */
 static bool take_best(struct suggesting *suggesting, struct suggestion *out)
 {
     size_t count;

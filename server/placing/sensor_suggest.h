@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Suggests where additional sensors would help most: one position after the other, each reducing the measure as much as a single sensor
- * can. The measure says how badly hot spots are detectable: it is the mean over the surface of ln(h / h0) / ln(1 / 0.05), capped at 1: h is
- * the smallest hot spot detectable at a point (show: blind), h0 the one detectable at a sensor. 0 means a sensor everywhere; 1 means that
- * even a hot spot of the group's whole range is undetectable. The greedy choice reaches at least 63 % of the best set's gain (Nemhauser,
- * Wolsey & Fisher, 1978), among the tested positions. Thread: one; waits for workers. */
+/* Suggests where additional sensors would help most: one position after the other, each reducing a measure as much as a single sensor
+ * can. The measure says how badly hot spots are detectable: it is the mean over the surface of ln(h / h0) / ln(1 / 0.05), capped at 1,
+ * where h is the height of the smallest hot spot detectable at a point (show: blind), and h0 that of the smallest one detectable at a
+ * sensor. 0 means a sensor everywhere; 1 means that even a hot spot of the group's whole range is undetectable. The greedy choice
+ * reaches at least 63 % of the best set's gain (Nemhauser, Wolsey & Fisher, 1978), among the tested positions. Thread: one; waits for
+ * workers. */
 #ifndef PLACING_SENSOR_SUGGEST_H
 #define PLACING_SENSOR_SUGGEST_H
 #include "base/log/log.h"
@@ -21,13 +22,14 @@ struct suggest_query {
 
 struct suggestion {
     int asset;
-    double at_m[3];                     /* suggested position on the surface, in the plant frame */
-    double before, after;               /* the measure over all requested assets, before and after adding this sensor */
-    double unseen_before, unseen_after; /* fraction of the area where even a hot spot of the whole range is undetectable */
+    double at_m[3];                     /* suggested position on the surface, in plant coordinates */
+    double before, after;               /* the measure over all assets of the query, before and after adding this sensor */
+    double unseen_before, unseen_after; /* fraction of the area where even a hot spot of the group's whole range is undetectable, before
+                                           and after adding this sensor */
 };
 
-/* Writes up to query->count suggestions to `out` and returns their number, fewer if no further sensor would help. Returns 0 if no asset has
- * sensors of the group at known positions, or after a failure, logged. */
+/* Writes up to query->count suggestions to `out` and returns their number; fewer if no further sensor would help. Returns 0 if no asset
+ * has sensors of the group at known positions, or after a failure (logged). */
 size_t sensor_suggest(const struct suggest_query *query, struct suggestion *out);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Saves versions of a tag list next to each other. */
+/* Saves a tag list, and keeps its earlier versions in the same folder. */
 #include "placing/tag_file.h"
 
 #include <errno.h>
@@ -52,7 +52,7 @@ static void cannot_write(struct refusal *why, const char *file, int error)
         refusal_set(why, REFUSAL_UNWRITTEN, "file=%s\nerror=%s", file, strerror(error));
 }
 
-/* Keeps the present file by a second hard link, so that its owner and mode stay. */
+/* Gives the present file a second name by a hard link, which keeps the file's owner and mode. Returns that name. */
 char *tag_file_keep(const char *path, struct refusal *why)
 {
     for (int n = 1; n < MAX_VERSIONS; n++) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The tag list on disk: a new version takes the name, and the previous one is kept as NAME.1, NAME.2, ... No version is ever overwritten.
- * Thread: any, one at a time per list. */
+/* The tag list on disk. A new version takes the list's name, and the previous one is kept as NAME.1, NAME.2, ... No version is ever
+ * overwritten. Thread: any, one at a time per list. */
 #ifndef PLACING_TAG_FILE_H
 #define PLACING_TAG_FILE_H
 #include <stdbool.h>
@@ -8,10 +8,10 @@
 
 #include "base/refusal.h"
 
-/* A request to save a tag list, from a user who has seen its difference from the current list. */
+/* A request to save a tag list, from a user who has seen how it differs from the present list. */
 struct tag_save {
     char *path;
-    char *before, *after; /* texts of the current list and of the new one */
+    char *before, *after; /* text of the present list, and of the list to save */
     char *who;
     uint64_t client; /* id of the client that gets the answer */
     uint32_t seq;
@@ -19,15 +19,15 @@ struct tag_save {
 /* Frees the request. NULL is fine. */
 void tag_save_free(struct tag_save *save);
 
-/* Returns the list's text (mem_free). NULL with the reason in *why. */
+/* Returns the text of the tag list (mem_free). NULL with the reason in *why. */
 char *tag_file_read(const char *path, struct refusal *why);
 /* Writes a hash of the text as 16 hexadecimal digits, by which versions are told apart. */
 void tag_file_hash(const char *text, char out[17]);
-/* Keeps the present file under the first free name of NAME.1, NAME.2, ..., as a second link. Returns that name (mem_free). NULL with the
-   reason in *why. */
+/* Keeps the present file under the first unused name of NAME.1, NAME.2, ..., by a second hard link. Returns that name (mem_free). NULL
+   with the reason in *why. */
 char *tag_file_keep(const char *path, struct refusal *why);
-/* Saves save->after under the list's name. *kept receives the name of the previous version (mem_free). Returns false with nothing changed
-   on disk and the reason in *why. */
+/* Saves save->after under the list's name. *kept receives the path of the previous version (mem_free). Returns false with nothing
+   changed on disk and the reason in *why. */
 bool tag_file_put(const struct tag_save *save, char **kept, struct refusal *why);
 /* Undoes tag_file_put(): renames the kept version back. Returns false with the reason in *why (mem_free). */
 bool tag_file_put_back(const struct tag_save *save, const char *kept, char **why);
