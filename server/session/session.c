@@ -389,7 +389,7 @@ static bool in_order(const struct session *session, const struct message *messag
         message_fail(error, "hello_first", "the first message is hello");
         return false;
     }
-    /* the token decides what hello may contain */
+    /* hello needs no check here: session_hello() checks its token, which decides what the client may do */
     return message->type == MESSAGE_HELLO ||
            (role_may_send(session->identity.role, message, error) && session_scope_allows(session, message, error));
 }

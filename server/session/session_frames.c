@@ -91,7 +91,7 @@ void session_on_frame(struct session *session, struct encoded_frame *encoded)
     note_refined(session, &encoded->request);
     if (session_is_tile(session))
         session_tile_came(session, &encoded->request, encoded->made_ns);
-    if (encoded_frame_stands_alone(encoded)) /* a frame that decodes on its own makes frames not sent yet obsolete */
+    if (encoded_frame_stands_alone(encoded)) /* a frame that decodes on its own replaces the ready frames before it, so they are not sent */
         session_drop_ready(session);
     struct encoded_frame **last = &session->delivery.ready;
     while (*last)
@@ -338,7 +338,8 @@ bool session_wants(const struct session *session, int64_t now_ns, struct frame_r
 {
     *request = (struct frame_request){ .view = session_shown(session), .codec = session->codec.current, .asked_ns = now_ns };
     request->account = session->room.share ? session->room.share->account : 0;
-    request->read_ns = request->view.at_us ? 0 : session->context->changed_ns; /* readings of a past instant never change */
+    /* readings of a past instant never change, so the request names no time up to which the client knows them */
+    request->read_ns = request->view.at_us ? 0 : session->context->changed_ns;
     request->view.camera_seq = session->view.camera_seq;
     request->view.params_seq = session->view.params_seq;
     bool wanted = wants(session, now_ns, request);

@@ -131,7 +131,7 @@ bool session_on_time(struct session *session, const struct time_request *request
 void session_time_begin(struct session *session, int64_t at_us, double speed);
 /* Releases the reference to the historical snapshot. */
 void session_time_end(struct session *session);
-/* Returns to the present at once. */
+/* Returns to the present immediately, whatever instant is being loaded. */
 void session_time_leave(struct session *session);
 /* Copies the session's instant and playback to the heir. */
 void session_time_inherit(struct session *heir, const struct session *session);

@@ -56,8 +56,8 @@ static void answer_now(struct session *session, struct kept_answer *kept, int jo
     mem_free(kept);
 }
 
-/* Queues the answer if the disk result is known, or at once if `now`. Returns true if it was queued and removed; *at is then the next
-   answer. */
+/* Queues the answer if it is known whether its action is on disk, or immediately if `now` is true. Returns true if the answer was queued
+   and removed from the list; *at is then the next answer. */
 static bool try_to_answer(struct session *session, struct kept_answer **at, bool now)
 {
     struct kept_answer *kept = *at;

@@ -19,7 +19,8 @@ char *session_carried_text(const struct session_context *context, const struct v
     json_object_set_new(o, "start", start);
     double low, high;
     field_default_range(context->scene, &view->field, &low, &high);
-    if (view->range_min == low && view->range_max == high) /* the range was the group's default; the new plant may have another default */
+    /* the range is the group's default, so it is left out: the new plant may have another default */
+    if (view->range_min == low && view->range_max == high)
         json_object_del(o, "range");
     char *dumped = json_dumps(o, JSON_COMPACT), *carried = mem_strdup(dumped);
     free(dumped);
@@ -36,7 +37,7 @@ char *session_carry(struct session *session)
     return session->hello ? session_carried_text(session->context, &session->view) : NULL;
 }
 
-/* Converts that description into the `params` message that a client would send for the same view. */
+/* Converts a text of session_carried_text() into the `params` message that a client would send for the same view. */
 static json_t *request_of(const char *carried)
 {
     static const char *const said_only[] = { "type", "seq", "baselines", "unit" };
@@ -160,7 +161,8 @@ void session_take_plant(struct session *session, const char *carried)
     session->owed.loop_checks_sent = 0;
     session->owed.views_sent = session->owed.notes_sent = session->owed.walls_sent = session->owed.pointers_sent = 0;
     session->demand.refined = REFINED_NOT;
-    while (session->delivery.pacer.asked > 0) /* requests to the old plant's render service get no answer */
+    /* the old plant's render service will not answer these requests any more, so they count as dropped */
+    while (session->delivery.pacer.asked > 0)
         pacer_dropped(&session->delivery.pacer);
     if (!session->hello)
         return;

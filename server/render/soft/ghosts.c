@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draws ghosted assets: lines where their depth has edges or creases, and a thin horizontal line every ten pixels; ports shaders/ghost.frag. */
+/* Draws ghosted assets: lines where their depth has edges or creases, and a thin horizontal line every ten pixels; ports
+   shaders/ghost.frag. */
 #include <math.h>
 #include <string.h>
 

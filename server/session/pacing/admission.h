@@ -47,7 +47,8 @@ void admission_leave(struct admission *admission, struct address_share *share);
 void admission_on_frame(struct admission *admission, struct address_share *share, const struct encoded_frame *encoded);
 /* Starts a new measuring window if the current one is at least a second old. */
 void admission_on_tick(struct admission *admission, int64_t now_ns);
-/* Returns the percentage of the render thread's time spent on awaited frames, in the least busy of the last ADMISSION_WINDOWS seconds. */
+/* Returns the percentage of the render thread's time that was spent on frames that clients wait for, in the least busy of the last
+   ADMISSION_WINDOWS seconds. */
 int admission_busy_percent(const struct admission *admission);
 /* Returns NULL if a view may grow from `before` to `pixels` pixels; otherwise the reason (static text). share: figures of the client's
    address; NULL: only the limit for all addresses together applies. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Counts the frames in flight to one client from the server's own records. */
+/* Counts the frames in flight to one client, from the server's own records of frames sent and acknowledged. */
 #include "session/pacing/pacer.h"
 
 #include <assert.h>

@@ -29,7 +29,7 @@ struct pacer {                              /* initialise with pacer_init() */
     struct pacer_flight flight[PACER_MOST]; /* frames sent and not acknowledged, oldest first */
     int flight_count;
     uint32_t last_seq;
-    bool cut;                  /* a frame was cut short, and the end of its WebSocket message is not written yet */
+    bool cut;                  /* a frame was cut short: the end of its WebSocket message must still be written */
     int64_t moved_on_ns;       /* monotonic: when the client last acknowledged a frame, or its socket last accepted bytes */
     struct pacer_flight acked; /* the newest acknowledged frame */
     struct channel channel;

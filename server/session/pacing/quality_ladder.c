@@ -79,7 +79,7 @@ static int slack_factor(int step)
     return step < QUALITY_LADDER_STEPS - 1 && steps[step + 1].rung.scale < 1 ? 2 : 1;
 }
 
-/* Returns the best step whose frames the network is expected to carry within limit_ns. */
+/* Returns the best step (the lowest index) whose frames the network is expected to carry within limit_ns. */
 static int best_within(const struct quality_ladder *ladder, const struct channel *channel, int64_t limit_ns)
 {
     int step = 0;
@@ -142,7 +142,8 @@ static bool lasts(int64_t *since_ns, bool now, int64_t limit_ns, int64_t now_ns)
     return now && now_ns - *since_ns >= limit_ns;
 }
 
-/* Shrinks the picture if a frame costs too much time, and enlarges it again if the larger picture would be cheap. */
+/* Chooses a smaller picture once a frame's cost (cost_ns) stayed above hard_ns for HARD_FOR_NS, and a larger one once the larger picture's
+   expected cost stayed below easy_ns for EASY_FOR_NS. */
 static void follow_cost(struct quality_ladder *ladder, int64_t cost_ns, int64_t hard_ns, int64_t easy_ns, int64_t now_ns)
 {
     double ratio = ladder->size > 0 ? sizes[ladder->size - 1] / sizes[ladder->size] : 1;

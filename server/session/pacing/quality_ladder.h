@@ -39,8 +39,8 @@ int quality_ladder_common(const struct quality_ladder *seen, const int counts[QU
 int quality_ladder_step(const struct quality_ladder *ladder, int common);
 /* Records that a preview of that step and size in bytes was acknowledged, and adjusts the step. */
 void quality_ladder_on_ack(struct quality_ladder *ladder, const struct channel *channel, int step, size_t bytes, int64_t now_ns);
-/* Records how long the server took to make previews, from request to encoded frame, and adjusts the picture size. For a picture over many
-   displays: it has a ladder of its own, because it has more pixels than any client's picture. */
+/* Records how long the server took to make previews, from request to encoded frame, and adjusts the picture size. Used for the ladder of a
+   picture over many displays: such a picture has more pixels than any client's picture, so making it may be the bottleneck. */
 void quality_ladder_on_made(struct quality_ladder *ladder, int64_t made_ns, int64_t now_ns);
 /* Returns the expected size in bytes of a preview at the ladder's own step; 0: not known. */
 double quality_ladder_bytes(const struct quality_ladder *ladder);

@@ -89,7 +89,8 @@ bool session_tiles_next_request(const struct session_tiles *tiles, uint64_t numb
     first.view.width_px = tile_layout_width(&layout);
     first.view.height_px = tile_layout_height(&layout);
     first.always = always;
-    first.only_replace = !may_add; /* a refined picture in flight is abandoned when the view moves */
+    /* if no picture may be added to those in flight, this request may still replace one, such as a refined picture whose view has moved */
+    first.only_replace = !may_add;
     first.picture = number;
     for (size_t i = 0; i < tiles->count; i++) {
         const struct session *member = tiles->members[i];
