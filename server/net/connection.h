@@ -12,7 +12,7 @@ struct connection {               /* identity of one connection; lives as long a
     enum role role;               /* role of the user, according to the last request's headers */
     struct token_holder holder;
     char token[TOKEN_MAX_CHARS + 1]; /* token of the last request; "": none */
-    bool answered;                   /* no request of this connection is unanswered */
+    bool answered;                   /* true: all requests of this connection are answered */
     /* bytes received by the connection when the wait for its next request began; UINT64_MAX: not waiting (http/stuck_head.h) */
     uint64_t received_before_head;
 };

@@ -161,8 +161,8 @@ static void tick(struct net *net, int64_t now_ns)
     net->ticked_ns = now_ns;
 }
 
-/* libwebsockets runs due timers before it waits. A timer that became due meanwhile would not end that wait; so this wakes libwebsockets at
-   once. */
+/* libwebsockets runs due timers before it waits. A timer that became due meanwhile would not end that wait, so this handler wakes
+   libwebsockets immediately. */
 static void on_timer(lws_sorted_usec_list_t *sul)
 {
     struct net *net = lws_container_of(sul, struct net, timer);
@@ -192,8 +192,8 @@ bool net_settle_answers(struct net *net)
     return answers->waiting;
 }
 
-/* Does what is due now, and schedules the wake-up for what is due next. libwebsockets waits in whole milliseconds, rounded down, and
-   polls repeatedly in the last one; so whatever is due within a millisecond is done at once. */
+/* Does what is due now, and schedules the wake-up for what is due next. libwebsockets waits in whole milliseconds, rounded down, and polls
+   repeatedly in the last one; so work that is due within a millisecond is done now. */
 static void do_what_is_due(struct net *net)
 {
     int64_t soon_ns = clock_mono_ns() + NS_PER_MS, readings_ns = net_update_readings(net, soon_ns);

@@ -244,8 +244,8 @@ void streams_on_readings(struct server_context *server, bool data_changed, bool 
     }
 }
 
-/* Returns whether this session is to be closed by now while sessions are drained. Sessions are closed at different instants, because
-   their pages reconnect to other nodes at once. */
+/* Returns whether this session must be closed by now, while the daemon drains its sessions to other daemons. Sessions are closed at
+   different instants, because their pages reconnect to other nodes immediately. */
 static bool is_drained(const struct server_context *server, const struct stream *stream, int64_t now_ns)
 {
     uint64_t spread = (stream->session->id + 1) * 0x9E3779B97F4A7C15u >> 32; /* multiplying by the golden ratio spreads consecutive ids */

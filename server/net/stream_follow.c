@@ -6,7 +6,7 @@
 #include "net/stream.h"
 
 static const int64_t MIN_LIST_INTERVAL_NS =
-    500 * NS_PER_MS; /* minimum time between two lists of followers, because hundreds may connect at once */
+    500 * NS_PER_MS; /* minimum time between two lists of followers, because hundreds of followers may connect within a moment */
 
 /* Makes the followers of the resumed session follow the session that resumed it. */
 static void take_back(struct server_context *server, struct session *session)
@@ -20,7 +20,7 @@ static void take_back(struct server_context *server, struct session *session)
     }
 }
 
-/* Makes the followers of one session follow another session. to NULL: they follow nobody. */
+/* Makes the followers of one session follow another session. If `to` is NULL, they follow nobody. */
 static void hand_over(struct server_context *server, const struct session *from, struct session *to)
 {
     for (struct stream *stream = server->streams; stream; stream = stream->next)

@@ -362,10 +362,10 @@ struct plant {
 
 /* Loads a plant file and its tag list. Findings go to diag. Returns NULL if there was any error. */
 struct plant *plant_load(const char *path, struct diag *diag);
-struct plant *plant_load_or_print(const char *path); /* Does the same as plant_load(), and prints the findings to standard error. */
-/* Does the same as plant_load_or_print(), but a missing model file is no error: for programs that need no models. */
+struct plant *plant_load_or_print(const char *path); /* Loads a plant like plant_load(), and prints the findings to standard error. */
+/* Loads a plant like plant_load_or_print(), but a missing model file is no error: for programs that need no models. */
 struct plant *plant_load_without_models(const char *path);
-/* Does the same as plant_load(), but accepts tags whose asset does not exist: such tags get no asset, and their lost_asset is set. */
+/* Loads a plant like plant_load(), but accepts tags whose asset does not exist: such tags get no asset, and their lost_asset is set. */
 struct plant *plant_load_with_orphans(const char *path, struct diag *diag);
 void plant_destroy(struct plant **plant); /* Frees a plant and sets *plant to NULL; accepts a pointer to NULL. */
 

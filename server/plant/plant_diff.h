@@ -9,7 +9,7 @@ struct plant_diff { /* zero-initialise */
     size_t count, capacity, more;
 };
 enum { PLANT_DIFF_LINES = 200 };
-/* Appends a line for each difference. */
+/* Appends a line for each difference between the two plants to out->lines. */
 void plant_diff(const struct plant *before, const struct plant *after, struct plant_diff *out);
 void plant_diff_finish(struct plant_diff *diff);
 /* Returns the name of a setting of the new plant that a running daemon cannot apply without a restart (static); NULL: none. */

@@ -22,7 +22,8 @@ struct render_job {
     struct frame *frame;
     struct light_set *light;            /* reference to the light, held once the light is ready; NULL: not yet */
     const struct fields_entry **fields; /* per asset */
-    struct fields_entry *copies;        /* copies of the shown fields, per asset; NULL: the frame is drawn at once and needs no copies */
+    /* copies of the shown fields, per asset; NULL: the frame is drawn in a single call and needs no copies */
+    struct fields_entry *copies;
     int *visible;
     struct isoline_points isolines;
     bool keeps; /* true: once the job has ended, a frame of the same view with other readings is drawn in about the time of a preview */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draws frames of the scene, at once or as jobs in steps. Thread: the one that made the GL context. */
+/* Draws frames of the scene, each in a single call or as a job in steps. Thread: the one that made the GL context. */
 #ifndef RENDER_RENDERER_H
 #define RENDER_RENDERER_H
 #include <stdbool.h>
@@ -22,7 +22,7 @@ const struct frame_planner *renderer_planner(const struct renderer *renderer);
 /* Returns whether renderer_draw() takes about the time of a preview: the frame is a preview, or differs only in values and colours from a
    recently drawn refined frame, or the GPU is fast enough. */
 bool renderer_is_quick(struct renderer *renderer, const struct frame_plan *plan);
-/* Draws the frame at once. The caller owns it (frame_unref). NULL on failure, logged. */
+/* Draws the frame in a single call. The caller owns it (frame_unref). NULL on failure, logged. */
 struct frame *renderer_draw(struct renderer *renderer, const struct frame_plan *plan);
 
 /* Begins a job that draws the frame in steps; other frames can be drawn in between. The job copies everything it needs from the plan. Any

@@ -18,9 +18,9 @@ void renderer_set_occlusion_least(struct renderer *renderer, int least_triangles
 size_t renderer_occluded_count(const struct renderer *renderer);
 /* Draws each asset with GL calls of its own (one_by_one true) instead of batching equal ones. */
 void renderer_set_batching_off(struct renderer *renderer, bool one_by_one);
-/* Fills `out` with the field's numbers at one sample per pixel, rows from the top: position in the range (unclamped, always linear), no
-   data (0..1; MEASURE_CONTEXT: an asset without a field; MEASURE_NOTHING), uncertain (0..1), depth (1 near, 0 far). finest: finest levels
-   of detail only. Returns false on failure, logged. */
+/* Fills `out` with the field's values at one sample per pixel, rows from the top. Channels: position in the range (unclamped, always
+   linear), no data (0..1; MEASURE_CONTEXT: an asset without a field; MEASURE_NOTHING), uncertain (0..1), depth (1 near, 0 far). finest:
+   uses the finest levels of detail only. Returns false on failure, logged. */
 bool renderer_measure(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot, bool finest, float (*out)[4]);
 
 #endif

@@ -9,7 +9,9 @@
 #include "base/mem.h"
 #include "plant/models/transform.h"
 
-static const double SAME_PLANE_M = 2e-4, SAME_NORMAL = 1e-3; /* accuracy of CAD positions stored as floats */
+/* tolerances within which two faces lie in one plane: distance in metres, and difference of unit normals; from the accuracy of CAD
+   positions stored as floats */
+static const double SAME_PLANE_M = 2e-4, SAME_NORMAL = 1e-3;
 static const double MIN_AREA_M2 = 1e-4, MIN_OVERLAP_M = 1e-3;
 /* shift towards the viewer per rank, relative to the distance: larger than the depth error of frames for surfaces seen at 6 degrees or
  * more, with positions rounded to 1/256 pixel */

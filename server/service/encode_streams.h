@@ -16,7 +16,7 @@ struct encode_stream {
     int64_t key_ns;             /* monotonic: when the newest key frame was planned */
     struct frame_request shown; /* request that caused the newest frame: its view, codec and quality */
     uint64_t content;           /* content hash of the newest frame */
-    /* the kept packets: of frame numbers `oldest` to oldest + kept_count - 1; NULL where nothing had changed */
+    /* the kept packets, of the frames with sequence numbers `oldest` to oldest + kept_count - 1; NULL where nothing had changed */
     struct packet *kept[ENCODE_STREAM_KEPT];
     int kept_count;
     size_t kept_bytes, key_bytes;
@@ -54,8 +54,8 @@ struct encode_plan { /* zero-initialise */
    are moved to `rest`; the caller plans them by another call. */
 void encode_streams_plan(struct encode_streams *streams, const struct frame *frame, struct request_group *tickets, int64_t now_ns,
                          struct encode_plan *plan, struct request_group *rest);
-/* Stores the stream's next packet and takes a reference to it. packet NULL: nothing had changed in the frame. Packets below `needed`, the
-   lowest number that some client still has to get, may be dropped. */
+/* Stores the stream's next packet and takes a reference to it. packet NULL: nothing had changed in the frame. Packets with a sequence
+   number below `needed`, the lowest that some client still has to get, may be dropped. */
 void encode_stream_keep(struct encode_stream *stream, struct packet *packet, uint64_t needed);
 /* Writes the packets from..to that bring a client up to date into out, oldest first, borrowed. Returns their count; -1: they are no
    longer kept. */

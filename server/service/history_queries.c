@@ -25,8 +25,8 @@ struct pending_query {
     int next_tag; /* next tag to read; for drift queries, the next asset */
     /* format of the last line of CSV output, which decides its number of columns: true: means of time buckets; false: single values */
     bool buckets;
-    bool listed;  /* a drifting sensor was listed already */
-    bool wanted;  /* the client requested the next piece */
+    bool listed;  /* true: the answer lists a drifting sensor already, so a comma comes before the next one */
+    bool wanted;  /* true: the client asked for the next piece */
     bool forgotten;
     uint64_t served; /* value of history_queries.served when the query's newest piece was begun; 0: no piece yet */
     struct pending_query *next;

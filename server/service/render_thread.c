@@ -339,7 +339,7 @@ static void choose_other(struct request_group *group)
     }
 }
 
-/* Draws the planned frame at once if that is quick; otherwise begins a long job. */
+/* Draws the planned frame in a single call if that is quick; otherwise begins a long job (a frame drawn in steps). */
 static void draw_plan(struct render_thread *thread, struct request_group *group, const struct snapshot *snapshot,
                       const struct historical_snapshot **historical, const struct split_plan *plan, bool quick)
 {

@@ -305,7 +305,7 @@ int http_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user,
     case LWS_CALLBACK_TIMER: return stuck_head_look(server_context_of(wsi), wsi);
     case LWS_CALLBACK_HTTP_CONFIRM_UPGRADE:
         stuck_head_arrived(wsi);
-        /* streams get a close frame of their own when the server shuts down, so they do not count as unanswered */
+        /* a stream gets a close frame of its own when the server shuts down, so its connection does not count as unanswered */
         connection_set_answered(server_context_of(wsi), wsi, true);
         return strcasecmp(in, "websocket") == 0 ? stream_check_upgrade(server_context_of(wsi), wsi) : -1;
     case LWS_CALLBACK_ESTABLISHED: { /* only a WebSocket without subprotocol gets here; others go to the handlers of their subprotocols */

@@ -103,7 +103,7 @@ static struct view *asked_view(struct asked *asked)
     return asked->picks ? &asked->pick.view : &asked->frame_request.view;
 }
 
-/* Requests the frame or pick: at once for the present, and for an instant after its readings were loaded. */
+/* Requests the frame or pick: immediately for the present; for an instant, after its readings were loaded. */
 static void begin(struct server_context *server, struct http_exchange *request)
 {
     struct asked *asked = request->asked;

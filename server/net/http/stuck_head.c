@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Uses the kernel's TCP_INFO: the number of bytes that a connection received, and the time since the last one. */
+/* Finds out from the kernel (TCP_INFO) how many bytes a connection received and how long ago the last one arrived. */
 #include "net/http/stuck_head.h"
 
 #include <linux/tcp.h>
@@ -30,13 +30,14 @@ void stuck_head_await(struct lws *wsi, bool first)
     lws_set_timer_usecs(wsi, CHECK_INTERVAL_US);
 }
 
-/* Stops the watch. The timer fires once more and is not set again: libwebsockets 4.1 cannot cancel it, and -1 makes it fire at once. */
+/* Stops the watch. The timer fires once more and is then not set again: libwebsockets 4.1 cannot cancel a timer, and a delay of -1 makes it
+   fire immediately. */
 void stuck_head_arrived(struct lws *wsi)
 {
     connection_of(wsi)->received_before_head = NOT_WATCHED;
 }
 
-/* Writes the answer 408 with a single attempt: bytes that the socket does not accept at once are lost. */
+/* Writes the answer 408 with a single attempt: bytes that the socket does not accept immediately are lost. */
 static void tell(struct lws *wsi)
 {
     static const char body[] = "408 Request Timeout: the head of the request did not end. Is the name of a header cut off?\n";

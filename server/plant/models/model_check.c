@@ -125,7 +125,7 @@ static void place_of(const struct model_header *header, uint32_t node, double ou
 }
 
 /* Returns whether all nodes of a name have the same position, considering only the asset's own nodes if it has any. *count receives the
-   number considered. */
+   number of nodes considered. */
 static bool is_one_place(const struct plant_models_check *check, const struct plant_asset *asset, size_t *count)
 {
     size_t own = 0;

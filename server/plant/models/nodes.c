@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Matches node patterns: by name, by number, by the name of a mesh, by path. */
+/* Matches node patterns: by name, by index in the file (#12), by the name of a mesh, by path. */
 #include "plant/models/nodes.h"
 
 #include <fnmatch.h>

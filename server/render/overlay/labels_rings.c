@@ -7,8 +7,8 @@
 #include "base/mem.h"
 #include "render/overlay/labels_impl.h"
 
-/* CLOSE: rings nearer to each other than this, in units, share a call-out; STILL_CLOSE: the same for rings that shared one in the previous
-   frame */
+/* CLOSE: alarm rings nearer to each other than this, in units, share a call-out; STILL_CLOSE: this distance for rings that shared one in
+   the previous frame */
 static const double CLOSE = 26, STILL_CLOSE = 34;
 static const double GROWTH = 1.25; /* factor by which both distances grow until at most MAX_GROUPS labels remain */
 enum { MAX_GROUPS = 24 };
@@ -154,7 +154,7 @@ static void make_groups(struct rings *rings, int *first)
         measure(rings, &rings->groups[i]);
 }
 
-/* --- places of the labels ---------------------------------------------------------------------------------------------------- */
+/* --- positions of labels ----------------------------------------------------------------------------------------------------- */
 
 static struct label_box box_at(const struct rings *rings, const struct ring_group *group, int slot)
 {

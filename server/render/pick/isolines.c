@@ -186,7 +186,7 @@ static void update_set(struct isoline_set *set, const struct scene_asset *asset,
     search_asset(&(struct isoline_search){ .asset = asset, .field = field, .set = set });
 }
 
-/* --- visibility of the points ------------------------------------------------------------------------------------------------ */
+/* --- visibility of points ---------------------------------------------------------------------------------------------------- */
 
 static void collect_lines(struct isolines *isolines, const struct frame_context *context, struct isoline_points *out)
 {

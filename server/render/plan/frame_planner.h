@@ -16,7 +16,7 @@ struct frame_planner { /* inputs from which frame plans are made; they must outl
 struct frame_plan *frame_plan_create(const struct frame_planner *planner, const struct view *view);
 void frame_plan_destroy(struct frame_plan **plan); /* frees the plan and sets *plan to NULL; accepts a pointer to NULL */
 /* Computes the plan's fields for about budget_ns. Returns true when the fields are ready: frame_plan_complete() is then fast. With
-   INT64_MAX returns true at once, and frame_plan_complete() computes them. */
+   INT64_MAX returns true immediately, and frame_plan_complete() computes the fields. */
 bool frame_plan_prepare(struct frame_plan *plan, const struct frame_planner *planner, const struct snapshot *snapshot, int64_t budget_ns);
 /* Brings the plan's fields up to date with the snapshot and fills in the remaining members. A field that there is no room for shows no
    data; logged. Plans with equal content give equal frames. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Makes parts from the clusters of an asset file: each part numbers its vertices locally. */
+/* Makes parts (soft/parts.h) from the clusters of an asset file: within a part, vertices have indices of their own that fit a byte. */
 #include "render/soft/parts.h"
 
 #include <math.h>

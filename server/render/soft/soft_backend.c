@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The software render backend: draws a preview at once, a refined frame in steps, or recolours a kept refined frame. */
+/* The software render backend: draws a preview in a single call, a refined frame in steps, or recolours a kept refined frame. */
 #include "base/clock.h"
 #include "base/mem.h"
 #include "render/render_backend.h"

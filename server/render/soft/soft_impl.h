@@ -167,7 +167,7 @@ struct soft { /* shared by all frames */
     const struct soft_kernels *kernels;
     const struct gpu_scene *gpu_scene;
     const struct environments *environments;
-    size_t material_count;       /* count of all materials of all models */
+    size_t material_count;       /* number of materials of all models together */
     uint32_t *material_of_model; /* by model: index, among all materials, of its first material */
     /* tables of RAMP_STEPS colours per row, from dark to bright; ramp_of_material: by index of the material: its row in both tables */
     uint32_t *muted_ramps, *own_ramps, *ramp_of_material;

@@ -114,7 +114,7 @@ void visibility_buffer_add_mesh(struct visibility_buffer *buffer, const struct v
     buffer->meshes[buffer->mesh_count++] = *mesh;
 }
 
-/* --- once all pixels are known ---------------------------------------------------------------------------------------------------- */
+/* --- completing the buffer --------------------------------------------------------------------------------------------------- */
 
 struct band_settling {
     struct visibility_buffer *buffer;

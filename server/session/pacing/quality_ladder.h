@@ -10,7 +10,7 @@ enum { QUALITY_LADDER_STEPS = 9, QUALITY_LADDER_FIRST = 3 /* step of a client wh
 
 struct rung {
     int quality;
-    double scale; /* factor on the width and on the height */
+    double scale; /* factor on the width and on the height of the picture */
 };
 
 struct quality_ladder { /* initialise with quality_ladder_init() */

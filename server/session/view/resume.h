@@ -11,7 +11,7 @@ enum { RESUME_MAX_KEPT = 256 }; /* maximum number of views kept for lost connect
 struct session;
 struct resumes;
 struct resumes *resumes_create(void);
-void resumes_destroy(struct resumes **resumes); /* &NULL is allowed; sets *resumes to NULL */
+void resumes_destroy(struct resumes **resumes); /* destroys the list and sets *resumes to NULL; accepts a pointer to NULL */
 
 /* Makes a connected session resumable from now on, and writes its secret. */
 void resumes_open(struct resumes *resumes, struct session *session, char secret[RESUME_CHARS + 1]);
