@@ -8,13 +8,13 @@
 
 enum { EXACT_SENSORS = 8 }; /* largest number of sensors that a group may have on an asset for its field to be evaluated at each pixel */
 
-/* Returns whether an interpolation of that many sensors by this kind of distance is evaluated at each pixel. */
+/* Returns whether a field from that many sensors, with this interpolation and kind of distance, is evaluated at each pixel. */
 static inline bool plant_is_exact(enum interpolation interpolation, enum distance_mode distance, size_t sensor_count)
 {
     bool by_distance = interpolation == INTERPOLATION_SHEPARD || interpolation == INTERPOLATION_PAPER;
     return by_distance && distance == DISTANCE_EUCLIDEAN && sensor_count <= EXACT_SENSORS;
 }
-/* Returns whether a field from that many sensors, with this interpolation and kind of distance, is evaluated at each pixel. */
+/* Returns whether plantcast-prep need not subdivide triangles for this group on an asset with that many of its sensors. */
 static inline bool plant_group_is_exact(const struct plant_group *group, size_t sensor_count)
 {
     return plant_is_exact(group->interpolation, group->distance, sensor_count) && !plant_prepares_any(group);

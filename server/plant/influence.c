@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Returns whether plantcast-prep need not subdivide triangles for this group on an asset with that many of its sensors. */
+/* Reads which interpolations plantcast-prep must prepare for a group, and checks their parameters. */
 #include "plant/influence.h"
 
 #include <math.h>
