@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Runs commands that are in helper programs in this program's folder. */
+/* Runs commands of helper programs that are in this program's folder. */
 #include <errno.h>
 #include <limits.h>
 #include <stdio.h>
@@ -10,7 +10,7 @@
 #include "clients/link/daemon.h"
 #include "commands.h"
 
-/* Fallback without /proc: returns the bare name, which execvp() searches in PATH. */
+/* Without /proc, the helper is started by its bare name, which execvp() searches in PATH. */
 void run_beside(const char *ending, char **argv)
 {
     char path[PATH_MAX] = "plantcast";

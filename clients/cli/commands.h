@@ -1,26 +1,26 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The subcommands of `plantcast`. argv[0] is the subcommand's own name. Each returns the exit code: 0 good, 2 wrong usage, 1 any other
-   failure. */
+/* The subcommands of `plantcast`. argv[0] is the subcommand's own name. Each returns the exit code: 0 success, 2 wrong usage, 1 any
+   other failure. */
 #ifndef CLI_COMMANDS_H
 #define CLI_COMMANDS_H
 #include <stdbool.h>
 
 /* Takes one picture: offline from a plant file, or from a daemon. */
 int cmd_snapshot(int argc, char **argv);
-/* Loads a daemon with viewers and prints a table of latencies. */
+/* Connects many viewers to a daemon and prints a table of latencies. */
 int cmd_probe(int argc, char **argv);
-/* Prints the tags of a daemon with value, quality and age. */
+/* Prints the tags of a daemon with their values, qualities and ages. */
 int cmd_tags(int argc, char **argv);
-/* Reads one address of a field device and prints the value in every type and byte order. address_base: 0, 1, or -1 (not given). rtu: RTU
-   frames over the connection. Returns the exit code. */
+/* Reads one address of a field device and prints its value in every type and byte order. address_base: number of the first register, 0
+   or 1; -1: not given. rtu: use RTU frames over the connection. Returns the exit code. */
 int tags_probe(const char *device, const char *address, int address_base, bool rtu);
-/* Prints the variables of an OPC UA server as a tag list; argv[0] is --browse. */
+/* Prints the variables of an OPC UA server as a tag list. argv[0] is --browse. Returns the exit code. */
 int tags_browse(int argc, char **argv);
 /* Imports recorded series into a plant's history, or exports them as CSV. */
 int cmd_history(int argc, char **argv);
 /* Reports whether a daemon is ready. */
 int cmd_ready(int argc, char **argv);
-/* Makes a daemon on this machine send its sessions to other nodes. */
+/* Makes a daemon on this machine send its sessions to other daemons. */
 int cmd_drain(int argc, char **argv);
 /* Makes a daemon on this machine reload its plant, and prints the result. */
 int cmd_reload(int argc, char **argv);
@@ -41,16 +41,16 @@ int cmd_read(int argc, char **argv);
 /* Makes, lists and revokes access tokens of a daemon. */
 int cmd_token(int argc, char **argv);
 
-/* Replaces this process by the helper program in the same folder (this program's name plus `ending`), which runs the command argv[0].
-   Helpers keep large dependencies and parsers of untrusted input out of this program. Returns only if the helper cannot be run, with the
-   reason printed. */
+/* Replaces this process by the helper program in the same folder whose name is this program's plus `ending`; the helper runs the command
+   argv[0]. Helpers keep large dependencies and parsers of untrusted input out of this program. Returns only if the helper cannot be run,
+   with the reason printed. */
 void run_beside(const char *ending, char **argv);
-/* Replaces this process by plantcast-film, passing on the options that all commands share. Returns only if it cannot be run, with the
-   reason printed. */
+/* Replaces this process by plantcast-film and passes on the options that all commands share. Returns only if that cannot be run, with
+   the reason printed. */
 void run_film(int argc, char **argv);
 
-/* Fetches `path` (with its query, e.g. "/snapshot.png?width=640&group=temperature") from the daemon at url (http://HOST:PORT/) into the
-   file `out`, or prints it (NULL). Returns 0, or 1 with the reason printed. */
+/* Fetches `path` (with its query, such as "/snapshot.png?width=640&group=temperature") from the daemon at url (http://HOST:PORT/).
+   Writes the response to the file `out`, or prints it if `out` is NULL. Returns 0, or 1 with the reason printed. */
 int daemon_download(const char *url, const char *path, const char *out);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast clip`: makes a film of recorded history from pictures of a daemon or of the offline renderer. */
+/* `plantcast clip`: makes a film of recorded history from pictures of a daemon, or of the offline renderer. */
 #include <math.h>
 #include <png.h>
 #include <stdio.h>
@@ -23,12 +23,12 @@ struct film {
     struct view view;
     struct daemon_url url;
     struct text query;
-    const char *said;                   /* text to draw into the pictures of the present stop; "": none */
+    const char *said;                   /* text to draw into the pictures of the present stop of the tour; empty: none */
     long count;                         /* pictures made so far */
-    struct film_statements *statements; /* statements of a signed film; NULL: the film is not signed */
+    struct film_statements *statements; /* signed statements of the pictures of a signed film; NULL: the film is not signed */
 };
 
-/* Appends a picture. The first one creates the file, because its size is the film's. */
+/* Appends a picture. The first call creates the file, because the first picture gives the film its size. Returns false on failure. */
 static bool add(struct film *film, uint8_t *bgrx, int width_px, int height_px, int stride_bytes)
 {
     if (!film->video)
@@ -92,7 +92,7 @@ static bool download(struct film *film, int64_t at_us)
 
 typedef bool picture_fn(struct film *film, int64_t at_us);
 
-/* Makes the next `count` pictures. all: total number of pictures in the film. */
+/* Makes the next `count` pictures, each by a call of `picture`. all: number of pictures of the whole film, for the progress. */
 static bool shoot(struct film *film, picture_fn *picture, long count, double all)
 {
     const struct snapshot_options *options = film->options;
@@ -106,7 +106,7 @@ static bool shoot(struct film *film, picture_fn *picture, long count, double all
     return good;
 }
 
-/* Switches to the view of a stop (one view of a tour). */
+/* Switches to the view of a stop (one view of a tour). Returns false on failure. */
 static bool turn(struct film *film, const json_t *stop)
 {
     struct snapshot_options *options = film->options;
@@ -117,7 +117,8 @@ static bool turn(struct film *film, const json_t *stop)
            (film->offline.plant ? offline_renderer_take_view(&film->offline, options, &film->view) : snapshot_query(options, &film->query));
     while (options->arg_count > own)
         mem_free(options->args[--options->arg_count]);
-    film->said = options->is_signed ? "" : tour_text(stop); /* drawing a text would invalidate the signature */
+    film->said = options->is_signed ? "" : tour_text(stop); /* no text in a signed film, because drawing a text would invalidate the
+                                                               signature */
     return good;
 }
 
@@ -126,7 +127,7 @@ static long pictures_of(const struct film *film, const json_t *stop)
     return lround(fmax(1, tour_dwell_s(stop) * film->options->fps));
 }
 
-/* Writes the stops' texts as subtitles of a signed film. */
+/* Writes the texts of the stops as subtitles of a signed film, in a file next to it. */
 static bool write_texts(const struct film *film, const json_t *stops)
 {
     double *from_s = mem_array(json_array_size(stops) + 1, sizeof(*from_s));
@@ -138,7 +139,7 @@ static bool write_texts(const struct film *film, const json_t *stops)
     return good;
 }
 
-/* stops: the stops of a tour; NULL: a film of a single view from one instant to another. */
+/* Makes the film. stops: the stops (views) of a tour; NULL: the film shows a single view from one instant to another. */
 static bool make(struct film *film, picture_fn *picture, const json_t *stops)
 {
     const struct snapshot_options *options = film->options;
@@ -164,7 +165,7 @@ static bool make(struct film *film, picture_fn *picture, const json_t *stops)
     return good;
 }
 
-/* Takes ownership of `answer`, the tours as JSON. */
+/* Makes a film from a daemon's answer with its tours as JSON; takes ownership of `answer`. */
 static bool make_of(struct film *film, picture_fn *picture, char *answer)
 {
     const struct snapshot_options *options = film->options;

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The commands of plantcast-film. argv starts behind the command's name. Each returns the exit status. */
+/* The commands of plantcast-film. argv starts after the command's name. Each function returns the exit status. */
 #ifndef FILM_COMMANDS_H
 #define FILM_COMMANDS_H
 
 /* Makes a film of recorded history, offline from a plant file or through a daemon. */
 int command_clip(int argc, char **argv);
-/* Verifies that each picture of a signed film is what the server drew. */
+/* Verifies that each picture of a signed film is what the server drew, with the server's public key. */
 int command_verify(int argc, char **argv);
 
 #endif

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* An MP4 box is length, type and content, with big-endian numbers. A table lists the allowed boxes and their content. */
+/* Checks films. An MP4 box is its length, its type and its content, with big-endian numbers. A table lists the boxes that are allowed,
+   and their content. */
 #include "film_boxes.h"
 
 #include <ctype.h>
@@ -13,8 +14,8 @@
 enum { HEAD = 8 };
 static const size_t MAX_MOOV_BYTES = (size_t)256 << 20;
 
-/* One allowed box. Content is in hexadecimal digits; '?': any digit; 'W', 'H': the four digits of width and height in pixels; '*' at the
-   end: any further bytes. `children`: offset of the child boxes; 0: none. */
+/* One allowed box. Its content is given in hexadecimal digits; '?': any digit; 'W', 'H': the four digits of width and height in pixels;
+   '*' at the end: any further bytes. `children`: offset of the child boxes in the content; 0: the box has none. */
 struct box_rule {
     const char *type, *parent, *content;
     size_t children;
@@ -97,7 +98,7 @@ static bool digit_fits(const struct box_walk *walk, char expected, size_t run, u
     return expected == '?' || value == (unsigned)(isdigit((unsigned char)expected) ? expected - '0' : expected - 'a' + 10);
 }
 
-/* Matches the content against alternatives separated by '|'. */
+/* Returns true if the content equals one of the alternatives in `expected`, which '|' separates. */
 static bool content_fits(const struct box_walk *walk, const char *expected, const uint8_t *bytes, size_t count)
 {
     size_t i = 0, run = 0;
@@ -122,8 +123,8 @@ static int find_rule(const char *parent, const uint8_t *type)
     return i;
 }
 
-/* Returns whether a decoder configuration (ISO/IEC 14496-15, 5.3.3.1) has one sequence and one picture parameter set, and no extension of
-   the sequence parameter set. */
+/* Returns true if a decoder configuration (ISO/IEC 14496-15, 5.3.3.1) has one sequence and one picture parameter set, and no extension
+   of the sequence parameter set. */
 static bool has_two_sets(const uint8_t *at, size_t count)
 {
     enum { SETS = 6, FORMATS = 4 };
@@ -134,7 +135,8 @@ static bool has_two_sets(const uint8_t *at, size_t count)
     return end == count || (end + FORMATS == count && at[count - 1] == 0);
 }
 
-/* Checks one child box of the parent. content: NULL if the table expects none. */
+/* Checks one child box against rule number `rule` of the table. content NULL: the box is not in the table. Returns false with the reason
+   in walk->why. */
 static bool take_box(struct box_walk *walk, int rule, const uint8_t *type, const char *parent, const uint8_t *content, size_t count)
 {
     char *why = walk->why, name[5] = "";
@@ -152,7 +154,7 @@ static bool take_box(struct box_walk *walk, int rule, const uint8_t *type, const
            FAIL("its box %s says something else than that of our films", name);
 }
 
-/* Reads the picture size from the innermost box (avc1); all other boxes must agree with it. */
+/* Reads the picture's size from the box avc1, the innermost one; all other boxes must agree with that size. */
 static void learn_size(struct box_walk *walk, const uint8_t *moov, size_t count)
 {
     for (size_t i = 4; i + 32 <= count; i++)
@@ -197,7 +199,8 @@ static bool take_moov(struct box_walk *walk, FILE *file, uint64_t count)
     return good;
 }
 
-/* Checks one top-level box. mdat is skipped, not read: it may be as long as the disk. */
+/* Checks one top-level box of the file. The box mdat is skipped and not read, because it may be as long as the disk. Returns false with
+   the reason in walk->why. */
 static bool take_outer(struct box_walk *walk, FILE *file, uint64_t *left)
 {
     char *why = walk->why;
@@ -250,8 +253,8 @@ bool film_boxes_plain(const char *path, struct film_size *size, char why[FILM_BO
 
 enum { UNIT_SLICE = 1, UNIT_SLICE_OF_KEY = 5, UNIT_MESSAGE = 6, MESSAGE_TEXT = 5, MESSAGE_RECOVERY = 6 };
 
-/* Allows only harmless SEI messages. A message has a type and a length, each as bytes of 255 and a last byte, then its content; encoders
-   write one per unit. */
+/* Returns true if a NAL unit has only SEI messages that do not change the picture. A message has a type and a length, each as bytes of
+   255 and a last byte, then its content; encoders write one message per unit. */
 static bool is_plain_message(const uint8_t *unit, size_t count, char why[FILM_BOXES_WHY_BYTES])
 {
     unsigned type = 0;
@@ -263,7 +266,7 @@ static bool is_plain_message(const uint8_t *unit, size_t count, char why[FILM_BO
     while (i < count && unit[i] == 255)
         length += unit[i++];
     length += i < count ? unit[i++] : 0;
-    for (; i < count; i++) { /* the byte 3 after two zero bytes is emulation prevention, not content */
+    for (; i < count; i++) { /* a byte 3 after two zero bytes is emulation prevention and not content */
         bool is_filler = zeros >= 2 && unit[i] == 3;
         zeros = unit[i] == 0 ? zeros + 1 : 0;
         content += !is_filler;

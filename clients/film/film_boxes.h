@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Checks that a film file shows its pictures unchanged: parses MP4 boxes (ISO/IEC 14496-12) and H.264 NAL units (ITU-T H.264, 7.3). */
+/* Checks that a film's file makes players show its pictures unchanged: parses MP4 boxes (ISO/IEC 14496-12) and H.264 NAL units (ITU-T
+   H.264, 7.3). */
 #ifndef FILM_BOXES_H
 #define FILM_BOXES_H
 #include <stdbool.h>
@@ -12,11 +13,11 @@ struct film_size { /* from the sample entry */
     int width_px, height_px;
 };
 
-/* Returns whether the file has only the boxes that `plantcast clip --signed` writes, with the same colours, matrices, sizes and edit list,
-   and one sequence and one picture parameter set. Writes the display size to `size`. If not plain, writes the reason, with the name of the
-   box, to `why`. */
+/* Returns true if the file has only the boxes that `plantcast clip --signed` writes, with the same colours, matrices, sizes and edit
+   list, and one sequence and one picture parameter set. *size receives the display size. If false, `why` receives the reason with the
+   name of the box. */
 bool film_boxes_plain(const char *path, struct film_size *size, char why[FILM_BOXES_WHY_BYTES]);
-/* Returns whether a sample has only picture slices and messages that do not change the picture. If not, writes the reason to `why`. */
+/* Returns true if a sample has only picture slices and messages that do not change the picture. If false, `why` receives the reason. */
 bool film_units_plain(const uint8_t *sample, size_t count, char why[FILM_BOXES_WHY_BYTES]);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Stores the statements of all pictures as one text: JSON, compressed, in base64. */
+/* Reads and writes the signed statements of all pictures of a film as one metadata text: JSON, compressed, in base64. */
 #include "signed_film.h"
 
 #include <inttypes.h>
@@ -16,8 +16,8 @@
 #include "film_boxes.h"
 
 #define FILM_KEY "plantcast_statements"
-static const size_t MAX_BYTES = (size_t)64 << 20, MAX_TEXT_BYTES = (size_t)1 << 30; /* limits of the compressed and the uncompressed
-                                                                                         text */
+static const size_t MAX_BYTES = (size_t)64 << 20, MAX_TEXT_BYTES = (size_t)1 << 30; /* limits of the text's size, compressed and
+                                                                                       uncompressed */
 
 /* --- writing ------------------------------------------------------------------------------------------------------------------- */
 
@@ -91,7 +91,7 @@ struct film_reader {
 
 #define FAIL(...) (snprintf(reader->why, sizeof(reader->why), __VA_ARGS__), false)
 
-/* Decodes the statements from base64 and decompresses them. */
+/* Decodes the statements from base64 and decompresses them. Returns false with the reason in reader->why. */
 static bool read_statements(struct film_reader *reader)
 {
     const AVDictionaryEntry *entry = av_dict_get(reader->format->metadata, FILM_KEY, NULL, AV_DICT_MATCH_CASE);
@@ -118,8 +118,8 @@ static bool read_statements(struct film_reader *reader)
     return json_is_array(reader->statements) || FAIL("its statements cannot be read");
 }
 
-/* Opens a film with one stream that every player shows unchanged. The decoder takes colour information from the stream alone; the
-   container's is dropped after film_boxes_plain() has checked it. */
+/* Opens a film and checks that it has one stream that every player shows unchanged. The decoder takes the description of colours from
+   the stream alone, because film_boxes_plain() has checked the container's. Returns false with the reason in reader->why. */
 static bool open_film(struct film_reader *reader, const char *path)
 {
     av_log_set_level(AV_LOG_QUIET);
@@ -154,7 +154,7 @@ static void close_film(struct film_reader *reader)
     avformat_close_input(&reader->format);
 }
 
-/* Decodes the next picture into reader->frame. Returns false at the end, or with reader->why set if decoding fails. */
+/* Decodes the next picture into reader->frame. Returns false at the end of the film, or with reader->why set if decoding fails. */
 static bool next_picture(struct film_reader *reader)
 {
     for (;;) {
@@ -178,7 +178,7 @@ static bool next_picture(struct film_reader *reader)
     }
 }
 
-/* Returns whether the stream describes the picture's colours and shape exactly as film/video.c writes them. Checked for each picture,
+/* Returns true if the stream describes the picture's colours and shape exactly as film/video.c writes them. Checked for each picture,
    because a stream may change the description later. */
 static bool is_plain_picture(struct film_reader *reader)
 {
@@ -195,7 +195,7 @@ static bool is_plain_picture(struct film_reader *reader)
            FAIL("its box avc1 says another size than its pictures have");
 }
 
-/* Returns the pixels as red, green, blue (mem_free), or NULL if players may show the picture differently. */
+/* Returns the picture's pixels as red, green, blue (mem_free), or NULL if players may show the picture differently. */
 static uint8_t *pixels_of(struct film_reader *reader)
 {
     const AVFrame *frame = reader->frame;
@@ -219,14 +219,14 @@ struct film_check {
     struct film_reader reader;
     bool tour;              /* whether the view may change */
     json_t *first;          /* statement of the first picture */
-    json_t *views;          /* array of views in order: query and start time */
-    int64_t at_us, step_us; /* instant of the previous picture; step between pictures, 0: not known yet */
-    int64_t pts, pts_step;  /* presentation time of the previous picture; step, 0: not known yet */
+    json_t *views;          /* JSON array of the views in order, each with its query and start time */
+    int64_t at_us, step_us; /* at_us: instant of the previous picture; step_us: time between pictures, 0: not known yet */
+    int64_t pts, pts_step;  /* pts: presentation time of the previous picture; pts_step: its step, 0: not known yet */
     size_t count;           /* number of verified pictures */
     int code;
 };
 
-/* Compares two queries except for the instant. */
+/* Returns true if two queries are equal except for the instant. */
 static bool same_view(const json_t *query, const json_t *other)
 {
     bool same = json_array_size(query) == json_array_size(other);
@@ -236,7 +236,8 @@ static bool same_view(const json_t *query, const json_t *other)
     return same;
 }
 
-/* Checks the view of a picture: without --tour it must equal that of the first picture; in a tour it may change. */
+/* Checks the view of a picture: it must equal that of the first picture, unless --tour allows it to change. Returns false if it does
+   not. */
 static bool takes_view(struct film_check *check, const json_t *statement)
 {
     struct film_reader *reader = &check->reader;
@@ -250,8 +251,8 @@ static bool takes_view(struct film_check *check, const json_t *statement)
     return true;
 }
 
-/* Checks that a picture has the plant, size and server of the first one, and that its instant and presentation time follow the previous one
-   by a constant step. */
+/* Checks that a picture has the plant, size and server of the first one, and that its instant and presentation time follow those of the
+   previous picture by constant steps. Returns false if not. */
 static bool follows(struct film_check *check, const json_t *statement)
 {
     static const char *const same[] = { "server", "plant", "configuration", "assets", "width", "height", "bare" };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Signed films: store the server's statement and signature of each picture together with losslessly encoded pictures, so that the pixels
+/* Signed films: contain the server's statement and signature of each picture, and the pictures losslessly encoded, so that the pixels
    are the signed ones (SIGNED.md). Thread: one. */
 #ifndef FILM_SIGNED_FILM_H
 #define FILM_SIGNED_FILM_H
@@ -9,14 +9,14 @@
 struct film_statements;
 struct film_statements *film_statements_create(void);              /* never NULL */
 void film_statements_destroy(struct film_statements **statements); /* &NULL is fine; leaves NULL */
-/* Takes statement and signature of the next picture from its PNG file. Returns false if the file has none. */
+/* Takes statement and signature of the next picture from its PNG file. Returns false if the PNG file has none. */
 bool film_statements_add(struct film_statements *statements, const uint8_t *png, size_t count);
-/* Writes the collected statements into the film. Returns false if they are too long, printed. */
+/* Writes the collected statements into the film's metadata. Returns false if they are too long, printed. */
 bool film_statements_put(const struct film_statements *statements, struct video *video);
 
-/* Verifies each picture of the film with the server's public key, and that no picture is missing or moved between the first and the last;
-   with options->plant also redraws each picture. Prints the findings. tour: the view may change; each view is printed with its start time.
-   Returns 0: all agree; 1: something differs; 2: it could not be checked. */
+/* Verifies each picture of the film with the server's public key, and that no picture between the first and the last is missing or
+   moved. With options->plant it also redraws each picture. Prints the findings. tour: the view may change; each view is printed with its
+   start time. Returns 0 if all agree, 1 if something differs, 2 if the film could not be checked. */
 int film_verify(const struct signing_key *key, const char *path, const struct redraw_options *options, bool tour);
 
 #endif

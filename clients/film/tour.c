@@ -54,7 +54,7 @@ bool tour_add_view(const json_t *stop, struct snapshot_options *options)
         fprintf(stderr, "plantcast: view '%s': %s\n", word(stop, "id"), error.text);
     for (size_t i = 0; i < address.count && good; i++) {
         char *equals = strchr(address.args[i], '=');
-        bool instant = !strncmp(address.args[i], "at=", 3); /* skipped: the film sets the instant */
+        bool instant = !strncmp(address.args[i], "at=", 3); /* left out, because the film sets the instant of each picture */
         *equals = 0;
         good = instant || snapshot_add_arg(options, address.args[i], equals + 1);
     }
@@ -69,7 +69,7 @@ static void write_instant(FILE *file, double s)
             (long long)(ms % 1000));
 }
 
-/* Escapes `<` and `&` for WebVTT. */
+/* Writes a text with `<` and `&` escaped for WebVTT. */
 static void write_words(FILE *file, const char *text)
 {
     for (; *text; text++)
@@ -118,7 +118,8 @@ static double width_of(cairo_t *cairo, const char *text)
     return extents.x_advance;
 }
 
-/* Breaks the text at blanks, in place. Returns the number of lines. */
+/* Breaks the text into lines of at most `room` pixels at blanks, in place; `lines` receives their beginnings. Returns the number of
+   lines. */
 static int break_lines(cairo_t *cairo, char *text, double room, const char *lines[LINES])
 {
     int count = 1;

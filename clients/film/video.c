@@ -20,7 +20,7 @@ struct video {
     AVFrame *picture;
     AVPacket *packet;
     bool lossless;
-    bool begun; /* the file exists and its header is written */
+    bool begun; /* true: the file exists and its header is written */
     int64_t next;
 };
 
@@ -32,7 +32,7 @@ static bool failed(const struct video *video, const char *what, int status)
     return false;
 }
 
-/* Sets the codec parameters. Players expect limited range; colour matrix and transfer curve match the pictures. */
+/* Sets the codec's parameters. Players expect limited range; colour matrix and transfer curve are those of the pictures. */
 static void describe(struct video *video, int width_px, int height_px, double fps)
 {
     AVCodecContext *codec = video->codec;
@@ -45,7 +45,7 @@ static void describe(struct video *video, int width_px, int height_px, double fp
     codec->colorspace = video->lossless ? AVCOL_SPC_RGB : AVCOL_SPC_SMPTE170M;
     codec->color_primaries = AVCOL_PRI_BT709;
     codec->color_trc = AVCOL_TRC_IEC61966_2_1;
-    codec->gop_size = (int)fmax(fps, 1); /* a key frame per second, for seeking */
+    codec->gop_size = (int)fmax(fps, 1); /* one key frame per second, for seeking */
     if (video->format->oformat->flags & AVFMT_GLOBALHEADER)
         codec->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
     av_opt_set(codec->priv_data, "preset", "fast", 0);
@@ -115,7 +115,7 @@ struct video *video_create(const char *path, int width_px, int height_px, double
     return NULL;
 }
 
-/* Writes the packets that the encoder has finished. */
+/* Writes the packets that the encoder has finished to the file. Returns false on failure. */
 static bool write_packets(struct video *video)
 {
     int status;

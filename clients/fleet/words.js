@@ -33,7 +33,7 @@ const WORDS = {
     },
 };
 
-// Returns the first requested language that exists; `?lang=` takes precedence over the browser's list.
+// Returns the first requested language that the page has; `?lang=` takes precedence over the browser's list.
 export function chooseLanguage(search, preferred) {
     const wished = [new URLSearchParams(search).get('lang'), ...preferred].filter(Boolean).map((tag) => tag.slice(0, 2).toLowerCase());
     return wished.find((tag) => tag in WORDS) ?? 'en';
@@ -42,5 +42,5 @@ export function chooseLanguage(search, preferred) {
 export const languages = Object.keys(WORDS);
 export const keys = (language) => Object.keys(WORDS[language]);
 
-// say(key, values): returns the words with the values inserted.
+// Returns the function say(key, values), which returns the words for a key with the values inserted.
 export const wordsOf = (language) => (key, values = {}) => WORDS[language][key].replace(/\{(\w+)\}/g, (_, name) => values[name]);

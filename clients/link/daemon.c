@@ -12,10 +12,10 @@
 
 enum { MAX_BODY_BYTES = 256 * 1024 * 1024, RECEIVE_BYTES = 16 * 1024 };
 
-static char authorization[TOKEN_MAX_CHARS + 16]; /* value of the header; "": no token */
+static char authorization[TOKEN_MAX_CHARS + 16]; /* value of the HTTP header Authorization; empty: there is no token */
 static const char *ca_path, *token_path;
 
-/* Reads the token from the first line of the --token-file. Returns false with the reason printed. */
+/* Reads the token from the first line of the file of --token-file. Returns false with the reason printed. */
 static bool read_token(void)
 {
     size_t count;
@@ -31,7 +31,8 @@ static bool read_token(void)
     return good;
 }
 
-/* Returns the value of --NAME VALUE or --NAME=VALUE at *i, or NULL if it is another option or has no value. */
+/* Returns the value of the option --NAME VALUE or --NAME=VALUE at argv[*i], and advances *i; NULL: it is another option, or has no
+   value. */
 static const char *value_of(const char *name, int argc, char **argv, int *i)
 {
     size_t n = strlen(name);
@@ -85,7 +86,8 @@ const char *daemon_authorization(void)
     return authorization[0] ? authorization : NULL;
 }
 
-/* Stores the path prefix. path: without the leading slash. Returns false if it is too long or has a query. */
+/* Stores the path prefix under which a proxy serves the daemon. path: without the leading slash. Returns false if it is too long or has
+   a query. */
 static bool take_base(struct daemon_url *url, const char *path)
 {
     size_t length = strlen(path);
@@ -160,7 +162,7 @@ static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *use
         exchange->done = true;
         break;
     case LWS_CALLBACK_ESTABLISHED_CLIENT_HTTP: exchange->status = (int)lws_http_client_http_response(wsi); break;
-    case LWS_CALLBACK_RECEIVE_CLIENT_HTTP: /* lws asks for a buffer, and calls back with its content */
+    case LWS_CALLBACK_RECEIVE_CLIENT_HTTP: /* libwebsockets wants a buffer here, and calls back again with the content */
         return lws_http_client_read(wsi, &at, &room) < 0 ? -1 : 0;
     case LWS_CALLBACK_RECEIVE_CLIENT_HTTP_READ:
         if (exchange->body->length + len > MAX_BODY_BYTES)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decodes JPEG by TurboJPEG, PNG by libpng, H.264 by h264_decoder.h; converts colours by libyuv. */
+/* Decodes frames: JPEG by TurboJPEG, PNG by libpng, H.264 by h264_decoder.h. Converts colours by libyuv. */
 #include "decoder.h"
 
 #include <png.h>
@@ -18,7 +18,7 @@ struct decoder {
     uint8_t *pixels;
     size_t pixel_bytes;
 #ifdef PLANTCAST_H264
-    /* functions of the H.264 module; NULL: not loaded yet, and the members below are not valid */
+    /* functions of the H.264 module; NULL: not loaded yet, and the H.264 members below are not valid */
     const struct h264_decoder_functions *functions;
     struct h264_decoder *h264;
 #endif
@@ -91,7 +91,7 @@ static bool decode_png(struct decoder *decoder, const struct wire_frame *frame, 
 }
 
 #ifdef PLANTCAST_H264
-/* Decodes H.264. The coded picture may be one pixel wider and higher than the frame, because its sides are even. */
+/* Decodes H.264. The coded picture has even sides, so it may be one pixel wider or higher than the frame. Returns false on failure. */
 static bool decode_h264(struct decoder *decoder, const struct wire_frame *frame, const uint8_t *payload)
 {
     char why[DECODER_WHY_BYTES];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decodes the frames that a session sends. Thread: one at a time. */
+/* Decodes the frames that a daemon sends to a session. Thread: one at a time. */
 #ifndef LINK_DECODER_H
 #define LINK_DECODER_H
 #include <stdbool.h>
@@ -12,14 +12,14 @@
 struct decoder;
 /* Creates a decoder for all codecs of this build. Returns NULL when out of memory. The caller destroys it. */
 struct decoder *decoder_create(void);
-/* Frees the decoder. &NULL is fine; leaves NULL. */
+/* Frees the decoder. &NULL is fine; sets *decoder to NULL. */
 void decoder_destroy(struct decoder **decoder);
-/* Decodes one frame. Returns false if its bytes are not valid or its codec is not in this build. */
+/* Decodes one frame. Returns false if its bytes are not valid, or its codec is not in this build. */
 bool decoder_decode(struct decoder *decoder, const struct wire_frame *frame, const uint8_t *payload);
-/* Returns the pixels of the last decoded frame: BGRX, rows without padding. They belong to the decoder and are valid until its next
+/* Returns the pixels of the frame decoded last: BGRX, rows without padding. They belong to the decoder and are valid until its next
    call. */
 const uint8_t *decoder_pixels(const struct decoder *decoder);
-/* Returns whether this build decodes the codec on this machine; if not, writes the reason to `why`. */
+/* Returns true if this build decodes the codec on this machine; if not, `why` receives the reason. */
 bool decoder_has(enum wire_codec codec, char why[DECODER_WHY_BYTES]);
 
 #endif

@@ -9,7 +9,7 @@
 
 #include "base/mem.h"
 
-/* On machines with many cores slices are decoded in parallel, as browsers do. */
+/* on machines with many cores, slices are decoded in parallel, as browsers do */
 enum { MANY_CORES = 8, SLICE_THREADS = 8 };
 
 struct h264_decoder {

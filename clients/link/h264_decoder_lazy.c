@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Loads the decoder's module on first use (encode/h264_lazy.c explains why). */
+/* Loads the module of the H.264 decoder on first use (encode/h264_lazy.c explains why). */
 #include "base/system/module.h"
 #include "h264_decoder.h"
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decodes PNG from memory with cairo. */
+/* Decodes PNG files in memory with cairo. */
 #include "clients/link/png.h"
 
 #include <string.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads PNG files from memory. Thread: any. */
+/* Decodes PNG files in memory. Thread: any. */
 #ifndef LINK_PNG_H
 #define LINK_PNG_H
 #include <stddef.h>

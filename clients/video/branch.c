@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Starts, watches and restarts an output's pipeline. */
+/* Starts the GStreamer pipeline of an output, watches it, and restarts it after a failure. */
 #include "branch.h"
 
 #include <stdio.h>
@@ -18,7 +18,7 @@ static void drop(struct video_branch *branch)
     g_atomic_int_set(&branch->readers, 0);
 }
 
-/* Returns whether the pipeline reported an error, and prints it. */
+/* Returns true if the pipeline has reported an error, and prints the error. */
 static bool has_failed(struct video_branch *branch)
 {
     GstBus *bus = gst_element_get_bus(branch->pipeline);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* An output with a GStreamer pipeline of its own: if it fails, other outputs continue, and it restarts. Thread: that of the default main
-   context. */
+/* An output of the video with a GStreamer pipeline of its own: if the pipeline fails, other outputs continue, and it is restarted.
+   Thread: that of the default main context. */
 #ifndef VIDEO_BRANCH_H
 #define VIDEO_BRANCH_H
 #include "options.h"
@@ -12,18 +12,18 @@ struct video_branch {
     struct outputs *outputs;
     void (*prepare)(struct video_branch *branch, GstElement *pipeline); /* called before the pipeline plays */
     const struct video_options *options;
-    GstElement *pipeline; /* NULL: the pipeline failed and restarts at again_us */
+    GstElement *pipeline; /* NULL: the pipeline has failed and is started again at again_us */
     gint64 again_us;
     gint readers; /* number of connected readers; atomic */
 };
 
 /* Starts the pipeline. Takes ownership of branch->text. Returns false with the reason printed. */
 bool branch_begin(struct video_branch *branch);
-/* Restarts a failed pipeline after a delay. Call it once a second. */
+/* Restarts the pipeline some time after it has failed. Call it once a second. */
 void branch_look(struct video_branch *branch);
 void branch_end(struct video_branch *branch);
 
-/* Sets up the branch that listens for SRT callers. */
+/* Sets up the output that listens for SRT callers. */
 void srt_init(struct video_branch *srt, const struct video_options *options, struct outputs *outputs);
 
 #endif

@@ -8,7 +8,7 @@
 #include "video_words.h"
 
 static const double CARD_RGB[3] = { 0.10, 0.11, 0.13 }, ALARM_RGB[3] = { 0.66, 0.12, 0.10 }, STRIP_RGB[3] = { 0.13, 0.15, 0.18 };
-static const double ASCENT = 1.07, HIGH = 1.36; /* ascent and height of a line, relative to the font size */
+static const double ASCENT = 1.07, HIGH = 1.36; /* ascent and height of a line, as multiples of the font size */
 
 static int strip_px(int height_px)
 {
@@ -26,7 +26,7 @@ static void colour(cairo_t *cairo, const double rgb[3])
     cairo_set_source_rgb(cairo, rgb[0], rgb[1], rgb[2]);
 }
 
-/* Draws a centred line with its baseline at y, in size px or smaller if it would not fit. */
+/* Draws a line of text centred in `width` with its baseline at y, in font size px or in a smaller one in which it fits. */
 static void centred(cairo_t *cairo, const char *text, double px, bool bold, double width, double y)
 {
     double wide = brush_width(cairo, px, bold, text);
@@ -76,7 +76,7 @@ static char *age_text(const struct shown *look)
     return video_say(video_language(), age_s < 120 ? VIDEO_AGE_S : VIDEO_AGE_MIN, number, NULL);
 }
 
-/* Draws clock and age at the right, which always fit; the title takes the rest. */
+/* Draws the strip below the picture: clock and age at the right, which always fit, and the title in the room that is left. */
 static void draw_strip(cairo_t *cairo, const struct canvas *canvas, const struct shown *look, gint64 utc_us, double y)
 {
     double height = canvas->height_px - y, px = 0.55 * height, pad = 0.5 * height;

@@ -7,12 +7,12 @@
 #include <glib.h>
 #include <stdbool.h>
 
-struct shown {                /* content of a frame; owned by the source, valid until its next call */
+struct shown {                /* content to draw in a frame; owned by the source (source.h), valid until its next call */
     cairo_surface_t *picture; /* NULL: show the text card */
     const char *headline, *detail;
-    gint64 since_us; /* UTC time at which the reason for the card began; 0: the card shows no time */
+    gint64 since_us; /* UTC time since which there is a reason for the text card; 0: the card shows no time */
     const char *title;
-    gint64 age_ms;   /* age of the oldest value; -1: no values */
+    gint64 age_ms;   /* age of the oldest value in the picture; -1: it has no values */
     GTimeZone *zone; /* time zone of the plant */
 };
 
@@ -21,11 +21,11 @@ struct canvas {
     bool time_code;
 };
 
-/* Returns the picture's height in a video of this height; the strip takes the rest. */
+/* Returns the height in pixels of the picture in a video of height height_px; the rest of the height is the strip's. */
 int canvas_picture_px(int height_px);
-/* Draws the frame of the instant utc_us over the pixels (BGRX). With a time code, the bottom row is CANVAS_CODE_BITS blocks, white for 1,
-   from left to right: 1, 0, the tenths of seconds since 1970 as CANVAS_TIME_BITS bits with the highest first, 1 if this is a card, and the
-   parity of all bits before. */
+/* Draws the frame for the instant utc_us into the pixels (BGRX). With a time code, the bottom row is CANVAS_CODE_BITS blocks, white for
+   1. From left to right they are: 1, 0, the tenths of seconds since 1970 as CANVAS_TIME_BITS bits with the highest first, 1 if the frame
+   shows a text card, and the parity of all bits before. */
 void canvas_draw(const struct canvas *canvas, guint8 *bgrx, int stride_bytes, const struct shown *look, gint64 utc_us);
 enum { CANVAS_TIME_BITS = 36, CANVAS_CODE_BITS = CANVAS_TIME_BITS + 4 };
 

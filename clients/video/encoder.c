@@ -12,7 +12,7 @@ struct video_encoder {
     GstAppSrc *in;
     struct outputs *outputs;
     int fps;
-    guint64 groups; /* number of groups of pictures encoded so far; each group begins with a key frame */
+    guint64 groups; /* number of groups of pictures that were encoded; each group begins with a key frame */
     guint64 frame_bytes;
 };
 
@@ -76,7 +76,7 @@ bool encoder_is_ready(const struct video_encoder *encoder)
     return gst_app_src_get_current_level_bytes(encoder->in) < MAX_WAITING * encoder->frame_bytes;
 }
 
-/* Requests a key frame at fixed times, even if frames in between were dropped. */
+/* Requests a key frame at fixed times, also if frames in between were dropped. */
 static void ask_for_key(struct video_encoder *encoder)
 {
     GstStructure *structure = gst_structure_new("GstForceKeyUnit", "timestamp", G_TYPE_UINT64, GST_CLOCK_TIME_NONE, "stream-time",

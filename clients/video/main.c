@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast-video`: streams a view of a daemon as video. At each tick draws a frame, a picture or a text card, and encodes it once. */
+/* `plantcast-video`: streams a view of a daemon as video. At each tick it draws a frame (a picture or a text card) and encodes it once
+   for all outputs. */
 #include <glib-unix.h>
 #include <locale.h>
 #include <signal.h>
@@ -23,11 +24,11 @@ struct video_program {
     struct rtsp *rtsp;
     struct video_branch srt;
     struct metrics *metrics; /* NULL: off */
-    bool card;               /* true: the newest frame shows a text card in place of the picture */
+    bool card;               /* true: the newest frame shows a text card instead of the picture */
     GSource *ticks;
     gint64 begin_us, alive_us;
     guint64 next; /* number of the next frame */
-    guint64 late; /* frames skipped because the tick was late */
+    guint64 late; /* number of frames skipped because a tick came late */
     int code;
 };
 
@@ -86,7 +87,7 @@ static gint64 time_of(const struct video_program *program, guint64 index)
     return program->begin_us + (gint64)(index * G_USEC_PER_SEC / (guint64)program->options.fps);
 }
 
-/* Draws the frame that the clock asks for; frames missed by a late tick are skipped. */
+/* Draws the frame that is due by the clock; frames that a late tick missed are skipped. */
 static gboolean on_tick(gpointer data)
 {
     struct video_program *program = data;
@@ -121,7 +122,7 @@ static gboolean dispatch(GSource *source, GSourceFunc callback, gpointer data)
 static void begin_ticks(struct video_program *program)
 {
     static GSourceFuncs funcs = { .dispatch = dispatch };
-    gint64 rest_us = g_get_real_time() % G_USEC_PER_SEC; /* aligns ticks to the clock, so that several programs that show one picture draw
+    gint64 rest_us = g_get_real_time() % G_USEC_PER_SEC; /* aligns ticks to UTC seconds, so that programs that show the same picture draw
                                                             at the same instants */
     program->begin_us = g_get_monotonic_time() + G_USEC_PER_SEC - rest_us;
     program->ticks = g_source_new(&funcs, sizeof(GSource));

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One response per connection, each in its own thread: reads a request up to the blank line, answers, and closes. */
+/* Serves metrics over HTTP, one response per connection, each in a thread of its own: reads a request up to the blank line, answers, and
+   closes. */
 #include "metrics.h"
 
 #include <gio/gio.h>
@@ -29,7 +30,7 @@ static void metrics_clear(gpointer data)
     g_mutex_clear(&metrics->lock);
 }
 
-/* Responding threads may outlive metrics_destroy(): the last reference frees. */
+/* Drops a reference; the last one frees. Threads that still answer requests may outlive metrics_destroy(). */
 static void metrics_unref(struct metrics *metrics)
 {
     g_atomic_rc_box_release_full(metrics, metrics_clear);
@@ -76,7 +77,8 @@ static gpointer serve(gpointer data)
     return NULL;
 }
 
-/* Replaces GThreadedSocketService, which in GLib 2.74 crashes at its connection limit. */
+/* Starts a thread that answers a connection. GLib's GThreadedSocketService would do this, but in GLib 2.74 it crashes at its connection
+   limit. */
 static gboolean on_connection(GSocketService *service, GSocketConnection *connection, GObject *from, gpointer data)
 {
     struct metrics *metrics = data;

@@ -5,10 +5,10 @@
 #include <glib.h>
 
 struct metrics;
-/* Listens on 127.0.0.1:port. Returns NULL with the reason printed. The caller destroys it. */
+/* Listens on 127.0.0.1:port. Returns NULL with the reason printed. The caller destroys the result. */
 struct metrics *metrics_create(int port);
 void metrics_destroy(struct metrics **metrics); /* &NULL is fine; leaves NULL */
-/* Sets the response from now on, in Prometheus text format. Takes ownership of the text. */
+/* Sets the text that requests receive from now on, in Prometheus text format. Takes ownership of the text. */
 void metrics_set(struct metrics *metrics, char *text);
 
 #endif

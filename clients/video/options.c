@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parses the command line, and checks which options may be combined. */
+/* Parses the command line of plantcast-video, and checks which options may be combined. */
 #include "options.h"
 
 #include <arpa/inet.h>
@@ -40,7 +40,7 @@ static int wrong(const char *fmt, ...)
     return 2;
 }
 
-/* Returns the first line of a file without surrounding blanks, or NULL with the reason printed. */
+/* Returns the first line of a file without surrounding blanks (g_free), or NULL with the reason printed. */
 static char *first_line(const char *path)
 {
     char *text = NULL;

@@ -8,20 +8,21 @@
 enum { OPTIONS_MOST_READERS = 512 };
 
 struct video_options {
-    char *url;             /* daemon's URL, ends with a slash */
-    char *view, *query;    /* view: id of a saved view; query: parameters as /snapshot.png takes them; both NULL: the whole plant */
-    char *language;        /* language of cards, strip and legend: en, ko or de */
+    char *url;             /* URL of the daemon, ends with a slash */
+    char *view, *query;    /* view: id of a saved view; query: parameters as /snapshot.png takes them. If both are NULL, the video shows
+                              the whole plant */
+    char *language;        /* language of text cards, strip and legend: en, ko or de */
     char *token, *ca_path, *token_path; /* NULL: not given */
     char *listen;                       /* listening address of all outputs */
     int width_px, height_px, fps, kbps, every_ms;
     int rtsp_port, http_port, srt_port; /* 0: off */
-    char *user, *password;              /* name and password that clients must give; NULL: no login */
+    char *user, *password;              /* name and password that viewers of the RTSP stream must give; NULL: no login */
     int most_readers;                   /* limit per output */
     bool time_code;
 };
 
 /* Parses the command line and reads the files that it names. Returns -1 to continue, or the exit code with errors printed. The caller
-   finishes the options in either case. Call before any thread starts. */
+   finishes *options in both cases. Call it before any thread starts. */
 int options_read(struct video_options *options, int *argc, char ***argv);
 void options_finish(struct video_options *options);
 

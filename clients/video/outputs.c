@@ -2,13 +2,13 @@
 /* Distributes one encoded stream to any number of outputs. */
 #include "outputs.h"
 
-enum { MAX_QUEUED_BYTES = 4 << 20 }; /* limit of bytes queued per output */
+enum { MAX_QUEUED_BYTES = 4 << 20 }; /* maximum number of bytes queued for one output */
 static const GstClockTimeDiff SLACK = 500 * GST_MSECOND;
 
 struct output {
     GstAppSrc *src;
     bool begun, timed;
-    GstClockTimeDiff offset; /* this output's running time minus the encoder's */
+    GstClockTimeDiff offset; /* running time of this output's pipeline minus that of the encoder's */
 };
 
 struct outputs {
@@ -64,7 +64,7 @@ void outputs_remove(struct outputs *outputs, GstAppSrc *src)
     g_mutex_unlock(&outputs->lock);
 }
 
-/* Gets the running time of the source's pipeline. Returns false if the pipeline does not run. */
+/* *out receives the running time of the pipeline to which `src` belongs. Returns false if the pipeline does not run. */
 static bool running_time(GstAppSrc *src, GstClockTime *out)
 {
     GstClock *clock = gst_element_get_clock(GST_ELEMENT(src));

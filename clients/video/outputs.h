@@ -1,20 +1,22 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Hands encoded units to all outputs. Outputs do not block each other: units that an output cannot take are dropped up to the next key
-   frame. Thread: any. */
+/* Passes encoded units to all outputs. Outputs do not block each other: if an output cannot take a unit, this and further units up to
+   the next key frame are dropped for it. Thread: any. */
 #ifndef VIDEO_OUTPUTS_H
 #define VIDEO_OUTPUTS_H
 #include <gst/app/gstappsrc.h>
 #include <stdbool.h>
 
 #define OUTPUTS_CAPS "video/x-h264,stream-format=byte-stream,alignment=au"
-/* First elements of an output's pipeline; the source is named `in`. */
+/* Beginning of the pipeline of an output, in GStreamer's notation; the element named `in` receives the encoded units. */
 #define OUTPUTS_SOURCE                                                                                                                     \
     "appsrc name=in is-live=true format=time block=false max-bytes=0 caps=" OUTPUTS_CAPS " ! h264parse config-interval=-1"
 
 struct outputs;
 struct outputs *outputs_create(void);
-void outputs_destroy(struct outputs **outputs); /* &NULL is fine; leaves NULL. All threads that push must have stopped */
-/* Takes a reference on src. From the next key frame on, src receives access units, timed by its own pipeline's running time. */
+void outputs_destroy(struct outputs **outputs); /* &NULL is fine; sets *outputs to NULL. All threads that push units must have ended
+                                                   before */
+/* Adds an output; takes a reference on src, the source of its pipeline. From the next key frame on, src receives encoded units, timed by
+   the running time of its own pipeline. */
 void outputs_add(struct outputs *outputs, GstAppSrc *src);
 void outputs_remove(struct outputs *outputs, GstAppSrc *src);
 void outputs_push(struct outputs *outputs, GstBuffer *unit);

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Serves the stream by RTSP: one shared media for all clients. Thread: that of the default main context. */
+/* Serves the stream by RTSP, with one shared media for all clients. Thread: that of the default main context. */
 #ifndef VIDEO_RTSP_H
 #define VIDEO_RTSP_H
 #include "options.h"
 #include "outputs.h"
 
 struct rtsp;
-/* Starts listening. Returns NULL with the reason printed. The caller destroys it. */
+/* Starts to listen for RTSP clients. Returns NULL with the reason printed. The caller destroys it. */
 struct rtsp *rtsp_create(const struct video_options *options, struct outputs *outputs);
 void rtsp_destroy(struct rtsp **rtsp);       /* &NULL is fine; leaves NULL */
-guint rtsp_readers(const struct rtsp *rtsp); /* Returns the number of sessions. NULL is fine */
+guint rtsp_readers(const struct rtsp *rtsp); /* returns the number of client sessions. NULL is fine */
 
 #endif

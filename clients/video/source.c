@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sends one request at a time to the daemon: its time zone, the saved views, and pictures. */
+/* Requests from the daemon, one at a time, its time zone, the saved views, and pictures. */
 #include "source.h"
 
 #include <errno.h>
@@ -14,9 +14,10 @@
 #include "message/view_address.h"
 #include "video_words.h"
 
-/* Timing, microseconds. A picture shows the instant of its request. The next one is requested a fixed interval later and must arrive within
-   SLOWEST, so a shown picture is never older than OLDEST. OTHERS: time limit of other requests; VIEWS, LIMITED, DENIED: retry intervals of
-   views, of views without permission, and after a rejected token. */
+/* Timing in microseconds. A picture shows the instant of its request. The next picture is requested a fixed interval later and must
+   arrive within SLOWEST_US, so that a shown picture is never older than OLDEST_US. OTHERS_US: time limit of other requests. VIEWS_US:
+   interval at which the list of views is requested; LIMITED_US: the same if the token may not read that list. DENIED_US: pause of all
+   requests after a token was refused. */
 static const gint64 OLDEST_US = 2700000, SLOWEST_US = 1300000, OTHERS_US = 1200000, VIEWS_US = 5000000, LIMITED_US = 600000000,
                     DENIED_US = 8000000;
 enum { MAX_BYTES = 128 << 20 }; /* limit of a response */
@@ -25,7 +26,7 @@ enum ask { ASK_PLANT, ASK_VIEWS, ASK_PICTURE, ASK_COUNT };
 
 struct video_source {
     const struct video_options *options;
-    struct http_request http; /* libcurl handle of the request; owned by the request's thread while `asking` is true */
+    struct http_request http; /* libcurl handle of the request; while `asking` is true, only the request's thread may use it */
     CURLcode code;            /* result of the request */
     bool asking;
     _Atomic bool ended;
@@ -33,34 +34,35 @@ struct video_source {
     gint64 asked_us, asked_utc_us, due_us[ASK_COUNT], wait_until_us; /* monotonic, except asked_utc_us */
 
     GTimeZone *zone;
-    char *view, *view_query, *view_title; /* saved view: as stored, as a query, and its title; NULL: not known yet, or no saved view */
+    char *view, *view_query, *view_title; /* the saved view to show: as stored, as a query, and its title; NULL: not known yet, or no
+                                             saved view is requested */
     cairo_surface_t *picture;
     gint64 picture_us, age_ms;
-    bool valued; /* true: the picture should have values; false: it has none, so no age is shown */
+    bool valued; /* true: the picture should have values; false: it shows no values, so no age is shown */
     char headline[120], detail[240], said[240];
-    gint64 since_us;    /* UTC, start of the text card; 0: a picture is shown */
+    gint64 since_us;    /* UTC time since which the text card is shown; 0: a picture is shown */
     gint64 seen_utc_us; /* UTC instant of the newest picture */
-    bool barred;        /* access or the view was withdrawn: hide the picture at once */
-    bool limited;       /* the token may not list views but may show this one: request it by its id */
+    bool barred;        /* true: access or the view was withdrawn, so the picture must be hidden immediately */
+    bool limited;       /* true: the token may not list views but may show this one, which is then requested by its id */
     guint64 pictures;
 };
 
 /* --- what is wrong ------------------------------------------------------------------------------------------ */
 
-/* Stores the first line of `said` as valid UTF-8 in `out`. Frees `said`. */
+/* Stores the first line of `said` as valid UTF-8 in `out`, cut to `size` bytes. Frees `said`. */
 static void keep(char *said, char *out, gsize size)
 {
     said[strcspn(said, "\n")] = 0;
     char *valid = g_utf8_make_valid(said, -1);
     g_strlcpy(out, valid, size);
-    const char *whole; /* end of the last whole character: a text cut within a character cannot be drawn */
+    const char *whole; /* end of the last whole character: a text that is cut within a character cannot be drawn */
     g_utf8_validate(out, -1, &whole);
     out[whole - out] = 0;
     g_free(valid);
     g_free(said);
 }
 
-/* Sets the text card, and logs the reason: the card in the chosen language, the log in English. */
+/* Shows a text card with a reason and logs the reason: the card in the chosen language, the log in English. */
 static void fail(struct video_source *source, enum video_word headline, enum video_word detail, const char *a, const char *b)
 {
     char said[sizeof(source->said)];
@@ -72,7 +74,7 @@ static void fail(struct video_source *source, enum video_word headline, enum vid
     g_strlcpy(source->said, said, sizeof(source->said));
 }
 
-/* Deletes the picture, so that the text card is shown in its place. */
+/* Deletes the picture and keeps it hidden, so that the text card is shown instead. */
 static void bar(struct video_source *source)
 {
     source->barred = true;
@@ -86,8 +88,8 @@ static void refuse(struct video_source *source, long status)
     if (status == 401 || status == 403) {
         fail(source, VIDEO_NOT_LET_IN, VIDEO_TOKEN, words, NULL);
         bar(source);
-        source->wait_until_us = source->asked_us + DENIED_US; /* the daemon stops checking tokens of an address that sends wrong ones too
-                                                                 often */
+        source->wait_until_us = source->asked_us + DENIED_US; /* waits before the next request: an address that sends wrong tokens too
+                                                                 often is slowed by the daemon */
     } else if (status == 429) {
         fail(source, VIDEO_NOT_LET_IN, VIDEO_TOKENS, NULL, NULL);
         source->wait_until_us = source->asked_us + DENIED_US;
@@ -119,8 +121,8 @@ static void take_plant(struct video_source *source, const json_t *o)
     }
 }
 
-/* Returns a saved view as a query for /snapshot.png, without the instant, the selection, and the field settings, which need the role
-   engineer. g_free. Returns NULL, with the reason in *error, if a picture cannot show the view. */
+/* Returns a saved view as a query for /snapshot.png (g_free). Leaves out the instant, the selection, and the field settings that need
+   the role engineer. Returns NULL, with the reason in *error, if a picture cannot show the view. */
 static char *query_of(const char *view, struct message_error *error)
 {
     static const char *const left_out[] = {
@@ -190,7 +192,7 @@ static guint32 big_endian(const guint8 *at)
     return (guint32)at[0] << 24 | (guint32)at[1] << 16 | (guint32)at[2] << 8 | at[3];
 }
 
-/* Returns the decoded picture, or NULL if the response is not a PNG of the requested size. */
+/* Returns the picture in the response, or NULL if the response is not a PNG file of the requested size. */
 static cairo_surface_t *decode(const struct video_options *options, const struct text *body)
 {
     const guint8 *at = (const guint8 *)body->at;
@@ -244,8 +246,8 @@ static void on_answer(struct video_source *source)
     }
     if (source->asked == ASK_VIEWS && (status == 403 || status == 200))
         source->limited = status == 403;
-    if (source->asked == ASK_VIEWS && status == 403) { /* the picture request decides about access; each refusal is in the audit trail
-                                                          already */
+    if (source->asked == ASK_VIEWS && status == 403) { /* a token may be allowed to see the view but not the list of views: the picture
+                                                          request decides. It is not repeated, because each refusal is in the audit trail */
         source->due_us[ASK_VIEWS] = source->asked_us + LIMITED_US;
         return;
     }
@@ -269,7 +271,7 @@ static void on_answer(struct video_source *source)
 
 /* --- asking ------------------------------------------------------------------------------------------ */
 
-/* Runs the request in its own thread, while the main loop keeps drawing frames. */
+/* Thread function: performs the request while the main loop keeps drawing frames. */
 static void perform(GTask *task, gpointer object, gpointer data, GCancellable *cancel)
 {
     struct video_source *source = data;
@@ -336,7 +338,7 @@ static void ask(struct video_source *source, enum ask what, gint64 now_us)
     g_object_unref(task);
 }
 
-/* Starts the next request. Pictures come first, except before the view that they need. */
+/* Starts the next request that is due. Pictures come first, except that a saved view must be known before its first picture. */
 static void go_on(struct video_source *source, gint64 now_us)
 {
     if (source->asking || now_us < source->wait_until_us)

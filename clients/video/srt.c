@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* SRT: sends MPEG-TS to any number of callers. */
+/* SRT output: sends MPEG-TS to any number of callers. */
 #include <gio/gio.h>
 #include <string.h>
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast backup` and `restore`: copies history, alarm journal and configuration of a plant into one folder, and back. */
+/* `plantcast backup` and `plantcast restore`: copy history, alarm journal and configuration of a plant into one folder, and back. */
 #include <dirent.h>
 #include <errno.h>
 #include <getopt.h>
@@ -75,7 +75,7 @@ static const char *as_written(const struct plant *plant, const char *path)
     return !strncmp(path, plant->folder, n) && path[n] == '/' ? path + n + 1 : path;
 }
 
-/* Names of files with user-made content in the history folder. */
+/* Names of the files in the history folder whose content users made. */
 static const char *const lists[] = { NAMED_VIEWS_FILE, NOTES_FILE, WALL_REMOTE_FILE, PAIRINGS_FILE };
 enum { LISTS = sizeof(lists) / sizeof(lists[0]) };
 
@@ -108,7 +108,7 @@ static bool add(struct backup_job *job, copier *copy, const char *from, const ch
     return good;
 }
 
-/* Copies the newest month last, so that readings recorded during the backup are included. */
+/* Copies the history files of all months, the newest last, so that readings recorded during the backup are included. */
 static bool add_history(struct backup_job *job, const char *folder)
 {
     size_t count;
@@ -137,7 +137,7 @@ static bool add_history(struct backup_job *job, const char *folder)
     return good;
 }
 
-/* Returns the history folder as the plant file writes it; NULL: the default, next to the plant file. */
+/* Returns the path of the history folder as the plant file writes it; NULL: the plant file uses the default folder, next to itself. */
 static const char *history_name(const struct plant *plant)
 {
     return plant->history.folder ? as_written(plant, plant->history.folder) : NULL;
@@ -172,8 +172,7 @@ static void remove_folder(const char *folder)
     rmdir(folder);
 }
 
-/* Writes the time of this backup into the history folder; the daemon reports it in /metrics. Skipped where the user may only read the
-   folder. */
+/* Writes the time of this backup into the history folder; the daemon reports it in /metrics. No-op if the user may only read the folder. */
 static void leave_stamp(const char *history)
 {
     char *path = mem_printf("%s/" HISTORY_BACKUP_STAMP, history), now[TIMESTAMP_BYTES + 1];
@@ -184,7 +183,7 @@ static void leave_stamp(const char *history)
     mem_free(path);
 }
 
-/* Writes into OUT.part and renames it once complete, so that a folder named OUT is always a complete backup. */
+/* Writes the backup into OUT.part and renames that once it is complete, so that a folder named OUT is always a complete backup. */
 static bool back_up(struct backup_job *job, const struct plant *plant, const char *out)
 {
     const char *tags = text_base_name(plant->tags_path);
@@ -235,7 +234,7 @@ static json_t *read_manifest(const char *folder)
     return manifest;
 }
 
-/* Returns false for a name in the manifest that would lead out of the backup's folder. */
+/* Returns false for a file name in the backup's manifest that would lead out of the backup's folder. */
 static bool is_plain(const char *name)
 {
     return name && *name && *name != '.' && !strchr(name, '/');
@@ -267,8 +266,8 @@ static bool is_free(const char *path)
     return lstat(path, &st) != 0 || say(path, "is in the way; nothing was restored");
 }
 
-/* Returns the destination path of a backup file. tags: path of the tag list as the plant file writes it; NULL: next to the plant file.
-   mem_free. */
+/* Returns the path to which a file of the backup is restored (mem_free). tags: path of the tag list as the plant file writes it; NULL:
+   the tag list is next to the plant file. */
 static char *place_of(const char *name, const char *plant_path, const char *history, const char *tags)
 {
     if (!strcmp(name, PLANT_FILE))
@@ -308,7 +307,7 @@ static bool each_file(struct backup_job *job, const char *plant_path, const char
     return good;
 }
 
-/* Returns the history folder that the plant file will refer to at its new path. mem_free. */
+/* Returns the path of the history folder to which the plant file refers once it is restored to plant_path (mem_free). */
 static char *future_history(const struct backup_job *job, const json_t *manifest, const char *plant_path)
 {
     const char *name = json_string_value(json_object_get(manifest, "history")), *slash = strrchr(plant_path, '/');
@@ -343,7 +342,7 @@ static bool is_database(const char *name)
     return length > 7 && !strcmp(name + length - 7, ".sqlite");
 }
 
-/* Compares each restored file with its hash. Copying a database also reads and checks every page of that database. */
+/* Compares each restored file with its hash in the backup. Databases are copied for that, which also reads and checks every page. */
 static bool each_restored(struct backup_job *job, const char *plant_path, const char *history)
 {
     size_t i;
@@ -407,7 +406,7 @@ static bool verify(struct backup_job *job)
 
 /* --- the command line ------------------------------------------------------------------------------------------------------------ */
 
-/* Returns -1 to continue, or the exit code. */
+/* Parses the command line. Returns -1 to continue, or the exit code. */
 static int parse(int argc, char **argv, struct backup_job *job, const char **out, bool *drill)
 {
     static const struct option options[] = { { "history", required_argument, NULL, 'd' },
@@ -450,7 +449,7 @@ int cmd_backup(int argc, char **argv)
     struct plant *plant = plant_load_or_print(argv[optind]);
     if (!plant)
         return 1;
-    umask(0077); /* files of the backup are readable only by the user who makes it */
+    umask(0077); /* only the user who makes the backup may read its files */
     job.log = log_create(LOG_WARN);
     job.files = json_array();
     code = back_up(&job, plant, out) ? 0 : 1;

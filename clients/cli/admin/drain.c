@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast drain`: makes a daemon on this machine send its sessions to other nodes. */
+/* `plantcast drain`: makes a daemon on this machine send its sessions to other daemons. */
 #include <errno.h>
 #include <getopt.h>
 #include <limits.h>
@@ -12,7 +12,8 @@
 #include "base/clock.h"
 #include "clients/cli/commands.h"
 
-/* seconds to wait for the daemon: 2 until a load balancer notices, 10 for closing the sessions, 1 in reserve */
+/* WAIT_S: seconds to wait for the daemon: 2 until a load balancer notices, 10 for closing the sessions, 1 in reserve; LOOK_US: interval
+   of checks */
 enum { WAIT_S = 13, LOOK_US = 50000 };
 
 static void print_usage(FILE *out)
@@ -26,7 +27,8 @@ static void print_usage(FILE *out)
           out);
 }
 
-/* Checks the process's name first: SIGUSR1 would end any other program. */
+/* Returns true if the process is a plantcastd, by its name. Checked before SIGUSR1 is sent, because the signal would end any other
+   program. */
 static bool is_daemon(pid_t pid)
 {
     char path[64], name[32] = "";

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast token`: creates, lists and revokes access tokens. The daemon notices changes of the file by itself. */
+/* `plantcast token`: creates, lists and revokes access tokens. The daemon notices by itself that the file has changed. */
 #include <errno.h>
 #include <fcntl.h>
 #include <getopt.h>
@@ -55,7 +55,8 @@ static bool is_foreign(const struct stat *st)
     return st->st_uid != 0 && st->st_uid != geteuid();
 }
 
-/* Returns NULL if the folder of `path` is safe, else the reason why not. Users who may write to a folder can replace the files in it. */
+/* Returns NULL if the folder of `path` is safe, else the reason why it is not: users who may write to a folder can replace the files in
+   it. */
 static const char *folder_fault(const char *path)
 {
     struct stat st;
@@ -71,7 +72,7 @@ static const char *folder_fault(const char *path)
     return fault;
 }
 
-/* Returns NULL if the token file may be used, else the reason why not. */
+/* Returns NULL if the token file is safe to use, else the reason why it is not. */
 static const char *file_fault(const struct stat *st)
 {
     if (!S_ISREG(st->st_mode))
@@ -89,7 +90,7 @@ static char *read_all(int fd, size_t size)
     return text;
 }
 
-/* Returns NULL with the reason printed. A missing file reads as empty if may_be_new. */
+/* Reads the token file. Returns NULL with the reason printed. A missing file reads as empty if may_be_new. */
 static char *read_file(const char *path, bool may_be_new)
 {
     struct stat st;
@@ -111,7 +112,7 @@ static char *read_file(const char *path, bool may_be_new)
     return text;
 }
 
-/* Replaces the file atomically and keeps its owner and mode; a new file is readable only by its creator. */
+/* Replaces the token file atomically and keeps its owner and mode. If the file is new, only its creator may read it. */
 static int write_file(const char *path, const struct text *text)
 {
     struct stat st;

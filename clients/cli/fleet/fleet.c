@@ -21,7 +21,7 @@ enum { PORT = 8090, HEADER_BYTES = 2048, CHUNK = 16384, NAME_BYTES = 256 };
 struct fleet_site {
     struct fleet_poll *poll;
     const struct fleet_file *file;
-    const char *host; /* accepted Host name besides the local ones; NULL: none */
+    const char *host; /* host name that a request's Host header may have besides local names; NULL: none */
 };
 
 struct fleet_answer { /* response of one connection */
@@ -59,7 +59,7 @@ static const struct page_file {
     { "/fleet.css", "clients/fleet/fleet.css", "text/css; charset=utf-8" },
 };
 
-/* Returns the body (mem_free) and sets its type; returns NULL if there is no such path. */
+/* Returns the body of the answer to a request for a path (mem_free), and sets its type. NULL: there is no such path. */
 static char *answer_to(const struct fleet_site *site, const char *path, size_t *bytes, const char **type)
 {
     static const char pictures[] = "/picture/";
@@ -109,7 +109,7 @@ static int begin_answer(struct lws *wsi, struct fleet_answer *answer, int status
     return 0;
 }
 
-/* Rejects requests with a foreign Host header (DNS rebinding). */
+/* Returns false for a request whose Host header names another host, as in an attack by DNS rebinding. */
 static bool is_for_us(const struct fleet_site *site, struct lws *wsi)
 {
     char host[NAME_BYTES], name[NAME_BYTES];

@@ -42,7 +42,7 @@ static const char *wrong_with(const char *url)
     return NULL;
 }
 
-/* Returns whether requests to this URL travel unencrypted over a network. */
+/* Returns true if requests to this URL travel unencrypted over a network. */
 static bool is_in_clear(const char *plain_url)
 {
     char host[256], name[256];
@@ -52,7 +52,7 @@ static bool is_in_clear(const char *plain_url)
     return !access_host_name(host, name, sizeof(name)) || !access_name_is_local(name);
 }
 
-/* Returns whether the text needs no escaping in a URL or a metric. */
+/* Returns true if a plant's id needs no escaping in a URL or a metric, and is not too long. */
 static bool is_id(const char *id)
 {
     for (const char *at = id; *at; at++)

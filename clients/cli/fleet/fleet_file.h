@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The fleet file (YAML), which lists the plants whose servers are watched. INSTALL.md describes it. Thread: one. */
+/* The fleet file (YAML): the plants whose servers `plantcast fleet` watches. INSTALL.md describes it. Thread: one. */
 #ifndef CLI_FLEET_FLEET_FILE_H
 #define CLI_FLEET_FLEET_FILE_H
 #include <stddef.h>
@@ -10,21 +10,22 @@ enum { FLEET_PLANTS = 1000 };
 
 struct fleet_plant {
     char *id;                   /* identifier in addresses and metrics */
-    char *name;                 /* display name; equals the id if none is given */
+    char *name;                 /* name of the plant to display; equals the id if the file gives none */
     char *url;                  /* ends with a slash */
     char *token_file, *ca_file; /* NULL: none */
-    double poll_s, picture_s;   /* minimum intervals, in seconds, between two requests to this server; picture_s 0: requests no pictures */
+    double poll_s, picture_s;   /* smallest intervals in seconds between two requests to this server, for metrics and for pictures;
+                                   picture_s 0: no pictures are requested */
     int line;
 };
 
 struct fleet_file {
     char *path, *folder, *name;
-    double poll_s, picture_s; /* default intervals of plants that give none */
+    double poll_s, picture_s; /* intervals for plants that give none of their own */
     struct fleet_plant *plants;
     size_t count;
 };
 
-/* Reads a fleet file; findings go to diag. Returns NULL if there was any error. */
+/* Reads a fleet file; findings go to diag. Returns NULL if there was an error. */
 struct fleet_file *fleet_file_read(const char *path, struct diag *diag);
 void fleet_file_free(struct fleet_file **file); /* &NULL is fine; leaves NULL */
 

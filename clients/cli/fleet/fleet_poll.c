@@ -18,7 +18,7 @@ enum { METRICS_BYTES = 4 << 20, PICTURE_BYTES = 2 << 20, TIMEOUT_S = 15, PICTURE
 enum fleet_question { METRICS, PICTURE, KINDS };
 
 struct fleet_request {
-    struct http_request http; /* handle with its connection, reused for the next request to this server */
+    struct http_request http; /* libcurl handle with its connection, reused for the next request to this server */
     int plant;
     enum fleet_question kind;
     int64_t due_ns;
@@ -76,7 +76,8 @@ static bool make_request(const struct fleet_plant *plant, struct fleet_request *
     return true;
 }
 
-/* Stores a complete response. Returns NULL if the response is good, else what is wrong with it. */
+/* Stores a complete response: the state of the plant's server, or its picture. Returns NULL if the response is good, else what is wrong
+   with it. */
 static const char *note_answer(struct fleet_poll *poll, struct fleet_request *request)
 {
     struct fleet_plant_state *known = &poll->states[request->plant];
@@ -105,7 +106,7 @@ static void note_failure(struct fleet_poll *poll, const struct fleet_request *re
 {
     struct fleet_plant_state *known = &poll->states[request->plant];
     struct picture *picture = &poll->pictures[request->plant];
-    if (request->kind == PICTURE) { /* a failed request drops the picture: viewers would take an old one for the current state */
+    if (request->kind == PICTURE) { /* a failed request removes the picture, because viewers would take an old one for the present state */
         mem_free(picture->at);
         picture->at = NULL;
         known->picture = 0;
@@ -117,7 +118,7 @@ static void note_failure(struct fleet_poll *poll, const struct fleet_request *re
     snprintf(known->why, sizeof(known->why), "%s", why);
 }
 
-/* Returns the time to the next request. A busy server sets it with Retry-After. */
+/* Returns the time to wait until the next request of this kind. A busy server extends it with Retry-After. */
 static int64_t pause_ns(const struct fleet_poll *poll, const struct fleet_request *request)
 {
     const struct fleet_plant *plant = &poll->file->plants[request->plant];
@@ -162,7 +163,7 @@ static void begin(struct fleet_poll *poll, struct fleet_request *request)
 
 /* --- the thread ------------------------------------------------------------------------------------------------------------- */
 
-/* Starts due requests. Pictures are requested only from servers that answer. Returns when the next request is due. */
+/* Starts the requests that are due. Pictures are requested only from servers that answer. Returns when the next request is due. */
 static int64_t begin_due(struct fleet_poll *poll, int64_t now_ns)
 {
     int64_t next_ns = now_ns + NS_PER_S;
@@ -217,7 +218,7 @@ struct fleet_poll *fleet_poll_start(const struct fleet_file *file)
         struct fleet_request *request = &poll->requests[i];
         request->plant = (int)(i / KINDS);
         request->kind = (enum fleet_question)(i % KINDS);
-        /* first requests are spread over 5 s; otherwise all requests would always be sent at the same time */
+        /* spreads the first requests over 5 s; otherwise all requests would always be sent at the same time */
         request->due_ns = now_ns + (int64_t)(i / KINDS) * 5 * NS_PER_S / (int64_t)file->count;
     }
     curl_global_init(CURL_GLOBAL_DEFAULT);

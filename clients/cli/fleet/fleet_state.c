@@ -11,7 +11,7 @@
 
 /* --- of one ----------------------------------------------------------------------------------------------------------------- */
 
-/* Returns the rest of `line` after the prefix `name`, or NULL. */
+/* Returns the rest of `line` after the prefix `name`, or NULL if the line has another prefix. */
 static const char *after(const char *line, const char *name)
 {
     size_t length = strlen(name);
@@ -132,7 +132,8 @@ static int64_t asked_of(const struct fleet_plant_state *of)
     return of->asked;
 }
 
-/* Defines a getter that returns INT64_MIN (no sample) while the server does not answer: old values must not pass for current ones. */
+/* Defines a function that returns a member of a server's state, or INT64_MIN (no sample) while the server does not answer, so that old
+   values do not pass for present ones. */
 #define WHILE_IT_ANSWERS(member) \
     static int64_t member##_of(const struct fleet_plant_state *of) \
     { \

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* State of a plant's server, read from its /metrics, and the state of a whole fleet as JSON and as metrics. Pure. Thread: any. */
+/* State of a plant's server, read from the server's /metrics, and the state of a whole fleet as JSON and as metrics. Pure. Thread: any. */
 #ifndef CLI_FLEET_FLEET_STATE_H
 #define CLI_FLEET_FLEET_STATE_H
 #include <stdbool.h>
@@ -12,13 +12,14 @@ enum { FLEET_PRIORITIES = 4, FLEET_TEXT_BYTES = 64 };
 
 struct fleet_state {
     int64_t alarms[FLEET_PRIORITIES], unacknowledged, links, links_down, sessions;
-    int64_t certificate_s, backup_s, free_bytes; /* seconds since 1970; 0: not known */
-    bool recorded;                               /* whether the server can write history and alarms */
-    bool reloaded;                               /* whether the plant file had no errors at the last reload */
+    int64_t certificate_s, backup_s, free_bytes; /* certificate_s: expiry of the certificate, backup_s: time of the newest backup, both
+                                                    in seconds since 1970; free_bytes: free disk space; 0: not known */
+    bool recorded;                               /* true: the server can write history and alarms to disk */
+    bool reloaded;                               /* true: the plant file had no errors at the last reload */
     char version[FLEET_TEXT_BYTES];
 };
 
-/* Parses the metrics of a plantcastd. Returns false if the text is not from one. */
+/* Parses the text of a daemon's /metrics. Returns false if the text is not from a plantcastd. */
 bool fleet_state_read(const char *metrics, struct fleet_state *out);
 
 struct fleet_plant_state {
@@ -27,11 +28,12 @@ struct fleet_plant_state {
     int64_t answered_us; /* time of the server's last answer, microseconds since 1970; 0: never */
     int64_t silent_us;   /* time of the first failed request since the last answer, microseconds since 1970; 0: it answers */
     uint64_t picture;    /* id of the server's newest picture; 0: none, or the last request for one failed */
-    char why[256];       /* why the server does not answer */
+    char why[256];       /* reason why the server does not answer */
     int64_t asked;       /* number of requests so far */
 };
 
-/* Return the fleet's state as JSON, or write it as Prometheus metrics. states: one per plant of the file, in the file's order. */
+/* Returns the fleet's state as JSON; fleet_metrics() returns it as Prometheus metrics. states: one per plant, in the order of the fleet
+   file. */
 char *fleet_json(const struct fleet_file *file, const struct fleet_plant_state *states, int64_t now_us);
 void fleet_metrics(const struct fleet_file *file, const struct fleet_plant_state *states, struct text *out);
 

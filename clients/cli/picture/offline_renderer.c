@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draws a prepared plant, with values from a file or from recorded history. */
+/* Draws pictures of a prepared plant without a daemon, with values from a file or from recorded history. */
 #include "offline_renderer.h"
 
 #include <stdio.h>
@@ -34,7 +34,7 @@ static bool load_baseline(struct offline_renderer *offline, struct snapshot_opti
     return good;
 }
 
-/* Reads the picture's values from the file, and drops the values of the previous picture. */
+/* Reads the values to draw from the file in the options, and drops the values of the previous picture. */
 static bool load_values(struct offline_renderer *offline, struct snapshot_options *options, struct diag *diag)
 {
     bool good = true;
@@ -92,7 +92,7 @@ bool offline_renderer_open_gl(struct offline_renderer *offline, const struct sna
     return offline->renderer != NULL;
 }
 
-/* Registers the plant's colour maps and image files that --colormap names in place of a colour map. */
+/* Registers the plant's colour maps, and those that --colormap gives as image files. */
 static bool add_colormaps(const struct offline_renderer *offline, const struct snapshot_options *options)
 {
     static const char name[] = "colormap=";

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Offline renderer: everything that draws pictures of a prepared plant without a daemon. Thread: one. */
+/* Offline renderer: everything that is needed to draw pictures of a prepared plant without a daemon. Thread: one. */
 #ifndef CLI_PICTURE_OFFLINE_RENDERER_H
 #define CLI_PICTURE_OFFLINE_RENDERER_H
 #include "history/history.h"
@@ -7,13 +7,13 @@
 #include "render/split_view.h"
 #include "snapshot.h"
 
-struct offline_renderer { /* members are freed in reverse order */
+struct offline_renderer { /* the members are freed in reverse order */
     struct log *log;
     struct plant *plant;
     struct scene *scene;
     struct snapshot *snapshot; /* readings to draw */
     struct baselines *baselines;
-    uint32_t turn; /* sequence number of the present set of readings; grows with each new set */
+    uint32_t turn; /* sequence number of the readings in `snapshot`; increases with each set of readings */
     struct workers *workers;
     struct field *field;
     struct gl *gl;
@@ -24,27 +24,27 @@ struct offline_renderer { /* members are freed in reverse order */
     int64_t first_us, last_us; /* first and last recorded instant */
 };
 
-/* Opens the plant, its files, values and baseline, and sets *view from options->args. Returns 0, or the exit code with the reason printed.
-   Close in both cases. */
+/* Opens the plant, its files, values and baseline, and sets *view from options->args. Returns 0, or the exit code with the reason
+   printed. Call offline_renderer_close() in both cases. */
 int offline_renderer_open(struct offline_renderer *offline, struct snapshot_options *options, struct view *view);
 /* Like offline_renderer_open(), but without a view. Returns false with the reason printed. */
 bool offline_renderer_open_plant(struct offline_renderer *offline, struct snapshot_options *options);
 /* Sets *view from options->args. Returns false with the reason printed. */
 bool offline_renderer_take_view(const struct offline_renderer *offline, const struct snapshot_options *options, struct view *view);
-/* Like offline_renderer_open(), for the same plant and renderer with other values, baseline and view. */
+/* Like offline_renderer_open(), for a renderer that already has this plant open: reads other values, another baseline and another view. */
 int offline_renderer_reopen(struct offline_renderer *offline, struct snapshot_options *options, struct view *view);
-/* Creates the GL context and the renderer. Returns false if it cannot, logged. */
+/* Creates the GL context and the renderer. Returns false on failure, logged. */
 bool offline_renderer_open_gl(struct offline_renderer *offline, const struct snapshot_options *options);
-/* Opens the plant's recorded history. Returns false if there is none, with the reason printed. */
+/* Opens the plant's recorded history. Returns false, with the reason printed, if there is none. */
 bool offline_renderer_open_history(struct offline_renderer *offline, const struct snapshot_options *options);
 /* Sets the readings and the view to an instant of recorded history. Returns false if the history cannot be read (logged) or has no readings
    before that instant (printed). */
 bool offline_renderer_seek(struct offline_renderer *offline, int64_t at_us, struct view *view);
-/* Draws the view. Returns the frame, which the caller releases (frame_unref), or NULL, logged. */
+/* Draws the view. Returns the frame, which the caller releases (frame_unref), or NULL on failure, logged. */
 struct frame *offline_renderer_draw(struct offline_renderer *offline, const struct snapshot_options *options, struct view *view);
-/* Writes the frame as PNG. Returns false if it cannot, logged. */
+/* Writes the frame as a PNG file. Returns false on failure, logged. */
 bool offline_renderer_save(struct offline_renderer *offline, struct frame *frame, const char *path);
-/* Frees all members. A renderer that was opened only in part is fine. */
+/* Frees all members. A renderer that was opened only in part is allowed. */
 void offline_renderer_close(struct offline_renderer *offline);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Runs the statement's query and readings through the offline renderer. */
+/* Draws the picture that a signed statement describes with the offline renderer, and compares both. */
 #include "redraw.h"
 
 #include <stdio.h>
@@ -11,7 +11,8 @@
 #include "render/overlay/overlay.h"
 #include "value/quality.h"
 
-/* Takes all arguments except the instant, which the statement has separately: a relative `at=-8h` would mean another instant today. */
+/* Takes all arguments of the statement's query except the instant, which the statement has separately: a relative `at=-8h` would mean
+   another instant today. */
 static bool take_query(const json_t *statement, struct snapshot_options *options)
 {
     const json_t *args = json_object_get(statement, "query");
@@ -52,15 +53,15 @@ static bool same_assets(const json_t *statement, const struct scene *scene)
     return others == 0;
 }
 
-/* Compares quality and value. The values of bad readings do not count. */
+/* Returns true if two readings have equal quality and value. The values of bad readings are not compared. */
 static bool same_reading(const struct reading *a, const struct reading *b)
 {
     bool usable = !quality_is_bad(a->quality);
     return a->quality == b->quality && (!usable || (float)a->value == (float)b->value);
 }
 
-/* Compares with recorded readings. A historical picture took its readings from the history; a live picture's readings were recorded with
-   their time of arrival. */
+/* Compares the statement's readings with recorded ones. A picture of the past took its readings from the history; the readings of a live
+   picture were recorded with their time of arrival. */
 static bool same_as_recorded(struct offline_renderer *offline, const struct redraw_options *options, const struct frame_record *record,
                              int64_t at_us)
 {
@@ -88,7 +89,7 @@ static bool same_as_recorded(struct offline_renderer *offline, const struct redr
     return same == count;
 }
 
-/* Counts the pixels that differ by at most one step in each colour channel. */
+/* Returns the number of pixels whose colour channels each differ by at most 1 of 255. */
 static size_t count_agreeing(const struct frame *frame, const uint8_t *rgb)
 {
     size_t agreeing = 0;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Command line of `plantcast snapshot` and `plantcast clip`. */
+/* The command lines of `plantcast snapshot` and `plantcast clip`. */
 #ifndef CLI_PICTURE_SNAPSHOT_H
 #define CLI_PICTURE_SNAPSHOT_H
 #include <stdbool.h>
@@ -11,37 +11,38 @@
 
 enum { SNAPSHOT_MAX = 64 };
 struct snapshot_options {
-    const char *from, *out;   /* from: plant file or URL; out: file to write, or NULL if only a pick is requested */
-    char *args[SNAPSHOT_MAX]; /* view parameters as name=value, as in the query of /snapshot.png; owned */
+    const char *from, *out;   /* from: plant file, or URL of a daemon; out: file to write, NULL if only a pick is requested */
+    char *args[SNAPSHOT_MAX]; /* parameters of the view as NAME=VALUE, as in the query of /snapshot.png; owned by the struct */
     size_t arg_count;
     const char *values[SNAPSHOT_MAX]; /* CSV files */
     size_t value_count;
-    bool pick; /* true: prints what is at the pixel place_px */
+    bool pick; /* true: print what is at the pixel place_px */
     double place_px[2];
-    const char *baseline; /* CSV file, or for a daemon the name of a saved baseline; NULL: none */
-    const char *prepared; /* folder of prepared files; NULL: next to the plant file */
+    const char *baseline; /* CSV file of values or, for a daemon, name of a saved baseline; NULL: none */
+    const char *prepared; /* folder of the prepared files; NULL: next to the plant file */
     enum gl_kind gl;
     struct gl_device gl_device;
     bool has_gl_device;
     const char *at;                  /* instant as written on the command line; NULL: now */
     int64_t at_us;                   /* `at` in microseconds since 1970 */
     const char *history;             /* history folder; NULL: the plant file's */
-    const char *from_text, *to_text; /* first and last instant of a clip, as written and in microseconds */
+    const char *from_text, *to_text; /* first and last instant of a clip, as on the command line; from_us, to_us: in microseconds since
+                                        1970 */
     int64_t from_us, to_us;
-    const char *tour; /* id of the tour (sequence of views) that a clip shows; NULL: a single view */
+    const char *tour; /* id of the tour (a sequence of views) that a clip shows; NULL: the clip shows a single view */
     double speed, fps;
-    bool is_signed;                                      /* true: the clip contains the server's signatures */
-    bool per_fragment, moving, no_overlay, offline_only; /* offline_only: an option was given that a daemon does not offer */
+    bool is_signed;                                      /* true: the clip contains the server's signature of each picture */
+    bool per_fragment, moving, no_overlay, offline_only; /* offline_only: true: an option was given that a daemon does not offer */
 };
 
-/* Parses the command line into *options. Returns -1 to continue, or an exit code. Finish the options in both cases. */
+/* Parses the command line into *options. Returns -1 to continue, or an exit code. Call snapshot_options_finish() in both cases. */
 int snapshot_parse(int argc, char **argv, bool clip, struct snapshot_options *options);
 /* Frees what the options own. */
 void snapshot_options_finish(struct snapshot_options *options);
-/* Appends `&name=value...`, URL-encoded, for a request to a daemon. Returns false, with the reason printed, if an option is not available
-   from a daemon. */
+/* Appends the options as `&name=value...`, URL-encoded, for a request to a daemon. Returns false, with the reason printed, if a daemon
+   does not offer one of the options. */
 bool snapshot_query(struct snapshot_options *options, struct text *query);
-/* Adds a name=value argument. Returns false if there are too many. */
+/* Adds an argument NAME=VALUE to options->args. Returns false if there are too many. */
 bool snapshot_add_arg(struct snapshot_options *options, const char *name, const char *value);
 /* Draws the picture without a daemon. Returns the exit code. */
 int snapshot_offline(struct snapshot_options *options);

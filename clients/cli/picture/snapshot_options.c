@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The command lines of `plantcast snapshot` and `plantcast clip`; a clip is a series of snapshots. */
+/* Parses the command lines of `plantcast snapshot` and `plantcast clip`; a clip is a series of snapshots. */
 #include "snapshot.h"
 
 #include <getopt.h>
@@ -236,7 +236,7 @@ static bool parse_factor(const char *text, double least, double most, double *ou
     return end != text && !*end && *out >= least && *out <= most;
 }
 
-/* Returns whether the option belongs to this command. */
+/* Returns true if the option is allowed in this command, `plantcast clip` or `plantcast snapshot`. */
 static bool belongs(bool clip, int option)
 {
     bool of_clip = option >= OPTION_FROM && option <= OPTION_FPS;
@@ -296,7 +296,7 @@ static bool only_size(const struct snapshot_options *options)
     return only;
 }
 
-/* Checks the combination of options. Returns -1 to continue, or the exit code. */
+/* Checks that the options fit together. left: number of arguments that are not options. Returns -1 to continue, or the exit code. */
 static int judge(const struct snapshot_options *options, bool clip, int left)
 {
     if (left != 1)

@@ -73,7 +73,7 @@ static bool parse_unit(const char *text, int64_t *unit_us)
     return false;
 }
 
-/* Parses "90s" or "1.5h"; without a unit: seconds. */
+/* Parses a duration such as "90s" or "1.5h"; a number without a unit is in seconds. Returns false for other text. */
 static bool parse_span(const char *text, int64_t *span_us)
 {
     char number[24];
@@ -206,7 +206,7 @@ static int run_export(const struct history_options *options, const struct plant 
 
 /* --- the command line ------------------------------------------------------------------------------------------------------------- */
 
-/* Returns -1 to continue, or the exit code. */
+/* Parses the command line. Returns -1 to continue, or the exit code. */
 static int parse(int argc, char **argv, struct history_options *out)
 {
     static const struct option options[] = {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast sensors suggest`: proposes where more sensors would help most; `drift` is in sensors_drift.c, `accept` in sensors_accept.c. */
+/* `plantcast sensors suggest`: proposes where more sensors would help most. `drift` is in sensors_drift.c, `accept` in sensors_accept.c. */
 #include <getopt.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast sensors accept`: accepts many assumed locations at once in a plant's tag list, and undoes that. */
+/* `plantcast sensors accept`: accepts the assumed positions of many sensors in a plant's tag list in one step, and can undo that. */
 #include <getopt.h>
 #include <limits.h>
 #include <stdio.h>
@@ -40,7 +40,8 @@ static void print_usage(FILE *out)
           out);
 }
 
-/* Saves the list. Takes ownership of `before` and `after`. If one is NULL, saves nothing and prints the reason in `failed`. */
+/* Saves the tag list `after` in place of `before`; takes ownership of both texts. If one is NULL, saves nothing and prints the reason in
+   `failed`. Returns the exit code. */
 static int save(const char *path, char *before, char *after, const struct refusal *failed)
 {
     struct tag_save saved = { .path = (char *)path, .before = before, .after = after };
@@ -98,7 +99,7 @@ static bool number_of(const char *name, const char *text, double most, double *o
     return false;
 }
 
-/* Returns false with the reason printed. */
+/* Reads the filter of positions to accept from the options. Returns false with the reason printed. */
 static bool read_filter(const struct accept_options *options, const struct plant *plant, struct assumed_filter *filter)
 {
     *filter = (struct assumed_filter){ .asset = options->asset ? plant_find_asset(plant, options->asset) : -1,
@@ -143,7 +144,7 @@ static int run(const struct accept_options *options)
     if (!plant)
         return 1;
     struct log *log = log_create(LOG_WARN);
-    char real[PATH_MAX]; /* earlier versions are stored next to the target of the symlink */
+    char real[PATH_MAX]; /* if the list is a symlink, earlier versions are next to its target */
     const char *path = realpath(plant->tags_path, real) ? real : plant->tags_path;
     int code = options->undo ? undo(options, path) : accept_in(options, plant, log, path);
     log_destroy(&log);

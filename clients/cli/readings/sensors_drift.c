@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast sensors drift`: finds sensors that drifted away from their neighbours' prediction in a week of recorded history. */
+/* `plantcast sensors drift`: finds sensors that drifted away from what their neighbours predict, in a week of recorded history. */
 #include <getopt.h>
 #include <stdio.h>
 
@@ -42,7 +42,8 @@ static int print_report(const struct plant *plant, const struct drift_report *re
     return found;
 }
 
-/* Returns the number of drifting sensors, or -1 if the history cannot be read. */
+/* Searches the sensors of the plant, or of group `only`, for drift and prints the result. Returns the number of drifting sensors, or -1
+   if the history cannot be read. */
 static int look_at(const struct scene *scene, struct history_reader *reader, int only, int64_t to_us)
 {
     int found = 0;

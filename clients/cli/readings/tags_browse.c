@@ -57,7 +57,7 @@ static void print_variable(void *arg, const struct opcua_variable *variable)
     text_finish(&address);
 }
 
-/* Parses opc.tcp://HOST:PORT/PATH. host: buffer for the host name. */
+/* Parses opc.tcp://HOST:PORT/PATH. host: receives the host name. Returns false for other text. */
 static bool read_url(const char *url, struct plant_source *source, char host[256])
 {
     static const char SCHEME[] = "opc.tcp://";
@@ -117,7 +117,7 @@ int tags_browse(int argc, char **argv)
     int code = 2;
     if (!read_options(argc, argv, &source, host, &code))
         return code;
-    int stop_fd = eventfd(0, EFD_CLOEXEC); /* a descriptor that never becomes readable, so that browsing is never interrupted */
+    int stop_fd = eventfd(0, EFD_CLOEXEC); /* never becomes readable, so browsing is never interrupted */
     struct opcua_client *client = opcua_client_create(&source, 0, &nodes, &events, why);
     int status = client ? opcua_client_connect(client, stop_fd, clock_mono_ns() + CONNECT_NS, why) : -1;
     if (status == 0) {

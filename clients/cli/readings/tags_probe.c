@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast tags --probe`: prints the content of one address of a field device in every type and byte order. It never writes. */
+/* `plantcast tags --probe`: prints the content of one address of a field device in every type and byte order. It never writes to the
+   device. */
 #include <errno.h>
 #include <modbus.h>
 #include <stdio.h>
@@ -20,7 +21,7 @@ enum { MAX_REGISTERS = 4 }; /* registers of a 64-bit value */
 static const enum byte_order orders[] = { BYTE_ORDER_ABCD, BYTE_ORDER_CDAB, BYTE_ORDER_BADC, BYTE_ORDER_DCBA };
 static const char *const prefixes[] = { [TABLE_COIL] = "co", [TABLE_DISCRETE] = "di", [TABLE_INPUT] = "ir", [TABLE_HOLDING] = "hr" };
 
-/* Parses HOST, HOST:PORT, [ADDRESS]:PORT or /dev/LINE. */
+/* Parses HOST, HOST:PORT, [ADDRESS]:PORT or /dev/LINE. host: receives the host name. Returns false for other text. */
 static bool read_device(const char *text, bool rtu, struct plant_source *source, char host[256])
 {
     const char *colon = strrchr(text, ':'), *end = colon && strchr(text, ':') == colon ? colon : text + strlen(text);
@@ -71,15 +72,15 @@ static void print_registers(const uint16_t *words, int count)
     }
 }
 
-/* Returns how many registers (4, 2 or 1) the device returns at this address; 0: none, with the reason in *status. */
+/* Returns how many registers (4, 2 or 1) the device returns at this address in one request; 0: none, with the reason in *status. */
 static int read_most(struct modbus_link *link, int unit, const struct modbus_address *at, uint16_t words[MAX_REGISTERS], int *status)
 {
     bool bits = at->table == TABLE_COIL || at->table == TABLE_DISCRETE;
     for (int count = bits ? 1 : MAX_REGISTERS; count > 0; count /= 2) {
         *status = at->index + count > 65536 ? MODBUS_EXCEPTION_ILLEGAL_DATA_ADDRESS
                                             : modbus_link_read(link, unit, at->table, at->index, count, words);
-        if (*status < 0 && modbus_link_answers(link) > 0 && modbus_link_open(link) == 0) /* the device closed the connection after an error
-                                                                                            response: reconnect */
+        if (*status < 0 && modbus_link_answers(link) > 0 && modbus_link_open(link) == 0) /* connects again, because the device closed the
+                                                                                            connection after an error response */
             *status = modbus_link_read(link, unit, at->table, at->index, count, words);
         if (*status == 0)
             return count;

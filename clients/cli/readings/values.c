@@ -50,7 +50,7 @@ static const char *cell(const struct csv_row *row, int column)
     return column >= 0 && (size_t)column < row->count ? row->cells[column].text : "";
 }
 
-/* Converts the value to the plant's unit, from the row's unit if given, else from the tag's own. */
+/* Converts the value to the unit in which the plant shows the tag: from the row's unit if it has one, else from the tag's own unit. */
 static bool take_unit(const struct csv *csv, const struct csv_row *row, const struct columns *columns, const struct plant_tag *tag,
                       double *value)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Runs all blind viewers (which do not decode frames) in one epoll loop. */
+/* Runs all viewers that do not decode frames in one epoll loop. */
 #include "load_generator.h"
 
 #include <errno.h>
@@ -15,14 +15,14 @@
 
 enum { EVENTS = 256 };
 static const int64_t CONNECT_TIMEOUT_NS = 20 * NS_PER_S; /* time limit for connecting */
-/* Interval between polls; packets that arrived meanwhile are handled together. Waking for each packet is avoided, because it happens inside
-   the daemon's send() and took a quarter of that time. */
+/* interval between polls; packets that arrive in between are handled together. Waking for each packet would cost the daemon time,
+   because the wake-up happens inside the daemon's send() and took a quarter of that time */
 static const int64_t POLL_INTERVAL_NS = 2 * NS_PER_MS;
 
 struct load_generator {
     int epoll, count;
     struct viewer **viewers;
-    int64_t step_ns, next_ns; /* step_ns: interval of the viewers' timers; next_ns: next tick */
+    int64_t step_ns, next_ns; /* step_ns: interval at which the viewers' timers fire; next_ns: monotonic time at which they fire next */
 };
 
 static void leave(struct viewer *viewer)
@@ -90,7 +90,7 @@ static void on_event(const struct load_generator *load, const struct epoll_event
         leave(viewer);
 }
 
-/* Fires the viewers' timers. Returns whether any viewer is still running. */
+/* Handles the timers of all viewers. Returns true if any viewer is still running. */
 static bool on_time(struct load_generator *load, int64_t now_ns)
 {
     bool any = false;

@@ -8,7 +8,7 @@ struct probe {
     struct daemon_url url;
     const char *url_text, *codec, *signs, *folder;
     int sessions, stalled, width_px, height_px;
-    int watching; /* the first so many of `viewers` do not stall (stop reading) */
+    int watching; /* number of viewers that keep reading; they come first in `viewers`, and the viewers after them stall */
     double seconds, hz;
     enum motion motion;
     bool as_json, blind, follow, spread;

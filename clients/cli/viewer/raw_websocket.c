@@ -14,7 +14,7 @@
 #include "base/mem.h"
 #include "protocol/wire.h"
 
-/* Nonce and accept value of the example in RFC 6455. */
+/* key and accept value that RFC 6455 gives as its example */
 static const char KEY[] = "dGhlIHNhbXBsZSBub25jZQ==", ACCEPT[] = "s3pPLMBiTxaQ9kYGzzhZRbK+xOo=";
 enum { OP_TEXT = 1, OP_BINARY = 2, OP_CLOSE = 8, OP_PING = 9, OP_PONG = 10, MAX_HEAD_BYTES = 4096, MAX_TEXT_BYTES = 16 << 20 };
 
@@ -22,15 +22,15 @@ struct raw_websocket {
     int fd;
     enum { ASKING, ASKED, OPEN } state;
     char request[1024];
-    struct text head;     /* head of the server's HTTP response */
-    unsigned char in[10]; /* number of bytes received of the current frame's header */
+    struct text head;     /* status line and headers of the server's HTTP response */
+    unsigned char in[10]; /* header of the current frame, of which in_count bytes have arrived */
     size_t in_count;
     bool in_payload, final;
     int opcode;         /* opcode of the current frame */
     size_t left;        /* payload bytes still to come */
-    bool binary, begun; /* current message: whether it is binary, and whether its first frame has arrived */
+    bool binary, begun; /* binary: the current message is binary; begun: its first frame has arrived */
     struct text message, control;
-    size_t count; /* number of bytes received of the current message */
+    size_t count; /* number of bytes of the current message that have arrived */
 };
 
 /* --- connecting ---------------------------------------------------------------------------------------------------------------- */
@@ -78,7 +78,7 @@ struct raw_websocket *raw_websocket_connect(const struct daemon_url *url, const 
     return raw;
 }
 
-/* Sends all bytes or fails: messages are short enough for the send buffer. */
+/* Sends all bytes. Returns false if the send buffer has no room for all: messages are short enough to fit. */
 static bool send_all(const struct raw_websocket *raw, const void *bytes, size_t count)
 {
     return send(raw->fd, bytes, count, MSG_NOSIGNAL) == (ssize_t)count;
@@ -96,7 +96,8 @@ static bool send_frame(const struct raw_websocket *raw, int opcode, const char *
         out[2] = (unsigned char)(count >> 8);
         out[3] = (unsigned char)count;
     }
-    /* RFC 6455 requires clients to mask payloads, as a protection of HTTP caches; a mask of zeros leaves the data unchanged */
+    /* RFC 6455 requires clients to mask payloads, as a protection of HTTP caches; a mask of zeros meets that and leaves the data
+       unchanged */
     memset(out + head - 4, 0, 4);
     memcpy(out + head, bytes, count);
     return send_all(raw, out, head + count);
@@ -109,7 +110,7 @@ bool raw_websocket_send(struct raw_websocket *raw, const char *text, size_t coun
 
 /* --- what comes ------------------------------------------------------------------------------------------------------------------ */
 
-/* Like recv(), but returns 0 if nothing is available and -1 at the end. bytes NULL: drop the data. */
+/* Like recv(), but returns 0 if nothing is available and -1 with *why if the connection has ended. bytes NULL: reads and drops the data. */
 static ssize_t take(const struct raw_websocket *raw, void *bytes, size_t count, const char **why)
 {
     ssize_t got = recv(raw->fd, bytes, count, bytes ? 0 : MSG_TRUNC);
@@ -121,7 +122,8 @@ static ssize_t take(const struct raw_websocket *raw, void *bytes, size_t count, 
     return -1;
 }
 
-/* Reads the HTTP response byte by byte, to stop exactly at its end. */
+/* Reads the HTTP response byte by byte, because the bytes after its end belong to frames. Returns 0, with raw->state OPEN once the
+   response is complete; or a negative number with *why. */
 static int read_head(struct raw_websocket *raw, const char **why)
 {
     char byte;
@@ -166,7 +168,7 @@ static void begin_payload(struct raw_websocket *raw)
     raw->message.length = raw->count = 0;
 }
 
-/* Reads the frame header. Returns > 0 once the header is complete, else the result of take(). */
+/* Reads the header of a frame. Returns > 0 once the header is complete, else the result of take(). */
 static ssize_t read_frame_header(struct raw_websocket *raw, const char **why)
 {
     while (raw->in_count < header_bytes(raw)) {
@@ -179,7 +181,7 @@ static ssize_t read_frame_header(struct raw_websocket *raw, const char **why)
     return 1;
 }
 
-/* Reads the frame's payload. Returns the result of take(). */
+/* Reads the payload of a frame. Returns the result of take(). */
 static ssize_t read_payload(struct raw_websocket *raw, const char **why)
 {
     static char bytes[64 * 1024];
@@ -205,7 +207,7 @@ static ssize_t read_payload(struct raw_websocket *raw, const char **why)
     return got;
 }
 
-/* Handles a control frame. Returns false if it was a close. */
+/* Handles a control frame. Returns false if it closes the connection. */
 static bool on_control(struct raw_websocket *raw, const char **why)
 {
     const char *bytes = raw->control.at ? raw->control.at : "";

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Receives messages and measures, without a screen. */
+/* A viewer's receiving half: handles messages and records measurements. */
 #include <jansson.h>
 #include <math.h>
 #include <stdio.h>
@@ -53,7 +53,7 @@ static void on_pong(struct viewer *viewer, int64_t server_us)
     viewer->offset_us = server_us - (clock_utc_ns() - rtt_ns / 2) / 1000;
 }
 
-/* Returns whether to skip the message without parsing: most messages have types that the measurement does not need. */
+/* Returns true for a message of a type that the measurement does not need, so that it need not be parsed. */
 static bool is_passed_over(const struct text *text)
 {
     static const char *const types[] = { "tags", "markers" };
@@ -91,8 +91,8 @@ static void on_text(struct viewer *viewer)
     json_decref(o);
 }
 
-/* Records a sample for every camera up to this one, also those that were replaced before they were drawn: their senders, too, waited until
-   this frame. */
+/* Records a latency sample for every camera up to camera_seq, also for those that newer ones replaced before they were drawn: their
+   senders, too, waited until this frame. */
 static void record_input(struct viewer *viewer, uint32_t camera_seq, int64_t now_ns)
 {
     if (camera_seq > viewer->camera_seq) /* this camera was never sent */
@@ -102,7 +102,7 @@ static void record_input(struct viewer *viewer, uint32_t camera_seq, int64_t now
             add(&viewer->result.input, (double)(now_ns - viewer->sent_ns[(viewer->shown_camera_seq + 1) % SENT_RING]) / 1e6);
 }
 
-/* Records how long after its leader this follower shows the camera of the frame. */
+/* Records how much later than its leader this follower shows the camera of the frame. */
 static void record_behind(struct viewer *viewer, const struct wire_frame *frame, int64_t now_ns)
 {
     struct leader *lead = viewer->params.lead;
@@ -119,7 +119,7 @@ static void record_behind(struct viewer *viewer, const struct wire_frame *frame,
     pthread_mutex_unlock(&lead->lock);
 }
 
-/* Records the network time from the server's send time to now, on the server's clock. */
+/* Records the network time of a frame, from the server's send time to now, both on the server's clock. */
 static void record_network(struct viewer *viewer, const struct wire_frame *frame)
 {
     struct viewer_result *result = &viewer->result;
@@ -151,7 +151,7 @@ static void record(struct viewer *viewer, const struct wire_frame *frame, int64_
     record_behind(viewer, frame, now_ns);
 }
 
-/* Writes FOLDER/SESSION-FRAME.png. Needs complete messages, which the load generator does not keep. */
+/* Writes a signed frame to FOLDER/SESSION-FRAME.png. Not possible in the load generator, which does not keep whole messages. */
 static void save_signed(struct viewer *viewer, const struct wire_frame *frame, const uint8_t *png)
 {
     char *path = mem_printf("%s/%03d-%06u.png", viewer->params.folder, viewer->params.number, frame->seq);
@@ -257,14 +257,14 @@ void viewer_on_time(struct viewer *viewer, int64_t now_ns)
         viewer_schedule(viewer, now_ns);
 }
 
-/* Fires on a fixed grid: a late tick does not delay the next. */
+/* Timer callback. The timer fires on a fixed grid of times, so that a late callback does not delay the next. */
 static void on_timer(lws_sorted_usec_list_t *sul)
 {
     struct viewer *viewer = lws_container_of(sul, struct viewer, timer);
     int64_t now_ns = clock_mono_ns();
     viewer_on_time(viewer, now_ns);
     if (viewer->wsi && (viewer->done || viewer_has_output(viewer)))
-        lws_callback_on_writable(viewer->wsi); /* the callback closes the connection if the viewer is done */
+        lws_callback_on_writable(viewer->wsi); /* the writable callback sends, or closes the connection if the viewer is done */
     viewer->next_ns += (int64_t)(1e9 / viewer->params.hz);
     if (viewer->next_ns < now_ns)
         viewer->next_ns = now_ns;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shared by the two halves of a viewer: receiving and lifetime (viewer.c), sending (viewer_send.c). */
+/* State shared by the halves of a viewer: viewer.c (receiving and lifetime) and viewer_send.c (sending). */
 #ifndef CLI_VIEWER_VIEWER_IMPL_H
 #define CLI_VIEWER_VIEWER_IMPL_H
 #include "raw_websocket.h"
@@ -13,19 +13,20 @@ struct viewer {
     struct viewer_params params;
     struct viewer_result result;
     struct lws_context *context;
-    struct lws *wsi; /* while connected, one of wsi and raw is set */
+    struct lws *wsi; /* connection of a viewer that decodes; NULL: `raw` is used, or not connected */
     struct raw_websocket *raw;
     lws_sorted_usec_list_t timer;
     struct decoder *decoder;
-    int64_t decode_ns; /* time spent so far on decoding a picture that arrives in several rectangles */
-    struct text in;    /* incoming message; over a raw WebSocket, of a binary message only the beginning */
+    int64_t decode_ns; /* time spent so far on decoding the current picture, which arrives in several rectangles */
+    struct text in;    /* the message that is being received; over a raw WebSocket only the beginning of a binary message */
     size_t in_count;   /* length of the incoming message */
     bool greeted, welcomed, camera_due, ping_due, follow_due, followed, done;
     double eye[3], target[3], fov_deg;
     uint64_t session;
     uint32_t camera_seq, shown_camera_seq;
     int64_t sent_ns[SENT_RING], begin_ns, next_ns;
-    int64_t ping_ns, rtt_ns, offset_us; /* shortest round trip so far; offset_us: server clock minus ours, measured by that round trip */
+    int64_t ping_ns, rtt_ns, offset_us; /* ping_ns: send time of the newest ping; rtt_ns: shortest round trip so far; offset_us: server's
+                                           clock minus ours, measured in that round trip */
     double angle_deg, speed_deg;        /* of random motion since leg_ns */
     int64_t leg_ns, leg_end_ns;
     struct {
@@ -35,17 +36,17 @@ struct viewer {
     int ack_count;
 };
 
-/* Ends the viewer with this reason; later reasons are ignored. */
+/* Ends the viewer with a reason; reasons of later calls are ignored. */
 void viewer_fail(struct viewer *viewer, const char *why);
-/* Sends the next due message. Returns a negative number if the connection is closed. */
+/* Sends the next message that is due. Returns a negative number if the connection is closed. */
 int viewer_send(struct viewer *viewer);
-/* Returns whether a message is due. */
+/* Returns true if a message is due to be sent. */
 bool viewer_has_output(const struct viewer *viewer);
-/* Marks messages whose time has come by now_ns as due. */
+/* Marks the messages whose time has come by now_ns as due. */
 void viewer_schedule(struct viewer *viewer, int64_t now_ns);
 /* Handles the complete message in viewer->in. */
 void viewer_on_message(struct viewer *viewer, bool binary);
-/* Handles the timer, which fires at the viewer's camera rate. */
+/* Handles the timer, which fires at the rate of the viewer's camera updates. */
 void viewer_on_time(struct viewer *viewer, int64_t now_ns);
 
 #endif

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reloads a page that was cached from another version of the server; registers the service worker where https allows installing.
+// Reloads a page that was cached from another version of the server; registers the service worker if https allows installing.
 import { store, stored } from './common/storage.js';
 
 const versionIn = (text) => text.match(/version = '(\w+)'/)?.[1];
 const fetched = (options) => fetch('made/version.js', options).then((answer) => (answer.ok ? answer.text() : ''), () => '');
 const ours = fetched({}).then(versionIn); // undefined: built without a version
 
-// Compares versions at each greeting and each late-loaded part, because the server may have been replaced. Returns true if the page
-// reloads; it does so once per version. key: storage name, another one for pages that contain others.
+// Compares the version of the page with that of the server, which may have been replaced. Called at each greeting and when a part is loaded
+// late. Returns true if the page reloads, which it does once per version. key: name under which the version is stored; pages that contain
+// other pages use another one.
 export async function renewIfOld(key = 'renewed') {
     const mine = await ours, version = versionIn(await fetched({ cache: 'no-store' }));
     if (!mine || !version || version === mine || stored(key) === version || !store(key, version))

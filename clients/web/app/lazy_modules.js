@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Loads modules on first use that the first picture does not need: script, style sheets, markup, and the shared words together with the
-// first module.
+// Loads modules that the first picture does not need, on their first use: script, style sheets, markup, and with the first module the words
+// that they share.
 import { learnWords, say } from '../core/words.js';
 import { sayAll, styled } from './common/dom.js';
 import { renewIfOld } from './install.js';
 
 const FIRST_WAIT_MS = 1000, LONGEST_WAIT_MS = 8000; // retry interval, first and longest
 
-// For each module: file in this folder without extension, class, style sheets, element that its markup fills, and whether it needs no lazy
-// words (wordless) or has its own file of words.
+// For each module: file below app/ without extension, class, style sheets, and element that its markup fills. wordless: it needs no lazy
+// words; words: it has its own file of words.
 const MODULES = {
     about: { file: 'assets/about', type: 'About', styles: ['assets/about'] },
     account: { file: 'sharing/account', type: 'Account', styles: ['help/help', 'sharing/account'] },
@@ -53,23 +53,23 @@ async function markupOf(file) {
 }
 
 export class LazyModules {
-    // page: passed to the parts. tell(text): shows a message to the user.
+    // page: object passed to each module. tell(text) shows a message to the user.
     constructor(page, tell) {
         Object.assign(this, { page, tell });
         this.made = new Map();     // created parts by name
-        this.awaited = new Map();  // name -> promise of a part being loaded
-        this.uses = new Map(); // name -> callbacks, by kind, that run once the part is loaded
-        this.missed = new Set();   // names of parts that the user waits for and whose failure was not shown yet
-        this.pauses = new Set();   // functions that end a retry interval early
+        this.awaited = new Map();  // name -> promise of a module that is being loaded
+        this.uses = new Map(); // name -> Map of callbacks by kind, which run once the module is loaded
+        this.missed = new Set();   // names of modules that the user waits for and whose failure was not shown yet
+        this.pauses = new Set();   // functions that end the wait before a retry early
     }
 
-    // Returns a loaded part, or undefined.
+    // Returns a module by its name if it is loaded, else undefined.
     there(name) {
         return this.made.get(name);
     }
 
-    // Runs f with a part, loading it first. Of several callbacks of one kind only the last runs: pressing a button again while its panel
-    // loads must not close it.
+    // Calls f with a module, which it loads first if necessary. Of several callbacks of one kind only the last is called: pressing a button
+    // again while its panel loads must not close the panel.
     async use(name, f, kind = f) {
         if (this.made.has(name)) {
             f(this.made.get(name));
@@ -81,13 +81,14 @@ export class LazyModules {
         wishes?.forEach((wish) => wish(part));
     }
 
-    // Drops the pending callbacks of parts that did not load.
+    // Drops the callbacks that wait for modules that did not load.
     giveUp() {
         this.uses.clear();
         this.missed.clear();
     }
 
-    // Returns a promise of a part, loading it if necessary. A failure is shown, and loading is retried until it succeeds.
+    // Returns a promise of a module, which it loads if necessary. A failure is shown to the user, and loading is tried again until it
+    // succeeds.
     get(name) {
         if (!this.made.has(name)) {
             this.missed.add(name);
@@ -96,7 +97,7 @@ export class LazyModules {
         return this.prepare(name);
     }
 
-    // Loads a part in advance; failures are silent because nobody asked for it yet.
+    // Loads a module in advance. Failures are silent, because the user has not asked for it yet.
     prepare(name) {
         if (!this.awaited.has(name))
             this.awaited.set(name, this.bring(name));
@@ -119,20 +120,21 @@ export class LazyModules {
         }
     }
 
-    // Retries at once: the server is back, or the user asks again.
+    // Tries again without waiting, because the server is back or the user asks again.
     retryNow() {
         for (const go of this.pauses)
             go();
         this.pauses.clear();
     }
 
-    // Loads a part. Browsers may cache a failed module fetch by its URL forever, so retries use another query.
+    // Loads a module. Browsers may cache a failed fetch of a module by its URL forever, so further tries use another query.
     async load(name, tries) {
         const { file, type, styles = [], fills, wordless, words } = MODULES[name], again = tries > 0 ? `?again=${tries}` : '';
         const [module, markup] = await Promise.all([import(`./${file}.js${again}`), fills && markupOf(file), wordless || learnWords(),
             words && learnWords(words), ...styles.map(styled)]);
         if (await renewIfOld())
-            return new Promise(() => {}); // never resolves: the page reloads, because script and page may be of different versions
+            // never resolves: the page is about to reload, because script and page may be of different versions
+            return new Promise(() => {});
         if (fills) {
             const element = document.getElementById(fills);
             element.innerHTML = markup;

@@ -14,9 +14,9 @@ import { Tools } from './toolbar/tools.js';
 import { Toolbar } from './toolbar/toolbar.js';
 
 const ADDRESS_WAIT_MS = 400, TOAST_MS = 6000;
-const WATCH_AFTER_MS = 5000; // delay before the watchdog is loaded, so that the first picture loads before it
-const MANY_PICTURES = 30; // number of pictures after which an inter-frame codec (H.264) pays off
-// names of the commands that main.js passes to modules that are loaded on first use
+const WATCH_AFTER_MS = 5000; // delay in milliseconds after which the watchdog is loaded, so that the first picture comes first
+const MANY_PICTURES = 30; // number of pictures after which H.264, which encodes only differences, pays off
+// names of the commands that main.js passes to modules loaded on first use
 const COMMANDS = ['selectTag', 'showTag', 'flyToTag', 'fitView', 'selectAsset', 'showTrend', 'addTrend', 'showAsset'];
 
 const selection = { tag: address.tag, hover: null };
@@ -24,7 +24,7 @@ const modules = new LazyModules(page, tell);
 const does = (name) => (...given) => modules.use('commands', (commands) => commands[name](...given));
 new Toolbar({ session, does });
 const rightOf = (params) => params.split && { ...params, ...params.split };
-// one legend is enough for two equal halves
+// if both halves of a split view need the same legend, one is enough
 const isShared = (params, right) => right && legend.contents(params) === legend.contents(right);
 const legend = new Legend({ session, element: byId('legend'), lying: page.lying,
     paramsOf: (params) => !isShared(params, rightOf(params)) && params });
@@ -62,7 +62,7 @@ const BUTTONS = { fit: 'fit', home: 'home', measure: 'measure', snapshot: 'snaps
 for (const [id, name] of Object.entries(BUTTONS))
     byId(id).addEventListener('click', does(name));
 
-// Stores the pointer position, also while the commands are still loading.
+// Stores the pointer's position, for commands that are still loading, and passes it to them once they are loaded.
 function point(place) {
     page.pointed = place;
     modules.there('commands')?.point(place);
@@ -74,7 +74,7 @@ page.handlers = {
 };
 listenToInput(byId('viewport'), modules);
 
-// --- the picture and what lies over it
+// --- the picture and what is drawn over it
 
 let pictures = 0;
 viewport.onTick = (now) => modules.there('cameraController')?.tick(now);
@@ -86,7 +86,7 @@ viewport.onDrawn = (newPicture) => {
             probeCodecs();
     }
     if (newPicture && (session.picture.past || status.past))
-        status.show(); // the status bar changes together with the picture
+        status.show(); // the status bar must change together with the picture
     if (newPicture || overlay.dirty) {
         for (const name of ['card', 'place', 'measure', 'clipGizmo', 'notes'])
             modules.there(name)?.show();
@@ -94,7 +94,7 @@ viewport.onDrawn = (newPicture) => {
     }
 };
 new ResizeObserver(refresh).observe(byId('viewport'));
-setInterval(() => modules.there('card')?.tag && refresh(), 500); // updates the age of the value on the card
+setInterval(() => modules.there('card')?.tag && refresh(), 500); // updates the age of the value on the sensor's card
 
 for (const name of ['tags', 'alarms', 'proofs'])
     session.on(name, refresh);
@@ -118,7 +118,7 @@ session.on('params', async () => {
         if (['difference', 'uncertainty', 'blind'].includes(half.show))
             modules.get('coverage');
     }
-    // loads the clip gizmo when section planes cut the plant, except on a wall
+    // loads the clip gizmo (handles of section planes) if section planes cut the plant, except on a wall
     if (params.clip && !document.body.classList.contains('wall') && await modules.get('clipGizmo'))
         refresh();
 });
@@ -136,7 +136,7 @@ session.on('welcome', () => {
     if (session.imports && pictures === 0)
         modules.get('import');
     document.body.classList.toggle('looker', session.role === 'open');
-    byId('time-toggle').hidden = true; // the history button stays hidden until the server says that it records
+    byId('time-toggle').hidden = true; // the history button stays hidden until the server says that it records history
     status.show();
     arrive();
     if (selection.tag)
@@ -146,7 +146,7 @@ session.on('welcome', () => {
     viewport.invalidate();
 });
 session.on('status', () => status.show());
-// After access was denied, or a lock for inactivity, clears the page and asks for a token.
+// Clears the page and asks for a token, after access was denied or the session was locked for inactivity.
 session.on('denied', ({ code }) => {
     document.body.classList.add('denied');
     modules.use('token', (token) => token.ask(code));
@@ -160,7 +160,7 @@ session.on('followers', () => modules.get('share'));
 session.on('following', () => session.leader !== null && modules.get('following'));
 session.on('ignored', (what) => console.warn(`ignored: ${what}`));
 
-// Loads the panel of views, then a module that is shown inside that panel.
+// Loads the panel of views, and then a module that is shown inside that panel.
 async function bring(name) {
     await modules.get('views');
     modules.get(name);
@@ -175,7 +175,8 @@ session.on('views', () => {
     named = null;
 });
 
-// Goes to the link's destination, and reports what of the link, or of the previous view, does not exist in this plant.
+// Goes to the destination of the link that opened the page. Reports parts of the link, or of the previous view, that this plant does not
+// have.
 let arrived = false, astray = [];
 session.on('astray', (message) => astray.push(message));
 function arrive() {
@@ -195,7 +196,7 @@ session.on('error', async ({ text, about, code, refusal }) => {
     tell(put('page.refused', { text: refusalText(text, refusal, code) }));
 });
 
-// An action was done, but is not, or not completely, on the server's disk.
+// Reports that an action was done but is not, or not completely, on the server's disk.
 session.on('unkept', async ({ not_kept: count, why, refusal, unaudited, unaudited_refusal: missing }) => {
     const { put, refusalText } = await import('../core/refusals.js');
     tell(count ? put('page.unkept', { text: refusalText(why, refusal) })
@@ -211,7 +212,7 @@ function tell(text, ms = TOAST_MS) {
 
 // --- the page
 
-// Returns whether the user has changed nothing since the greeting; the URL then stays unchanged.
+// Returns true if the user has changed nothing since the greeting; the URL then stays unchanged.
 const isUntouched = () => !location.hash && session.paramsSeq <= 1 && !moved && !selection.tag && session.time.atUs === null;
 
 let addressTimer;
@@ -221,7 +222,7 @@ function saveAddress() {
     clearTimeout(addressTimer);
     addressTimer = setTimeout(async () => {
         if (session.leader !== null)
-            return; // keeps the URL: the link names the session to follow
+            return; // keeps the URL, because it names the session to follow
         const { addressOf } = await import('../core/address.js');
         history.replaceState(null, '', location.pathname + location.search + addressOf(session, selection.tag));
     }, ADDRESS_WAIT_MS);
@@ -246,10 +247,10 @@ async function watch() {
     const { watchMainThread } = await import('./common/watchdog.js');
     watchMainThread({ scale: () => page.unit, reloads: document.body.classList.contains('wall') && parent === window });
 }
-// a wall's pane needs no watchdog: wall and pane share a main thread, and the wall's is watched
+// not in a pane of a wall: pane and wall share a main thread, and the wall's is watched
 if (!new URLSearchParams(location.search).has('pane'))
     setTimeout(() => watch().catch(console.warn), WATCH_AFTER_MS);
-// Opens the equipment list at the start where there is room for it.
+// Opens the equipment list at the start if there is room for it.
 const showAssets = () => !narrow.matches && !document.body.classList.contains('wall') && modules.get('assets');
 narrow.addEventListener('change', showAssets);
 showAssets();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The alarm bar, which counts alarms in every view; the alarm list is loaded when it is first opened.
+// The alarm bar, which counts the alarms and is always visible. The alarm list is loaded when it is first opened.
 import { decimalsFor, numberText, unitText, zoneClock } from '../../core/format.js';
 import { say } from '../../core/words.js';
 import { byId, make, setText } from '../common/dom.js';
@@ -8,8 +8,8 @@ export const badge = (priority, hollow = false) => make('span', {
     class: `priority p${priority}${hollow ? ' hollow' : ''}`, title: say(hollow ? 'alarms.gone' : 'alarms.priority', { priority }),
 }, String(priority));
 
-// Returns the value at which an alarm was raised, the present value, and the limit, in words; empty for an alarm without a limit. fresh:
-// whether messages from the server arrive. If they do not, or while the past is shown, the present value is a dash.
+// Returns as text the value at which an alarm was raised, the present value, and the limit; empty for an alarm without a limit. The present
+// value is a dash while the past is shown, or if `fresh` is false: no messages arrive from the server.
 export function limitText({ model, time }, { tag, value, limit }, fresh) {
     if (value === null || limit === null)
         return '';
@@ -32,7 +32,7 @@ export class AlarmBar {
         return this.session.model?.alarms ?? null;
     }
 
-    // fresh: false while the server is silent; the bar then shows the alarms as of its last message.
+    // fresh false: the server is silent, and the bar shows the alarms as of the server's last message.
     setFresh(fresh) {
         this.fresh = fresh;
         document.body.classList.toggle('stale', !fresh);
@@ -82,5 +82,5 @@ export class AlarmBar {
     }
 }
 
-// Returns the plant's time of the server's last message.
+// Returns the time of the server's last message, in the plant's time zone.
 export const asOf = (session) => zoneClock(session.model.plant.time_zone)(session.clockUs(session.freshAt) / 1000).time;

@@ -14,10 +14,11 @@ const SHOWN = 200; // maximum number of rows in the document
 const WHICH = ['all', 'waiting', 'active', 'gone'];
 
 export class AlarmList {
-    // showTag(tag), flyToTag(tag), overlay (for its `fresh`): from the page.
+    // showTag(tag) and flyToTag(tag) are functions of the page; of `overlay` only `fresh` is used.
     constructor({ session, modules, overlay, showTag, flyToTag }) {
         Object.assign(this, { session, modules, overlay, showTag, flyToTag });
-        this.chosen = new Map(); // rows selected for acknowledgement: tag -> the tag's unacknowledged alarms when it was selected, as text
+        // rows selected for acknowledgement: tag -> ids of the tag's unacknowledged alarms at the time of selection
+        this.chosen = new Map();
         this.filter = { which: 'all', words: '' };
         const priorities = [1, 2, 3, 4].map((priority) => [priority, say('alarms.priority', { priority })]);
         fillSelect(byId('alarms-which'), [...WHICH.map((name) => [name, say(`which.${name}`)]), ...priorities], 'all');
@@ -56,7 +57,7 @@ export class AlarmList {
 
     setOpen(open) {
         for (const name of open ? ['engineer', 'import'] : [])
-            this.modules.there(name)?.close(); // other panels that use the same space close
+            this.modules.there(name)?.close(); // closes other panels that use the same space
         byId('alarms').hidden = !open;
         byId('alarm-strip').setAttribute('aria-expanded', open);
         this.show();
@@ -66,7 +67,7 @@ export class AlarmList {
             byId('alarm-strip').focus();
     }
 
-    // The user's role, which decides about actions; null while no messages arrive from the server.
+    // Role of the user, which decides about the actions offered; null while no messages arrive from the server.
     get role() {
         return this.overlay.fresh ? this.session.role : null;
     }
@@ -110,13 +111,13 @@ export class AlarmList {
         this.showChosen();
     }
 
-    // Returns the text that the filter searches.
+    // Returns the text of an alarm in which the filter searches.
     textOf({ tag, kind }) {
         const asset = this.session.model.asset(tag.asset);
         return [tag.name, tag.description, kind, say(`kind.${kind}`), tag.asset, asset?.tag, asset?.description].filter(Boolean).join(' ');
     }
 
-    // Keeps the elements of unchanged rows, so that a button does not move while it is being pressed.
+    // Fills the table. Keeps the elements of rows that did not change, so that a button does not move while it is being pressed.
     fill(id, alarms) {
         const list = byId(id), before = new Map([...list.children].map((row) => [row.said, row]));
         const rows = alarms.map((alarm) => {
@@ -134,12 +135,12 @@ export class AlarmList {
 
     // --- several at once
 
-    // Returns a row's unacknowledged alarms as a text; '' if there are none or this user may not acknowledge.
+    // Returns the ids and times of a row's alarms that this user can acknowledge, as a text; '' if there are none.
     waitsFor(row) {
         return targetsOf(row, 'acknowledge', this.alarms.mode, this.role).map(({ id, raisedUs }) => `${id}@${raisedUs}`).join();
     }
 
-    // Deselects rows that have a new alarm since they were selected: the user has not seen it.
+    // Deselects rows that have another alarm than when they were selected, because the user has not seen it.
     forgetChanged(all) {
         const now = new Map(all.map((row) => [row.tag.name, this.waitsFor(row)]));
         for (const [name, was] of this.chosen)
@@ -172,7 +173,7 @@ export class AlarmList {
             box.checked = this.chosen.has(box.value);
     }
 
-    // Acknowledges the visible selected rows only; rows hidden by the filter are not acknowledged.
+    // Acknowledges the selected rows that are visible; rows hidden by the filter are not acknowledged.
     acknowledgeChosen() {
         const rows = this.rows.filter(({ tag }) => this.chosen.has(tag.name));
         const alarms = rows.flatMap((row) => targetsOf(row, 'acknowledge', this.alarms.mode, this.role));
@@ -182,7 +183,7 @@ export class AlarmList {
         this.showChosen();
     }
 
-    // Runs f, and restores the keyboard focus to the same alarm, or to the next row if that alarm is gone.
+    // Calls f, which rebuilds rows, and then gives the keyboard focus back to the same alarm, or to the next row if that alarm is gone.
     keepFocus(f) {
         const held = document.activeElement, row = held.closest('#alarms li'), place = row && [...row.parentElement.children].indexOf(row);
         f();
@@ -201,7 +202,7 @@ export class AlarmList {
         return say('alarms.since', { time, age: ageText((now - raisedUs) / 1000) });
     }
 
-    // Returns a text: the user who last acted on the alarm, the end of that action (such as a shelving), and the reason.
+    // Returns a text with the user who last acted on the alarm, when the effect of the action ends (such as shelving), and the reason.
     note({ state, who, reason, untilUs, held }) {
         const clock = zoneClock(this.session.model.plant.time_zone);
         const until = untilUs === null ? '' : say('alarms.until', { time: clock(untilUs / 1000).time.slice(0, 5) });
@@ -209,7 +210,7 @@ export class AlarmList {
         return [until, by, reason, held ? say('alarms.held') : ''].filter(Boolean).join(', ');
     }
 
-    // Returns the other alarms of the row's tag, in words.
+    // Returns the other alarms of the row's tag as text.
     also({ others = [] }) {
         return others.length === 0 ? '' : say('alarms.also', { what: others.map(({ kind, state }) =>
             `${say(`kind.${kind}`)} (${say(`state.${state}`)})`).join(', ') });
@@ -224,7 +225,8 @@ export class AlarmList {
         const { tag, kind, state, priority } = alarm, { mode } = this.alarms, actions = rowActions(alarm, mode, this.role);
         const reading = make('span', { class: 'raised' }, this.readingText(alarm));
         const asset = this.session.model.asset(tag.asset), age = make('span', { class: 'since' }, this.since(alarm));
-        const title = say('alarms.fly', { tag: tag.name }), nowhere = tag.index === null; // a device has no position in the model
+        // `nowhere`: a device has no position in the model
+        const title = say('alarms.fly', { tag: tag.name }), nowhere = tag.index === null;
         const how = nowhere ? { class: 'alarm-go' } : { type: 'button', class: 'alarm-go', title, onclick: () => this.flyTo(tag) };
         const note = [this.note(alarm), this.also(alarm)].filter(Boolean).join('; ');
         const fly = make(nowhere ? 'div' : 'button', how, badge(priority, isGone(state)),
@@ -243,7 +245,7 @@ export class AlarmList {
 
     flyTo(tag) {
         if (this.small.matches)
-            this.setOpen(false); // narrow screens show either the plant or the alarm list, so the list closes
+            this.setOpen(false); // closes the list on narrow screens, which show either the plant or the list
         this.showTag(tag);
         this.flyToTag(tag);
     }

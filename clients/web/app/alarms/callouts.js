@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Call-outs: a two-line label shared by several alarm rings (circles around markers of tags in alarm) that are close together. Also labels
-// of alarms whose reading is bad..
+// Call-outs: two-line labels next to alarm rings (circles around the markers of tags in alarm). Rings that are close together share one
+// call-out. Also labels alarms whose reading is bad.
 import { graver } from '../../core/alarms.js';
 import { placeRings } from '../../core/callouts.js';
 import { zoneClock } from '../../core/format.js';
@@ -18,8 +18,8 @@ export class Callouts {
         refresh();
     }
 
-    // Returns the label of an alarm whose reading is bad: the alarm keeps the state that it had at the last usable value. Returns null if
-    // there never was a value.
+    // Returns the label of an alarm whose reading is bad, and which therefore keeps the state that it had at the last usable value. Returns
+    // null if there never was a value.
     held(tag, { kind }) {
         const { session } = this, { model, time } = session, ageMs = model.ageMs(tag.index, session.now());
         const nowUs = time.atUs ?? session.clockUs();
@@ -30,7 +30,8 @@ export class Callouts {
         return [[kind, 700, null], [say('callout.held', { time: since }), 400, INK_2]];
     }
 
-    // Returns the parts of the two lines, in the format of the overlay's labels; the first line names the most urgent alarm.
+    // Returns the two lines of a call-out for several alarms, in the format of the overlay's labels; the first line names the most urgent
+    // alarm.
     lines(members) {
         const [worst] = [...members].sort(byGravity), { model } = this.session;
         const assets = new Set(members.map(({ tag }) => tag.asset)), count = say('callout.count', { count: members.length });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Details of the selected equipment below the equipment list, with links to other systems.
+// Details of the selected equipment, shown below the equipment list, with links to other systems.
 import { numberText } from '../../core/format.js';
 import { linkUrl } from '../../core/references.js';
 import { say } from '../../core/words.js';

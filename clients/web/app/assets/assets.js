@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The equipment list: areas, assets and their sensors with values. On narrow screens it is loaded when first opened. Pointer, keyboard and
-// search (rows.js) are loaded on first use.
+// The equipment list: areas, assets and their sensors with values. On narrow screens it is loaded when it is first opened. Pointer,
+// keyboard and search (rows.js) are loaded on first use.
 import { decimalsFor, numberText, qualityText, unitText } from '../../core/format.js';
 import { Tree } from '../../core/asset_tree.js';
 import { say } from '../../core/words.js';
@@ -37,7 +37,7 @@ export class Assets {
         window.matchMedia('(pointer: coarse)').addEventListener('change', () => this.filter());
     }
 
-    // Calls f with the row controller, loading it first if necessary.
+    // Calls f with the module that handles input to the rows (rows.js), which it loads first if necessary.
     does(f) {
         this.modules.use('rows', f);
     }
@@ -71,10 +71,12 @@ export class Assets {
         const { model } = this.session, before = this.tree;
         this.tree = new Tree(model, say('assets.loose'));
         if (before)
-            Object.assign(this.tree, { open: before.open, folded: before.folded }); // a reconnect keeps the expanded areas and assets
+            // after a reconnect, the same areas and assets stay expanded
+            Object.assign(this.tree, { open: before.open, folded: before.folded });
         setText(byId('assets-count'), String(model.assets.length));
         this.selected = undefined;
-        this.list.renew(() => this.mark()); // rebuilds all rows, because after a reload of the plant a name may belong to another item
+        // rebuilds all rows, because after a reload of the plant the same name may belong to another item
+        this.list.renew(() => this.mark());
     }
 
     filter() {
@@ -156,7 +158,7 @@ export class Assets {
         setAlarm(element, model.alarms.gravest(tag.index));
     }
 
-    // Schedules one update per animation frame, however many messages arrive.
+    // Schedules an update for the next animation frame, however many messages arrive until then.
     soon() {
         this.mark();
         this.asked ??= requestAnimationFrame(() => {

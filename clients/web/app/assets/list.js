@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A virtual list: only rows in sight are in the document. One row is active for the keyboard (rows.js moves it).
+// A virtual list: only the rows in sight are in the document. One row is active, which means that the keyboard acts on it (rows.js).
 import { rowsInSight, stack } from '../../core/list_window.js';
 import { make } from '../common/dom.js';
 
 const MORE = 8; // extra rows beyond both edges
 
 export class LongList {
-    // make(row): creates the element; fill(row, element): updates its content; height(row): CSS pixels; keyOf(row): its identity. The
-    // element `root` scrolls.
+    // make(row) creates the element of a row, fill(row, element) updates its content, height(row) returns CSS pixels, keyOf(row) returns a
+    // key that identifies the row. The element `root` scrolls.
     constructor({ root, make: build, fill, height, keyOf }) {
         Object.assign(this, { root, build, fill, height, keyOf, rows: [], tops: stack([]), shown: new Map(), active: null });
         this.space = make('div', { role: 'none', class: 'space' });
@@ -16,7 +16,7 @@ export class LongList {
         new ResizeObserver(() => this.show()).observe(root);
     }
 
-    // Rebuilds all rows with change(), which calls set(); keeps scroll position and focus.
+    // Calls change(), which calls set(), and rebuilds the elements of all rows; keeps scroll position and focus.
     renew(change) {
         const { root } = this, hasFocus = root.contains(document.activeElement);
         this.space.replaceChildren();
@@ -26,7 +26,7 @@ export class LongList {
             this.shown.get(this.active)?.focus({ preventScroll: true });
     }
 
-    // Sets the rows. A row that persists keeps its element.
+    // Sets the rows. A row with the key of an earlier row keeps that row's element.
     set(rows) {
         this.rows = rows;
         this.tops = stack(rows.map(this.height));
@@ -43,7 +43,8 @@ export class LongList {
         for (let i = from; i < to; i++)
             wanted.add(i);
         if (this.active !== null)
-            wanted.add(this.places.get(this.active)); // keeps the element of the active row, or keyboard users would lose their position
+            // the active row keeps its element also out of sight, or keyboard users would lose their position
+            wanted.add(this.places.get(this.active));
         const before = this.shown;
         this.shown = new Map();
         for (const i of [...wanted].sort((a, b) => a - b))

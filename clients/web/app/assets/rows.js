@@ -44,7 +44,7 @@ export class Rows {
         }
     }
 
-    // Makes row i the active row; does nothing if there is no such row.
+    // Makes row i the active row and scrolls to it; no-op if there is no such row.
     goTo(i, focus = true) {
         const { list } = this, row = list.rows[i];
         if (!row)
@@ -56,7 +56,7 @@ export class Rows {
             list.shown.get(list.active).focus({ preventScroll: true });
     }
 
-    // Called when a row receives the focus.
+    // Makes the row with this key the active row, because it has received the focus.
     isAt(key) {
         if (key !== this.list.active)
             this.goTo(this.placeOf(key), false);
@@ -66,7 +66,7 @@ export class Rows {
         this.goTo(this.placeOf(key), this.list.root.contains(document.activeElement));
     }
 
-    // Right expands a row or moves into it, left collapses it or moves to its parent.
+    // Handles arrow keys: right expands a row or moves into it, left collapses a row or moves to its parent.
     press(key) {
         const { rows, root, active, height } = this.list, i = this.placeOf(active), last = rows.length - 1;
         if (i === undefined)

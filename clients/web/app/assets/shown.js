@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A notice over the picture that part of the plant is hidden, with a button that shows all. Loaded when something is hidden, isolated or
-// transparent.
+// A notice over the picture that part of the plant is hidden, with a button that shows everything. Loaded when something is hidden,
+// isolated or transparent.
 import { showAll } from '../../core/section.js';
 import { say } from '../../core/words.js';
 import { byId, make, setText, setVariable } from '../common/dom.js';
@@ -34,7 +34,7 @@ export class Shown {
         this.refresh(); // labels avoid it
     }
 
-    // Positions the notice below the legend where the legend lies across the top of the picture.
+    // Moves the notice below the legend if the legend lies across the top of the picture.
     stand() {
         const legend = byId('legend'), lies = legend.offsetWidth > byId('viewport').clientWidth / 2;
         setVariable(this.element, '--under', `${lies ? legend.offsetTop + legend.offsetHeight + AWAY_PX : 0}px`);

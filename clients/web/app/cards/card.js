@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The card of one sensor: description, value, quality, reliability and age.
+// The card of one sensor: its description, value, quality, loop check and age.
 import { ageText, decimalsFor, numberText, unitText } from '../../core/format.js';
 import { statusText } from '../../core/quality.js';
 import { say } from '../../core/words.js';
@@ -15,7 +15,8 @@ export class Card {
     constructor({ session, selection, overlay, viewport, modules, selectTag, showTrend, addTrend }) {
         Object.assign(this, { session, selection, overlay, viewport, modules, selectTag, showTrend, addTrend });
         this.element = byId('card');
-        new ResizeObserver(() => this.show()).observe(this.element); // drift and neighbours arrive later and make the card taller
+        // moves the card when it gets taller: drift and neighbours arrive later
+        new ResizeObserver(() => this.show()).observe(this.element);
         this.show();
     }
 

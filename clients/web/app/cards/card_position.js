@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Positions a card over the picture.
+// Chooses the position of a card over the picture.
 import { byId } from '../common/dom.js';
 
 const AWAY_PX = 16, WIDTH_PX = 248, RIM_PX = 8;
 
-// Places the card next to the point `at` [x, y] in CSS pixels: on the side where it does not cover the legend, else on the side with more
-// room, and below the status banner; if `at` is null, in a corner.
+// Positions the card next to the point `at` ([x, y] in CSS pixels): on the side where it does not cover the legend, else on the side with
+// more room, and below the status banner. If `at` is null, the card stands in a corner.
 export function standBeside(element, { width, height }, at) {
     const banner = byId('banner'), top = RIM_PX + (banner.hidden ? 0 : banner.offsetTop + banner.offsetHeight);
     element.style.maxHeight = `${Math.max(0, height - top - RIM_PX)}px`;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The prediction of a sensor by its neighbours (leave-one-out), computed by the daemon: a line on a card, and a list of the largest
-// deviations.
+// The prediction for a sensor by its neighbours (leave-one-out), computed by the daemon: a line on the sensor's card, and a list of the
+// largest deviations.
 import { decimalsFor, numberText, unitText } from '../../core/format.js';
 import { ask } from '../../core/history.js';
 import { say } from '../../core/words.js';
@@ -10,9 +10,9 @@ import { driftOf, driftText } from './drift.js';
 const AGAIN_MS = 3000, LISTED = 5;
 
 const sensors = (query, token) => ask('api/v1/neighbours', query, token).then((answer) => answer.json()).then((rows) => rows.sensors)
-    .catch(() => []); // after a failed request, no prediction is shown rather than an old one
+    .catch(() => []); // after a failed request no prediction is shown, because an old one would mislead
 
-// Returns a text such as 81.3 °C ± 2.0 and the deviation of the reading, or null if there is no prediction.
+// Returns a text such as 81.3 °C ± 2.0 with the deviation of the reading from the prediction, or null if there is no prediction.
 export function neighbourText(row, group) {
     if (!row || row.predicted === null)
         return null;
@@ -23,8 +23,8 @@ export function neighbourText(row, group) {
     return say(row.residual < 0 ? 'neighbours.below' : 'neighbours.above', { predicted, by: `${number(Math.abs(row.residual))} ${unit}` });
 }
 
-// Polls while isSeen() returns true, but not while the past is shown: the daemon only predicts the present. onRows(rows): called with each
-// answer.
+// Requests predictions again and again while isSeen() returns true, but not while the past is shown, because the daemon predicts only the
+// present. onRows(rows) is called with each answer.
 export class Neighbours {
     constructor(session, isSeen, onRows) {
         Object.assign(this, { session, isSeen, onRows, query: null });
@@ -53,7 +53,7 @@ export class Neighbours {
     }
 }
 
-// The sensors of the shown group that deviate most from their neighbours' prediction.
+// Lists the sensors of the shown group that deviate most from their neighbours' prediction.
 export class Disagreeing {
     constructor({ session, selectTag }) {
         Object.assign(this, { session, selectTag });

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The card of a point on the plant: its equipment, the field's value there, the sensors that contribute, and the uncertainty.
+// The card of a point on the plant's surface: its equipment, the field's value there, the sensors that contribute to it, and the
+// uncertainty.
 import { projector } from '../../core/camera.js';
 import { decimalsFor, numberText, unitText } from '../../core/format.js';
 import { halves } from '../../core/split_view.js';
@@ -12,20 +13,21 @@ import { closeButton, fill } from '../common/widgets.js';
 const SAME_M = 0.05;
 
 export class Place {
-    // showAsset(how, asset): hides the asset, makes it transparent or isolates it.
+    // showAsset(how, asset) hides an asset, makes it transparent or isolates it.
     constructor({ session, viewport, showAsset }) {
         Object.assign(this, { session, viewport, showAsset });
         this.element = byId('place');
         new ResizeObserver(() => this.show()).observe(this.element);
         this.picked = null;
-        this.asked = null; // kind of the pending pick request: 'new' or 'again'; null: none
+        // kind of the pick request that waits for an answer: 'new' (another point) or 'again' (the same point); null: none
+        this.asked = null;
         session.on('picked', (picked) => this.hear(picked));
         session.on('tags', () => this.ask());
         session.on('params', () => this.ask());
         session.on('welcome', () => this.close());
     }
 
-    // Opens the card at (x, y), CSS pixels of the viewport.
+    // Opens the card for the point at (x, y) in CSS pixels of the viewport.
     open(x, y) {
         this.asked = 'new';
         this.half = this.session.shown.split && x >= this.viewport.width / 2 ? 1 : 0;
@@ -53,14 +55,14 @@ export class Place {
     hear(picked) {
         if (this.asked === null)
             return; // the card was closed meanwhile
-        if (picked.purpose !== 'place') { // the answer belongs to another pick request
+        if (picked.purpose !== 'place') { // that answer belongs to another module's pick request
             this.asked = null;
             return;
         }
         const again = this.asked === 'again';
         this.asked = null;
         if (again && !this.isSamePlace(picked)) {
-            this.close(); // the point is now covered or hidden
+            this.close(); // the point is now covered or hidden, so its card closes
             return;
         }
         this.picked = picked.asset === null ? null : picked;
@@ -116,7 +118,7 @@ export class Place {
         this.close();
     }
 
-    // Moves the card with the picture.
+    // Moves the card with its point when the picture moves.
     show() {
         if (this.picked)
             standBeside(this.element, this.viewport, this.project());

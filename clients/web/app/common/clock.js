@@ -10,14 +10,14 @@ export const clock = {
     clearTimeout: (id) => clearTimeout(id),
 };
 
-// Keeps the screen on where the browser allows it.
+// Keeps the screen from switching off, if the browser allows it.
 export function keepScreenOn() {
     const ask = () => !document.hidden && navigator.wakeLock?.request('screen').catch(() => {});
     document.addEventListener('visibilitychange', ask);
     ask();
 }
 
-// onWake(): called after the device slept, when all known values are outdated.
+// Calls onWake() after the device has slept, when all known values are outdated.
 export function watchSleep(onWake) {
     const wake = new Wake({
         now: () => performance.now(), date: () => Date.now(),

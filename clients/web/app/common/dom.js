@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// DOM helpers. Nothing here writes inline markup, because the page has a strict content security policy.
+// DOM helpers. They never write inline scripts or styles, because the page has a strict content security policy.
 
 import { isGone } from '../../core/alarms.js';
 import { say } from '../../core/words.js';
@@ -8,7 +8,7 @@ const SVG = 'http://www.w3.org/2000/svg';
 
 export const byId = (id) => document.getElementById(id);
 
-// Example: make('button', { class: 'x', onclick: f, 'aria-label': 'y' }, 'text', node, ...)
+// Makes an element. Example: make('button', { class: 'x', onclick: f, 'aria-label': 'y' }, 'text', node, ...)
 export function make(name, attributes = {}, ...children) {
     return furnish(document.createElement(name), attributes, children);
 }
@@ -28,9 +28,9 @@ function furnish(element, attributes, children) {
     return element;
 }
 
-// Inserts the words of elements by their attributes: data-say for the text, data-label, data-title, data-hint (placeholder), data-name for
-// label and title; data-key is the keyboard shortcut. data-icon is drawn before the text. In the collapsed toolbar each icon shows its
-// name.
+// Inserts words into the elements below `root` according to their attributes: data-say gives the text, data-label, data-title and data-hint
+// (placeholder) those attributes, data-name label and title. data-key is the keyboard shortcut. data-icon is drawn before the text. In the
+// collapsed toolbar each icon shows its name.
 export function sayAll(root) {
     for (const element of root.querySelectorAll('[data-say], [data-label], [data-title], [data-hint], [data-name], [data-icon]')) {
         const { say: text, label, title, hint, name, key, icon: drawn } = element.dataset;
@@ -49,13 +49,13 @@ export function sayAll(root) {
     }
 }
 
-// Writes only a changed text, to spare screen readers and the layout.
+// Writes a text only if it has changed, to spare screen readers and the layout.
 export function setText(element, text) {
     if (element.textContent !== text)
         element.textContent = text;
 }
 
-// Loads a style sheet of this folder. Returns a promise, which rejects if the sheet cannot be fetched.
+// Loads a style sheet of app/ by its name. Returns a promise, which rejects if the sheet cannot be fetched.
 const sheets = new Map();
 export function styled(name) {
     if (!sheets.has(name))
@@ -73,7 +73,7 @@ export function styled(name) {
 
 export const setVariable = (element, name, value) => element.style.setProperty(name, value);
 
-// The symbol of each quality, the same in lists, cards and over the picture (overlay.js draws it there).
+// The symbol of each quality, the same in lists and cards as over the picture (drawn by overlay.js).
 const GLYPHS = {
     good: ['circle', { r: 4.5 }],
     uncertain: ['path', { d: 'M0-6 6 0 0 6-6 0z' }],
@@ -86,7 +86,7 @@ export function glyph(quality) {
         makeSvg(name, { class: 'mark', ...shape }));
 }
 
-// Returns an element with the kind of alarm in the colour of its priority, hollow after return to normal.
+// Returns an element with the kind of an alarm in the colour of its priority; hollow if the value has returned to normal.
 export const limitFlag = ({ kind, priority, state }) =>
     make('span', { class: `limit-flag p${priority}${isGone(state) ? ' hollow' : ''}` }, kind);
 

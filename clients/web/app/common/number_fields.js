@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Number and choice fields of panels: the colour range (picture.js), and the field settings (field_settings.js).
+// Number and choice fields of the panels for the colour range (picture.js) and for field settings (field_settings.js).
 import { unitText } from '../../core/format.js';
 import { say } from '../../core/words.js';
 import { byId, make, setText } from './dom.js';
@@ -7,19 +7,19 @@ import { byId, make, setText } from './dom.js';
 const explained = (kind, ...values) => values.map((value) => [value, say(`${kind}.${value}`), say(`${kind}.${value}.why`)]);
 export const distances = (group) => explained('distance', 'geodesic', 'euclidean', 'heat')
     .filter(([value], i) => i < 2 || group?.prepared?.includes(value));
-// Interpolations: the first two are always available, the others only if preparation computed them for the group.
+// Interpolations that a group offers: the first two are always available, the others only if they were prepared for the group.
 export const interpolations = (group) => explained('interpolation', 'shepard', 'paper', 'harmonic', 'fin', 'gp')
     .filter(([value], i) => i < 2 || group?.prepared?.includes(value));
 export const fills = () => explained('fill', 'none', 'neighbours');
 
-// onNumber: called with the number, or null if the field is empty.
+// Makes a number field. onNumber is called with the number, or with null if the field is empty.
 export function numberField(id, words, attributes, onNumber) {
     const input = make('input', { type: 'number', id, step: 'any', inputmode: 'decimal', ...attributes,
         onchange: () => input.checkValidity() && onNumber(input.value === '' ? null : input.valueAsNumber) });
     return { input, label: make('label', { class: 'choice' }, make('span', {}, words), input) };
 }
 
-// Sets the field's value, except while the user types in it.
+// Sets the field's value, unless the user is typing in it.
 export function writeNumber({ input }, value) {
     if (document.activeElement !== input)
         input.value = value ?? '';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Values stored in this browser. The browser may refuse storage; they are then lost on reload.
+// Values stored in this browser. If the browser refuses storage, they are lost on a reload of the page.
 
 const KEYS = { theme: 'localStorage', token: 'sessionStorage', renewed: 'sessionStorage', accepted: 'sessionStorage',
     // values in localStorage are permanent, those in sessionStorage last until the tab closes
@@ -13,7 +13,7 @@ export function stored(name) {
     }
 }
 
-// Returns whether the text was stored.
+// Stores a text. Returns true if the browser stored it.
 export function store(name, text) {
     try {
         globalThis[KEYS[name]].setItem(`plantcast.${name}`, text);

@@ -6,12 +6,12 @@ import { stored } from './storage.js';
 export function wear(theme) {
     document.documentElement.dataset.theme = theme;
     if (theme === 'dark')
-        // ignored: a style sheet that failed to load is requested again the next time that the theme changes
+        // errors are ignored: a style sheet that failed to load is requested again when the theme next changes
         styled('common/dark').catch(() => {});
     return theme;
 }
 
-// Chooses ?theme=dark or light, else the stored theme. Returns the theme.
+// Sets the theme: ?theme=dark or ?theme=light of the URL, else the stored theme. Returns the theme.
 export function chooseTheme(query) {
     return wear((query.get('theme') ?? stored('theme')) === 'dark' ? 'dark' : 'light');
 }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Worker of watchdog.js. When the page's main thread hangs, it draws a warning over the page, and tells the keeper to reload a wall.
-// Messages: { veil, band (canvases), words, keeper } once; { width, height, scale } of the band; 'beat'; 'rest' (the page is hidden, where
-// timers are slow).
+// Worker of watchdog.js. When the page's main thread hangs, it draws a warning over the page and tells the keeper (a frame in another
+// process) to reload a wall. Messages from the page: first { veil, band (canvases), words, keeper }; later { width, height, scale } of the
+// band; 'beat' while the page runs; 'rest' when it is hidden, because timers are then slow.
 'use strict';
 
-// Counted in ticks, not by a clock, because while the machine sleeps neither this worker nor the page runs. The warning is shown for some
-// ticks before the reload, so that people can see it.
+// Silence is counted in ticks and not by a clock, because neither this worker nor the page runs while the machine sleeps. The warning is
+// shown for some ticks before the reload, so that people can see it.
 const TICK_MS = 1000, SILENT_TICKS = 10, RELOAD_TICKS = 13;
 let veil = null, band = null, words = null, keeper = null, scale = 1;
 let silent = 0, rests = false, isSaid = false;
@@ -17,11 +17,11 @@ onmessage = ({ data }) => {
         ({ scale } = data);
         [band.width, band.height] = [data.width, data.height];
     }
-    // only the messages 'beat' and 'rest' change this: a hidden page also sends messages with a new size, but stays at rest
+    // only 'beat' and 'rest' change this: a hidden page may send messages with a new size, but it still rests
     if (typeof data === 'string')
         rests = data === 'rest';
     silent = 0;
-    // Clears the warning. Also draws once at the start, because a canvas's first frame, its size and its font need the main thread.
+    // clears the warning; also draws once at the start, because the first frame, the size and the font of a canvas need the main thread
     if (isSaid || data.width)
         draw();
     if (data.width)
@@ -37,7 +37,7 @@ setInterval(() => {
     draw();
 }, TICK_MS);
 
-// Draws a veil over the whole page, so that a frozen picture does not look live, and a band with the words.
+// Draws a translucent veil over the whole page, so that a frozen picture does not look live, and a band with the words.
 function draw() {
     const { width, height } = band, shade = veil.getContext('2d'), c = band.getContext('2d');
     isSaid = silent >= SILENT_TICKS;

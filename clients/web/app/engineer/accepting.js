@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Accepts many assumed places at once, filtered by equipment, name, distance from the surface and confidence of the match. The places are
-// counted and marked on the model first, and the previous list can be restored.
+// Accepts the assumed positions of many sensors in one step, filtered by equipment, name, distance from the surface and confidence of the
+// match. The sensors are counted and marked on the model before that, and the previous tag list can be restored.
 import { tellAsEngineer } from '../../core/requests.js';
 import { whyNotSaved } from '../../core/refusals.js';
 import { say } from '../../core/words.js';
@@ -14,10 +14,11 @@ export class Accepting {
     constructor({ session, refresh }) {
         Object.assign(this, { session, refresh });
         this.names = new Set(); // tags that would be accepted
-        this.found = null;      // latest `places_accepted` for the current filter
-        this.sent = null;       // 'accept' or 'restore', until `tags_saved` arrives
-        this.kept = stored('accepted') || null; // version of the list before the last acceptance; survives a page reload
-        this.restores = false; // true: a `tags_diff` against an earlier version was requested
+        this.found = null;      // newest message `places_accepted` for the current filter; null: none yet
+        this.sent = null;       // request that waits for `tags_saved`: 'accept' or 'restore'; null: none
+        // name of the version of the tag list from before the last acceptance; stored, so that it survives a page reload
+        this.kept = stored('accepted') || null;
+        this.restores = false; // true: the `tags_diff` that was requested compares with an earlier version
         this.build();
         session.on('places_accepted', (message) => this.onFound(message));
     }
@@ -40,7 +41,7 @@ export class Accepting {
             this.count, this.refused, make('div', { class: 'line' }, this.go, this.undo), this.note);
     }
 
-    // Shows the filter for the current plant, which may have fewer assumed locations than before.
+    // Shows the filter for the current plant, which may have fewer assumed positions than before.
     show() {
         const assumed = this.session.model.tags.filter(({ place }) => place === 'equipment'), counts = new Map();
         assumed.forEach(({ asset }) => counts.set(asset, (counts.get(asset) ?? 0) + 1));
@@ -71,8 +72,8 @@ export class Accepting {
             this.timer = setTimeout(() => { this.asked = tellAsEngineer(this.session, 'accept_places', this.filter); }, ASK_MS);
     }
 
-    // The server also answers an acceptance with `places_accepted`: with the same hash if it is applying the list, with another hash if the
-    // list has changed meanwhile.
+    // Handles `places_accepted`. The server also sends it as the answer to an acceptance: with the same hash if it is applying the list,
+    // with another hash if the list has changed in the meantime.
     onFound(message) {
         if (message && message.seq !== this.asked)
             return;
@@ -97,7 +98,7 @@ export class Accepting {
         this.send('accept', 'accept_places', { ...this.filter, confirm: this.found.hash });
     }
 
-    // Called when a request has ended without changing the list: shows the text and allows the next request.
+    // Handles that a request has ended without changing the list: shows the text and allows the next request.
     end(text) {
         if (this.sent) {
             this.sent = null;
@@ -126,7 +127,7 @@ export class Accepting {
             this.end('');
     }
 
-    // Returns whether the message `tags_saved` answers a request that this module sent.
+    // Handles `tags_saved`. Returns true if it answers a request of this module.
     onSaved(message) {
         const { saved, kept } = message;
         const { sent } = this;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Field settings for engineers: distance, interpolation, areas without data, and factors of all sensors or of one.
+// Field settings for engineers: distance, interpolation, areas without data, and factors for all sensors or for one.
 import { say } from '../../core/words.js';
 import { make, setText } from '../common/dom.js';
 import { distances, fills, interpolations, numberField, writeNumber } from '../common/number_fields.js';
@@ -29,14 +29,14 @@ export class Method {
         session.on('welcome', () => this.show());
     }
 
-    // A choice with the explanation of the selected value below it.
+    // Makes a choice field, with the explanation of the chosen value below it.
     choice(name, words, all) {
         const fieldset = make('fieldset', { class: 'segments', id: name }, make('legend', {}, words));
         fillSegments(fieldset, name, all, (value) => this.session.setParams({ [name]: value }));
         return { name, fieldset, all, why: make('p', { class: 'quiet' }) };
     }
 
-    // Offers the methods that were prepared for the group.
+    // Offers the interpolations that were prepared for the group.
     offer(group) {
         this.offerOf('distance', distances(group));
         this.offerOf('interpolation', interpolations(group));

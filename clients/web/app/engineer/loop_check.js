@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Loop checks tag by tag, device by device: shows which reading changed when a transmitter was forced, and whether it has the expected
-// value.
+// Loop checks of one tag after the other, device by device: shows which reading changed when a transmitter was forced, and whether the
+// reading has the expected value.
 import { decimalsFor, numberText, unitText } from '../../core/format.js';
 import { readExpected, LoopCheckSession } from '../../core/loop_check.js';
 import { ask } from '../../core/history.js';
@@ -14,8 +14,8 @@ export class LoopCheck {
     constructor({ session, showTag, refresh }) {
         Object.assign(this, { session, showTag, refresh });
         this.loopCheck = new LoopCheckSession();
-        this.tag = null;             // name of the tag under loop check; null: none
-        this.stirred = null;         // name of the tag whose reading changed most; null: none
+        this.tag = null;             // name of the tag that is being checked; null: none
+        this.stirred = null;         // name of the tag whose reading changed most since the check began; null: none
         this.expected = new Map();   // tag -> expected value, read from a CSV file
         this.build();
         session.on('tags', () => this.onTags());
@@ -56,7 +56,7 @@ export class LoopCheck {
                 button('eng.export', () => this.exportAll())));
     }
 
-    // The tags of the chosen device, in the order of the tag list.
+    // Returns the tags of the chosen device, in the order of the tag list.
     get tags() {
         return this.session.model.tags.filter(({ source }) => source === this.device.value);
     }
@@ -128,7 +128,7 @@ export class LoopCheck {
     onTags() {
         const { model } = this.session;
         if (this.session.time.atUs !== null)
-            return; // ignore readings while the past is shown: they are not the forced ones
+            return; // the past is shown: its readings are not the forced ones
         this.loopCheck.observe(model.readings.map(({ value, quality }) => (quality === 'bad' ? null : value)));
         if (this.element.offsetParent === null)
             return;
@@ -147,7 +147,7 @@ export class LoopCheck {
         }
     }
 
-    // Sends the result. A decimal comma counts as a decimal point.
+    // Sends the result of a check. In a number, a decimal comma counts as a decimal point.
     send(fail) {
         const read = (input) => (input.value.trim() ? Number(input.value.replace(',', '.')) : NaN);
         const expected = read(this.wanted), tolerance = read(this.tolerance);
@@ -161,7 +161,7 @@ export class LoopCheck {
                 ? { remark: this.remark.value } : {}) });
     }
 
-    // Shows the result and selects the next tag that has not passed.
+    // Shows the result of a check and selects the next tag that has not passed.
     onProved({ tag, passed, value, why, refusal }) {
         const { model } = this.session, { tags } = this, at = tags.findIndex(({ name }) => name === tag);
         const text = value === null ? say('novalue') : this.text(model.tag(tag), value);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Places sensors: choose from a list, click on the surface or drag the marker, then save the list.
+// Places sensors: the user chooses a sensor from a list, clicks on the surface or drags the marker, and then saves the tag list.
 import { numberText } from '../../core/format.js';
 import { whyNotSaved } from '../../core/refusals.js';
 import { askPick, tellAsEngineer } from '../../core/requests.js';
@@ -17,7 +17,7 @@ const percent = (share) => numberText(100 * share, share > 0 && share < 0.1 ? 1 
 export class Placing {
     constructor({ session, viewport, overlay, selection, selectTag, showTag, refresh }) {
         Object.assign(this, { session, viewport, overlay, selection, selectTag, showTag, refresh });
-        this.moves = [];   // draft positions: { tag, asset, position }
+        this.moves = [];   // draft positions that are not saved: { tag, asset, position }
         this.undone = [];  // undo stack of `moves`
         this.tag = null;   // name of the tag to place
         this.dragging = null;
@@ -56,9 +56,10 @@ export class Placing {
         session.on('gaps', (message) => this.showGaps(message));
         session.on('tags_diff', (message) => this.showDiff(message));
         session.on('tags_saved', (message) => this.onSaved(message));
-        session.on('error', ({ about }) => { if (about === 'place') this.step(); }); // a rejected position: the sensor stays where it was
+        // the server refused a position: the sensor stays where it was
+        session.on('error', ({ about }) => { if (about === 'place') this.step(); });
         session.on('error', ({ about }) => { if (SAVING.includes(about)) this.stopSaving(); });
-        session.on('hello', () => this.stopSaving()); // the connection was replaced, so the answer will not arrive
+        session.on('hello', () => this.stopSaving()); // after a reconnect, the answer to a save will not arrive any more
         session.on('welcome', () => this.onWelcome());
         session.on('params', () => this.show());
         const on = (name, f) => this.viewport.element.addEventListener(name, f, { capture: true });
@@ -68,10 +69,10 @@ export class Placing {
         on('pointercancel', (event) => this.drop(event));
     }
 
-    // After a reload of the plant, sends the unsaved draft positions again.
+    // Sends the unsaved draft positions again after a reload of the plant.
     onWelcome() {
         if (this.saving)
-            return; // the server will send the result of the save
+            return; // no answer yet: the server will send the result of the save
         const known = ({ tag, asset }) => this.session.model.tag(tag) && this.session.model.asset(asset);
         this.moves = this.moves.filter(known);
         this.undone = [];
@@ -103,7 +104,7 @@ export class Placing {
         return true;
     }
 
-    // Adds one undo step per click or drag, however many positions it passes.
+    // Sets the position of the tag to place. A whole click or drag is one step for undo, however many positions a drag passes.
     put(asset, position) {
         if (!this.tag)
             return;
@@ -166,7 +167,7 @@ export class Placing {
         this.refresh();
     }
 
-    // Returns the tag's saved equipment if the draft position is on other equipment.
+    // Returns the equipment of the tag's saved position if the draft position is on other equipment; else null.
     left({ tag, asset }) {
         const known = this.session.model.tag(tag), own = (known?.saved ?? known)?.asset;
         return own && own !== asset ? own : null;
@@ -181,7 +182,7 @@ export class Placing {
                 off ? say('eng.off', { metres: metres(placed.distance_m) }) : along(placed)));
     }
 
-    // Lists the tags; those without a position come first.
+    // Lists the tags, those without a position first.
     showTags() {
         const { model, params } = this.session, wanted = this.find.value.trim().toLowerCase();
         const fits = ({ name, description, group }) =>
@@ -198,7 +199,7 @@ export class Placing {
         this.tag = this.tag === tag.name ? null : tag.name;
         if (this.tag)
             this.showTag(tag);
-        this.selectTag(null); // the tag's card would cover the surface to click on
+        this.selectTag(null); // deselects the tag, because its card would cover the surface to click on
         this.show();
     }
 
@@ -218,7 +219,7 @@ export class Placing {
 
     showDiff({ file, conflict, hash, lines, more }) {
         if (hash !== null && hash === this.confirmed)
-            return; // ignores the answer: it describes the list that is already being saved
+            return; // this answer is ignored: it describes the list that is already being saved
         this.stopSaving();
         const close = () => this.dialog.close();
         const change = ([number, before, after]) => make('div', { class: 'change' }, make('span', {}, say('eng.diff.line', { n: number })),
@@ -237,7 +238,7 @@ export class Placing {
             this.dialog.showModal();
     }
 
-    // Called when a save has ended without changing the list: allows the next save.
+    // Handles that a save has ended without changing the list: allows the next save.
     stopSaving() {
         if (this.saving)
             setText(this.note, '');

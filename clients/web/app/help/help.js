@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The help dialog: pointer and keyboard controls, and the meaning of the markers. Built when first opened.
+// The help dialog: pointer and keyboard controls, and the meaning of the markers. Built when it is first opened.
 import { say } from '../../core/words.js';
 import { byId, make, makeSvg } from '../common/dom.js';
 import { closeButton } from '../common/widgets.js';
 
-// Name of each row, and words or keys of its columns; '' for none.
+// Rows of the table: name, then the words or keys of each column; '' for an empty cell.
 const ROWS = [
     ['help.turn', 'help.turn.mouse', 'help.turn.touch', '[←] [→] [↑] [↓]'],
     ['help.move', 'help.move.mouse', 'help.move.touch', '[W] [A] [S] [D]'],
@@ -37,7 +37,7 @@ const MARKS = [
     ['help.mark.returned', 'path', { class: 'ring p1 thin', d: 'M0-10.5A10.5 10.5 0 1 0 .1-10.5zM0-7A7 7 0 1 0 .1-7z' }],
 ];
 
-// Turns a text with [keys] into nodes.
+// Turns a text into nodes, with each [key] as a key symbol.
 const withKeys = (text) => text.split(/(\[[^\]]+\])/).filter(Boolean).map((part) =>
     (/^\[.+\]$/.test(part) ? make('kbd', {}, part.slice(1, -1)) : part));
 const cell = (text) => make('td', {}, ...withKeys(/^(help|bar)\./.test(text) ? say(text) : text));

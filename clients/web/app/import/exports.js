@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Import requests, and polling of the server's progress.
+// Sends import requests to the server, and polls the server's progress.
 import { answerText } from '../../core/refusals.js';
 import { say } from '../../core/words.js';
 
 const LOOK_MS = 700;
 
 export class Exports {
-    // onState(state): called with the server's import state; onEnd(state, sent): called when a job has ended; sent: the request { path,
-    // query } if this page sent it, else null.
+    // onState(state) is called with the server's import state. onEnd(state, sent) is called when a job has ended; sent is the request {
+    // path, query } if this page sent it, else null.
     constructor({ session, onState, onEnd }) {
         Object.assign(this, { session, onState, onEnd, state: null, sent: null });
     }
@@ -28,7 +28,7 @@ export class Exports {
         return this.ask(path, { method: 'POST', query, body });
     }
 
-    // Polls until no job is running. sent: the request that was just accepted.
+    // Polls until no job is running. sent: the request that was accepted just before, or null.
     async look(sent = null) {
         clearTimeout(this.timer);
         const before = this.state;

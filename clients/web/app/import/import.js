@@ -12,10 +12,10 @@ import { Source } from './source.js';
 import { TagTable } from './tag_table.js';
 
 const UNITS = ['', 'm', 'mm', 'cm', 'in', 'ft'], AXES = ['', 'y', 'z'];
-// Encodings of `plantcast match --encoding` offered here; others are for the command line.
+// Encodings of `plantcast match --encoding` that the panel offers; others can be chosen on the command line.
 const ENCODINGS = ['UTF-8', 'GB18030', 'Big5', 'Shift-JIS', 'EUC-JP', 'EUC-KR', 'Windows-1250', 'Windows-1251', 'Windows-1252',
     'Windows-1253', 'Windows-1254', 'KOI8-R', 'CP866', 'CP850', 'UTF-16LE', 'UTF-16BE'];
-const PLACEHOLDER = 'person'; // id of the only asset in a new plant into which nothing was imported yet
+const PLACEHOLDER = 'person'; // id of the only asset in a plant that is new, before anything is imported into it
 
 const choice = (key, values, onchange) => {
     const select = make('select', { onchange }, ...values.map((value) =>
@@ -24,10 +24,11 @@ const choice = (key, values, onchange) => {
 };
 const button = (key, onclick, attributes = {}) => make('button', { type: 'button', onclick, ...attributes }, say(key));
 const megabytes = (bytes) => say('import.bytes', { mb: numberText(bytes / 1e6, bytes < 1e7 ? 2 : 0) });
-// Removes the folder of exports from the programs' output.
+// Removes the path of the exports folder from the programs' output.
 const plain = (text) => text.replace(/\S*\/exports\//g, '');
 
-// Returns the encoding of each file as the programs printed it: "tags.csv: read as Windows-1251", and a second likely one.
+// Returns in words the encoding of each file, from program output such as "tags.csv: read as Windows-1251", and the second likely encoding
+// if the output names one.
 const readAs = (said) => [...new Set([...plain(said).matchAll(/^(.*): read as ([^,\n]+)(?:, but it may be ([^:\n]+))?/gm)]
     .map(([, file, name, other]) => say(other ? 'import.encoding.unsure' : 'import.encoding.read', { file, name, other })))].join(' · ');
 
@@ -98,7 +99,7 @@ export class Import {
     }
 
     toggle() {
-        for (const name of ['alarms', 'engineer']) { // the import panel takes the space of alarm list and engineering panel
+        for (const name of ['alarms', 'engineer']) { // closes alarm list and engineering panel, which use the same space
             const other = this.page.modules.there(name);
             if (!this.open && other?.open)
                 other.toggle();
@@ -115,7 +116,7 @@ export class Import {
         (this.open ? this.pick : this.button).focus({ preventScroll: true });
     }
 
-    // Updates the panel for a plant, which may be another one than before.
+    // Updates the panel for the plant that the server has loaded, which may be another one than before.
     greet() {
         const { assets } = this.page.session.model;
         this.isNew = assets.length === 1 && assets[0].id === PLACEHOLDER;
@@ -133,7 +134,7 @@ export class Import {
         try {
             this.report.set((await this.exports.report()).models);
         } catch (error) {
-            if (error.status === 404) // no model was read yet; other errors leave the report unchanged
+            if (error.status === 404) // 404: no model was read yet; other errors leave the report unchanged
                 this.report.set([]);
         }
     }
@@ -142,7 +143,7 @@ export class Import {
         try {
             this.table.set(this.isNew ? '' : await this.exports.matches());
         } catch (error) {
-            if (error.status === 404) // no tags were matched yet; other errors leave the decisions unchanged
+            if (error.status === 404) // 404: no tags were matched yet; other errors leave the decisions unchanged
                 this.table.set('');
         }
     }
@@ -160,7 +161,7 @@ export class Import {
         this.upload([...event.dataTransfer.files]);
     }
 
-    // Runs a user's request and shows its error.
+    // Calls f, which carries out a user's request, and shows its error if it fails.
     async try(f) {
         setText(this.wrong, '');
         try {
@@ -224,7 +225,7 @@ export class Import {
             setText(this.wrong, plain(state.failed ?? ''));
     }
 
-    // Shows the settings with which the models in use were read. Choices not yet applied stay until the settings change.
+    // Shows the settings with which the models in use were read. Choices that are not applied yet stay until these settings change.
     takeUnits({ units, up, encoding, mesh_units }) {
         if (this.known?.encoding !== encoding) {
             if (encoding && ![...this.encoding.options].some(({ value }) => value === encoding))

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Draws over the picture during an import: boxes around the candidate assets of a tag, and a person of 1.8 m for comparison.
+// Drawings over the picture during an import: boxes around the candidate assets of a tag, and a person of 1.8 m as a scale.
 import { basis, projector } from '../../core/camera.js';
 import { halves } from '../../core/split_view.js';
 import { say } from '../../core/words.js';
 
 const INK = '#1d252d', LIGHT = '#ffffff', LIT = '#2a5f8f', LEAST_PERSON_PX = 12, BESIDE_M = 0.8;
 const FACES = [[0, 1, 3, 2], [4, 5, 7, 6], [0, 1, 5, 4], [2, 3, 7, 6], [0, 2, 6, 4], [1, 3, 7, 5]];
-// Outline of a person: [metres to the right of the middle, metres above the ground].
+// Outline of a person as a list of [metres to the right of the middle, metres above the ground].
 const BODY = [[-0.2, 1.42], [0.2, 1.42], [0.3, 0.82], [0.23, 0.8], [0.17, 1.15], [0.16, 0.82], [0.14, 0], [0.03, 0], [0, 0.75],
     [-0.03, 0], [-0.14, 0], [-0.16, 0.82], [-0.17, 1.15], [-0.23, 0.8], [-0.3, 0.82]];
 const HEAD = Array.from({ length: 16 }, (_, i) => [0.1 * Math.sin(i * Math.PI / 8), 1.66 + 0.14 * Math.cos(i * Math.PI / 8)]);
@@ -19,7 +19,7 @@ export class Lit {
         overlay.drawMore = () => this.draw();
     }
 
-    // assets: candidates for the tag; the first is the chosen one. person: whether to draw the person.
+    // assets: candidates for a tag; the first one is the chosen one. person: true: draw the person.
     show({ assets = this.assets, person = this.person }) {
         Object.assign(this, { assets, person });
         this.refresh();
@@ -55,7 +55,8 @@ export class Lit {
         return this.assets.length > 1 ? `${i + 1}  ${tag || id}` : tag || id;
     }
 
-    // Returns the uppermost corner, for the name; null if the box is partly behind the camera.
+    // Draws the box of an asset. Returns its uppermost corner on the screen, where its name is written; null if the box is partly behind
+    // the camera.
     drawBox(asset, at, chosen) {
         const points = corners(asset.bounds).map(at), c = this.overlay.context;
         if (points.includes(null))
@@ -79,7 +80,7 @@ export class Lit {
     write(text, x, y) {
         const c = this.overlay.context;
         if (x < 0 || x > this.overlay.wide || y > this.overlay.high)
-            return; // nothing to draw: the box is outside the picture
+            return; // the text would be outside the picture
         c.font = `600 13px ${this.overlay.font}`;
         const width = c.measureText(text).width + 10;
         const left = Math.min(Math.max(4, x - width / 2), this.overlay.wide - width - 4), bottom = Math.max(24, y);
@@ -89,7 +90,7 @@ export class Lit {
         c.fillText(text, left + 5, bottom - 4);
     }
 
-    // Draws the person on the ground, at the side of the plant that is nearest to the camera.
+    // Draws the person standing on the ground, on the side of the plant that is nearest to the camera.
     drawPerson({ min, max }, camera, at) {
         const middle = [0, 1].map((axis) => (min[axis] + max[axis]) / 2), { right } = basis(camera);
         const sides = [[min[0] - BESIDE_M, middle[1]], [max[0] + BESIDE_M, middle[1]], [middle[0], min[1] - BESIDE_M],
@@ -106,7 +107,7 @@ export class Lit {
             c.stroke();
             c.fill();
         }
-        if (feet[1] - top[1] < LEAST_PERSON_PX) { // too small to draw: at least mark the spot
+        if (feet[1] - top[1] < LEAST_PERSON_PX) { // the person would be too small to see, so the position gets a mark
             c.beginPath();
             c.arc(feet[0], feet[1], LEAST_PERSON_PX, 0, 2 * Math.PI);
             Object.assign(c, { strokeStyle: LIT, lineWidth: 2 });

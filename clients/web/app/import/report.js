@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The report of an import: lists of lost and left-out elements and of errors, and a question for each guessed unit.
+// The report of an import: lists of elements that were lost or left out and of errors, and a question for each unit that was guessed.
 import { shortNumberText } from '../../core/format.js';
 import { timesOf } from '../../core/matches.js';
 import { say } from '../../core/words.js';
@@ -9,7 +9,7 @@ import { fill } from '../common/widgets.js';
 const UNITS = ['mm', 'cm', 'm', 'in', 'ft'];
 const metres = (length, unit) => shortNumberText(length * timesOf('m', unit), length * timesOf('m', unit) < 10 ? 4 : 1);
 
-// A list that is filled when first opened, because it may have thousands of lines.
+// Makes a collapsed list that is filled when it is first opened, because it may have thousands of lines.
 function fold(key, count, lines) {
     const list = make('ul', {});
     const details = make('details', { 'data-kind': key }, make('summary', {}, say(`import.report.${key}`, { count })), list);
@@ -18,7 +18,7 @@ function fold(key, count, lines) {
 }
 
 export class Report {
-    // answer(unit): called with the unit that the user chose for files that state none.
+    // answer(unit) is called with the unit that the user chose for files that state none.
     constructor({ answer }) {
         this.answer = answer;
         this.element = make('section', { class: 'report', hidden: true });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The table of tags with their matches: filter, decide by pointer or keyboard, and save.
+// The table of tags with their matches (tag to asset): filtering, deciding by pointer or keyboard, and saving.
 import { FILTERS, Matches, patternOf, readMatches } from '../../core/matches.js';
 import { rowAt } from '../../core/list_window.js';
 import { scrollTo } from '../../core/scroll.js';
@@ -46,7 +46,7 @@ export class TagTable {
             make('div', { class: 'line' }, this.count, this.back, this.keep));
     }
 
-    // Returns whether a sensor has a position; null if the tag is not a sensor.
+    // Returns true if the sensor of this name has a position; null if the tag is not a sensor.
     isPlaced(name) {
         const tag = this.page.session.model?.tag(name);
         return tag?.asset && tag.group ? Boolean(tag.position) && tag.place !== 'equipment' : null;
@@ -56,7 +56,7 @@ export class TagTable {
         this.matches.set(readMatches(text));
         this.element.hidden = this.matches.all.length === 0;
         this.chosen = this.matches.all.find(({ tag }) => tag === this.chosen?.tag) ?? null;
-        this.light(); // redraws the highlighted boxes after a reload of the plant
+        this.light(); // highlights the boxes again after a reload of the plant
         this.list.renew(() => this.refresh());
     }
 
@@ -70,7 +70,7 @@ export class TagTable {
         this.refresh();
     }
 
-    // decided: decisions that have now been saved.
+    // Marks decisions as saved. decided: the decisions that the server has saved.
     settle(decided) {
         this.matches.settle(decided);
         this.refresh();
@@ -120,7 +120,7 @@ export class TagTable {
         return this.matches.decisions.has(row.tag) || row.reason === 'by hand' ? say('import.byhand') : row.reason;
     }
 
-    // Selects a row. The first highlighted asset is the matched or most likely one.
+    // Selects a row and highlights its assets, first the matched or most likely one.
     choose(row) {
         this.chosen = row;
         this.goTo(this.list.places.get(row.tag));
@@ -152,7 +152,7 @@ export class TagTable {
         list.shown.get(row.tag)?.focus({ preventScroll: true });
     }
 
-    // Keys of the table: letters for decisions, digits for the candidates.
+    // Handles the keys of the table: letters for decisions, digits for the candidates.
     press(event) {
         if (event.ctrlKey || event.altKey || event.metaKey)
             return;
@@ -187,7 +187,7 @@ export class TagTable {
 
     // --- deciding
 
-    // Accepts the asset and moves to the next row, because the decided row may leave the filter.
+    // Accepts the asset and moves to the next row, because the filter may hide the decided row.
     accept(asset) {
         if (asset === undefined)
             return;
@@ -209,7 +209,7 @@ export class TagTable {
         this.refresh();
     }
 
-    // Isolates one asset so that clicks hit it: its neighbours become transparent, all else is hidden.
+    // Isolates one asset so that clicks hit only it: its neighbours become transparent, and all else is hidden.
     showAlone(id) {
         const { session } = this.page, { model, params } = session, asset = model.asset(id);
         if (!asset)
@@ -220,7 +220,7 @@ export class TagTable {
         session.setParams({ isolate: [id], ghost: around.slice(0, MOST_AROUND).map((other) => other.id) });
     }
 
-    // Restores what was shown before, unless the user changed it meanwhile.
+    // Shows again what was shown before showAlone(), unless the user has changed it since.
     showAgain() {
         const { session } = this.page, { isolate = [], ghost, alone } = this.shown ?? {};
         this.shown = null;

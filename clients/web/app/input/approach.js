@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Finds a camera with a free view of a tag; if there is none, makes the assets in front transparent while the tag is being looked at.
+// Finds a camera with a free view of a tag. If there is none, makes the assets in front transparent while the user looks at the tag.
 import { approaches } from '../../core/approach.js';
 import { halfAt } from '../../core/nearest.js';
 import { askPick } from '../../core/requests.js';
 import { length, subtract } from '../../core/vector.js';
 
-const ANSWER_MS = 700, TRIES = 3; // a pick is retried because another pick request may replace it
+const ANSWER_MS = 700, TRIES = 3; // a pick is sent up to TRIES times, because another module's pick request may replace it
 const SEARCH_MS = 1500, MOST_SEEN_THROUGH = 4, MOST_GHOSTS = 8;
 const AROUND = [[-0.12, 0], [0.12, 0], [0, -0.12], [0, 0.12], [-0.2, -0.2], [0.2, -0.2], [-0.2, 0.2], [0.2, 0.2]], BEFORE = 0.9;
-const NEAR_M = 0.05; // metres: a surface nearer to a sensor than this is the surface on which the sensor is mounted
+const NEAR_M = 0.05; // metres; a surface nearer to a sensor than this is the one on which the sensor is mounted
 
 const has = (list, id) => (list ?? []).includes(id);
 const without = (list, id) => (list ?? []).filter((other) => other !== id);
@@ -16,18 +16,18 @@ const without = (list, id) => (list ?? []).filter((other) => other !== id);
 export class Approach {
     constructor({ session, viewport }) {
         Object.assign(this, { session, viewport });
-        this.ghosts = [];    // ids of assets made transparent automatically because they hide the tag (not by the user)
-        this.number = 0; // sequence number of the latest approach; code of earlier ones sees that it changed and stops
+        this.ghosts = [];    // ids of assets that were made transparent because they hide the tag (not by the user)
+        this.number = 0; // sequence number of the newest approach; an earlier one that is still running compares it and stops
         this.heard = null;
         session.on('picked', (picked) => picked.purpose === 'sight' && this.heard?.(picked));
     }
 
-    // Abandons the approach when the user moves the camera.
+    // Ends the approach, because the user moves the camera.
     stop() {
         this.number++;
     }
 
-    // Shows an asset that is hidden or transparent.
+    // Shows the tag's asset if it is hidden or transparent.
     reveal({ id }) {
         const { params } = this.session, change = {};
         for (const name of ['hidden', 'ghost'])
@@ -39,7 +39,7 @@ export class Approach {
             this.session.setParams(change);
     }
 
-    // Replaces the automatically transparent assets; assets that the user made transparent stay so.
+    // Replaces the set of assets that are transparent because they hide the tag; those that the user made transparent stay so.
     setGhosts(ids) {
         const now = this.session.params.ghost ?? [], own = now.filter((id) => !has(this.ghosts, id));
         this.ghosts = ids.filter((id) => !has(own, id));
@@ -48,15 +48,15 @@ export class Approach {
             this.session.setParams({ ghost });
     }
 
-    // Calls fly(camera) immediately, and again with another camera if assets turn out to block the first view.
+    // Calls fly(camera) immediately, and again with another camera if it turns out that assets block the first view.
     async go(tag, asset, fly) {
         const number = ++this.number, isOvertaken = () => number !== this.number;
         this.setGhosts([]);
         this.reveal(asset);
         const cameras = approaches(this.session.camera, tag.position, asset.bounds);
         fly(cameras[0]);
-        const behind = []; // blocking assets, without the tag's own
-        const latest = performance.now() + SEARCH_MS; // deadline: on a slow network use the best view found so far
+        const behind = []; // ids of the assets that block a view, without the tag's own asset
+        const latest = performance.now() + SEARCH_MS; // deadline, after which the best view found so far is used, as on a slow network
         let best = null, least = Infinity;
         for (const camera of cameras) {
             const found = await this.look(camera, tag), covered = found?.seen ? await this.coverAround(camera, asset, least) : Infinity;
@@ -86,7 +86,7 @@ export class Approach {
         this.setGhosts([]);
     }
 
-    // Makes blocking assets transparent one by one. Returns true once the view is free.
+    // Makes blocking assets transparent one after the other. Returns true once the view of the tag is free.
     async seeThrough(camera, tag, asset, isOvertaken) {
         const ghosts = [];
         this.setGhosts([]);
@@ -101,8 +101,8 @@ export class Approach {
         }
     }
 
-    // Returns what a camera sees at its centre: { seen: true if the tag is visible, asset: id of the asset in front, or null }; null: no
-    // answer.
+    // Returns what a camera sees at the centre of its picture: { seen: true if the tag is visible, asset: id of the asset in front, or null
+    // }; null: the server did not answer.
     async look(camera, tag) {
         const picked = await this.ask(camera, [0, 0]);
         if (!picked)
@@ -112,7 +112,7 @@ export class Approach {
         return { seen: isThere || (sensor === tag.name && !occluded), asset };
     }
 
-    // Counts the sample points around the centre where another asset is in front, up to `most`.
+    // Returns at how many of the AROUND points near the centre an asset other than `id` is in front; stops counting at `most`.
     async coverAround(camera, { id }, most) {
         const far = length(subtract(camera.target, camera.eye));
         let count = 0;
@@ -125,7 +125,7 @@ export class Approach {
         return count;
     }
 
-    // Picks at an offset from the centre, in picture heights. Returns null if there is no answer.
+    // Picks at an offset from the centre of the picture, in units of the picture's height. Returns null if there is no answer.
     async ask(camera, [right, down]) {
         const { session, viewport } = this, { width } = halfAt(session.params, viewport.width, 0), { height } = viewport;
         for (let tries = 0; tries < TRIES; tries++) {

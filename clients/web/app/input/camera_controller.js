@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Turns pointer, wheel and key input over the viewport into camera moves and flights. Loaded when a pointer or key first comes near
-// (input.js).
+// Turns pointer, wheel and keyboard input over the viewport into camera moves and flights (animated moves). Loaded when a pointer or key
+// first comes near (input.js).
 import { LEAST_M, same } from '../../core/camera.js';
 import { flight, FLIGHT_MS } from '../../core/camera_flight.js';
 import { Gestures, wheelZoom } from '../../core/gestures.js';
@@ -14,36 +14,38 @@ import { clock } from '../common/clock.js';
 import { probeCodecs } from '../startup.js';
 import { isOnPicture } from './input.js';
 
-const DEGREES_PER_HEIGHT = 180; // angle by which a drag orbits over the whole height of the picture
+const DEGREES_PER_HEIGHT = 180; // angle by which a drag over the whole height of the picture orbits the camera
 const DOUBLE_CLICK_MS = 350, DOUBLE_CLICK_PX = 24;
-// a wheel event within this time and distance continues the previous one, zooming about the same point
+// a wheel event within this time and distance of the previous one continues it, zooming about the same point
 const ANCHOR_MS = 600, ANCHOR_PX = 10;
-const LEAST_ARRIVAL_DEG = 15;   // minimum elevation of an arriving camera, to stay above the floor
+const LEAST_ARRIVAL_DEG = 15;   // smallest elevation of the camera at the end of a flight, so that it stays above the floor
 const MOST_BACK = 30; // maximum number of flights that can be undone
 const WRITTEN = 'input:not([type="radio"], [type="checkbox"], [type="range"]), select, textarea'; // fields that take typed text
 
-// Returns whether two cameras are equal up to rounding.
+// Returns true if two cameras differ by less than 2 % of their distance to the target.
 const isNear = (a, b) => ['eye', 'target'].every((name) => length(subtract(a[name], b[name])) < 0.02 * length(subtract(b.eye, b.target)));
 
 export class CameraController {
-    // handlers: for input that does not move the camera: { click(x, y, kind), point({ x, y } or null), command(name), group(index) }.
+    // handlers: functions for input that does not move the camera: { click(x, y, kind), point({ x, y } or null), command(name),
+    // group(index) }.
     constructor({ viewport, session, handlers }) {
         Object.assign(this, { viewport, session, handlers });
         this.gestures = new Gestures();
         this.keys = new HeldKeys();
         this.fly = null;
-        this.before = []; // stack for going back: the state { camera, ghosts } before each flight; ghosts: assets drawn transparent
+        this.before = []; // stack for going back: { camera, ghosts } before each flight; ghosts: ids of assets drawn transparent
         this.approach = new Approach({ session, viewport });
         this.lastTick = null;
         this.lastClick = null;
-        this.anchor = null; // point that the pointer grabbed: { x, y, time, point }; estimated from bounding boxes until the server answers
+        // point of the surface that the pointer grabbed: { x, y, time, point }; until the server answers, estimated from bounding boxes
+        this.anchor = null;
         session.on('picked', ({ purpose, position }) => {
             if (purpose === 'anchor' && this.anchor)
                 Object.assign(this.anchor, { point: position ?? this.anchor.point, sure: true });
         });
         window.addEventListener('blur', () => this.keys.clear());
         new ResizeObserver(() => this.stayHome()).observe(viewport.element);
-        session.on('params', () => this.stayHome()); // a change to or from a split view changes the picture's shape
+        session.on('params', () => this.stayHome()); // the picture's shape changes when a view is split or unsplit
         probeCodecs(); // motion is about to begin
     }
 
@@ -67,7 +69,7 @@ export class CameraController {
         this.gestures.down({ ...place, kind: event.pointerType, button: event.button, shift: event.shiftKey, ctrl: event.ctrlKey });
     }
 
-    // Grabs the point under the pointer as the centre of orbit and zoom; over the sky, the previous centre stays.
+    // Grabs the surface point under the pointer as the centre of orbit and zoom; over the sky, the previous centre stays.
     takeHold({ x, y, time }) {
         const { camera } = this.session;
         if (!camera || !this.session.model)
@@ -78,8 +80,8 @@ export class CameraController {
         askPick(this.session, this.viewport.pixelOf(x, y), 'anchor');
     }
 
-    // Returns the half of a split view under the pointer, the position in that half, and the depth of the nearest bounding box there (null:
-    // no box).
+    // Returns which half of a split view is under the pointer, the position in that half, and the depth of the nearest bounding box there
+    // (null: no box).
     under(camera, x, y) {
         const half = halfAt(this.session.shown, this.viewport.width, x), at = x - half.left;
         const boxes = this.session.model?.assets.map((asset) => asset.bounds) ?? [];
@@ -141,9 +143,9 @@ export class CameraController {
             return;
         const meaning = keyMeaning(event);
         if (!meaning || (meaning.motion?.startsWith('Arrow') && event.target.closest('fieldset')))
-            return; // leaves arrow keys within a group of radio buttons to the browser
+            return; // the browser uses arrow keys within a group of radio buttons
         if (event.key === ' ' && event.target.closest('button, input, a'))
-            return; // leaves Enter and Space to the focused button
+            return; // the focused button uses Enter and Space
         event.preventDefault();
         if (meaning.motion) {
             this.land();
@@ -190,7 +192,7 @@ export class CameraController {
             this.session.model ? zoomLimits(this.session.model) : undefined);
     }
 
-    // Returns the depth of the grabbed point; undefined if nothing is grabbed.
+    // Returns the depth (distance along the view direction) of the grabbed point; undefined if nothing is grabbed.
     heldDepth(camera) {
         const depth = this.anchor?.point ? depthOf(camera, this.anchor.point) : 0;
         return depth > LEAST_M ? depth : undefined;
@@ -202,7 +204,7 @@ export class CameraController {
         return halfAt(this.session.params, this.viewport.width, 0).width / this.viewport.height;
     }
 
-    // Ends a flight when the user moves the camera.
+    // Ends a flight early, because the user moves the camera.
     land() {
         this.fly = null;
         this.approach.stop();
@@ -221,7 +223,7 @@ export class CameraController {
         this.viewport.invalidate();
     }
 
-    // Remembers where a flight starts; a second flight that begins during the first keeps the first one's start.
+    // Stores where a flight starts, for going back. A second flight that begins during the first keeps the first one's start.
     remember() {
         if (!this.fly)
             this.before = [...this.before.slice(1 - MOST_BACK), { camera: this.session.camera, ghosts: this.approach.ghosts }];
@@ -241,7 +243,7 @@ export class CameraController {
         return this.session.homeIn(width, this.viewport.height);
     }
 
-    // Keeps the whole plant in view when the picture changes shape.
+    // Moves the camera so that the whole plant stays in view when the picture changes shape, if it was in view before.
     stayHome() {
         const { session } = this;
         if (!session.model)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Commands behind clicks, keys and buttons: selecting, flying to the selection, and opening parts of the page. Loaded on first use.
+// Commands that clicks, keys and buttons trigger: selecting, flying to the selection, and opening parts of the page. Loaded on first use.
 import { nearestMarker } from '../../core/nearest.js';
 import { travel } from '../../core/requests.js';
 import { byId } from '../common/dom.js';
@@ -7,11 +7,12 @@ import { store } from '../common/storage.js';
 import { wear } from '../common/theme.js';
 import { bandsOf } from '../toolbar/toolbar.js';
 
-const ARRIVAL_MARGIN = 1.7; // margin around one asset, as a factor
+const ARRIVAL_MARGIN = 1.7; // distance factor that leaves a margin around an asset after a flight to it
 const REACH_PX = { mouse: 14, pen: 18, touch: 26 };
-const HELD_US = 3.5e6;      // an instant less than this many microseconds ago counts as now
+const HELD_US = 3.5e6;      // microseconds; an instant less than this ago counts as now
 
-// Returns the tags of the shown group that have a position and distances. A single sensor on an asset that was not subdivided has none.
+// Returns the tags of the shown group that have a position and distances. A single sensor on an asset whose surface was not subdivided has
+// no distances.
 export function sensorsOf({ model, params }) {
     const all = model.tags.filter(({ group, asset, position }) => group === params.group && asset && position);
     if (model.group(params.group)?.singles !== 'whole')
@@ -36,7 +37,7 @@ function changeTheme() {
     return wear(theme);
 }
 
-// Returns the commands by name: those of the page, and those of keys (core/keys.js).
+// Returns all commands by name: those that the page calls, and those that keys trigger (core/keys.js).
 function commandsOf({ session, modules, selection, overlay, saveAddress, refresh }) {
     function selectTag(tag) {
         selection.tag = tag?.name ?? null;
@@ -109,7 +110,7 @@ function commandsOf({ session, modules, selection, overlay, saveAddress, refresh
             openPlace(x, y, session.camera);
     }
 
-    // Ignores the click if the camera has moved: another point would be there.
+    // Opens the card of a point, unless the camera has moved since the click: another point would be under the pointer.
     const openPlace = (x, y, camera) => modules.use('place', (place) => camera === session.camera && place.open(x, y));
 
     function point(place) {
@@ -123,7 +124,8 @@ function commandsOf({ session, modules, selection, overlay, saveAddress, refresh
         }
     }
 
-    // Adds the parameters that the chosen quantity (`show`) needs: the selected sensor, else the first of the group; the current instant.
+    // Returns the parameters that show the quantity `show`. A distance also needs a sensor: the selected one, else the first of the group.
+    // A difference without a baseline is taken from the present readings.
     function showParams(show) {
         const { model, params } = session;
         const chosen = [selection.tag, params.sensor].map((name) => model.tag(name)).find((tag) => tag?.group === params.group);

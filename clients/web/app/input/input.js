@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Passes pointer and keyboard input to the camera controller. The controller is loaded on the first input, which is queued and replayed.
+// Passes pointer and keyboard input to the camera controller. The first input loads the controller; input until then is queued and
+// replayed.
 const ON_PICTURE = ['pointerdown', 'pointermove', 'pointerup', 'pointercancel', 'pointerleave', 'wheel'];
 const ON_PAGE = ['keydown', 'keyup'];
 const NEAR = ['pointerover', 'focusin', 'keydown'];
 const STALE_MS = 2000; // input queued for longer than this is dropped
 
-// Returns whether an event is for the picture, not for a control over it.
+// Returns true if an event is meant for the picture, not for a control over it.
 export const isOnPicture = (event) => !event.target.closest('button, .card, .banner, .legend');
 
-// Returns whether the event asks for a reaction, unlike mere pointer motion.
+// Returns true if the event asks for a reaction, unlike mere motion of the pointer.
 const isMeant = ({ type, key, target }) => type === 'pointerdown' || type === 'wheel' ||
     (type === 'keydown' && /^(.|Arrow.*)$/.test(key) && !target.closest('input, select, textarea'));
 
-// Handles the parts of input events that cannot wait until the controller is loaded, such as preventDefault().
+// Does what cannot wait until the camera controller is loaded, such as preventDefault().
 function takeAtOnce(event, element) {
     if (event.type === 'wheel' || event.button === 1)
         event.preventDefault(); // prevents scrolling
@@ -23,7 +24,7 @@ function takeAtOnce(event, element) {
 }
 
 export function listenToInput(element, modules) {
-    // times of the events of the queued drag; the drag is dropped only if its last event is too old
+    // drag: times of the first and last event of the queued drag, which is dropped only if its last event is too old
     let pending = [], drag = { from: Infinity, to: 0 };
 
     function handle(event) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Measures the distance between two clicked points of the plant; the line moves with the picture.
+// Measures the distance between two clicked points of the plant; the line between them moves with the picture.
 import { projector } from '../../core/camera.js';
 import { halves } from '../../core/split_view.js';
 import { measure, metresText } from '../../core/measure.js';
@@ -33,7 +33,7 @@ export class Measure {
         this.show();
     }
 
-    // x, y: CSS pixels of the viewport. A third click starts a new measurement.
+    // Takes a point at x, y in CSS pixels of the viewport. A third click starts another measurement.
     click(x, y) {
         if (this.places.length === 2)
             this.places = [];
@@ -54,7 +54,7 @@ export class Measure {
         return say(['measure.first', 'measure.second', 'measure.done'][this.places.length]);
     }
 
-    // Moves the line with the picture.
+    // Moves the line between the two points with the picture.
     show() {
         setText(this.note.querySelector('span'), this.words);
         const { picture, shown } = this.session;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shift notes: pins in the picture, also on walls; their list and form in the panel of views. Also shows where a desk points.
+// Shift notes: pins in the picture, also on walls, and a list and a form in the panel of views. Also shows the position at which a desk
+// points.
 import { projector } from '../../core/camera.js';
 import { zoneClock } from '../../core/format.js';
 import { inForce, placeOf, whereOf } from '../../core/notes.js';
@@ -16,7 +17,7 @@ export class Notes {
     constructor({ session, selection, viewport, modules, hangs, tell, flyToTag, selectAsset }) {
         Object.assign(this, { session, selection, viewport, modules, hangs, flyToTag, selectAsset });
         this.pins = new Map(); // pins of notes: id -> { element, position }
-        this.pointer = null;   // { element, position, until } of a desk's pointer; null: none
+        this.pointer = null;   // position at which a desk points: { element, position, until }; null: nothing
         this.list = make('ul', { id: 'notes-list' });
         this.text = make('input', { maxlength: LONGEST, placeholder: say('notes.text'), 'aria-label': say('notes.text'), id: 'note-text' });
         this.at = make('select', { id: 'note-at', 'aria-label': say('notes.at') });
@@ -38,14 +39,14 @@ export class Notes {
         this.point();
     }
 
-    // Returns whether the user may add and remove notes: not while the past is shown.
+    // Returns true if the user may add and remove notes, which is not so while the past is shown.
     get may() {
         return MAY.includes(this.session.role) && this.session.time.atUs === null;
     }
 
     // --- making one
 
-    // Returns what a note can be attached to: the selected tag, equipment or point.
+    // Returns the things to which a note can be attached now: the selected tag, equipment or point.
     get places() {
         const { model, params } = this.session, picked = this.modules.there('place')?.picked, out = [];
         if (model?.tag(this.selection.tag))
@@ -91,7 +92,7 @@ export class Notes {
         return inForce(this.session.notes, this.session.clockUs(), this.session.time.atUs);
     }
 
-    // Drops notes that have ended, and offers the current selection.
+    // Removes notes that have ended, and offers the current selection as a thing to attach a note to.
     tick() {
         this.offer();
         if (this.notes.length !== this.list.children.length)
@@ -185,7 +186,7 @@ export class Notes {
         }
     }
 
-    // Size of pins: larger on a wall.
+    // Scale of the pins, which are larger on a wall.
     get scale() {
         return document.body.classList.contains('wall') ? Number(document.body.style.getPropertyValue('--wall')) || 1 : 1;
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sensor coverage, independent of the readings: how far the field may be off, and which hot spots no sensor would show. Also has those
-// titles of the legend that are seldom needed. Loaded where one of these is shown, and with the panel of the picture.
+// Sensor coverage, independent of the readings: how far the field may be off (uncertainty), and which hot spots no sensor would show
+// (blind). Also has rarely needed titles of the legend. Loaded when one of these is shown, and with the panel of the picture.
 import { shortNumberText, zoneClock } from '../../core/format.js';
 import { say } from '../../core/words.js';
 import { fillSegments, markSegment } from '../common/choices.js';
@@ -26,7 +26,7 @@ export class Coverage {
         session.emit('shown'); // makes the legends redraw
     }
 
-    // Returns the name of a saved comparison and the plant's time when it was saved; null if unknown.
+    // Returns the name of a saved baseline and the time when it was saved, in the plant's time zone; null if unknown.
     since({ baseline }) {
         if (!baseline?.time_us)
             return null;
@@ -36,7 +36,7 @@ export class Coverage {
         return say('coverage.since', { when: baseline.name ? `${baseline.name}, ${when}` : when });
     }
 
-    // Adds the controls to the panel, at its first use.
+    // Adds the controls to the panel when it is first used.
     fill() {
         this.shown = [];
         byId('scale').before(this.element);

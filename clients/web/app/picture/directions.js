@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Choice of how a group's directions are drawn, with an explanation. Loaded with the panel of the picture.
+// Choice of how the directions (vectors) of a group are drawn, with an explanation. Loaded with the panel of the picture.
 import { say } from '../../core/words.js';
 import { fillSegments, markSegment } from '../common/choices.js';
 import { make, setText } from '../common/dom.js';

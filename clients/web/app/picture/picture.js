@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The panel of the picture: comparisons, scale and range, light, and the right side of a split view.
+// The panel of the picture: baselines to compare with, scale and range, light, and the right half of a split view.
 import { quantityText, title, zoneClock } from '../../core/format.js';
 import { sunOf, sunText, towardsSun } from '../../core/sun.js';
 import { say, sayIfKnown } from '../../core/words.js';
@@ -61,7 +61,7 @@ export class Picture {
         return up[1] > up[2];
     }
 
-    // At most one update per animation frame: sliders fire more often.
+    // Moves the light at most once per animation frame, because sliders fire more often.
     moveSun() {
         const sun = { turn: Number(byId('sun-turn').value), height: Number(byId('sun-height').value) };
         setText(byId('sun-text'), say('picture.light', { where: sunText(sun) }));

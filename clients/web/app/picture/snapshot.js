@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Saves a picture: redrawn by the server, or, if the server signs, the exact frame on the screen.
+// Saves a picture as a file: redrawn by the server or, if the server signs frames, the exact frame on the screen.
 import { ask } from '../../core/history.js';
 import { snapshotQuery } from '../../core/query.js';
 import { language, say } from '../../core/words.js';
 import { make, styled } from '../common/dom.js';
 import { closeButton } from '../common/widgets.js';
 
-const FLAG_SIGNED = 64; // the payload is a signed PNG file
+const FLAG_SIGNED = 64; // flag of a frame whose payload is a signed PNG file
 const SIGNED_WAIT_MS = 15000;
 
 export class Snapshot {
@@ -14,7 +14,7 @@ export class Snapshot {
         Object.assign(this, { session, tell, pending: null });
         session.on('frame', (frame) => frame.flags & FLAG_SIGNED && this.pending?.frames.set(frame.seq, frame));
         session.on('hello', () => this.pending?.fail(new Error(say('reason.unreachable'))));
-        // Only ends the pending request; the page's error handler shows the reason.
+        // only ends the pending request, because the page's error handler shows the reason
         session.on('error', ({ about, code }) => (about === 'sign' || code === 'not_signed') && this.pending?.fail(null));
     }
 
@@ -26,7 +26,7 @@ export class Snapshot {
     }
 
     async choose() {
-        await styled('help/help').catch(() => {}); // the server is unreachable: go on without styles
+        await styled('help/help').catch(() => {}); // without styles if the server is unreachable
         this.dialog ??= this.makeDialog();
         this.dialog.showModal();
     }
@@ -45,7 +45,7 @@ export class Snapshot {
         return dialog;
     }
 
-    // picture(): returns a promise of { blob, us }: a PNG file, and its instant in microseconds.
+    // Saves the picture that picture() makes. picture() returns a promise of { blob, us }: a PNG file, and its instant in microseconds.
     async saveBy(picture) {
         const { model } = this.session;
         try {
@@ -69,7 +69,7 @@ export class Snapshot {
         return { blob: await answer.blob(), us: time.atUs ?? session.clockUs() };
     }
 
-    // Requests the next refined frame signed; once it is on the screen, saves its file.
+    // Requests that the next refined frame be signed; once it is on the screen, returns its PNG file.
     async onScreen() {
         const { session } = this, frames = new Map();
         let timer;

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The account dialog: role on the server, signing in through an identity provider, and signing out.
+// The account dialog: the user's role on the server, signing in through an identity provider, and signing out.
 import { ask } from '../../core/history.js';
 import { say } from '../../core/words.js';
 import { make } from '../common/dom.js';
 import { store } from '../common/storage.js';
 import { closeButton } from '../common/widgets.js';
 
-// Returns a promise of { name, role, signed_in, until, sign_in }.
+// Asks the server about the user. Returns a promise of { name, role, signed_in, until, sign_in }.
 export async function whoAmI(session) {
     return (await ask('api/v1/me', {}, session.token)).json();
 }
 
-// Signs in at the identity provider and returns to the current view. Drops any token.
+// Makes a button that signs in at the identity provider and returns to the current view; it drops any token.
 export function signInButton(label) {
     const go = () => {
         store('token', '');

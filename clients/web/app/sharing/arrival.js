@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Opens a link: goes to the tag or equipment that it names, and reports what does not exist in this plant.
+// Handles the link that opened the page: goes to the tag or equipment that it names, and reports what does not exist in this plant.
 import { put, refusalText } from '../../core/refusals.js';
 
 const NOTE_MS = 20000;
@@ -9,8 +9,8 @@ export class Arrival {
         this.page = page;
     }
 
-    // link: { camera, params, tag } that opened the page; null after the first time. refused: `error` messages that refuse parts of this
-    // page's view.
+    // link: { camera, params, tag } of the link that opened the page; null after the first call. refused: `error` messages of the server
+    // that refuse parts of this page's view.
     come(link, refused) {
         const { session, selection, selectTag, tell } = this.page, { model } = session;
         const why = refused.map(({ text, refusal }) => refusalText(text, refusal)), unknown = selection.tag && !model.tag(selection.tag);
