@@ -22,8 +22,8 @@ struct address_limits;
 struct address_limits *address_limits_create(const struct quotas *quotas, bool exempt);
 void address_limits_destroy(struct address_limits **limits); /* destroys the limits and sets *limits to NULL; accepts a pointer to NULL */
 
-/* Returns the usage of a numeric address, created if needed, with a reference that the caller must release. Texts that are not an address
-   all share one usage struct. */
+/* Returns the usage of a numeric address, and creates it if needed. The caller owns a reference (address_limits_unref). All texts that are
+   no address share one usage struct. */
 struct address_usage *address_limits_ref(struct address_limits *limits, const char *address);
 /* Releases a reference and sets *usage to NULL; accepts a pointer to NULL. */
 void address_limits_unref(struct address_limits *limits, struct address_usage **usage);

@@ -40,7 +40,7 @@ bool connection_may_open(struct server_context *server, int fd)
     char address[64] = "";
     if (server->connection_count >= server->quotas->at[QUOTA_CONNECTIONS])
         return count_refusal(server, false);
-    /* behind a proxy all connections come from one address, so sessions are counted by the address that the proxy forwards */
+    /* behind a proxy all connections come from the proxy's address; sessions are limited later, by the address that the proxy forwards */
     if (server->params.access.behind_proxy)
         return true;
     lws_get_peer_simple_fd(fd, address, sizeof(address));

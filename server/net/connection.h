@@ -19,7 +19,7 @@ struct connection {               /* identity of one connection; lives as long a
 
 /* Decides whether an accepted socket may become a connection, before libwebsockets adopts it. Returns false if it must be closed. */
 bool connection_may_open(struct server_context *server, int fd);
-/* Create and destroy the identity of a connection. */
+/* connection_open() creates the identity of a connection, connection_close() destroys it. */
 void connection_open(struct server_context *server, struct lws *wsi);
 void connection_close(struct server_context *server, struct lws *wsi);
 /* Notes whether all requests of the connection are answered; a server that shuts down waits for the unanswered ones. */
@@ -31,7 +31,8 @@ struct http_refusal {
     int status;
     const char *text; /* body of the answer, static text */
 };
-/* Reads the headers of a request and sets role, client and holder. Returns false with the answer in *refusal. */
+/* Reads the headers of a request and sets the connection's role, client and holder. Returns false if the request must be refused, with the
+   answer in *refusal. */
 bool connection_identify(struct server_context *server, struct lws *wsi, struct http_refusal *refusal);
 /* Appends a suffix to the name of a signed-in user if a token has the same name, or if it is `local`, so that journals and the audit
    trail can tell them apart. */

@@ -88,7 +88,7 @@ static void record_sum(const struct server_context *server, int64_t *count, cons
     *count = 0;
 }
 
-/* Adds the number of tokens and of log-in answers that were not checked to the audit trail, once a minute. */
+/* Adds to the audit trail, once a minute, how many tokens and log-in answers were not checked. */
 static void record_held(struct server_context *server, int64_t now_ns)
 {
     if ((!server->logins_held && !server->unasked) || now_ns - server->held_ns < RECORD_INTERVAL_NS)

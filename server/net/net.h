@@ -31,7 +31,7 @@ bool net_call(struct net *net, void (*what)(void *arg), void *arg);
 /* Makes the event loop soon reload the plant and read the files of tokens and certificate again. Any thread; safe in a signal handler. */
 void net_check_credentials(struct net *net);
 
-/* --- functions for a plant reload; call them in the event loop --- --- */
+/* --- plant reload; call these functions in the event loop --- */
 
 /* Drops the pointers to the plant's historian and notifier, which are destroyed before the rest of the plant. */
 void net_release_recording(struct net *net);

@@ -41,7 +41,7 @@ void net_calls_init(struct net *net);
 void net_calls_finish(struct net *net);
 /* Runs the waiting call (net_call), if any. Thread: the event loop. */
 void net_calls_run(struct net *net);
-/* Releases waiting callers; no more calls are run. Thread: the event loop. */
+/* Releases the threads that wait in net_call(); their calls are not run. Thread: the event loop. */
 void net_calls_close(struct net *net);
 
 /* --- net_plant.c; thread: the event loop --- */

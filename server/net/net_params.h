@@ -30,7 +30,7 @@ struct net_plant { /* everything that belongs to one loaded plant; a reload repl
     struct placing *placing; /* NULL: sensors cannot be placed */
     struct notes *notes;
     struct wall_remote *wall_remote;
-    struct other_plants *other_plants; /* NULL: the plant file names none */
+    struct other_plants *other_plants; /* pictures of other plants; NULL: the plant file names no other plants */
     struct pairings *pairings;
     struct named_views *named_views;
     struct core_link *core_link;     /* on a renderer: its link to the core; NULL: this daemon reads its devices itself */

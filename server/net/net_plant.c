@@ -30,7 +30,7 @@ bool net_open_history(struct net *net)
                                                           .snapshot_cache = plant->snapshot_cache,
                                                           .notify = wake,
                                                           .notify_arg = net };
-    /* a renderer has no history of its own: it queries its core */
+    /* a renderer has no history of its own: it queries the history of its core */
     bool any = plant->history_folder || (plant->core_link && !plant->scene->plant->history.off);
     server->session_context.snapshot_cache = any ? plant->snapshot_cache : NULL;
     if (!any)

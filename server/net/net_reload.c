@@ -11,7 +11,7 @@
 #include "net/stream.h"
 #include "session/view/resume.h"
 
-/* --- views that sessions will have in the new plant ------------------------------------------------------------------- */
+/* --- views in the new plant ------------------------------------------------------------------------------------------ */
 
 static bool is_new(const struct view *view, const struct view *others, size_t count)
 {
@@ -40,7 +40,7 @@ size_t net_views(struct net *net, const struct net_plant *next, struct view *out
     return count;
 }
 
-/* --- release the old plant, take the new one -------------------------------------------------------------------------- */
+/* --- from the old plant to the new one ------------------------------------------------------------------------------- */
 
 void net_release_recording(struct net *net)
 {

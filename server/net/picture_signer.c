@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Moves pictures from a list of unsigned ones to a list of signed ones. The quota on pictures keeps both short. */
+/* Moves pictures from a list of unsigned ones to a list of signed ones. The quota on pictures that are being answered keeps both lists
+   short. */
 #include "net/picture_signer.h"
 
 #include "base/mem.h"

@@ -15,8 +15,8 @@ struct signing {
 void signing_free(struct signing **signing); /* sets *signing to NULL */
 
 struct picture_signer;
-/* Starts the thread; it calls notify(arg) when a picture is signed. Returns NULL if it cannot start, already logged. key must outlive
-   it. */
+/* Starts the thread; it calls notify(arg) when a picture is signed. Returns NULL if it cannot start, already logged. `key` must outlive the
+   signer. */
 struct picture_signer *picture_signer_create(struct log *log, const struct signing_key *key, void (*notify)(void *arg), void *arg);
 /* Ends the thread and sets *signer to NULL; accepts a pointer to NULL. */
 void picture_signer_destroy(struct picture_signer **signer);

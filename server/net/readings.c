@@ -75,7 +75,7 @@ static void take(struct net *net)
     if (data_changed || links_changed)
         renderers_on_change(server);
     render_service_wake(server->params.plant.render_service);
-    /* 1 ms later than due, because the event loop may wake a little early */
+    /* 1 ms after the reading becomes stale, because the event loop may wake a little early */
     int64_t stale_ns = server->next_change_ns < INT64_MAX ? server->next_change_ns + NS_PER_MS : INT64_MAX;
     net->readings_ns = later(stale_ns, server->snapshot->taken_mono_ns + MIN_INTERVAL_NS);
 }

@@ -36,7 +36,7 @@ struct deed {
 struct renderer_peer {
     struct lws *wsi;
     struct renderer_peer *next;
-    char name[64];                /* name of the renderer's node, as the renderer reports it */
+    char name[64];                /* name of the peer's node, as the peer reports it */
     char lease[LEASE_NODE_BYTES]; /* on a standby's connection: lease id, which distinguishes two nodes with the same name */
     struct text in, out;          /* in: message being received; out: message being built, after LWS_PRE spare bytes */
     /* RENDERER_VOTES: a core that only votes: it may not follow this core, for example because its version differs, but its promises not to
@@ -375,7 +375,7 @@ static bool send_readings(struct server_context *server, struct renderer_peer *r
     return send_out(renderer, LWS_WRITE_BINARY);
 }
 
-/* Wakes the connections that hold back answers until a standby has the same state. */
+/* Wakes the connections whose answers wait until a standby has the state that the actions changed. */
 static void wake_answers(const struct server_context *server)
 {
     for (const struct renderer_peer *one = server->renderers; one; one = one->next)

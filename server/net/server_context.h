@@ -62,7 +62,7 @@ struct server_context {
     struct history_loader *history_loader;   /* loads the readings of past instants; NULL: nothing is recorded */
     struct picture_signer *picture_signer;   /* NULL: pictures are not signed */
     char signing_key_id[SIGNING_KEY_ID_BYTES];
-    /* streams: list of all connections to /stream; by_client: the same, sorted by session id, ascending */
+    /* streams: linked list of all connections to /stream; by_client: array of the same, sorted by session id, ascending */
     struct stream *streams, **by_client;
     size_t by_client_capacity;
     struct view_token_keys token_keys;           /* on a renderer: keys that sign view tokens */
@@ -155,7 +155,7 @@ void stream_on_pick(struct server_context *server, const struct pick_answer *ans
 /* Sends a frame, signed if that was possible; takes ownership of signing->encoded; the caller frees the rest of the struct. */
 void stream_on_signed(struct server_context *server, struct signing *signing);
 void stream_on_historical_snapshot(struct server_context *server, const struct history_loader_answer *answer);
-/* Pass a copy of the sensor coverage, or of a text, to the stream that asked. Do nothing if the stream has gone. */
+/* Pass a copy of the sensor coverage, or of a text, to the stream whose client asked for it. They do nothing if the stream has gone. */
 void stream_on_coverage(struct server_context *server, const struct sensor_coverage_answer *answer);
 void stream_say(struct server_context *server, uint64_t client, const char *text);
 /* Tells sessions with trial sensor positions that distances were computed. */

@@ -16,7 +16,8 @@
 
 enum { STREAM_CLOSE_STALLED = 4000, LAST_WORDS_S = 2, BACK_MAX_S = 60, SILENT_S = 6 };
 static const int64_t SILENT_NS = SILENT_S * NS_PER_S;
-static const int64_t DRAIN_DELAY_NS = 2 * NS_PER_S; /* time for load balancers to notice that sessions are sent to other daemons */
+/* time for load balancers to notice that this daemon drains its sessions to other daemons */
+static const int64_t DRAIN_DELAY_NS = 2 * NS_PER_S;
 static const int64_t DRAIN_NS = 10 * NS_PER_S;
 static const int64_t MOVING_NS = 200 * NS_PER_MS; /* a session's camera counts as moving for this long after an input of its user */
 
@@ -94,8 +95,8 @@ static void count(struct server_context *server, struct stream *stream)
     stream->dropped = session->stats.dropped;
 }
 
-/* Returns whether the view is kept for the client's return: not for clients that were refused (1008), but for those that could not be
-   served any longer. */
+/* Returns whether the view is kept for the client's return: true after an accepted hello, unless the client was refused (close code
+   1008). */
 static bool may_return(const struct stream *stream)
 {
     return stream->session->hello && stream->session->close.code != 1008;
@@ -248,7 +249,8 @@ void streams_on_readings(struct server_context *server, bool data_changed, bool 
    different instants, because their pages reconnect to other nodes immediately. */
 static bool is_drained(const struct server_context *server, const struct stream *stream, int64_t now_ns)
 {
-    uint64_t spread = (stream->session->id + 1) * 0x9E3779B97F4A7C15u >> 32; /* multiplying by the golden ratio spreads consecutive ids */
+    /* multiplying ids by 2^64 / golden ratio (Fibonacci hashing) spreads consecutive ids evenly */
+    uint64_t spread = (stream->session->id + 1) * 0x9E3779B97F4A7C15u >> 32;
     return server->drain_ns && now_ns - server->drain_ns > DRAIN_DELAY_NS + (int64_t)(spread % 1000) * (DRAIN_NS / 1000);
 }
 

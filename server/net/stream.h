@@ -17,7 +17,7 @@ struct stream {
     uint32_t seq;
     enum { SEND_MARKERS, SEND_HEADER, SEND_PAYLOAD } step;
     int packet, part;      /* which packet of the frame is being sent, and which part of that packet (indexes from 0) */
-    size_t sent, sent_all; /* sent: bytes of that part; sent_all: bytes of the whole frame */
+    size_t sent, sent_all; /* sent: bytes of the part that were sent; sent_all: bytes of the whole frame that were sent */
     bool cut;              /* the frame was cut short: only the end of its message is still to be sent */
     uint64_t ping, pong;   /* sequence numbers of the last ping sent and of the last pong received */
     int64_t ping_ns;       /* monotonic: when the last ping was sent */
@@ -29,7 +29,7 @@ struct stream {
     size_t first_bytes;
     int64_t first_ns; /* monotonic: when the first text before the first frame was sent */
     struct known_markers known;
-    char *carried;  /* during a plant reload: parameters of the view, as text */
+    char *carried;  /* during a plant reload: parameters of the session's view as text, for session_take_plant() */
     bool throttled; /* true: the client sent too many messages, so nothing is read from it for now */
     /* monotonic time since when the client has acknowledged no picture, 0: it acknowledges pictures; INT64_MAX once the silence was
        logged */
@@ -80,7 +80,8 @@ void follow_resolve(struct server_context *server, struct stream *stream);
 bool follow_spread(struct server_context *server, const struct stream *leader);
 /* Gives all viewers of one view the same step of the quality ladder. Call it every tick. */
 void follow_share_steps(struct server_context *server);
-/* Releases the followers of a stream that is being closed, and its leader. */
+/* Call it when a stream is being closed: its followers follow the session that resumed its view over another connection, or no one if there
+   is none. */
 void follow_forget(struct server_context *server, const struct stream *leader);
 /* Sends leaders the list of their followers if it changed. Call it every tick. */
 void follow_tell(struct server_context *server, int64_t now_ns);

@@ -82,7 +82,7 @@ bool follow_spread(struct server_context *server, const struct stream *leader)
 void follow_forget(struct server_context *server, const struct stream *leader)
 {
     const struct stream *newer = stream_called(server, leader->session->identity.number);
-    /* set if another connection resumed the leader's view while the leader was still connected */
+    /* session that resumed the leader's view over another connection, while the leader was still connected; NULL: none */
     struct session *again = newer ? newer->session : NULL;
     for (struct stream *stream = server->streams; stream; stream = stream->next)
         if (stream->session->following.leader == leader->session && again && again != stream->session)

@@ -27,7 +27,7 @@ static const struct text *padded(struct text *text)
 static bool write_markers(struct server_context *server, struct stream *stream, bool *wrote)
 {
     struct text text = { 0 };
-    /* sends no markers: this client may not read the sensors' values */
+    /* no markers are sent if the client may not read the sensors' values */
     bool open = session_is_open(stream->session) || stream->session->scope.tags;
     char *markers = open ? NULL : marker_text(stream->sending->packet->frame, stream->seq, &stream->known, &server->marker_lists);
     *wrote = markers != NULL;

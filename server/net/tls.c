@@ -130,7 +130,8 @@ void tls_destroy(struct tls **tls_ptr)
 void tls_serve(struct tls *tls, SSL_CTX *context)
 {
     SSL_CTX_set_min_proto_version(context, TLS1_2_VERSION);
-    SSL_CTX_set_cipher_list(context, "ECDHE+AESGCM:ECDHE+CHACHA20"); /* TLS 1.2 without CBC ciphers; all ciphers of TLS 1.3 are good */
+    /* TLS 1.2 is used without CBC ciphers; all ciphers of TLS 1.3 are good */
+    SSL_CTX_set_cipher_list(context, "ECDHE+AESGCM:ECDHE+CHACHA20");
     tls->served = context;
 }
 

@@ -70,7 +70,7 @@ struct plant_property {
 struct plant_asset {
     char *id, *tag, *description; /* tag defaults to id */
     char *area;                   /* part of the plant under which the asset is listed; "": none */
-    char *model;                  /* path; a relative name is resolved against the plant file's folder */
+    char *model;                  /* path of the model file; a relative path is relative to the plant file's folder */
     char *nodes;   /* node patterns (nodes.h), one a line; each matching node is taken with its sub-tree. NULL: the whole model */
     double unit_m; /* length of a model unit in metres, including the scale of the asset's placement */
     enum axis up;  /* upward axis of the model */
@@ -159,7 +159,7 @@ struct plant_mqtt { /* MQTT settings of a source or of `publish`; texts that are
     char *will;                   /* topic of the last will: after a disconnection the broker publishes "offline" there */
     char *topic;                  /* topic template for tags whose address has no topic */
     char *value, *time, *quality; /* paths of value, time and quality in JSON payloads */
-    bool will_stays;              /* the last will is a retained message */
+    bool will_stays;              /* true: the last will is published as a retained message, which new subscribers get, too */
     bool rebirth; /* true: birth certificates may be requested from Sparkplug nodes; that request is the only message published */
 };
 
@@ -172,7 +172,7 @@ enum opcua_policy {
 };
 
 struct plant_opcua {                   /* OPC UA settings of a source; texts that are not given are NULL */
-    bool has_security;                 /* the key `security` was given; a source without the key is refused */
+    bool has_security;                 /* true: the key `security` was given; a source without the key is refused */
     enum opcua_policy policy;          /* messages are signed and encrypted (SignAndEncrypt), except with OPCUA_NONE */
     char *certificate, *key;           /* our certificate and key, files in PEM or DER */
     char *trusted;                     /* folder of trusted certificates and revocation lists */
@@ -245,7 +245,7 @@ struct plant_sentinel {
     double number;
 };
 
-/* Another tag that tells whether this tag's value is valid: it is if ((value & mask) == want) != negate. */
+/* Another tag that tells whether this tag's value is valid: it is valid if ((value of the other tag & mask) == want) != negate. */
 struct plant_quality_tag {
     int tag;             /* index */
     uint64_t mask, want; /* mask 0: no quality tag */
@@ -326,8 +326,8 @@ struct plant {
     char *path, *folder; /* path of the plant file, and its folder without trailing slash */
     char *tags_path;
     char hash[17];          /* hash, in hexadecimal, of plant file and tag list; identifies the configuration */
-    bool keeps_orphans;     /* set while loading: tags of assets that do not exist are no error */
-    bool without_models;    /* set while loading: missing models are no error */
+    bool keeps_orphans;     /* set while loading: tags of assets that do not exist are accepted (plant_load_with_orphans()) */
+    bool without_models;    /* set while loading: missing model files are accepted (plant_load_without_models()) */
     char *name, *time_zone; /* time_zone: IANA name; default UTC */
     enum axis up;           /* upward axis of the plant frame */
     struct plant_view view;

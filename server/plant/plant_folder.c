@@ -174,7 +174,7 @@ int revision_go_on_undoing(const char *folder)
     return status;
 }
 
-/* Returns whether killed programs left work folders; if `now`, removes them. */
+/* Returns whether killed programs left work folders in the folder. now: removes them. own: path of a work folder that is left alone. */
 static bool remove_left(const char *folder, const char *own, bool now)
 {
     DIR *dir = opendir(folder);

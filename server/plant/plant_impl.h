@@ -69,8 +69,8 @@ void plant_mqtt_finish(struct plant_mqtt *mqtt);
 void plant_opcua_read_security(struct yaml_reader *reader, yaml_node_t *node, void *source);
 void plant_opcua_check(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant, struct plant_source *source);
 void plant_opcua_finish(struct plant_opcua *opcua);
-/* Resolves the path of a secret file or folder relative to the plant file. Warns, naming the key, if the file cannot be read; not an
-   error, since a user who only prepares the plant may lack the right. */
+/* Resolves the path of a secret file or folder relative to the plant file. If the file cannot be read, warns and names the key. This is no
+   error, since a user who only prepares the plant may lack the right to read it. */
 void plant_secret_check(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant, const char *key, char **path);
 
 /* For a list of records that begin with `char *id`: allocates a record for each item of the list and sets *count. Reports a list with fewer

@@ -158,7 +158,7 @@ static const struct http_refusal NOT_IN_VIEWS = { HTTP_STATUS_FORBIDDEN, "this t
 static const struct http_refusal NOT_ON_DISPLAY = { HTTP_STATUS_FORBIDDEN, "this device is good for its display of a wall only\n" };
 static const struct http_refusal FOREIGN = { HTTP_STATUS_FORBIDDEN, "pages of other sites do not get this\n" };
 
-/* Refuses a user who lacks the role engineer. */
+/* Answers a user who lacks the role engineer: 401 without a token, 403 with one. Returns the result for the libwebsockets callback. */
 static int refuse_others(struct http_exchange *request, enum role role)
 {
     return role == ROLE_NOBODY ? refuse(request, &NEED_TOKEN) : request_refuse(request, HTTP_STATUS_FORBIDDEN, REFUSAL_ROLE_ENGINEER);

@@ -8,8 +8,9 @@
 #include "net/http/stuck_head.h"
 #include "net/connection.h"
 
-enum { SMALL_BYTES = 64 * 1024 }; /* answers up to this size need no quota: memory has room for one on every permitted connection */
-enum { HEAD_BYTES = 8192 };       /* enough for a list of the maximum number of allowed origins, with 256 characters each */
+/* answers up to this size are not counted in the quota: memory has room for one on each permitted connection */
+enum { SMALL_BYTES = 64 * 1024 };
+enum { HEAD_BYTES = 8192 };       /* room for the headers of an answer with the longest list of allowed origins, of 256 characters each */
 
 static const char *const security[][2] = {
     { "x-content-type-options:", "nosniff" },
@@ -117,7 +118,7 @@ int request_done(struct http_exchange *request)
     return request->close || server_context_of(request->wsi)->goes_down || lws_http_transaction_completed(request->wsi) ? -1 : 0;
 }
 
-/* Writes the answer; takes ownership of body. What the socket does not accept now follows once it can. */
+/* Writes the answer; takes ownership of body. Bytes that the socket does not accept now are written once it does. */
 int request_answer(struct http_exchange *request, int status, const char *type, char *body, size_t count, const char *extra_name,
                    const char *extra)
 {

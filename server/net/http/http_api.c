@@ -176,7 +176,7 @@ int api_plant(struct server_context *server, struct http_exchange *request)
 
 enum { TAGS_PAGE = 1000, TAGS_PAGE_MAX = 5000 };
 
-/* Reads `first` and `count` of the query. */
+/* Reads the arguments `first` and `count` of the query. Returns false if an argument is wrong. */
 static bool read_page(const struct args *args, size_t *first, size_t *count)
 {
     static const char *const names[] = { "first=", "count=" };

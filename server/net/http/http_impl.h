@@ -40,7 +40,7 @@ struct http_exchange {
     int64_t until_ns;            /* monotonic time at which a waiting request is answered with "not ready" */
     bool reloads;                /* the request waits for a reload of the plant */
     struct upload_body *body_in; /* upload in progress; NULL: none */
-    const char *step;            /* path of a POST request that imports a plant (static text), for the audit trail */
+    const char *step;            /* path of a POST request of an import (static text), for the audit trail */
     struct asked *asked;         /* frame or pick for which the request waits; NULL: none */
     struct http_exchange *next;  /* next in server->snapshots */
 };

@@ -66,7 +66,7 @@ static int answer_done(struct http_exchange *request, const char *file)
     return answer_empty(request);
 }
 
-/* --- state of the import ---------------------------------------------------------------------------------------------- */
+/* --- state of the import --- */
 
 int api_import(struct server_context *server, struct http_exchange *request)
 {
@@ -76,7 +76,7 @@ int api_import(struct server_context *server, struct http_exchange *request)
     return request_answer_json(request, plant_import_text(server->params.import, &source));
 }
 
-/* Answers with a file. path NULL: no import has been made. missing: the answer while the file does not exist. */
+/* Answers with the content of a file. path NULL: no import has been made. missing: text of the answer if the file does not exist. */
 static int answer_file(struct http_exchange *request, const char *path, const char *type, const char *missing)
 {
     size_t bytes;
@@ -296,7 +296,7 @@ void import_abandon_body(struct http_exchange *request)
     request->body_in = NULL;
 }
 
-/* --- routes of POST requests ------------------------------------------------------------------------------------------ */
+/* --- POST requests --------------------------------------------------------------------------------------------------- */
 
 static const struct {
     const char *path;

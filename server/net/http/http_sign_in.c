@@ -99,7 +99,7 @@ int ask_login_callback(struct server_context *server, struct http_exchange *requ
     return refuse_unasked(server, request, result);
 }
 
-/* Counts failed log-ins, also if the browser no longer waits for the answer. */
+/* Counts failed log-ins in the metrics, also if the browser no longer waits for the answer. */
 static void count_refused(struct server_context *server, const struct openid_answer *answer)
 {
     if (answer->result == OPENID_AWAY)

@@ -117,7 +117,8 @@ static void begin(struct server_context *server, struct http_exchange *request)
     }
 }
 
-/* Returns whether the request may wait for its picture. If not, it was answered, with *result as the callback's result. */
+/* Returns whether the request may wait for its picture. If false, the request was answered already, and *result is the result for the
+   libwebsockets callback. */
 static bool may_ask(struct server_context *server, struct http_exchange *request, const struct view *view, int *result)
 {
     if (view->at_us && !server->history_loader) {

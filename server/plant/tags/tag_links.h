@@ -9,7 +9,7 @@ struct tag_link {
     size_t tag;
     char *to;         /* name of the other tag; NULL: the tag's address is an expression */
     int line, column; /* position of the cell */
-    bool direction;   /* the name is from the column Direction; otherwise from Quality Tag */
+    bool direction;   /* true: the name is from the column Direction; false: from the column Quality Tag */
 };
 
 struct tag_links { /* zero-initialise */

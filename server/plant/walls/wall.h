@@ -21,7 +21,7 @@ struct named_view {
 };
 
 struct tour_stop {
-    char *view, *text; /* id of a view; text shown with it, or NULL */
+    char *view, *text; /* id of a view; text that a tour shows with the view, or NULL */
     double dwell_s;
     struct text_position place; /* position of the view's id in the file */
 };
