@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast-prep`: converts CAD models to the files that plantcastd maps. */
+/* `plantcast-prep`: converts CAD models to the files that plantcastd maps into memory. */
 #include <getopt.h>
 #include <signal.h>
 #include <stdlib.h>
@@ -18,8 +18,10 @@
 #include "preprocess/report/report.h"
 
 enum {
-    GRACE_S = 5, /* seconds to finish the current asset after a signal; service managers and container runtimes kill after 10 s or more */
-    ASSET_LIMIT_S = 3600, /* seconds after which an asset, or reading the models, counts as hung */
+    /* seconds that the current asset may still take after a signal; service managers and container runtimes kill the process after 10 s or
+     * more */
+    GRACE_S = 5,
+    ASSET_LIMIT_S = 3600, /* seconds after which an asset, or the reading of the models, counts as hung */
 };
 
 static const char usage[] =
@@ -59,8 +61,8 @@ struct prep_options {
 
 static atomic_bool interrupted;
 
-/* First signal: the current asset is finished if that takes no longer than GRACE_S, and the next run continues from there. Second signal:
- * the program ends at once, which is safe at any time because files are renamed only when complete. */
+/* At the first signal, the current asset is finished if that takes no longer than GRACE_S, and the next run continues after it. At the
+ * second signal, the program ends immediately. Ending is safe at any time, because files get their names only when complete. */
 static void on_signal(int signal)
 {
     (void)signal;
@@ -92,7 +94,7 @@ static int wrong_use(const char *what, const char *about)
     return 2;
 }
 
-/* Parses the options. Returns 0, or the exit status. */
+/* Parses the options. Returns 0, or the exit status with which the program should end. */
 static int read_options(int argc, char **argv, struct prep_options *options)
 {
     static const struct option known[] = { { "output", required_argument, NULL, 'o' },
@@ -180,8 +182,8 @@ static bool run_distances(const struct prep_options *options, struct log *log, s
     return good;
 }
 
-/* Checks models and nodes by their headers and prints errors long before the models are read. Assets without errors are prepared all the
- * same; errors of the assets tried are printed again at the end. Returns false if the plant is too large for the memory. */
+/* Checks models and nodes by their headers and prints errors long before the models are read. Assets without errors are prepared anyway.
+ * Errors of assets whose preparation is tried are printed again at the end. Returns false if the plant is too large for the memory. */
 static bool say_early(const struct plant *plant, size_t memory_bytes)
 {
     struct diag diag = { 0 }, errors = { 0 };
@@ -247,7 +249,7 @@ static bool confine_self(const struct plant *plant, const char *folder, char **a
                                  ".tif .tiff .exr .hdr";
     struct child_paths paths = { 0 };
     bool notifies = getenv("NOTIFY_SOCKET") != NULL;
-    mkdir(folder, 0777); /* ignore errors here: writing the first file reports them */
+    mkdir(folder, 0777); /* errors are ignored here, because writing the first file reports them */
     child_paths_add(&paths, "/proc/self/exe", CONFINE_EXECUTE);
     child_paths_add_modules(&paths);
     child_paths_add(&paths, folder, CONFINE_WRITE);
@@ -261,7 +263,7 @@ static bool confine_self(const struct plant *plant, const char *folder, char **a
     for (size_t i = 0; i < plant->group_count; i++)
         child_paths_add(&paths, plant->groups[i].gp.fit, CONFINE_READ);
     if (notifies)
-        child_paths_add(&paths, "/proc", CONFINE_READ); /* service_patience checks whether other processes are active */
+        child_paths_add(&paths, "/proc", CONFINE_READ); /* service_patience needs /proc to check whether other processes are active */
     int status = child_self_confine(&paths, notifies, argv);
     child_paths_finish(&paths);
     if (status != 0)
@@ -274,7 +276,7 @@ static bool run_plant(const struct prep_options *options, char **argv, struct di
     struct plant *plant = plant_load(options->plant, diag);
     if (!plant)
         return false;
-    /* ask the service manager for more time while a unit prepares its plant before the daemon starts */
+    /* ask the service manager for more time, in case it waits for this preparation before it starts the daemon */
     struct service_patience *patience = service_patience_begin("preparing the plant", ASSET_LIMIT_S);
     char *folder = options->output ? mem_strdup(options->output) : plant_prepared_folder(plant);
     bool confined = child_self_confined(), good = confined || convert_run(plant, folder, stderr, diag);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Table of the kinds of cache entries: ending of the file name, and format. */
+/* Names the cache files: for each kind of entry, the ending of the file name and the format of the file. */
 #include "preprocess/cache/build_cache.h"
 
 #include <inttypes.h>
@@ -9,7 +9,7 @@
 
 static const struct {
     const char *ending;
-    const char *magic; /* 8 bytes at the start of the file: format and version; NULL: files of this kind have a format of their own */
+    const char *magic; /* first 8 bytes of the file (format and version); NULL: the file of this kind has a format of its own */
     bool needs_sensors;
 } kinds[BUILD_CACHE_KINDS] = {
     [BUILD_CACHE_MODELS] = { NULL, "PLCCUTS1", false },           [BUILD_CACHE_GEOMETRY] = { ".stock", "PLCSTOCK", false },

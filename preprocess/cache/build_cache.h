@@ -12,11 +12,11 @@
 
 /* Kinds of entries. The source file named at each kind packs and unpacks its contents. */
 enum build_cache_kind {
-    BUILD_CACHE_MODELS,      /* the cache of model data, one file for all models with key 0: cache/model_cache.c */
+    BUILD_CACHE_MODELS,      /* model data: one file for all models, with key 0 (cache/model_cache.c) */
     BUILD_CACHE_GEOMETRY,    /* by geometry key: pipeline/geometry_cache.c */
-    BUILD_CACHE_SURFACE,     /* the surface, by geometry key: surface/surface_store.c; the daemon reads it too */
+    BUILD_CACHE_SURFACE,     /* the surface, by geometry key; the daemon reads it too (surface/surface_store.c) */
     BUILD_CACHE_SAMPLES,     /* by geometry key: subdivision/sample_cache.c */
-    BUILD_CACHE_DISTANCES,   /* distances, by distances key: cache/distance_cache.c, which writes parts of the file in place */
+    BUILD_CACHE_DISTANCES,   /* distances, by distances key; cache/distance_cache.c writes parts of the file in place */
     BUILD_CACHE_SUBDIVISION, /* by distances key: subdivision/subdiv_cache.c */
     BUILD_CACHE_KINDS
 };
@@ -25,13 +25,14 @@ enum build_cache_kind {
 char *build_cache_path(const char *folder, enum build_cache_kind kind, uint64_t key);
 /* Returns the part of the file name after the key, such as ".surface"; NULL for BUILD_CACHE_MODELS, which has no key. */
 const char *build_cache_ending(enum build_cache_kind kind);
-/* Returns whether entries of this kind use the distances key, which depends on sensors, and not the geometry key. */
+/* Returns whether the key of entries of this kind is the distances key, which depends on sensors; false: the geometry key, which does
+ * not. */
 bool build_cache_needs_sensors(enum build_cache_kind kind);
 
-/* Maps an entry for reading, until cache_file_close(). Returns false if there is no valid entry; then cache_file_close() need not be
- * called. */
+/* Maps an entry into memory for reading; close it with cache_file_close(). Returns false if there is no valid entry; then it need not be
+ * closed. */
 bool build_cache_open(struct cache_file *entry, const char *folder, enum build_cache_kind kind, uint64_t key);
-/* Writes an entry from these parts, in order, replacing an existing one. Returns 0 or -errno. */
+/* Writes an entry that consists of these parts, in order, and replaces an existing one. Returns 0 or -errno. */
 int build_cache_write(const char *folder, enum build_cache_kind kind, uint64_t key, const struct atomic_file_part *parts,
                       size_t part_count);
 

@@ -14,9 +14,10 @@
 #include "preprocess/cache/file_io.h"
 #include "protocol/asset_distance.h"
 
-struct distance_slot { /* header of a slot; the column follows */
+struct distance_slot { /* header of a slot (file range for one column); the column's distances follow */
     double place_m[3];
-    uint64_t checksum; /* XXH3-64 of key, position and column; wrong if the slot was only partially written or belongs to another key */
+    /* XXH3-64 of the file's key, the position and the column; wrong if the slot was only partially written or belongs to another key */
+    uint64_t checksum;
 };
 
 static size_t slot_bytes(const struct distance_cache *cache)
@@ -35,7 +36,8 @@ static uint64_t checksum_of(const struct distance_cache *cache, size_t place, co
     return XXH3_64bits_withSeed(codes, cache->length * sizeof(*codes), seed);
 }
 
-/* Finds the slot of each position. Positions without a slot get unused ones, then new ones at the end. */
+/* Finds the slot of each sensor position in the file. A position without a slot gets an unused slot, or a new one at the end of the
+ * file. */
 static void deal_slots(struct distance_cache *cache)
 {
     struct stat st;
@@ -71,7 +73,7 @@ void distance_cache_open(struct distance_cache *cache, const char *folder, uint6
     cache->slots = mem_array(count, sizeof(*cache->slots));
     for (size_t p = 0; p < count; p++)
         cache->slots[p] = SIZE_MAX;
-    deal_slots(cache); /* if the cache file could not be opened, no position has a slot */
+    deal_slots(cache); /* called also if the cache file could not be opened: then no position gets a slot */
     mem_free(path);
 }
 
@@ -119,7 +121,7 @@ static void keep(void *arg, size_t source, float *distances_m)
     memcpy(slot.place_m, cache->places_m[source], sizeof(slot.place_m));
     if (!cache->may_write || !file_write(cache->fd, &slot, sizeof(slot), at) ||
         !file_write(cache->fd, codes, cache->length * sizeof(*codes), at + (off_t)sizeof(slot)))
-        cache->may_write = false; /* write no more; the partially written slot has no valid checksum, so it counts as absent */
+        cache->may_write = false; /* write nothing more; the partially written slot has no valid checksum, so it counts as absent */
     mem_free(codes);
 }
 

@@ -4,7 +4,8 @@
 #include <errno.h>
 #include <unistd.h>
 
-/* Advances the range by the byte count that a read or write returned. Returns false on an error, or if no bytes were transferred. */
+/* Advances the range by the number of bytes that a read or write transferred. Returns false on an error, or if no bytes were
+ * transferred. */
 static bool went_on(ssize_t done, size_t *bytes, off_t *at)
 {
     if (done < 0)

@@ -45,7 +45,7 @@ char *folder_influence_path(const char *folder, uint64_t key)
     return path_of(folder, key, INFLUENCE);
 }
 
-/* Returns the process id in the lock file, or 0 if there is none. */
+/* Returns the process id that the lock file contains, or 0 if there is none. */
 static long holder_of(int fd)
 {
     char text[32] = "";
@@ -140,7 +140,7 @@ int folder_draft(struct folder_draft *draft, const char *folder, uint64_t key, s
 
 void folder_draft_send(const struct folder_draft *draft)
 {
-    /* without sync_file_range(), this early writing is left out; folder_put() then writes everything */
+    /* without sync_file_range(), nothing is written early, and folder_put() writes everything */
     sync_file_range(draft->file.fd, 0, (off_t)draft->size, SYNC_FILE_RANGE_WRITE);
 }
 
@@ -180,8 +180,8 @@ static void add_surface(json_t *asset, const char *folder, uint64_t key)
     mem_free(path);
 }
 
-/* Lists the levels of detail in which subdivision left no edge with a field error, so that the daemon need not measure their errors
- * (server/field/drawn_error.h). */
+/* Lists the levels of detail in which subdivision left no edge with an interpolation error of the field, so that the daemon need not
+ * measure their errors (server/field/drawn_error.h). */
 static void add_resolved(json_t *asset, const char *folder, uint64_t key)
 {
     char *text = folder_report(folder, key);
@@ -232,8 +232,8 @@ static uint64_t cache_key_of(const struct folder_entry *entry, enum build_cache_
     return build_cache_needs_sensors(kind) ? entry->distances_key : entry->geometry_key;
 }
 
-/* Returns whether a name is 16 hexadecimal digits and the ending. *whole receives whether the name ends there; if not, the rest marks the
- * temporary file of an interrupted write. */
+/* Returns whether a name begins with 16 hexadecimal digits and the ending. *whole: true if the name ends there. If not, it is the temporary
+ * file of an interrupted write. */
 static bool is_name(const char *name, const char *ending, bool *whole)
 {
     if (strspn(name, "0123456789abcdef") != KEY_DIGITS || strncmp(name + KEY_DIGITS, ending, strlen(ending)) != 0)
@@ -243,7 +243,7 @@ static bool is_name(const char *name, const char *ending, bool *whole)
     return *whole || (strlen(rest) > 4 && strcmp(rest + strlen(rest) - 4, ".new") == 0);
 }
 
-/* Returns whether the file can be deleted: no manifest entry has its key, or an interrupted write left the file. *is_asset: it is a
+/* Returns whether the file can be deleted: no manifest entry has its key, or an interrupted write left it. *is_asset: true if it is a
  * complete asset file. */
 static bool is_left_over(const char *name, const struct folder_entry *entries, size_t count, bool *is_asset)
 {

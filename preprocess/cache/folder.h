@@ -12,7 +12,7 @@
 #include "base/log/log.h"
 #include "protocol/asset_format.h"
 
-/* A KEY.asset file mapped for reading. */
+/* a KEY.asset file that is mapped for reading */
 struct folder_file {
     void *bytes;
     size_t size;
@@ -36,20 +36,20 @@ int folder_open(struct folder_file *file, const char *folder, uint64_t key, char
 /* Unmaps the file. */
 void folder_close(struct folder_file *file);
 
-/* A KEY.asset file being written through a mapping. It has no visible name before folder_put(). */
+/* A KEY.asset file being written through a mapping. The file has no name before folder_put(). */
 struct folder_draft {
-    void *bytes; /* mapping, initially zeros; NULL: none */
+    void *bytes; /* mapped bytes, initially zeros; NULL: nothing is mapped */
     size_t size;
     struct atomic_file file;
 };
 /* Creates an unnamed file of `size` bytes for KEY.asset, with its disk space reserved, and maps it for writing. Returns 0 or -errno. */
 int folder_draft(struct folder_draft *draft, const char *folder, uint64_t key, size_t size);
-/* Starts writing the draft's current contents to disk without waiting; folder_put() waits until all contents are written. */
+/* Starts writing the draft's contents to disk, and returns without waiting; folder_put() waits until all contents are written. */
 void folder_draft_send(const struct folder_draft *draft);
 /* Writes KEY.report.json (unless report is NULL), then gives the draft its name KEY.asset, so that every asset file has its report. The
  * draft stays mapped until it is closed. Returns 0 or -errno. */
 int folder_put(struct folder_draft *draft, const char *folder, uint64_t key, const char *report);
-/* Unmaps and closes the draft. Deletes it if folder_put() has not named it. A zeroed draft is fine. */
+/* Unmaps and closes the draft. The kernel deletes the file unless folder_put() has named it. A zeroed draft is allowed. */
 void folder_draft_close(struct folder_draft *draft);
 /* Returns the text of KEY.report.json, or NULL if there is none. The caller frees it (mem_free). */
 char *folder_report(const char *folder, uint64_t key);
@@ -60,12 +60,12 @@ struct folder_entry {
     uint64_t key, recipe; /* recipe: plant/recipe.h */
     uint64_t geometry_key, distances_key;
     const char *missing;     /* reason why the asset has no file; NULL: it has one */
-    const double *placement; /* 16 numbers: transform from the asset frame to the plant frame */
+    const double *placement; /* matrix of 16 numbers, column-major: transform from the asset frame to the plant frame */
     const char *const *tags; /* tags of the asset's sensors, in the order of the asset file */
     size_t tag_count;
 };
-/* Writes manifest.json for these entries, unless it is unchanged. Then deletes files whose key no entry has, and counts them in *removed
- * (NULL: deletes nothing). Returns 0 or -errno. */
+/* Writes manifest.json for these entries, unless it is unchanged. Then deletes files whose key no entry has; *removed receives their number
+ * (removed NULL: deletes nothing). Returns 0 or -errno. */
 int folder_finish(const char *folder, const struct folder_entry *entries, size_t count, size_t *removed);
 
 #endif

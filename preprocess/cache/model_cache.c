@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Stores the two lists of the cache, geometry hashes and node positions, in one file. */
+/* Stores the cache's two lists (geometry hashes, node positions) in one file. */
 #include "preprocess/cache/model_cache.h"
 
 #include <string.h>

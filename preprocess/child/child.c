@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Forks, sets limits and connects pipes. The parent reads output until the child ends, a signal arrives or the time limit is reached. */
+/* Forks the child, sets its limits and connects pipes. The parent reads the child's output until the child ends, a signal arrives or the
+ * time limit is reached. */
 #include "preprocess/child/child.h"
 
 #include <errno.h>
@@ -61,16 +62,17 @@ static void limit_all(const struct child_params *params)
     limit(RLIMIT_CORE, 0);
     limit(RLIMIT_NOFILE, MAX_FILES);
     limit(RLIMIT_FSIZE, (rlim_t)8 << 30);
-/* with a sanitizer, set no memory limit, because its shadow memory would count as data */
+/* no memory limit with a sanitizer, because the sanitizer's shadow memory would count as data */
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-    /* limits data instead of address space, because WebAssembly reserves far more address space than it uses */
+    /* limit data memory and not address space, because WebAssembly reserves far more address space than it uses */
     limit(RLIMIT_DATA, params->memory_bytes);
 #else
     (void)params;
 #endif
 }
 
-/* Turns the forked process into the child: process group, limits, descriptors, confinement, program. */
+/* Turns the forked process into the child: sets process group, limits, descriptors and confinement, and executes the program. Does not
+ * return. */
 static void become(const struct child_params *params, int out, int errors, const sigset_t *signals, char **environment)
 {
     setpgid(0, 0);
@@ -133,7 +135,7 @@ error:
     return false;
 }
 
-/* Reads some output. Returns false at the end of the stream. */
+/* Reads some output and appends it to text. Returns false at the end of the stream. */
 static bool take(int fd, struct text *text)
 {
     char bytes[65536];
@@ -179,7 +181,7 @@ static void wait_for(struct child *child, int timeout_s, struct text *out)
     }
 }
 
-/* Returns the last non-empty line of the errors in why. */
+/* Writes the last non-empty line of the error output to why. */
 static void last_line(const struct text *errors, char why[CHILD_WHY_BYTES])
 {
     size_t end = errors->length;
@@ -194,7 +196,7 @@ static void last_line(const struct text *errors, char why[CHILD_WHY_BYTES])
             *c = ' ';
 }
 
-/* Returns whether the child probably failed for lack of memory: it used nearly all of its limit, or an error message says so. */
+/* Returns whether the child probably failed for lack of memory: it used nearly all of its limit, or its error output says so. */
 static bool ran_out(const struct child *child, const struct child_params *params, const struct rusage *usage)
 {
     static const char *const words[] = { "out of memory", "bad_alloc", "Cannot allocate memory", "allocation failed", "memory exhausted" };

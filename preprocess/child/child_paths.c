@@ -88,8 +88,8 @@ static void add_settings(struct child_paths *paths)
         closedir(dir);
 }
 
-/* Adds the files that programs in a folder such as ~/.venv/bin load: certain folders and files next to it, but not all of the parent
- * folder, such as ~/.local. */
+/* Adds the files that programs in a folder such as ~/.venv/bin load: certain files and folders next to it. The whole parent folder, such as
+ * ~/.local, would be too much. */
 static void add_installation(struct child_paths *paths, const char *programs)
 {
     static const char *const parts[] = { "lib", "lib64", "libexec", "versions", "version", "pyvenv.cfg" };
@@ -100,7 +100,7 @@ static void add_installation(struct child_paths *paths, const char *programs)
     }
 }
 
-/* Adds the absolute paths in a text. separators: characters between paths, those of shell commands or of PATH. */
+/* Adds the absolute paths that a text contains. separators: the characters that separate paths in it, a shell command or PATH. */
 static void add_absolute(struct child_paths *paths, const char *text, const char *separators, bool installed)
 {
     for (const char *at = text; *at;) {

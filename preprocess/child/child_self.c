@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Restarts the program confined: calls exec from the confined thread, which makes the kernel end all other threads. */
+/* Executes the program again in a confined thread. exec makes the kernel end all other threads, which are not confined. */
 #include "preprocess/child/child_self.h"
 
 #include <dirent.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Compares hashes of inputs and outputs to decide which models to generate again. */
+/* Compares hashes of inputs and outputs with those of the last run to decide which models must be generated again. */
 #include "preprocess/convert/convert.h"
 
 #include <errno.h>
@@ -21,7 +21,8 @@
 
 static const size_t max_bytes = (size_t)16 << 30, memory_bytes = (size_t)12 << 30;
 
-/* Appends the hash of a file, combined with the hash of the text `also`. Returns false with errno set if the file cannot be read. */
+/* Appends to `out` the hash of a file, combined with the hash of the text `also`. Returns false with errno set if the file cannot be
+ * read. */
 static bool add_hash(const char *path, const char *also, struct text *out)
 {
     size_t size;
@@ -43,7 +44,7 @@ static bool is_made(const json_t *made, const struct plant_conversion *how, cons
     return same;
 }
 
-/* Runs the command in a temporary folder next to the model, so that the model is replaced only when complete. */
+/* Runs the command of a model in a temporary folder next to the model, and replaces the model only if the command succeeds. */
 static bool make(const struct plant_conversion *how, char why[CHILD_WHY_BYTES])
 {
     struct work_folder work;
@@ -120,7 +121,7 @@ bool convert_run(const struct plant *plant, const char *folder, FILE *progress, 
     char *path = mem_printf("%s/conversions.json", folder);
     json_t *made = json_load_file(path, 0, NULL);
     bool good = true;
-    if (!json_is_object(made)) { /* the record of conversions is missing or damaged: generate all models */
+    if (!json_is_object(made)) { /* the record of the last run is missing or damaged: generate all models */
         json_decref(made);
         made = json_object();
     }

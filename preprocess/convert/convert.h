@@ -6,8 +6,8 @@
 #include "plant/plant.h"
 
 /* Runs the command of each model that is missing or was modified, or whose input or command has changed since the last run. Records the
- * results in FOLDER/conversions.json and prints progress on `progress`. Returns false if a command fails; diag then names the line of the
- * plant file, and the model keeps its previous content. */
+ * results in FOLDER/conversions.json and prints progress on `progress`. Returns false if a command fails; diag then names the command's
+ * line of the plant file, and the model keeps its previous content. */
 bool convert_run(const struct plant *plant, const char *folder, FILE *progress, struct diag *diag);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Builds coloured shapes that show one asset's surface, its distances, its sample points and the bridges over its gaps. */
+/* Builds the coloured shapes of a debug view of one asset: its surface, distances, sample points, and the bridges over its gaps. */
 #include "preprocess/debug/debug_view.h"
 
 #include <math.h>
@@ -15,7 +15,7 @@
 
 #define ISOLINES 20  /* maximum number of isolines */
 #define LIFT 3e-4    /* offset of isolines and open edges from the surface, on both sides, relative to the asset's size */
-#define MARK 0.3     /* length of the cross that marks a bridge, in spacings of the surface points */
+#define MARK 0.3     /* length of the cross that marks a bridge, in multiples of the spacing of the surface points */
 #define SENSOR 0.012 /* relative to the size */
 #define DARKEST 0.75 /* brightness of faces seen edge-on */
 static const double light[3] = { 0.36, -0.48, 0.8 };
@@ -35,11 +35,11 @@ struct debug_drawing {
 struct soup { /* a shape being built */
     float (*positions)[3];
     uint16_t (*colors)[4];
-    uint32_t *indices, *vertex_of; /* index of the surface point's vertex in this shape + 1; 0: the shape has none yet */
+    uint32_t *indices, *vertex_of; /* vertex_of: by surface point, index of its vertex in this shape + 1; 0: the shape has none yet */
     size_t vertices, indices_used, position_room, color_room, index_room;
 };
 
-/* Adds a vertex, converted from Z up to Y up. */
+/* Adds a vertex, converted from Z up to Y up. Returns its index. */
 static uint32_t add_vertex(struct soup *soup, const double p[3])
 {
     mem_grow(&soup->positions, &soup->position_room, soup->vertices + 1, sizeof(*soup->positions));
@@ -82,7 +82,7 @@ static void face_normal(const struct surface_debug_mesh *look, size_t t, double 
     vec_normal(look->points_m[v[0]], look->points_m[v[1]], look->points_m[v[2]], n);
 }
 
-/* Computes a normal for each point; faces may have either orientation. */
+/* Computes a normal for each surface point from the triangles around it, whose orientation may be inconsistent. */
 static double (*find_normals(const struct surface_debug_mesh *look))[3]
 {
     double(*normals)[3] = mem_array(look->point_count, sizeof(*normals));
@@ -161,7 +161,7 @@ static void draw_surfaces(struct debug_drawing *drawing)
 
 /* --- lines on surfaces --------------------------------------------------------------------------------------------------------- */
 
-/* Draws a line twice, on both sides of the surface, because the surface would hide one copy from the other side. */
+/* Draws a line twice, slightly above each side of the surface, because the surface would hide a single line from one side. */
 static void add_lifted(struct soup *soup, const struct debug_drawing *drawing, size_t t, const double a[3], const double b[3])
 {
     double n[3], length;
@@ -178,7 +178,7 @@ static void add_lifted(struct soup *soup, const struct debug_drawing *drawing, s
     }
 }
 
-/* Returns the isoline spacing: 1, 2 or 5 times a power of ten. */
+/* Returns the step between isolines: 1, 2 or 5 times a power of ten. */
 static double isoline_step(double range_m)
 {
     double least = range_m / ISOLINES, power = pow(10, floor(log10(least)));

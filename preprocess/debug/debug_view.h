@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Writes a GLB file that shows how distances were computed on one asset, for any 3D viewer: surface, distances, sensors, and bridges
- * (connections over gaps). REPORT.md explains its nodes. Thread: any, one per call. */
+ * (connections over gaps). REPORT.md explains the nodes of the file. Thread: any, one per call. */
 #ifndef PREPROCESS_DEBUG_VIEW_H
 #define PREPROCESS_DEBUG_VIEW_H
 #include "surface/surface.h"
 
-/* Input of a debug view; all pointers are borrowed for the call. */
+/* input of a debug view; the caller keeps ownership of all pointers */
 struct debug_view {
     const char *name;              /* name of the asset */
     const struct surface *surface; /* Z up */

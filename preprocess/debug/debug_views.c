@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes debug views, model by model. */
+/* Writes the debug views of all wanted assets, one model after the other. */
 #include "preprocess/debug/debug_views.h"
 
 #include <ctype.h>
@@ -41,7 +41,7 @@ char *debug_views_folder(const struct plant *plant)
     return folder;
 }
 
-/* Returns the path of an asset's file; characters unsuitable in file names are written as %XX. */
+/* Returns the path of an asset's debug view; characters unsuitable in file names are written as %XX. The caller frees it. */
 static char *file_of(const char *folder, const char *id)
 {
     struct text name = { 0 };
@@ -137,7 +137,7 @@ static bool is_wanted(const struct views *views, const struct plant_asset *asset
     return tag < 0 || views->plant->tags[tag].asset == (int)(asset - views->plant->assets);
 }
 
-/* Writes the views of all wanted assets of one model, which is parsed only if there are any. */
+/* Writes the debug views of all wanted assets of one model. A model without wanted assets is not parsed. */
 static void write_model(struct views *views, struct model_file *model)
 {
     for (size_t i = 0; i < views->plant->asset_count; i++) {

@@ -11,9 +11,10 @@
 
 struct debug_views_params {
     const char *folder;
-    const char *asset;  /* id of the only asset to show; NULL: all assets */
-    const char *sensor; /* name of a sensor: shows only its asset, with distances from this sensor; NULL: each asset's first sensor */
-    FILE *say;          /* receives the names of the written files; NULL: prints nothing */
+    const char *asset; /* id of the only asset to show; NULL: all assets */
+    /* name of a sensor: only its asset is shown, with distances from this sensor; NULL: distances from each asset's first sensor */
+    const char *sensor;
+    FILE *say; /* receives the names of the written files; NULL: prints nothing */
 };
 
 /* Reads the plant's models, computes distances and writes a GLB for each asset that params select. Errors go to diag. Returns false if any
@@ -21,7 +22,7 @@ struct debug_views_params {
 bool debug_views_write(struct log *log, struct workers *workers, const struct plant *plant, const struct debug_views_params *params,
                        struct diag *diag);
 
-/* Returns the default folder: NAME.debug next to NAME.yaml. The caller frees it (mem_free). */
+/* Returns the default folder for debug views: NAME.debug next to NAME.yaml. The caller frees it (mem_free). */
 char *debug_views_folder(const struct plant *plant);
 
 #endif

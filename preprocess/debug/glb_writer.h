@@ -8,10 +8,10 @@
 
 enum glb_mode { GLB_POINTS = 0, GLB_LINES = 1, GLB_TRIANGLES = 4 };
 
-struct glb_shape { /* shape of one node; Y is up */
+struct glb_shape { /* triangles, lines or points of one node; Y is up */
     enum glb_mode mode;
     const float (*positions)[3];
-    const uint16_t (*colors)[4]; /* linear vertex colours, where 65535 is 1; NULL: `color` applies to all vertices */
+    const uint16_t (*colors)[4]; /* colours of the vertices, linear, 65535 is 1; NULL: `color` applies to all vertices */
     const uint32_t *indices;     /* vertex indices; NULL: the vertices are used in order */
     size_t vertex_count, index_count;
     uint8_t color[3]; /* sRGB */
@@ -28,7 +28,7 @@ void glb_writer_add(struct glb_writer *writer, const char *name, const struct gl
 /* Writes the scene to `path`. Returns 0 or -errno. */
 int glb_writer_save(struct glb_writer *writer, const char *path);
 
-/* Converts an 8-bit sRGB component to linear, where 65535 is 1. */
+/* Converts an 8-bit sRGB component to linear, where 65535 is 1.0. */
 uint16_t glb_linear(uint8_t srgb);
 
 #endif

@@ -18,7 +18,7 @@
 
 const char *const diff_changes[DIFF_CHANGES] = { "same", "added", "removed", "moved", "changed" };
 
-struct pair_half { /* an asset in one of the two revisions */
+struct pair_half { /* an asset in one of the two revisions that are compared */
     const struct diff_side_asset *asset;
     struct diff_side_shape shape;
     struct diff_shape *tree;
@@ -79,7 +79,8 @@ static bool equal_shapes(const struct diff_side_shape *a, const struct diff_side
            memcmp(a->indices, b->indices, a->index_count * sizeof(*a->indices)) == 0;
 }
 
-/* Computes the motion in the plant frame from the old asset to the new one. new_to_old: motion between the shapes in their own frames. */
+/* Computes the motion in the plant frame from the old asset to the new one. new_to_old: motion that maps the new shape to the old one, each
+ * in its own frame. */
 static void plant_motion(const struct asset_pair *pair, const double new_to_old[16], double motion[16])
 {
     double plant_to_old[16], old_to_new[16], step[16];
@@ -89,7 +90,7 @@ static void plant_motion(const struct asset_pair *pair, const double new_to_old[
     transform_multiply(step, plant_to_old, motion);
 }
 
-/* Returns the largest movement of a corner of the old asset's box between the old and the new position. */
+/* Returns the largest distance, in metres, between the old and the new position of a corner of the old asset's bounding box. */
 static double moved_by(const struct asset_pair *pair, const double new_to_old[16], double *turned_deg)
 {
     double motion[16], plant_to_old[16], step[16], local[16];
@@ -101,7 +102,7 @@ static double moved_by(const struct asset_pair *pair, const double new_to_old[16
     return diff_shape_moved(pair->old_half.tree, local);
 }
 
-/* Returns whether the shapes are equal after applying new_to_old, so that the asset is unchanged or only moved. */
+/* Returns whether the shapes are equal after the motion new_to_old, which means that the asset is unchanged or only moved. */
 static bool same_shape(struct asset_pair *pair, const double new_to_old[16], bool equal)
 {
     if (!equal && diff_shape_apart(pair->old_half.tree, pair->new_half.tree, new_to_old, pair->tolerance_m) > pair->tolerance_m)
@@ -117,7 +118,7 @@ static void compare_shapes(struct asset_pair *pair)
     double in_place[16], plant_to_old[16], turned[16], middle_old[3], middle_new[3];
     bool equal = equal_shapes(&old_half->shape, &new_half->shape);
     transform_invert(old_half->to_plant, plant_to_old);
-    /* transform from the new to the old shape, with both at their positions in the plant */
+    /* transform from the new shape's frame to the old shape's frame, with both at their positions in the plant */
     transform_multiply(plant_to_old, new_half->to_plant, in_place);
     transform_point(old_half->to_plant, (const double[3]){ 0, 0, 0 }, middle_old);
     transform_point(new_half->to_plant, (const double[3]){ 0, 0, 0 }, middle_new);
@@ -136,7 +137,8 @@ static void compare_shapes(struct asset_pair *pair)
 
 /* --- its sensors ------------------------------------------------------------------------------------------------------------------ */
 
-/* Computes the position of a sensor and of the nearest surface point, in the plant frame. Returns their distance. */
+/* Computes the position of a sensor and of the surface point nearest to it, in the plant frame. Returns the distance between them,
+ * metres. */
 static double place_sensor(const struct pair_half *half, size_t column, double place_m[3], double surface_m[3])
 {
     double nearest_m[3];
@@ -147,8 +149,8 @@ static double place_sensor(const struct pair_half *half, size_t column, double p
 }
 
 /* Returns how far the surface at a sensor moved, metres. For a sensor on the axis of a pipe, many surface points are equally near, and
- * rounding decides which one is found. So the surface counts as unmoved if the new surface still passes through the old point, and that
- * point is about as near as the nearest one. */
+ * rounding decides which one is found. So the surface counts as unmoved if the new surface passes through the old nearest point, and that
+ * point is about as near as the new one. */
 static double surface_moved(const struct asset_pair *pair, const double place_m[3], const double old_m[3], const double new_m[3])
 {
     double plant_to_new[16], at[3], still_m[3], moved_m = vec_distance(old_m, new_m);
@@ -198,8 +200,8 @@ static void compare_sensors(struct diff *diff, struct asset_pair *pair)
     }
 }
 
-/* Searches the new model for a renamed node: one with the old shape at the old position. If found, `why` names that node; otherwise `why`
- * keeps the suggestion of a similar name. */
+/* Searches the new model for a renamed node: one with the old shape at the old position. If there is one, writes its name to `why`;
+ * otherwise `why` stays as it is and suggests a similar name. */
 static void find_renamed(struct diff *diff, const struct asset_pair *pair, const struct diff_side_asset *asset, double tolerance_m,
                          char *why)
 {
@@ -235,7 +237,7 @@ static void find_renamed(struct diff *diff, const struct asset_pair *pair, const
     }
 }
 
-/* Reports tags of an asset that is in the new plant file but not in its model. */
+/* Reports the tags of an asset that the new plant file contains but the new model does not. */
 static void lose_sensors(struct diff *diff, const char *id, const char *why)
 {
     for (size_t i = 0; i < diff->new_side.tag_count; i++) {
@@ -283,7 +285,7 @@ static int by_model(const void *a, const void *b)
     return (*p)->work != (*q)->work ? ((*p)->work < (*q)->work ? -1 : 1) : *p < *q ? -1 : *p > *q;
 }
 
-/* Compares the new plant's assets model by model, so that each model is parsed once. */
+/* Compares the new plant's assets, model by model, so that each model is parsed only once. */
 static void compare_assets(struct diff *diff, double tolerance_m)
 {
     const struct diff_side *now = &diff->new_side;

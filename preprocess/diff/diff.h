@@ -13,20 +13,21 @@ extern const char *const diff_changes[DIFF_CHANGES];
 struct diff_asset {
     const char *id;
     enum diff_change change;
-    char *why;        /* removed assets: reason if the id still exists in the new plant, such as a missing node; else NULL */
-    double move_m[3]; /* movement of the centre of the asset's box, metres, plant frame */
-    double moved_m;   /* largest movement of a corner of the asset's box, metres */
+    /* why a removed asset whose id the new plant still has counts as removed, such as a missing node; else NULL */
+    char *why;
+    double move_m[3]; /* movement of the centre of the asset's bounding box, metres, plant frame */
+    double moved_m;   /* largest movement of a corner of the asset's bounding box, metres */
     double turned_deg;
-    double apart_m;      /* changed assets: largest distance between the two surfaces after aligning them */
+    double apart_m;      /* changed assets only: largest distance between both surfaces after they were aligned, metres */
     double tolerance_m;  /* smaller changes count as none */
     size_t triangles[2]; /* old, new */
 };
 
 struct diff_sensor {         /* a tag that is a sensor in both revisions */
     const char *tag, *asset; /* asset: in the new revision */
-    double moved_m;          /* distance between the nearest surface points in the two revisions */
-    double place_moved_m;    /* movement of the position stated by the tag list or the node */
-    double distance_m[2];    /* distance from the sensor's position to the surface: old revision, new revision; metres */
+    double moved_m;          /* distance, in metres, between the surface points nearest to the sensor in the two revisions */
+    double place_moved_m;    /* movement, in metres, of the position that the tag list or the sensor's node states */
+    double distance_m[2];    /* distance from the sensor's position to the surface in the old [0] and in the new [1] revision, metres */
     double limit_m;          /* distance from the surface above which the report warns, metres */
     double tolerance_m;
     bool far_moved; /* the surface under the sensor moved by more than the tolerance */
@@ -47,13 +48,13 @@ struct diff {
     size_t asset_room, sensor_room, orphan_room, added_room, removed_room;
 };
 
-/* Reads and compares both plants into *diff. tolerance_m: smaller changes count as none; 0 means 10 mm, or 1 % of the asset's diagonal if
- * that is less. Returns false if a plant cannot be read, with the reason in diag. Call diff_finish() in both cases. */
+/* Reads and compares both plants into *diff. tolerance_m: changes up to this are ignored; 0: 10 mm, or 1 % of the asset's diagonal if that
+ * is less. Returns false if a plant cannot be read, with the reason in diag. Call diff_finish() in both cases. */
 bool diff_run(struct diff *diff, const char *old_path, const char *new_path, double tolerance_m, struct diag *diag);
 /* Frees the result of diff_run(). */
 void diff_finish(struct diff *diff);
 
-/* Prints the comparison as text for a person. */
+/* Prints the comparison as text for users. */
 void diff_text(const struct diff *diff, FILE *out);
 /* Prints the comparison as one JSON object. Returns false if out of memory. */
 bool diff_json(const struct diff *diff, FILE *out);

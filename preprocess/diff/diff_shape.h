@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Measures two triangle shapes against each other: distance, rigid motion, nearest points. Thread: any. */
+/* Compares two triangle shapes: largest distance, rigid motion, nearest points. Thread: any. */
 #ifndef PREPROCESS_DIFF_SHAPE_H
 #define PREPROCESS_DIFF_SHAPE_H
 #include "preprocess/diff/diff_side.h"
@@ -16,20 +16,21 @@ void diff_shape_box(const struct diff_shape *shape, double low_m[3], double high
 /* Returns the diagonal of the shape's bounding box in metres. */
 double diff_shape_diagonal(const struct diff_shape *shape);
 
-/* Finds the point of the surface nearest to point_m and writes it to place_m. Returns its distance in metres. */
+/* Finds the point of the surface nearest to point_m and writes it to place_m. Returns the distance between both in metres. */
 double diff_shape_nearest(const struct diff_shape *shape, const double point_m[3], double place_m[3]);
 
-/* Returns the largest distance between the two surfaces, in both directions, after moving b by the matrix b_to_a. Measures at corners and
- * at points spread over the triangles. If enough_m is not 0, stops once the distance exceeds it. */
+/* Returns the largest distance, in metres, between a point of one surface and the other surface, in both directions, after b was moved by
+ * the matrix b_to_a. Measures at corners and at points spread over the triangles. If enough_m is not 0, stops once the distance exceeds
+ * enough_m. */
 double diff_shape_apart(const struct diff_shape *a, const struct diff_shape *b, const double b_to_a[16], double enough_m);
 
-/* Finds the rigid motion from b's vertices to a's. Returns false if their numbers of vertices differ; assumes the same order of
+/* Finds the rigid motion that maps b's vertices to a's. Returns false if their numbers of vertices differ; assumes the same order of
  * vertices. */
 bool diff_shape_motion(const struct diff_shape *a, const struct diff_shape *b, double b_to_a[16]);
 
 /* Returns the largest distance by which `motion` moves a corner of the shape's bounding box, in metres. */
 double diff_shape_moved(const struct diff_shape *shape, const double motion[16]);
-/* Returns the rotation angle of a rigid motion in degrees. */
+/* Returns the angle, in degrees, by which a rigid motion rotates. */
 double diff_turned_deg(const double motion[16]);
 
 #endif

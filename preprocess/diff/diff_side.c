@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads assets from a plant file with models, or from a folder of prepared files, one asset at a time. */
+/* Reads the assets of a plant, one at a time, from a plant file with models or from a folder of prepared files. */
 #include "preprocess/diff/diff_side.h"
 
 #include <errno.h>
@@ -83,7 +83,7 @@ static struct gltf_model *parse(struct diff_side *side, struct model_file *model
     return &model->parsed;
 }
 
-/* Cuts the geometry out of the model and takes over its triangles. */
+/* Cuts the geometry of an asset out of the model. The shape takes ownership of its triangles and positions. */
 static bool cut_shape(const struct gltf_model *model, const struct geometry_params *params, struct diff_side_shape *shape, char *why)
 {
     struct geometry g;
@@ -95,7 +95,7 @@ static bool cut_shape(const struct gltf_model *model, const struct geometry_para
                                        .index_count = g.index_count,
                                        .own = true };
     memcpy(shape->origin_m, g.origin_m, sizeof(shape->origin_m));
-    g.positions_m = NULL; /* owned by the shape now */
+    g.positions_m = NULL; /* the shape owns this array from here on */
     g.indices = NULL;
     geometry_finish(&g);
     return true;

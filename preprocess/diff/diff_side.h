@@ -9,7 +9,7 @@
 
 struct diff_side_tag {
     const char *name;
-    const char *asset; /* asset id in the tag's row of the tag list, even if there is no such asset; "": none */
+    const char *asset; /* id in the column `asset` of the tag list's row, even if there is no such asset; "": none */
     size_t column;     /* index of the tag's sensor among the sensors of its asset */
     bool is_sensor;
 };
@@ -17,11 +17,11 @@ struct diff_side_tag {
 struct diff_side_asset {
     const char *id;
     double placement[16]; /* transform from the asset frame to the plant frame */
-    uint64_t work;        /* index of the asset's model; assets with equal indices use the same model */
+    uint64_t work;        /* identifies the asset's model; assets with equal values use the same model */
     /* Set only for a plant file: */
     const struct plant_asset *plant;
     size_t model;
-    /* Set only for a folder: */
+    /* set only for a folder */
     uint64_t key;
 };
 
@@ -30,10 +30,10 @@ struct diff_side {
     struct diff_side_asset *assets;
     struct diff_side_tag *tags; /* sorted by name */
     size_t asset_count, tag_count;
-    struct plant *plant; /* the plant that was read; NULL: the side is a folder of prepared files */
+    struct plant *plant; /* the plant that was read; NULL: a folder of prepared files is compared */
     struct model_files models;
     struct model_file *parsed; /* the model currently in memory */
-    char *manifest;            /* text of the manifest; `root` owns the strings of this struct */
+    char *manifest;            /* text of the manifest; the strings of the assets and tags belong to `root`, the parsed manifest */
     void *root;
 };
 
@@ -51,21 +51,21 @@ struct diff_side_shape { /* triangles and sensor positions of an asset, relative
     const uint32_t *indices;
     size_t vertex_count, index_count;
     double (*places_m)[3]; /* positions of the asset's sensors; NaN if a sensor's node does not exist */
-    char **whys;           /* by sensor: reason why its node is missing or ambiguous; NULL: its position is known */
+    char **whys;           /* by sensor: reason why its node is missing or ambiguous; NULL: the sensor's position is known */
     size_t sensor_count;
     bool own; /* the shape owns the arrays; false: they point into the mapped file */
     struct folder_file file;
 };
-/* Reads an asset's triangles and sensor positions into *shape. Returns false with the reason in why if the plant does not have them;
- * otherwise call diff_side_shape_finish(). */
+/* Reads an asset's triangles and sensor positions into *shape. Returns false with the reason in why if they cannot be read; otherwise call
+ * diff_side_shape_finish(). */
 bool diff_side_shape(struct diff_side *side, const struct diff_side_asset *asset, struct diff_side_shape *shape, char why[MODEL_WHY_BYTES]);
 /* A bounding box in the asset frame, metres. */
 struct diff_side_box {
     double low_m[3], high_m[3];
 };
-/* Searches the asset's model, starting at node *node, for a node whose subtree has this bounding box (asset frame) within tolerance_m.
- * Writes its index to *node, and to name its quoted name, or its number if the name is not unique. Returns false if there is none or the
- * side is a folder. */
+/* Searches the asset's model for a node whose subtree has this bounding box (asset frame) within tolerance_m, from the node with index
+ * *node on. Writes the index of the found node to *node, and to name its quoted name, or "#number" if the name is not unique. Returns false
+ * if there is no such node, or if this plant is a folder of prepared files. */
 bool diff_side_node_in_box(struct diff_side *side, const struct diff_side_asset *asset, const struct diff_side_box *box, double tolerance_m,
                            uint32_t *node, char *name, size_t name_bytes);
 /* Like diff_side_shape(), but with the triangles of model node `node` instead of the asset's own, and without sensors. */

@@ -22,7 +22,7 @@ void glb_file_finish(struct glb_file *file)
     text_finish(&file->bytes);
 }
 
-/* All elements are multiples of 4 bytes long, so every view is aligned. */
+/* every element is a multiple of 4 bytes long, so every buffer view is aligned */
 int glb_file_add(struct glb_file *file, const void *bytes, size_t each, size_t count, int component, const char *type, int target)
 {
     json_array_append_new(file->views, json_pack("{s:i,s:I,s:I,s:i}", "buffer", 0, "byteOffset", (json_int_t)file->bytes.length,
@@ -61,7 +61,7 @@ static void begin_chunk(struct text *out, const char *type, size_t count)
     text_add_bytes(out, type, 4);
 }
 
-/* Writes the buffer's bytes without copying them, because they may be gigabytes. */
+/* Writes the buffer's bytes to the file without copying them in memory, because they may be gigabytes. */
 int glb_file_put(json_t *root, const struct text *bytes, const char *path)
 {
     char *json = json_dumps(root, JSON_COMPACT | JSON_REAL_PRECISION(17));

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Builds a glTF scene: nodes with names, matrices and properties; meshes that nodes can share; materials without duplicates. One thread per
+/* Builds a glTF scene: nodes with names, matrices and properties; meshes that nodes can share; each material only once. One thread per
  * scene. */
 #ifndef PREPROCESS_GLB_GLB_SCENE_H
 #define PREPROCESS_GLB_GLB_SCENE_H
@@ -27,13 +27,14 @@ struct glb_scene *glb_scene_create(const char *generator);
 /* Frees the scene and sets *scene to NULL. *scene may be NULL. */
 void glb_scene_destroy(struct glb_scene **scene);
 
-/* Returns the index of a matt, double-sided material with this linear colour and opacity. */
+/* Returns the index of a matt, double-sided material with this linear colour and opacity; adds it at the first call. */
 int glb_scene_material(struct glb_scene *scene, const double rgba[4]);
 /* Adds a mesh and returns its index. The mesh must have triangles before the scene is written. */
 int glb_scene_add_mesh(struct glb_scene *scene, const char *name);
 /* Adds triangles of one material to a mesh; copies the arrays. */
 void glb_scene_add_triangles(struct glb_scene *scene, int mesh, const struct glb_scene_triangles *triangles);
-/* Adds a node below `parent` (-1: a root) and returns its index. mesh: index, or -1 for none. matrix: column-major; NULL: identity. */
+/* Adds a node below the node `parent` (-1: as a root) and returns its index. mesh: index of its mesh; -1: none. matrix: column-major; NULL:
+ * identity. */
 int glb_scene_add_node(struct glb_scene *scene, int parent, const char *name, int mesh, const double matrix[16]);
 /* Sets a property of a node in its extras. Text that is not UTF-8 is taken as Latin-1, as for names. */
 void glb_scene_set_property(struct glb_scene *scene, int node, const char *key, const char *value);

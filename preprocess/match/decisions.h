@@ -8,27 +8,27 @@
 
 struct decision { /* one row of the file */
     char *tag, *asset;
-    enum match_status status; /* status in the file; for a row edited by hand, the status that the edit implies */
-    bool by_hand, edited;     /* by_hand: a person made the decision; edited: a person changed the row since the last run wrote it */
-    char *row;                /* text of the whole row with its line end */
+    enum match_status status; /* status in the file; for an edited row, the status that the edit implies */
+    bool by_hand, edited;     /* by_hand: a person made the decision; edited: a person changed the row after the last run wrote it */
+    char *row;                /* text of the whole row with its line end, as in the file */
 };
 
 struct decisions {       /* zero-initialise */
     struct decision *at; /* in file order */
-    int *by_tag;         /* index of each tag's first decision, sorted by tag, case-insensitive */
+    int *by_tag;         /* indices of decisions, sorted by tag (case-insensitive): the first decision of each tag */
     size_t count, capacity, tags;
 };
 
 /* Reads a file written by decisions_add_row(), possibly edited since, or one with only the columns Tag, Status and Asset. A missing file
- * counts as empty. Decisions already in `decisions` take precedence over the file's for the same tag. Returns false with the reason in
- * why. */
+ * counts as empty. A decision that `decisions` already contains takes precedence over the file's decision about the same tag. Returns false
+ * with the reason in why. */
 bool decisions_read(struct decisions *decisions, const char *path, char why[MATCH_WHY_BYTES]);
 /* Returns the decision about a tag, or NULL if there is none. */
 const struct decision *decisions_of(const struct decisions *decisions, const char *tag);
 void decisions_finish(struct decisions *decisions);
 
-/* Returns the file's text without the rows of these tags, so that the next run matches them again. The caller frees it (mem_free). Returns
- * NULL if the text cannot be parsed. */
+/* Returns the file's text without the rows of these tags, so that the next run matches the tags again. The caller frees the text
+ * (mem_free). Returns NULL if the text cannot be parsed. */
 char *decisions_without(const char *text, const char *const *tags, size_t count);
 
 /* Append the header line, or one row. Several assets that a tag may belong to are separated by bars. The row's last cell is a check of the

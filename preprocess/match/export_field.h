@@ -15,7 +15,7 @@ enum export_field { /* all fields are text; numbers use a decimal point */
                     EXPORT_SCALED_HIGH,
                     EXPORT_UNIT,
                     EXPORT_DESCRIPTION,
-                    EXPORT_AREA, /* area, folder or path in the control system */
+                    EXPORT_AREA, /* area, folder or path of the tag in the control system */
                     EXPORT_DEVICE,
                     EXPORT_LL,
                     EXPORT_L,

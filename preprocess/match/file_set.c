@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes all temporary files, then renames each to its final name. */
+/* Writes the new content of all files to temporary files, then renames each to its final name. */
 #include "preprocess/match/file_set.h"
 
 #include <dirent.h>
@@ -15,8 +15,8 @@
 
 #include "base/mem.h"
 
-/* age in seconds from which an orphaned file is removed; the writer may be a process of another container or machine, invisible here, but
- * it would have finished by then */
+/* age in seconds from which a temporary file is removed as a leftover. Its writer may be a process of another container or machine, which
+ * cannot be seen from here, but would have finished by then. */
 enum { LEFT_S = 60 };
 
 static bool is_old(int folder, const char *name)

@@ -15,7 +15,8 @@ struct file_set { /* zero-initialise */
     int count;
 };
 
-/* Locks the folder as plant_folder_lock() does, and removes temporary files left by killed runs. */
+/* Locks the folder as plant_folder_lock() does, and removes temporary files that killed runs left. Returns the descriptor of the lock, or
+ * -errno. */
 int file_set_lock(const struct plant_folder_params *params, char **why);
 /* Writes the new content of `path` to a temporary file in the same folder, with the owner and mode of the existing file. If `path` is a
  * symlink, its target will be replaced. */
@@ -23,6 +24,7 @@ int file_set_add(struct file_set *set, const char *path, const char *text);
 /* Renames all temporary files to their final names. On failure, files renamed so far stay replaced, and the other temporary files are
  * removed. */
 int file_set_commit(struct file_set *set);
-void file_set_abandon(struct file_set *set); /* removes the temporary files that were not committed; an empty set is fine */
+/* Removes the temporary files that were not committed, and empties the set. The set may be empty. */
+void file_set_abandon(struct file_set *set);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decomposes text with utf8proc, replaces or drops characters, and composes it again. */
+/* Decomposes text into base characters and accents with utf8proc, replaces or drops characters, and composes the text again. */
 #include "preprocess/match/fold.h"
 
 #include <stdbool.h>

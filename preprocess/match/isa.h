@@ -7,15 +7,16 @@
 
 enum isa_role { /* role of the tag's value */
                 ISA_MEASURED,
-                ISA_STATE,   /* the tag is a state of a switch, alarm, valve end position or command */
-                ISA_SETTING, /* the tag is a set point, output, limit or tuning parameter */
+                ISA_STATE,   /* the value is the state of a switch, alarm, valve end position or command */
+                ISA_SETTING, /* the value is a set point, output, limit or tuning parameter */
 };
 
 struct isa_name {
     struct name_tokens tokens; /* tokens of the name without a trailing attribute such as PV */
-    int letters, number;       /* indices of the tokens with the letters and the loop number; -1: none */
-    const char *suffix;        /* suffix: a single letter after the loop number; "": none */
-    char variable;             /* letter of the measured variable; 'd': differential pressure; 0: unknown */
+    /* letters, number: indices of the tokens with the identification letters and with the loop number; -1: none */
+    int letters, number;
+    const char *suffix; /* suffix: a single letter after the loop number; "": none */
+    char variable;      /* letter of the measured variable; 'd': differential pressure; 0: unknown */
     enum isa_role role;
     const char *attribute; /* trailing attribute word that states the role, such as SP; "": none */
 };

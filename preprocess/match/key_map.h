@@ -6,8 +6,8 @@
 
 struct key_thing {
     char *key;
-    int asset, node; /* node index; -1: the asset itself */
-    int next;        /* next entry of the same hash slot, an index in things; -1: none */
+    int asset, node; /* asset: index of the asset; node: index of a node of its model, -1: the entry is about the asset itself */
+    int next;        /* index in `things` of the next entry of the same hash slot; -1: none */
 };
 
 struct key_map { /* zero-initialise */
@@ -18,7 +18,7 @@ struct key_map { /* zero-initialise */
 
 /* Adds an entry unless the same asset and node already have this key. Copies the key. */
 void key_map_add(struct key_map *map, const char *key, int asset, int node);
-/* Returns the first entry with the key, or -1. key_map_next() returns the next entry with the same key, or -1. */
+/* Return the index of an entry with the key: key_map_find() of the first one, key_map_next() of the one after an entry. -1: none. */
 int key_map_find(const struct key_map *map, const char *key);
 int key_map_next(const struct key_map *map, int thing);
 void key_map_finish(struct key_map *map);

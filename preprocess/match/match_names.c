@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Matching by name: a node with the tag's name, the site's rules, equipment whose name is part of the tag's name, and the same with a
- * spelling slip. */
+/* Finds equipment by the tag's name: a model node with that name; the site's rules; equipment whose name is part of the tag's name; such
+ * equipment if one of the names has a spelling slip. */
 #include <stdio.h>
 #include <string.h>
 
@@ -122,13 +122,13 @@ bool method_rules(const struct matcher *matcher, const struct match_subject *sub
 static bool is_apart(const struct name_tokens *tokens, int from, int to)
 {
     bool before = tokens->at[from].apart, behind = to == tokens->count || tokens->at[to].apart;
-    /* Returns whether the tokens are followed by a single letter that distinguishes equipment: E-101-A is not E-101. */
+    /* whether a single letter that distinguishes equipment follows the tokens: E-101-A is not E-101 */
     bool letter = to < tokens->count && !tokens->at[to].digits && strlen(tokens->at[to].text) == 1 && tokens->at[to].text[0] <= 'F' &&
                   tokens->at[to - 1].digits;
     return before && behind && !letter;
 }
 
-/* Finds the longest range of tokens that names equipment. Separators must enclose the range. */
+/* Finds the longest range of tokens that names equipment. The range must begin and end at a separator or at an end of the name. */
 static bool find_within(const struct matcher *matcher, const struct name_tokens *tokens, struct proposal *out)
 {
     for (int length = tokens->count; length >= 1; length--)
@@ -158,7 +158,7 @@ bool method_name_within(const struct matcher *matcher, const struct match_subjec
 
 /* --- slips of spelling ------------------------------------------------------------------------------------------------------ */
 
-/* Finds equipment whose name differs from the tag's tokens only by O for 0, or I or L for 1. */
+/* Finds equipment whose name equals tokens of the tag's name, except for O in place of 0, and I or L in place of 1. */
 static bool find_folded(const struct matcher *matcher, const struct name_tokens *tokens, struct proposal *out)
 {
     for (int length = tokens->count; length >= 1; length--)
@@ -176,8 +176,8 @@ static bool find_folded(const struct matcher *matcher, const struct name_tokens 
     return false;
 }
 
-/* Finds equipment with the same digits, and letters that differ by one slip (doubled, missing or swapped). Proposes nothing if several
- * assets match. */
+/* Finds equipment with the same digits as the tag's name, and letters that differ by one slip: a letter doubled, missing or swapped.
+ * Proposes nothing if several assets match. */
 static bool find_slip(const struct matcher *matcher, const struct name_tokens *tokens, struct proposal *out)
 {
     const struct key_map *map = &matcher->site->digits;
@@ -216,7 +216,7 @@ static bool find_ending(const struct matcher *matcher, const struct name_tokens 
             if (!is_apart(tokens, from, from + length) || !candidates_find(&out->candidates, &matcher->site->endings, key))
                 continue;
             const struct name_tokens *of = &matcher->site->assets[out->candidates.assets[0]].tokens;
-            int dropped = of->count - length - 1; /* index of the asset's token before the shared ending */
+            int dropped = of->count - length - 1; /* index of the asset's token before the ending that both names share */
             const struct name_token *before = from > 0 ? &tokens->at[from - 1] : NULL;
             bool contradicts = before && dropped >= 0 && before->digits == of->at[dropped].digits &&
                                strcmp(before->text, of->at[dropped].text) != 0 && !isa_are_letters(before->text);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Matching by text: attributes of nodes, equipment named in the description, words, aliases. */
+/* Finds equipment by text: attributes of nodes, equipment that the tag's description names, words of descriptions, aliases. */
 #include <stdio.h>
 #include <string.h>
 
@@ -19,7 +19,7 @@ bool method_attributes(const struct matcher *matcher, const struct match_subject
     return true;
 }
 
-/* Finds equipment by its number, if a word of its name is next to the number in the text. */
+/* Finds equipment by its number in a text, if a word of the equipment's name is next to the number. */
 static void find_numbers(const struct matcher *matcher, const struct name_tokens *tokens, struct match_candidates *out)
 {
     const struct key_map *map = &matcher->site->numbers;
@@ -38,7 +38,7 @@ static void find_numbers(const struct matcher *matcher, const struct name_tokens
     }
 }
 
-/* Proposes all equipment named in the description; where names overlap in the text, only the longest counts. */
+/* Proposes all equipment named in the description; where several names overlap in the text, only the longest is used. */
 bool method_description(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out)
 {
     const struct name_tokens *tokens = &subject->description;
@@ -111,8 +111,8 @@ static void count_own(const char *word, void *data)
     ++*(int *)data;
 }
 
-/* Returns the number of words that a tag's texts must contain for a match by words: those of the asset's description, or fewer if a name
- * without a number has fewer. */
+/* Returns how many words the tag's texts and the asset must have in common for a match by words: the number of words in the asset's
+ * description, or in its name if that has no number and fewer words. */
 static int own_words(const struct model_index *site, int asset)
 {
     int description = 0, name = 0;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Runs the matching methods in order and weighs proposals that disagree. */
+/* Runs the matching methods in order, and decides between proposals that disagree. */
 #include "preprocess/match/matcher.h"
 
 #include <errno.h>
@@ -21,7 +21,7 @@ static const size_t max_table_bytes = (size_t)16 << 20;
 typedef bool (*match_method)(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out);
 static const match_method methods[] = { method_own_node, method_rules,      method_name_within, method_parts, method_spelling,
                                         method_number,   method_attributes, method_description, method_words, method_alias };
-enum { MIN_PREFIXES = 20 }; /* minimum number of names with a prefix; with fewer names, no prefix counts as common */
+enum { MIN_PREFIXES = 20 }; /* minimum number of tag names with a prefix; with fewer, no prefix is taken as common to most names */
 enum { METHODS = sizeof(methods) / sizeof(*methods) };
 
 /* Returns whether two names differ in only one or two characters, so that one may be a typing error for the other. */
@@ -40,8 +40,8 @@ static const char *id_of(const struct matcher *matcher, int asset)
     return matcher->site->plant->assets[asset].id;
 }
 
-/* Returns whether another method's sure proposal contradicts the chosen one. A strong proposal, such as a full name, is contradicted only
- * by equipment with a nearly equal name, because one name may be a typing error. */
+/* Returns whether a sure proposal of another method contradicts the chosen proposal. A strong proposal, such as a full name, is
+ * contradicted only by equipment with a nearly equal name, because one of the names may be a typing error. */
 static bool contradicts(const struct matcher *matcher, const struct proposal *chosen, const struct proposal *other)
 {
     int asset = chosen->candidates.assets[0];
@@ -66,7 +66,8 @@ static void decide(const struct matcher *matcher, const struct proposal proposal
 {
     struct text reason = { 0 };
     char names[200];
-    /* indices in methods; chosen: method whose proposal is taken, -1: none; open: first method that proposed several assets, -1: none */
+    /* indices of methods. chosen: the method whose proposal is taken; -1: none. open: the first method that proposed several assets; -1:
+     * none */
     int chosen = -1, open = -1;
     for (int pass = 0; pass < 2 && chosen < 0; pass++) /* first pass: only sure proposals; second pass: any */
         for (int i = 0; i < METHODS && chosen < 0; i++) {
@@ -131,7 +132,7 @@ static void match_one(const struct matcher *matcher, const struct export_tag *ta
     decide(matcher, proposals, out);
 }
 
-/* --- common prefix of names ------------------------------------------------------------------------------------------------- */
+/* --- prefix that most names have ------------------------------------------------------------------------------------------ */
 
 static int by_text(const void *a, const void *b)
 {

@@ -16,18 +16,20 @@ enum { MATCH_CANDIDATES = 8 };
 
 struct match {
     enum match_status status;
-    int asset, node;   /* the matched asset, and a node of the asset that the tag's name refers to; -1: none */
+    /* asset: index of the matched asset; node: index of the node of the asset to which the tag's name refers; -1: none */
+    int asset, node;
     double confidence; /* 0 to 1 */
     char *reason;      /* reason for the match, one line of English; the caller frees it */
-    int candidates[MATCH_CANDIDATES], candidate_count; /* assets that the tag may belong to if the match is not sure, the likeliest first */
+    /* indices of assets to which the tag may belong if the match is not sure, the likeliest first */
+    int candidates[MATCH_CANDIDATES], candidate_count;
 };
 
-struct match_rule {  /* a rule of the site: tags that match the pattern belong to the equipment */
+struct match_rule {  /* a rule of the site: tags whose name matches the pattern belong to the equipment */
     regex_t pattern; /* POSIX extended regular expression, case-insensitive */
     char *equipment; /* name of the equipment, with \1 to \9 for groups of the pattern */
 };
 
-struct match_alias { /* a name that people use for an asset, as tokens */
+struct match_alias { /* an alias: a name that people use for an asset, as tokens */
     struct name_tokens tokens;
     char *text;
     int asset;
@@ -51,7 +53,7 @@ bool matcher_read_aliases(struct matcher *matcher, const char *path, char why[MA
 struct match *matcher_run(struct matcher *matcher, const struct tag_export *list);
 void matches_free(struct match *matches, size_t count); /* NULL is fine */
 void matcher_finish(struct matcher *matcher);
-/* Returns the asset with this id, tag or an unambiguous spelling of either; -1: none. */
+/* Returns the index of the asset whose id or tag is `name`, exactly or in another unambiguous spelling; -1: none. */
 int matcher_find_asset(const struct matcher *matcher, const char *name);
 
 #endif

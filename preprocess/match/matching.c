@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads and matches a tag list, composes the new files, and writes them if the resulting plant can be loaded. */
+/* Reads a tag list, matches its tags, composes the new files, and writes them if the plant they describe can be loaded. */
 #include "preprocess/match/matching.h"
 
 #include <errno.h>
@@ -38,9 +38,11 @@ struct matching_run {
     struct tag_rows rows;
     struct tag_source source;
     char *result;                                      /* output lines for people */
-    char *plant_text, *new_text;                       /* plant file: current text and new text */
-    char *plant_before, *tags_before, *matches_before; /* texts at the start of the run; NULL: the file does not exist */
-    /* left_names: names of the first tags that are missing from the new tag list, for the report */
+    char *plant_text, *new_text;                       /* text of the plant file: current text, and text to write */
+    /* texts of the plant file, the tag list and matches.csv at the start of the run; NULL: the file does not exist */
+    char *plant_before, *tags_before, *matches_before;
+    /* tags_text, matches_text: texts to write; left_names: names, for the report, of the first tags that are missing from the new tag
+     * list */
     struct text tags_text, matches_text, left_names;
     size_t left, by_hand, left_out, written, assumed, own_nodes;
 };
@@ -93,8 +95,8 @@ static void print_list(const struct matching_run *run)
                *list->encoding.name ? list->encoding.name : "text");
 }
 
-/* Replaces the plant's assets by the selected equipment. Refuses if the tag list refers to assets, because those tags would lose their
- * equipment. */
+/* Replaces the plant's assets by the selected equipment. Returns false with an error if the tag list refers to assets, because those tags
+ * would lose their equipment. */
 static bool choose_equipment(struct matching_run *run)
 {
     char why[MODEL_INDEX_WHY_BYTES];
@@ -132,7 +134,7 @@ static bool read_optional(struct matching_run *run, const char *name,
     return good;
 }
 
-/* Reads the plant, outside the confined child: files that the daemon reads too are trusted. */
+/* Reads the plant in this process and not in the confined child, because the daemon reads the same files too. */
 static bool read_plant(struct matching_run *run)
 {
     const struct matching_params *params = run->params;
@@ -156,7 +158,7 @@ static bool read_plant(struct matching_run *run)
     return true;
 }
 
-/* Reads the export and the lists that accompany it, in the confined child. */
+/* Reads the exported tag list and the lists that go with it (rules, aliases, decisions); called in the confined child. */
 static bool read_lists(struct matching_run *run)
 {
     const struct matching_params *params = run->params;
@@ -176,7 +178,7 @@ static bool read_lists(struct matching_run *run)
 
 /* --- deciding --------------------------------------------------------------------------------------------------------------- */
 
-/* Applies decisions of people, which override the matcher. */
+/* Applies the decisions that people made, which override the matcher. */
 static bool obey(struct matching_run *run)
 {
     char *path = beside(run, "matches.csv"), why[200];
@@ -198,14 +200,14 @@ static bool obey(struct matching_run *run)
                                  .confidence = match->asset == asset ? match->confidence : 1,
                                  .reason = mem_strdup("by hand") };
         if (match->node < 0 && match->confidence > 0.98)
-            match->confidence = 0.95; /* less than 1, because only the asset is certain and the place is assumed */
+            match->confidence = 0.95; /* below 1, because only the asset is certain and the sensor's position on it is assumed */
         run->by_hand++;
     }
     mem_free(path);
     return good;
 }
 
-/* Determines the source of the tags: the one that --source states, the one that --modbus adds, or the plant's only one. */
+/* Determines the source of the tags: the source that --source names, or the one that --modbus adds, or the plant's only source. */
 static bool find_source(struct matching_run *run)
 {
     const struct matching_params *params = run->params;
@@ -273,7 +275,7 @@ static int by_folded_name(const void *a, const void *b)
     return strcasecmp(*(const char *const *)a, *(const char *const *)b);
 }
 
-/* Returns whether a tag of an earlier run belongs to the system of this list, judging by its source in the plant file. */
+/* Returns whether a tag of an earlier run comes from the control system of the current list, judging by its source in the plant file. */
 static bool is_of_source(const struct matching_run *run, const char *tag)
 {
     for (size_t i = 0; i < run->plant->tag_count; i++)
@@ -282,7 +284,8 @@ static bool is_of_source(const struct matching_run *run, const char *tag)
     return run->plant->source_count <= 1;
 }
 
-/* Keeps decisions about tags that are missing from this list: the tags may belong to another control system, or be in a later list. */
+/* Keeps decisions about tags that are missing from the current list, because they may belong to another control system, or occur in a later
+ * list. */
 static void keep_left(struct matching_run *run)
 {
     const char **names = mem_array(run->list.count + 1, sizeof(*names));
@@ -305,7 +308,7 @@ static void keep_left(struct matching_run *run)
 
 /* --- the plant file --------------------------------------------------------------------------------------------------------- */
 
-/* Appends a group; its legend range comes from the scaled limits of its tags. */
+/* Appends a group to the plant file's lines. The range of its legend comes from the scaled limits of its tags. */
 static void add_group(const struct quantity *quantity, struct text *lines)
 {
     bool known = quantity->low < quantity->high;
@@ -349,7 +352,7 @@ static char *source_line(const struct matching_run *run)
     return line.at;
 }
 
-/* Updates the source's line in the plant file, if a person has not edited it since source_line() wrote it. */
+/* Updates the source's line in the plant file, unless a person has edited the line since source_line() wrote it. */
 static bool change_source(struct matching_run *run)
 {
     regex_t regex;
@@ -397,8 +400,8 @@ static bool compose_plant(struct matching_run *run, bool placeholder)
 
 /* --- writing ---------------------------------------------------------------------------------------------------------------- */
 
-/* Returns whether a file still has the text that was read. Called directly before writing, because reading and matching may take minutes,
- * in which other people may save the file. */
+/* Returns whether a file still has the text that was read. Called immediately before writing, because matching may take minutes, in which
+ * other people may save the file. */
 static bool is_as_read(const char *path, const char *before)
 {
     size_t length = 0;
@@ -420,8 +423,8 @@ static void say_written(const char *path, const char *before, const char *text)
 }
 
 /* Writes the files. The plant file comes first, because it only gains groups and a source, and is valid with the old tag list. matches.csv
- * comes last: if a run is killed before that, the next run does not take the tag list's new rows for edits by people, and completes the
- * work. */
+ * comes last: if the run is killed before that, the next run completes the work and does not take the new rows of the tag list for edits by
+ * people. */
 static bool write_files(struct matching_run *run, const char *matches_path)
 {
     const char *plant = run->params->plant, *tags = run->plant->tags_path;
@@ -514,11 +517,11 @@ static int lock_folder(const struct matching_params *params)
     return lock;
 }
 
-/* --- the child ---------------------------------------------------------------------------------------------------------------- */
+/* --- the confined child --- */
 
 struct matching_answer {
     struct matching_run *run;
-    int file; /* memory file into which the child writes its answer: for each text an 8-byte length, then its bytes */
+    int file; /* memory file into which the child writes its answer: each text as an 8-byte length and its bytes */
 };
 
 static bool put_text(int file, const char *text)
@@ -532,7 +535,7 @@ static bool put_text(int file, const char *text)
     return good;
 }
 
-/* Reads a text from the child's answer. Returns NULL if the answer is malformed: the child may be compromised. */
+/* Reads a text from the child's answer. Returns NULL if the answer is malformed, because the child may be compromised. */
 static char *get_text(int file)
 {
     uint64_t length;
@@ -550,8 +553,8 @@ static char *get_text(int file)
     return text;
 }
 
-/* Reads and matches the untrusted list and composes all files, in the child. Returns the exit status of the child: 0, or 1 after printing
- * the error. */
+/* Reads and matches the untrusted tag list and composes all files; called in the confined child. Returns the exit status of the child: 0,
+ * or 1 after printing the error. */
 static int match_in_child(void *arg)
 {
     const struct matching_answer *answer = arg;
@@ -616,7 +619,7 @@ static void add_paths(const struct matching_run *run, struct child_paths *paths)
     }
 }
 
-/* Runs the matching in a confined child, which can write nothing but its answer. */
+/* Runs the matching in a confined child process, which can write nothing but its answer. Returns false if the child failed. */
 static bool match(struct matching_run *run)
 {
     char why[CHILD_WHY_BYTES], folder[PATH_MAX];
@@ -633,7 +636,8 @@ static bool match(struct matching_run *run)
     bool good = child_run(&(struct child_params){ .call = match_in_child,
                                                   .arg = &answer,
                                                   .name = "the tag list reader",
-                                                  /* the child starts in the current folder, so that relative paths still work */
+                                                  /* the child starts in the current folder, so that relative paths in the options are still
+                                                   * right */
                                                   .folder = folder,
                                                   .timeout_s = run->params->timeout_s,
                                                   .memory_bytes = run->params->memory_bytes,

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Walks the JSON of a glTF file from the scene's roots. Checks only the properties that it reads; plantcast-prep validates all others. */
+/* Reads the nodes of a glTF file from its JSON, from the scene's roots down. Checks only the properties that it reads; plantcast-prep
+ * validates all others. */
 #include "preprocess/match/model_tree.h"
 
 #include <errno.h>
@@ -134,7 +135,7 @@ static bool add_node(struct model_tree *tree, json_t *index, int parent, const d
     return good;
 }
 
-/* Finds the JSON and, in a GLB file, the binary chunk. */
+/* Finds the JSON text and, in a GLB file, the binary chunk. Returns false with the reason in why. */
 static bool find_chunks(struct model_tree *tree, size_t length, const char **json, size_t *json_bytes)
 {
     *json = tree->bytes;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The nodes of a glTF model with names, attributes (extras) and boxes, and with vertices if they are stored uncompressed. Thread: any. */
+/* The nodes of a glTF model with names, attributes (extras) and bounding boxes, and with vertices if the file stores them uncompressed.
+ * Thread: any. */
 #ifndef PREPROCESS_MATCH_MODEL_TREE_H
 #define PREPROCESS_MATCH_MODEL_TREE_H
 #include <jansson.h>
@@ -11,8 +12,9 @@ struct tree_attribute {
 };
 
 struct tree_node {
-    double low[3], high[3]; /* box of the node and its subtree, in the scene's frame and the model's units; low > high: no geometry */
-    double from_node[16];   /* column-major transform from the node's frame to the scene's */
+    /* bounding box of the node and its subtree, in the scene's frame and the model's units; low > high: no geometry */
+    double low[3], high[3];
+    double from_node[16]; /* column-major transform from the node's frame to the scene's frame */
     struct tree_attribute *attributes;
     size_t attribute_count;
     int mesh; /* mesh index; -1: none */
@@ -21,11 +23,11 @@ struct tree_node {
 struct model_tree { /* zero-initialise */
     char *path;
     struct model_node *nodes; /* depth first (plant/models/nodes.h) */
-    struct tree_node *more;   /* further data of each node, in the same order */
+    struct tree_node *more;   /* by node: further data */
     size_t count, capacity, more_capacity;
     json_t *json;
     char *bytes;        /* content of the whole file */
-    const char *binary; /* GLB's binary chunk, within `bytes`; NULL: none */
+    const char *binary; /* the GLB file's binary chunk, inside `bytes`; NULL: none */
     size_t binary_bytes;
 };
 

@@ -8,30 +8,31 @@
 enum { NAME_MAX_TOKENS = 48, NAME_KEY_BYTES = 256 };
 
 struct name_token {
-    char text[32];  /* text of the token in upper case; digits without leading zeros; truncated if it does not fit */
+    char text[32];  /* text of the token in upper case, for digits without leading zeros; truncated if it does not fit */
     int raw_length; /* length before removing leading zeros */
     bool digits;
-    bool apart; /* true: the token is the first, or follows a separator or blank */
+    bool apart; /* true: the token is the first, or comes after a separator or blank */
 };
 
 struct name_tokens {
     struct name_token at[NAME_MAX_TOKENS];
-    int count; /* number of tokens; further ones are dropped */
+    int count; /* number of tokens; a text with more tokens is cut off */
 };
 
-/* Splits the text between letters and digits, at separators, and before a capital that follows a small letter. */
+/* Splits the text between letters and digits, at separators, and before a capital letter that follows a small letter. */
 void name_tokens_read(struct name_tokens *tokens, const char *text);
-/* Writes the tokens [from, to) as a key: without separators, but with a dot between two runs of digits. */
+/* Writes a key of the tokens [from, to) for hash maps: the tokens without separators, but with a dot between two runs of digits. */
 void name_tokens_key(const struct name_tokens *tokens, int from, int to, char key[NAME_KEY_BYTES]);
-/* Writes the key like name_tokens_key(), but with O as 0, I or L as 1, and leading zeros kept. */
+/* Writes the key as name_tokens_key() does, but with 0 in place of O and 1 in place of I and L, and with leading zeros kept. */
 void name_tokens_folded(const struct name_tokens *tokens, int from, int to, char key[NAME_KEY_BYTES]);
-/* Writes two keys of the tokens [from, to): the digits alone, with a dot between runs, and the letters alone. */
+/* Writes two keys of the tokens [from, to): the digits alone, with a dot between two runs, and the letters alone. */
 void name_tokens_split(const struct name_tokens *tokens, int from, int to, char digits[NAME_KEY_BYTES], char letters[NAME_KEY_BYTES]);
-/* Returns whether the tokens [from, to) include a run of digits (digits true), or of letters. */
+/* Returns whether the tokens [from, to) include a run of digits (digits true) or of letters (digits false). */
 bool name_tokens_have(const struct name_tokens *tokens, int from, int to, bool digits);
 
 enum name_slip { NAME_SAME, NAME_SLIP /* one letter doubled, left out or swapped */, NAME_OTHER_LETTER, NAME_DIFFERENT };
-/* Returns the kind of spelling slip between two runs of letters, or that they are equal or differ otherwise. */
+/* Compares two runs of letters. Returns NAME_SAME if they are equal, NAME_SLIP if they differ by one slip, NAME_OTHER_LETTER if they differ
+ * in one letter, else NAME_DIFFERENT. */
 enum name_slip name_slip(const char *a, const char *b);
 
 #endif

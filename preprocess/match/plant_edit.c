@@ -23,8 +23,8 @@ static const char *next_line(const char *line)
     return line + (*line == '\n');
 }
 
-/* Finds the line `list:` that has at most a comment after the colon. Sets *flow if a value follows the colon, which means a list in flow
- * style. */
+/* Finds the line `list:` of the plant file, without a value after the colon. Sets *flow if a value follows it, which means a list in flow
+ * style. Returns NULL if there is no such line. */
 static const char *find_key(const char *text, const char *list, bool *flow)
 {
     size_t length = strlen(list);
@@ -38,8 +38,8 @@ static const char *find_key(const char *text, const char *list, bool *flow)
     return NULL;
 }
 
-/* Finds the byte range of a list's items: from the line after the list's key to the last item's last line, without blank lines and comments
- * that belong to the next key. */
+/* Finds the byte range of a list's items: from the line after the list's key to the last line of the last item. Excludes the blank lines
+ * and comments before the next key. */
 static void find_items(const char *key, const char **begin, const char **end)
 {
     *begin = *end = next_line(key);

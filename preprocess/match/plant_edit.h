@@ -1,18 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Edits a plant file as text: appends lines to its lists and leaves all other bytes unchanged. Pure. Thread: any. */
+/* Edits a plant file as text: appends lines to its lists and leaves all other bytes unchanged. No side effects. Thread: any. */
 #ifndef PREPROCESS_MATCH_PLANT_EDIT_H
 #define PREPROCESS_MATCH_PLANT_EDIT_H
 #include "base/text/text.h"
 
-/* The placeholder group of a plant file written by `plantcast import`, without which the file would be invalid. */
+/* line of the placeholder group in a plant file written by `plantcast import`; without a group the file would be invalid */
 extern const char plant_edit_placeholder[];
 
-/* Appends lines, each ending in a line feed, to a top-level list such as "groups". Creates a missing list before "tags:" or at the end.
- * Returns the new text, which the caller frees (mem_free), or NULL if the list is not in block style, one item a line. */
+/* Appends lines, each ending in a line feed, to a top-level list such as "groups". A missing list is created, with the text `comment`
+ * before it, before "tags:" or at the end of the file. Returns the new text, which the caller frees (mem_free), or NULL if the list is not
+ * in block style, one item a line. */
 char *plant_edit_append(const char *text, const char *list, const char *comment, const char *lines);
-/* Replaces all items of a top-level list by lines. Returns the new text (mem_free), or NULL if the list is not in block style. */
+/* Replaces all items of a top-level list by lines. Returns the new text, which the caller frees (mem_free), or NULL if the list is not in
+ * block style. */
 char *plant_edit_replace(const char *text, const char *list, const char *lines);
-/* Removes the line that equals `line`. Returns the new text (mem_free). */
+/* Removes the line that equals `line`. Returns the new text, which the caller frees (mem_free). */
 char *plant_edit_remove_line(const char *text, const char *line);
 /* Appends text as a quoted YAML scalar. */
 void plant_edit_add_quoted(struct text *out, const char *text);

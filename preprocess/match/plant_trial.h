@@ -4,8 +4,8 @@
 #define PREPROCESS_MATCH_PLANT_TRIAL_H
 #include "plant/plant.h"
 
-/* Loads a plant from texts, written to temporary files in the folder of `plant`'s file. tags NULL: use the current tag list. Returns the
- * plant (free it with plant_destroy()), or NULL after printing the reasons on standard error, each prefixed by `program`. */
+/* Loads a plant from texts, which are written to temporary files in the folder of `plant`'s file. tags NULL: use the current tag list.
+ * Returns the plant (free it with plant_destroy()), or NULL after printing the reasons on standard error, each prefixed by `program`. */
 struct plant *plant_trial_load(const struct plant *plant, const char *text, const char *tags, const char *program);
 
 #endif

@@ -24,7 +24,7 @@ static bool has_any(const char *text, const char *const *words, size_t count)
     return false;
 }
 
-/* Returns whether values of a data type can be shown as a field, which excludes booleans, texts and times. */
+/* Returns whether a tag of this data type has values that can be shown as a field: false for booleans, texts and times. */
 static bool is_number(const char *type)
 {
     static const char *const others[] = { "Boolean",  "Bool", "Bit",      "String",  "Text", "Char",
@@ -32,14 +32,15 @@ static bool is_number(const char *type)
     return !has_any(type, others, sizeof(others) / sizeof(*others));
 }
 
-/* For each kind of unit, the quantities that use such units; the first is the default. None: the unit does not identify a quantity. */
+/* For each kind of unit, the quantities that are measured in such units; the first one is the default. An empty list: units of this kind do
+ * not identify a quantity. */
 static const struct {
     const char *kind;
-    bool alone; /* true: a unit of this kind decides the quantity alone, without description or letters */
+    bool alone; /* true: a unit of this kind determines the quantity alone, without description or letters */
     const char *quantities;
 } kinds[] = {
     { "temperature", true, "|Temperature|" },
-    { "pressure", true, "|Pressure|Differential pressure|" }, /* units of pressure: gauge, absolute and other references */
+    { "pressure", true, "|Pressure|Differential pressure|" }, /* pressure in any unit, gauge, absolute or with another reference */
     { "flow", true, "|Flow|" },
     { "density", true, "|Density|" },
     { "conductivity", true, "|Conductivity|" },
@@ -88,8 +89,8 @@ static bool is_tuning(const struct export_tag *tag, const struct isa_name *isa, 
     return (unit && !strcmp(unit, "time")) || (kind < 0 && !described);
 }
 
-/* Writes the quantity that a tag measures, or "" for states, settings and unknown ones. The unit decides, then the description, then words
- * of the tag's name, then its letters; none of these may contradict the unit. */
+/* Determines the quantity that a tag measures, such as "Temperature"; "": a state or setting, or unknown. The tag's unit is used first,
+ * then its description, words of its name, and its letters. None of these may contradict the unit. */
 static void name_of(const struct export_tag *tag, char name[NAME_BYTES])
 {
     struct isa_name isa;
@@ -153,8 +154,8 @@ static struct quantity *add(struct quantities *quantities, const char *id, const
     return quantity;
 }
 
-/* Returns the index of the group with this name and unit; -1: none. Accepts an existing group of the plant by unit alone if it is the only
- * one that fits. */
+/* Returns the index of the group for a quantity and unit; -1: none. An existing group of the plant fits by unit alone if it is the only one
+ * with that unit. */
 static int find(const struct quantities *quantities, const char *name, const char *unit)
 {
     int by_unit = -1, fitting = 0;
@@ -224,7 +225,7 @@ void quantities_find(struct quantities *quantities, const struct plant *plant, c
     for (size_t g = 0; g < plant->group_count; g++)
         if (!unused || strcmp(unused, plant->groups[g].id) != 0)
             add(quantities, plant->groups[g].id, plant->groups[g].quantity, plant->groups[g].unit, false);
-    /* Tags without a unit are assigned last, because they join groups that other tags have created. */
+    /* second round: tags without a unit come last, because they join groups that other tags have created */
     for (int blank = 0; blank < 2; blank++)
         for (size_t i = 0; i < list->count; i++) {
             if (blank == 0)

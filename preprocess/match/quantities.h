@@ -8,19 +8,19 @@
 
 struct quantity { /* an existing group or one to be added */
     char *id, *name, *unit;
-    bool is_new;        /* true: the group must be added to the plant file; false: the plant file has it */
+    bool is_new;        /* true: the group will be added to the plant file; false: the plant file already has the group */
     double low, high;   /* lowest and highest scaled limit of the group's tags, in the group's unit; low > high: no tag has limits */
-    size_t tags, blank; /* number of tags in the group, and of those without a unit */
+    size_t tags, blank; /* tags: number of tags in the group; blank: number of those that have no unit */
 };
 
 struct quantities { /* zero-initialise */
     struct quantity *at;
     size_t count, capacity;
-    int *of_tag; /* index of the group of each tag; -1: none */
+    int *of_tag; /* by tag: index of its group; -1: none */
 };
 
 /* Assigns each matched tag that measures something to a group: an existing one with a compatible unit, or a new one. unused: id of the
- * placeholder group of `plantcast import`, which is ignored; NULL: none. */
+ * group that is ignored, because it is only the placeholder of `plantcast import`; NULL: none. */
 void quantities_find(struct quantities *quantities, const struct plant *plant, const char *unused, const struct tag_export *list,
                      const struct match *matches);
 void quantities_finish(struct quantities *quantities);

@@ -10,9 +10,9 @@
 #include "base/mem.h"
 #include "preprocess/match/fold.h"
 
-/* Lower case, without accents, separated by bars. Short words, phrases and words ending in "=" must match whole words. Words ending in "~"
- * may also match the end of a word, as in "Saugdruck". Other words match any part, as in "Lagertemperatur". A word that contains another
- * one must come earlier in the table. */
+/* Words for each quantity: lower case, without accents, separated by bars. Short words, phrases and words ending in "=" must match whole
+ * words. Words ending in "~" may also match the end of a word, as in "Saugdruck". Other words match any part of a word, as in
+ * "Lagertemperatur". A word that contains another one must come earlier in the table. */
 static const struct {
     const char *quantity, *words;
 } quantities[] = {
@@ -64,7 +64,7 @@ static const struct {
 };
 enum { QUANTITIES = sizeof(quantities) / sizeof(*quantities) };
 
-/* Returns the letters and digits of a text as words with one blank around each. */
+/* Returns the letters and digits of a text as words with one blank before and after each. The caller frees the text. */
 static char *words_of(const char *text)
 {
     char *folded = fold_text(text), *out = mem_array(strlen(folded) * 4 + 3, 1);
@@ -87,8 +87,8 @@ static char *words_of(const char *text)
     return out;
 }
 
-/* Returns whether a word must match a whole word. Returns false for Chinese, Japanese and Korean words, because these languages do not
- * separate words. */
+/* Returns whether a word of the table must match a whole word of the text. False for Chinese, Japanese and Korean words, because these
+ * languages do not separate words. */
 static bool is_whole(const char *word, char mark)
 {
     bool cyrillic = (unsigned char)*word == 0xd0 || (unsigned char)*word == 0xd1, ascii = !((unsigned char)*word & 0x80);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Manages rows and cells, and reads CSV. */
+/* Stores rows and cells of a table, and reads CSV. */
 #include "preprocess/match/table.h"
 
 #include <stdio.h>
@@ -65,8 +65,8 @@ void table_finish(struct cell_table *table)
     *table = (struct cell_table){ 0 };
 }
 
-/* Rates a separator by how many lines contain it equally often, outside quotes and at least once. Returns the number of those lines times
- * 1000, plus the count per line as a tie-breaker. */
+/* Rates how likely a character is the separator: by the number of lines in which it occurs equally often, outside quotes and at least once.
+ * Returns this number of lines times 1000, plus its count per line, which decides between equal ratings. */
 static size_t rate(const char *text, char separator)
 {
     size_t counts[SAMPLE_LINES] = { 0 }, lines = 0, best = 0;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads spreadsheets: a ZIP archive (minizip) of XML (expat), ISO/IEC 29500-1, 18.3 and 18.4. Reads texts, and numbers as stored; number
- * formats are not applied. */
+/* Reads spreadsheets: a ZIP archive (minizip) of XML (expat), ISO/IEC 29500-1, 18.3 and 18.4. Reads texts as they are and numbers as they
+ * are stored; number formats are not applied. */
 #include "preprocess/match/table.h"
 
 #include <expat.h>
@@ -22,13 +22,13 @@ struct xlsx_sheet {
     struct table_row row;
     struct text text; /* text of the current cell or string */
     int column, last_row;
-    char type;    /* type of the current cell: 's' shared string, 'i' inline string, 0 stored directly */
+    char type;    /* type of the current cell: 's' index of a shared string, 'i' text in the cell itself, 0 value stored in the cell */
     size_t bytes; /* total size of all cells so far */
     bool in_value, in_phonetic, too_large;
     XML_Parser parser;
 };
 
-/* Returns an element name without its namespace prefix, which some programs write. */
+/* Returns an XML element's name without its namespace prefix, which only some programs write. */
 static const char *local(const char *name)
 {
     const char *colon = strchr(name, ':');
@@ -140,7 +140,7 @@ static void cell_ends(void *data, const char *name)
         table_add_row(sheet->table, &sheet->row);
 }
 
-/* --- parts (XML files) of the archive --------------------------------------------------------------------------------------- */
+/* --- parts of the archive, which are XML files ------------------------------------------------------------------------------ */
 
 static void refuse_entity(void *data, const char *name, int parameter, const char *value, int length, const char *base,
                           const char *system_id, const char *public_id, const char *notation)
@@ -204,7 +204,8 @@ struct book_sheet {
 };
 
 struct book {
-    struct xlsx_sheet sheet; /* must be the first member: the XML handlers receive a pointer to this member */
+    /* must be the first member, because the XML handlers receive a pointer to it and use it as a pointer to this struct */
+    struct xlsx_sheet sheet;
     struct book_sheet sheets[MAX_SHEETS];
     int count;
     bool too_many;
@@ -240,7 +241,7 @@ static void nothing_ends(void *data, const char *name)
     (void)data, (void)name;
 }
 
-/* Finds the sheets through the workbook, or by their usual names without one. Returns false with the reason in why. */
+/* Finds the sheets through the workbook part; by their usual file names if that is missing. Returns false with the reason in why. */
 static bool find_sheets(struct book *book, unzFile zip, char *why, size_t why_bytes)
 {
     if (read_part(&book->sheet, zip, "xl/workbook.xml", sheet_begins, nothing_ends, why, why_bytes) < 0 ||

@@ -76,7 +76,7 @@ static void set_number(struct export_tag *tag, enum export_field field, const ch
         export_tag_set(tag, field, copy);
 }
 
-/* Sets the scaled limits from a range given by its low end and length, as PI exports it. */
+/* Sets the scaled limits from a range that PI exports as its low end and its length. */
 static void set_span(struct export_tag *tag, const char *text)
 {
     struct export_tag of_text = { 0 };
@@ -115,8 +115,7 @@ static void read_row(struct tag_export *list, const struct tag_header *header, c
         export_tag_set(tag, EXPORT_TYPE, header->data_type);
 }
 
-/* --- Studio 5000 exports: rows of several kinds (tags, aliases, comments)
- * ------------------------------------------------------------------------------------- */
+/* --- Studio 5000 exports, with several kinds of rows: tags, aliases, comments --- */
 
 /* Returns a description without the escapes $N (new line), $Q and $' (quotes) and $$ (dollar). */
 static char *without_escapes(const char *text)
@@ -141,7 +140,8 @@ static bool is_of_kind(const struct table_row *row, const struct tag_header *hea
     return !strcasecmp(table_cell(row, header->kind), kind);
 }
 
-/* Applies a comment about an element of a tag: it becomes the description of all tags that refer to that element, such as aliases. */
+/* Applies a comment about an element of a tag: the comment becomes the description of all tags that refer to this element, such as
+ * aliases. */
 static void describe(struct tag_export *list, const char *element, const char *text)
 {
     for (size_t i = 0; i < list->count; i++) {
@@ -181,7 +181,7 @@ static void read_studio(struct tag_export *list, const struct cell_table *table,
 
 /* --- lists whose first lines contain a row of column names ----------------------------------------------------------------------- */
 
-/* Finds the row with the most recognised columns. Returns their number, or 0 if no row has a column of tag names. */
+/* Finds the header: the row with the most recognised column names. Returns their number, or 0 if no row has a column of tag names. */
 static int find_header(const struct cell_table *table, struct tag_header *header, size_t *row)
 {
     bool one_column = table->count > 0;
@@ -200,7 +200,7 @@ static int find_header(const struct cell_table *table, struct tag_header *header
     return most;
 }
 
-/* Reads a second header row, which labels the columns of a range: "from", "to". Returns whether there is one. */
+/* Reads a second header row, which names the two columns of a range: "from", "to". Returns whether there is such a row. */
 static bool read_second(const struct table_row *row, struct tag_header *header)
 {
     struct tag_header second;
@@ -247,7 +247,7 @@ static bool read_rows(struct tag_export *list, const struct cell_table *table, c
     return true;
 }
 
-/* --- AVEVA dumps: section headers begin with a colon ------------------------------------------------------------------------- */
+/* --- AVEVA dumps: sections whose headers begin with a colon ------------------------------------------------------------------- */
 
 static bool is_dump(const struct cell_table *table)
 {
@@ -260,7 +260,7 @@ static bool is_dump(const struct cell_table *table)
     return false;
 }
 
-/* Reads a section header. Returns whether the section's rows are tags; false for access names, alarm groups and trends. */
+/* Reads the header of a section. Returns whether the rows of the section are tags; false for access names, alarm groups and trends. */
 static bool begin_section(struct tag_export *list, const struct table_row *row, struct tag_header *header)
 {
     static const struct {
@@ -336,8 +336,8 @@ static bool read_text(struct tag_export *list, const char *bytes, size_t count, 
 }
 
 struct workbook {
-    struct cell_table best; /* sheet whose header has the most recognised columns; among equals the one with the most rows */
-    struct text others;     /* names of the other sheets with a header */
+    struct cell_table best; /* the sheet whose header has the most recognised columns; of equals the one with the most rows */
+    struct text others;     /* names of the other sheets with a header, for a remark */
     char *name;
     int known;
     size_t sheets;
@@ -370,7 +370,7 @@ static void take_sheet(void *data, struct cell_table *sheet, const char *name)
     table_finish(sheet);
 }
 
-/* Reads the sheet with the tag list; cover sheets, notes and hidden sheets may precede it. */
+/* Reads the sheet that contains the tag list, which may come after cover sheets, notes and hidden sheets. */
 static bool read_workbook(struct tag_export *list, const char *path, char *why, size_t why_bytes)
 {
     struct workbook book = { .known = -1 };

@@ -11,7 +11,7 @@
 #include "preprocess/match/export_field.h"
 
 struct export_tag {
-    char *fields[EXPORT_FIELDS]; /* field texts: UTF-8; "": the field is empty; NULL only while a reader fills the tag */
+    char *fields[EXPORT_FIELDS]; /* texts of the fields: UTF-8; "": the field is empty; NULL only while a reader fills the tag */
     int line;                    /* line number of the tag in the file; 0 for JSON */
 };
 
@@ -19,15 +19,17 @@ struct tag_export {                 /* zero-initialise */
     const char *format;             /* name of the detected format (static) */
     struct charset_choice encoding; /* encoding of the file; name "": a spreadsheet */
     char separator;                 /* column separator; 0: none */
-    struct export_tag *tags;        /* in file order; names are unique, case-insensitive */
+    struct export_tag *tags;        /* tags in the order of the file; their names are unique (case-insensitive) */
     size_t count, capacity;
-    size_t rows; /* number of tags before duplicates were merged */
-    /* count of rows left out as duplicates: rows equal to the first row of the same name, and rows different from it */
+    size_t rows; /* number of rows with a tag, before duplicates were merged */
+    /* number of rows left out as duplicates. same: equal to the first row of the same name; differing: different from that row */
     size_t same, differing;
-    char *differing_lines;             /* the first different duplicates, "TT-101 (lines 5 and 80), ..."; NULL: none */
-    size_t nameless, control, damaged; /* counts: rows left out because they have no name; control characters; undecodable characters */
-    struct text remarks;               /* further remarks for people, one a line */
-    /* count of tags that got their folder path as a prefix, because tags of other folders have the same name */
+    char *differing_lines; /* the first duplicates that differ, as "TT-101 (lines 5 and 80), ..."; NULL: none */
+    /* nameless: number of rows left out because they have no name; control: number of control characters; damaged: number of undecodable
+     * characters */
+    size_t nameless, control, damaged;
+    struct text remarks; /* further remarks for people, one a line */
+    /* number of tags that got their folder path as a prefix, because tags of other folders have the same name */
     size_t renamed;
 };
 
@@ -36,13 +38,13 @@ struct tag_export {                 /* zero-initialise */
 bool tag_export_read(struct tag_export *list, const char *path, const char *encoding, char *why, size_t why_bytes);
 void tag_export_finish(struct tag_export *list);
 
-/* For the readers of file formats: appends an empty tag. Returns a pointer valid until the next call. */
+/* Appends an empty tag; for the readers of file formats. Returns a pointer that is valid until the next call. */
 struct export_tag *tag_export_add(struct tag_export *list, int line);
 /* Sets a field to a copy of text. Does nothing if the field has a value already or text is blank. */
 void export_tag_set(struct export_tag *tag, enum export_field field, const char *text);
 /* Reads an Ignition export (JSON). Returns false with the reason in why. */
 bool tag_export_read_json(struct tag_export *list, const char *text, size_t length, char *why, size_t why_bytes);
-/* Merges duplicates, so that names are unique. */
+/* Merges duplicate tags, so that names are unique. */
 void tag_export_join(struct tag_export *list);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Handles repeated names: the same tag twice, or different tags of one name in several folders. */
+/* Handles names that occur several times: the same tag twice, or different tags with one name in several folders. */
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -24,7 +24,7 @@ static bool same_text(const char *a, const char *b)
     return !strcmp(a ? a : "", b ? b : "");
 }
 
-/* Returns the indices of the tags sorted by name, followed by tags->count as a sentinel. The caller frees the array. */
+/* Returns the indices of the tags sorted by name, and after them tags->count as an end mark. The caller frees the array. */
 static size_t *sort_names(struct tag_export *list)
 {
     size_t *order = mem_array(list->count + 1, sizeof(*order));
@@ -84,7 +84,7 @@ static int by_key(const void *pa, const void *pb)
     return order ? order : (a->tag > b->tag) - (a->tag < b->tag);
 }
 
-/* Adds a remark about names that look alike: they differ only in dashes, letter widths or blanks. */
+/* Appends a remark about names that look alike because they differ only in dashes, letter widths or blanks. */
 static void say_alike(struct tag_export *list)
 {
     struct folded *all = mem_array(list->count + 1, sizeof(*all));

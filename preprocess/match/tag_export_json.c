@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads Ignition's export: folders and UDT instances contain tags, tags have properties. A UDT instance has the members of its type, and of
- * all parents of that type. The instance and each type may override single properties. */
+/* Reads Ignition's export. Folders and UDT instances (instances of user-defined types) contain tags, and tags have properties. A UDT
+ * instance has the members of its type, and of all parents of that type. The instance and each type may override single properties. */
 #include <jansson.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -31,7 +31,7 @@ static const struct property {
     { "opcServer", EXPORT_DEVICE },
 };
 
-/* A problem that concerns many tags: the count of these tags, and the paths of the first ones. */
+/* A problem that concerns many tags: the number of these tags, and the paths of the first ones. */
 struct complaint {
     size_t count;
     struct text paths;
@@ -39,14 +39,14 @@ struct complaint {
 
 struct tag_json_reader {
     struct tag_export *list;
-    json_t *types; /* type nodes by path within the folder of types; borrowed */
+    json_t *types; /* definitions of types, by path within the folder of types; borrowed */
     struct complaint unknown, circular, unresolved;
     bool too_deep, too_many;
-    /* count of references followed for the current property; limited, because parameters may refer to each other in a cycle */
+    /* number of references resolved for the current property; limited, because parameters may refer to each other in a cycle */
     int references;
 };
 
-/* A node as a stack of definitions ("layers"): first the instance's own definition, then those of its types. */
+/* a node as a stack of definitions ("layers"): first the node's own definition, then those of its types */
 struct layered_node {
     json_t *layers[MAX_LAYERS];
     int count;
@@ -55,11 +55,12 @@ struct layered_node {
 struct instance_frame { /* a UDT instance that encloses a tag */
     const struct instance_frame *outer;
     const struct layered_node *node;
-    int own; /* count of layers that belong to the instance and not to its types; parameters in these layers refer to the outer frame */
+    /* number of layers that are the instance's own and not those of its types; parameters in own layers refer to the enclosing instance */
+    int own;
     const char *name;
 };
 
-struct scope { /* Context in which a parameter reference is resolved: the tag, its folder and the instances around it. */
+struct scope { /* context in which a reference to a parameter is resolved: the tag, its folder and the instances that enclose it */
     struct tag_json_reader *reader;
     const struct instance_frame *frame;
     const char *folder, *name; /* path of the tag's folder; name of the tag */
@@ -139,7 +140,7 @@ static bool is_around(const struct instance_frame *frame, const json_t *type)
     return false;
 }
 
-/* Appends the layers of an instance's type and of the type's parents. */
+/* Appends the definition of an instance's type, and those of the type's parents, to the node's layers. */
 static void add_types(struct tag_json_reader *reader, struct layered_node *node, const struct instance_frame *outer, const char *folder,
                       const char *name)
 {
@@ -184,7 +185,7 @@ static json_t *value_of(json_t *parameter)
     return json_is_object(parameter) && json_object_get(parameter, "value") ? json_object_get(parameter, "value") : parameter;
 }
 
-/* Appends the text of a value: a number, a text, or a binding to parameters. Returns false if it cannot be resolved. */
+/* Appends the text of a value: a number, a text, or a binding to parameters. Returns false if a parameter cannot be resolved. */
 static bool add_value(const struct scope *scope, json_t *value, struct text *out, int depth)
 {
     if (json_is_object(value)) {
@@ -202,7 +203,8 @@ static bool add_value(const struct scope *scope, json_t *value, struct text *out
     return json_is_number(value) || json_is_boolean(value);
 }
 
-/* Appends the value of a parameter. Parameters passed to a nested instance may refer to parameters of the enclosing instance. */
+/* Appends the value of a parameter. A parameter passed to a nested instance may refer to parameters of the enclosing instance. Returns
+ * false if it cannot be resolved. */
 static bool add_parameter(const struct scope *scope, const char *name, struct text *out, int depth)
 {
     size_t before = out->length;
@@ -228,7 +230,8 @@ static bool add_parameter(const struct scope *scope, const char *name, struct te
     return text != NULL;
 }
 
-/* Appends a reference with an offset or a number format: "{Base+10}" and "{Number|000}". */
+/* Appends the value of a reference with an offset or a number format, such as "{Base+10}" and "{Number|000}". Returns false if it cannot be
+ * resolved. */
 static bool add_formatted(const struct scope *scope, const char *reference, struct text *out, int depth)
 {
     char name[200], *end;
@@ -286,7 +289,7 @@ static bool expand(const struct scope *scope, const char *text, struct text *out
 
 /* --- tags --------------------------------------------------------------------------------------------------------------------- */
 
-/* Sets a field to a text, trimmed and without control characters. */
+/* Sets a field to a text, without blanks at its ends and without control characters. */
 static void set_text(struct tag_export *list, struct export_tag *tag, enum export_field field, char *text)
 {
     for (char *c = text; *c; c++)
@@ -314,7 +317,7 @@ static void set_field(const struct scope *scope, struct export_tag *tag, enum ex
     text_finish(&out);
 }
 
-/* Adds a tag. A member of an instance is named by its whole path, since its own name does not identify the instance. */
+/* Adds a tag. A member of an instance is named by its whole path, because its own name does not tell instances apart. */
 static void add_tag(const struct scope *scope, const struct layered_node *node)
 {
     struct tag_export *list = scope->reader->list;
@@ -329,7 +332,7 @@ static void add_tag(const struct scope *scope, const struct layered_node *node)
     mem_free(name);
     for (size_t i = 0; i < sizeof(properties) / sizeof(*properties); i++)
         set_field(scope, tag, properties[i].field, property_of(node, properties[i].name));
-    if (tag->fields[EXPORT_SCALED_HIGH]) /* defaults of Ignition, which an export omits: 0 and 100 */
+    if (tag->fields[EXPORT_SCALED_HIGH]) /* use Ignition's defaults, 0 and 100, which an export omits */
         export_tag_set(tag, EXPORT_SCALED_LOW, "0");
     if (tag->fields[EXPORT_SCALED_LOW])
         export_tag_set(tag, EXPORT_SCALED_HIGH, "100");

@@ -6,15 +6,16 @@
 #include "preprocess/match/table.h"
 
 struct tag_header {
-    int columns[EXPORT_FIELDS]; /* column of each field; -1: none */
-    int tag_type;               /* column of Ignition's tag type, which marks folders; -1: none */
-    int span;                   /* column with the length of a range that begins at the scaled low limit; -1: none */
-    /* columns of Studio 5000 exports: kind of the row, and the element of a tag that a comment row describes; -1: none */
+    int columns[EXPORT_FIELDS]; /* by field: index of its column; -1: none */
+    int tag_type;               /* index of the column with Ignition's tag type, which marks folders; -1: none */
+    int span;                   /* index of the column with the length of a range that begins at the scaled low limit; -1: none */
+    /* indices of columns of Studio 5000 exports. kind: kind of the row; specifier: element of a tag that a comment row describes; -1:
+     * none */
     int kind, specifier;
-    const char *data_type; /* data type of the tags in all following rows; NULL: unknown */
+    const char *data_type; /* data type of all tags in the rows after the header; NULL: unknown */
 };
 
-/* Reads a row as a header. Returns the number of recognised columns. */
+/* Reads a row as a header. Returns the number of columns whose names were recognised. */
 int tag_header_read(const struct table_row *row, struct tag_header *header);
 /* Returns whether a cell of the row equals the word after fold_key(). */
 bool tag_header_has(const struct table_row *row, const char *word);

@@ -94,7 +94,7 @@ static bool read_file(struct tag_rows *rows, const char *path, char why[MATCH_WH
     charset_decode(bytes, count, NULL, &text);
     rows->separator = table_separator(text.utf8);
     bool good = table_read_csv(&table, text.utf8, rows->separator, why, MATCH_WHY_BYTES);
-    if (good && table.count > 1) { /* keep the file's rows, unless it has only a header */
+    if (good && table.count > 1) { /* keep the rows of the file, unless it has only a header */
         rows->at = table.rows;
         rows->count = table.count;
         rows->capacity = table.capacity;
@@ -175,7 +175,7 @@ static bool is_text(const char *type)
     return !strcasecmp(type, "String") || !strcasecmp(type, "Text") || !strcasecmp(type, "Char") || !strcasecmp(type, "DateTime");
 }
 
-/* Returns whether a tag is left out: it is not numeric, or has no address valid for its source. */
+/* Returns whether a tag is left out of the tag list: it is not numeric, or its address is not valid for its source. */
 static bool is_left_out(const struct export_tag *tag, const struct tag_source *source)
 {
     struct modbus_address address;
@@ -184,8 +184,8 @@ static bool is_left_out(const struct export_tag *tag, const struct tag_source *s
            (source->modbus && !address_parse(tag->fields[EXPORT_ADDRESS], source->address_base, &address, why));
 }
 
-/* Returns a data type by Kepware's name. Names of Ignition, IEC 61131-3 and PI are converted; unknown ones give "", so that the address
- * decides. */
+/* Returns the data type under Kepware's name. Names of Ignition, IEC 61131-3 and PI are converted. An unknown name gives "", so that the
+ * address determines the type. */
 static const char *type_of(const char *type)
 {
     static const char *const others[][2] = {
@@ -233,8 +233,8 @@ static void put_scaling(struct tag_rows *rows, struct table_row *row, const stru
             put(rows, row, columns[i], cells[i]);
 }
 
-/* Writes alarm limits. If they are not in ascending order, writes none, because they are not alarm limits: the group's limits then
- * apply. */
+/* Writes a tag's alarm limits to its row. Limits that are not in ascending order are not alarm limits and are left out, so that the group's
+ * limits apply. */
 static void put_limits(struct tag_rows *rows, struct table_row *row, const struct export_tag *tag)
 {
     const char *before = NULL;
@@ -273,7 +273,7 @@ static void put_equipment(struct tag_rows *rows, struct table_row *row, const st
     }
 }
 
-/* Returns whether the equipment of an existing row may be overwritten: false if a person changed the row since the last run. */
+/* Returns whether the equipment in an existing row may be overwritten: false if a person changed it after the last run. */
 static bool may_put(const struct tag_row_input *input, const char *asset)
 {
     const struct decision *before = input->before;
@@ -324,7 +324,7 @@ void tag_rows_write(const struct tag_rows *rows, struct text *out)
     size_t width = rows->at[0].count;
     bool *used = mem_array(width + 1, sizeof(*used));
     for (size_t c = 0; c < width; c++) {
-        used[c] = rows->known > 1; /* a column that the file already had is kept even if it is blank */
+        used[c] = rows->known > 1; /* a column that the file already had is written even if it is blank */
         for (size_t i = 1; i < rows->count && !used[c]; i++)
             used[c] = *table_cell(&rows->at[i], (int)c);
     }

@@ -9,18 +9,18 @@
 struct tag_rows {         /* zero-initialise */
     struct table_row *at; /* all rows of the tag list, existing and added; the first is the header */
     size_t count, capacity;
-    int *by_name; /* indices of the rows that the file had, sorted by name */
+    int *by_name; /* indices of the rows that the file had, sorted by the tag's name */
     size_t known; /* number of rows that the file had, including the header */
     char separator;
 };
 
-struct tag_source { /* the source that reads the exported tags */
+struct tag_source { /* the source from which the daemon will read the exported tags */
     const char *id; /* id of the source; NULL: neither the source nor addresses are written */
     bool modbus;    /* true: the source is Modbus; tags without a valid Modbus address are left out */
     int address_base;
 };
 
-/* Reads the tag list. A missing list, or one with only a header, starts with the default header. Returns false with the reason in why. */
+/* Reads the tag list. If it is missing or has only a header, the list gets the default header. Returns false with the reason in why. */
 bool tag_rows_read(struct tag_rows *rows, const char *path, char why[MATCH_WHY_BYTES]);
 void tag_rows_finish(struct tag_rows *rows);
 
@@ -28,15 +28,15 @@ struct tag_row_input {
     const struct model_index *site;
     const struct export_tag *tag;
     const struct match *match;
-    const struct decision *before; /* decision of the previous run; NULL: none */
+    const struct decision *before; /* decision about the tag in the previous run; NULL: none */
     const struct place_proposal *place;
     const char *group; /* group id; "": none */
     const struct tag_source *source;
 };
-/* Adds a tag, or updates its row except for cells that people changed. Returns the id of the row's asset ("": none), valid until the next
- * call, or NULL if the tag was left out. */
+/* Adds a tag, or updates its row except for cells that people changed. Returns the id of the row's asset ("": no asset), valid until the
+ * next call; NULL if the tag was left out of the list. */
 const char *tag_rows_put(struct tag_rows *rows, const struct tag_row_input *input);
-/* Appends the list as text. Omits columns added by this program that are blank in all rows. */
+/* Appends the list as text. Omits columns that this program added and that are blank in all rows. */
 void tag_rows_write(const struct tag_rows *rows, struct text *out);
 
 #endif

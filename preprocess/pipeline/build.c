@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Builds one asset, from a parsed model to the bytes of its file. */
+/* Builds one asset: from a parsed model, or cached geometry, to the bytes of its file. */
 #include "preprocess/pipeline/build.h"
 
 #include <inttypes.h>
@@ -29,7 +29,7 @@ static void hash_text(XXH3_state_t *state, const char *text)
     XXH3_64bits_update(state, text ? text : "", text ? strlen(text) + 1 : 1);
 }
 
-/* Counts the sensors of a sensor's group, without those whose place is assumed. */
+/* Returns the number of sensors on the asset in the group of a sensor, without those whose position is assumed. */
 static size_t count_of_group(const struct plant *plant, const struct plant_sensor *sensors, size_t count, size_t sensor)
 {
     size_t found = 0;
@@ -43,8 +43,8 @@ static bool is_alone(const struct plant *plant, const struct plant_sensor *senso
     return count_of_group(plant, sensors, count, sensor) == !plant->tags[sensors[sensor].tag].place_assumed;
 }
 
-/* Returns whether the field is constant, so that distances do not matter: each group has a single sensor, Shepard interpolation and no
- * reach. */
+/* Returns whether the field is constant on the asset: each group has a single sensor, Shepard interpolation and no reach. Distances then
+ * have no effect on it. */
 static bool is_constant(const struct plant *plant, const struct plant_sensor *sensors, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
@@ -68,7 +68,7 @@ static void hash_gp(XXH3_state_t *state, const struct plant *plant, const struct
         if (!has_sensor || !plant_prepares(&plant->groups[g], INTERPOLATION_GP))
             continue;
         if (gp->fit)
-            plant_model_hash(gp->fit, &readings); /* ignore errors: an unreadable readings file is reported where it is used */
+            plant_model_hash(gp->fit, &readings); /* errors are ignored here, because reading the readings file for the fit reports them */
         XXH3_64bits_update(state, numbers, sizeof(numbers));
         XXH3_64bits_update(state, &readings, sizeof(readings));
     }
@@ -158,13 +158,14 @@ struct build {
     struct geometry geometry;
     struct levels levels;
     struct sensor_distances measured;
-    struct asset_level file[LEVELS_MAX]; /* levels as stored in the file */
-    struct text parts;                   /* serialised geometry and levels for the geometry cache; empty if they were read from the cache */
-    bool surface_kept;                   /* the surface was written to the cache */
-    struct distance_rows distances;      /* distances of the vertices in their final order */
+    struct asset_level file[LEVELS_MAX]; /* levels of detail in the form in which the file stores them */
+    /* serialised geometry and levels, to be written to the geometry cache; empty if they were read from it */
+    struct text parts;
+    bool surface_kept;              /* the surface has been written to the cache */
+    struct distance_rows distances; /* distances of the vertices in their final order */
     struct clusters_making *making[LEVELS_MAX];
     size_t making_count;
-    bool keeps; /* results of subdivision are cached for the next run */
+    bool keeps; /* results of subdivision are written to the cache for the next run */
     struct subdiv_cache findings;
     struct sample_cache sample_cache;
     struct build_report geometry_report;
@@ -172,7 +173,7 @@ struct build {
     struct workers_task *sending;          /* task that writes the asset's file to disk */
     void (*tasks[2])(struct build *build); /* two tasks that run concurrently */
     bool failed[2];
-    int write_error; /* errno of a failed write; 0: no error */
+    int write_error; /* errno of a failed write; 0: no write failed */
     char *why;
 };
 
@@ -192,8 +193,7 @@ static bool run_both(struct build *build, void (*first)(struct build *build), vo
     return !build->failed[0] && !build->failed[1];
 }
 
-/* --- two concurrent tasks: levels of detail, and distances
- * ------------------------------------------------------------------------------------ */
+/* --- two concurrent tasks: making levels of detail, and computing distances --- */
 
 static void make_levels(struct build *build)
 {
@@ -221,10 +221,10 @@ static void assume_sensors(struct build *build)
         sensor_distances_assume(&build->measured, build->workers, build->input, &build->geometry);
 }
 
-/* --- two concurrent tasks: subdivision, and the check of the distances
- * --------------------------------------------------------------------------------- */
+/* --- two concurrent tasks: subdivision, and checking the distances --- */
 
-/* Starts clustering one level while the next is being subdivided, since meshoptimizer uses a single core. */
+/* Starts partitioning a finished level into clusters while the next level is being subdivided, because meshoptimizer uses a single core.
+ * Called for each level that subdivision has finished. */
 static void begin_clusters(void *arg, const struct level *level)
 {
     struct build *build = arg;
@@ -232,7 +232,7 @@ static void begin_clusters(void *arg, const struct level *level)
     build->making[build->making_count++] = clusters_begin(build->workers, level, (const float(*)[3])g->positions_m, g->vertex_count);
 }
 
-/* Waits for the clusters of all levels and collects them, before the levels are merged. */
+/* Waits until the clusters of all levels are made and collects them. Must be done before the levels are merged. */
 static void end_clusters(struct build *build, struct clusters *clusters)
 {
     uint32_t first_index = 0;
@@ -278,8 +278,8 @@ static void split(struct build *build)
     build->output->report.split_s = seconds_since(&since_ns);
 }
 
-/* Compares the distances with those of the heat method. For a small asset this takes longer than everything else, so it is skipped if
- * distances do not matter or the cache has the result. */
+/* Compares some distances with those of the heat method, for the report. For a small asset this takes longer than everything else, so it is
+ * skipped if the field is constant or the cache has the result. */
 static void check(struct build *build)
 {
     const struct build_input *input = build->input;
@@ -301,7 +301,7 @@ static void check(struct build *build)
 
 /* --- cache for the next run -------------------------------------------------------------------------------------------------- */
 
-/* Serialises geometry and levels before subdivision changes them. */
+/* Serialises geometry and levels for the geometry cache, before subdivision changes them. */
 static void pack_parts(struct build *build)
 {
     const struct build_input *input = build->input;
@@ -320,7 +320,7 @@ static bool write_surface(const struct build *build)
     return good;
 }
 
-/* Writes the geometry cache. A failure is ignored: the next run only takes longer. */
+/* Writes the geometry cache. Errors are ignored: then the next run only takes longer. */
 static void write_geometry(const struct build *build)
 {
     const struct build_input *input = build->input;
@@ -328,7 +328,7 @@ static void write_geometry(const struct build *build)
         geometry_cache_write(input->folder, input->geometry_key, build->parts.at, build->parts.length, &build->geometry_report);
 }
 
-/* Checks the distances, then writes the surface to the cache with the result of the check, while levels are being subdivided. */
+/* Checks the distances, then writes the surface with the result of the check to the cache. Runs while levels are being subdivided. */
 static void check_and_keep(struct build *build)
 {
     check(build);
@@ -346,7 +346,8 @@ static void write_caches(void *arg)
     write_geometry(build);
 }
 
-/* Orders the vertices by level, so that each level uses only a prefix of the vertices. */
+/* Orders the vertices by level, so that each level uses only the first vertices of the array. own: number of vertices before
+ * subdivision. */
 static bool put_in_order(struct build *build, uint32_t own)
 {
     struct build_report *report = &build->output->report;
@@ -371,7 +372,7 @@ static bool put_in_order(struct build *build, uint32_t own)
     return good || wrong(build->why, "out of memory for the levels of %u vertices", g->vertex_count);
 }
 
-/* Computes the influence of sensors. Needs the surface and the final order of vertices. */
+/* Computes the influence file (weights of sensors for harmonic, fin and gp). Needs the surface and the final order of vertices. */
 static bool make_influence(struct build *build)
 {
     const struct build_input *input = build->input;
@@ -414,7 +415,8 @@ static void send_file(void *arg)
     folder_draft_send(arg);
 }
 
-/* Writes the distances to disk early: they are most of the file, and writing runs while the other sections are hashed and checked. */
+/* Computes the distances in the file's format and starts writing them to disk early: they are most of the file, and writing runs while
+ * other sections are hashed and checked. */
 static void write_distances(void *arg, uint16_t *codes)
 {
     struct build *build = arg;
@@ -472,13 +474,14 @@ static bool lay_out(struct build *build, const struct clusters *clusters)
     char view_why[200];
     memcpy(parts.origin_m, g->origin_m, sizeof(parts.origin_m));
     size_t size;
-    wrong(build->why, "out of memory for its file"); /* error text if asset_build() fails; a later failure replaces it */
+    /* error text in case asset_build() fails for lack of memory; a later failure overwrites it */
+    wrong(build->why, "out of memory for its file");
     void *bytes = asset_build(&parts, &size);
     if (bytes && build->write_error)
         return wrong(build->why, "its distances cannot be written into %s: %s", input->folder, strerror(build->write_error));
     if (!bytes)
         return false;
-    /* check the file first: one that a reader would reject must not be written */
+    /* check the file as a reader would, because an invalid file must not be written */
     return asset_view_fresh(&output->view, bytes, size, view_why) || wrong(build->why, "its file would be wrong: %s", view_why);
 }
 
@@ -496,7 +499,7 @@ static bool build_file(struct build *build)
             return false;
         build->geometry_report = build->output->report;
         build->keeping = workers_begin(build->workers, write_caches, build);
-        surface_field_finish(&build->measured.field); /* free the field early, because it is large */
+        surface_field_finish(&build->measured.field); /* the field is large, so free it as early as possible */
     }
     if (!any && input->sensor_count > 0)
         sensor_distances_even(&build->distances, input->sensor_count, own);
@@ -508,7 +511,7 @@ static bool build_file(struct build *build)
     return good;
 }
 
-/* Gets the geometry, from the cache (together with levels and surface) or else from the model. */
+/* Gets the geometry: from the cache, together with levels and surface, or else by cutting it out of the model. */
 static bool begin(struct build *build)
 {
     const struct build_input *input = build->input;

@@ -6,14 +6,16 @@
 #include "base/workers.h"
 #include "preprocess/pipeline/build_io.h"
 
-#define BUILD_REVISION 54u /* revision of the file contents; must be incremented whenever the same input would give a different file */
+/* revision of the file's contents; must be incremented whenever the same input gives a different file than before */
+#define BUILD_REVISION 54u
 
 /* Builds the asset into output->file, a draft that the caller names (folder_put()) and closes. Uses all workers. Returns false with the
  * reason in why; then there is no file. Thread: any. */
 bool build_asset(struct log *log, struct workers *workers, const struct build_input *input, struct build_output *output,
                  char why[MODEL_WHY_BYTES]);
 
-/* Returns a key for a model and the parameters by which an asset is extracted: equal keys mean equal geometry. */
+/* Returns the recipe of an asset: a hash of its model and of the parameters by which it is cut out of the model. Equal recipes mean equal
+ * geometry. */
 uint64_t build_recipe(uint64_t model_hash, const struct geometry_params *geometry);
 /* Returns the key of everything in the asset that does not depend on sensors. geometry_hash: result of geometry_hash(). */
 uint64_t build_geometry_key(uint64_t geometry_hash, const struct geometry_params *geometry);

@@ -1,22 +1,24 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Cache of everything that can be reused when only an asset's sensors change, so that the model need not be parsed. KEY.stock holds
- * geometry and levels before subdivision, KEY.surface the surface for distance computations (surface_store.h). Both can be deleted at any
- * time; damaged files count as missing. Thread: one per cache. */
+/* Cache of everything that can be reused when only an asset's sensors change, so that the model need not be parsed. KEY.stock contains
+ * geometry and levels before subdivision; KEY.surface contains the surface for distance computations (surface_store.h). Both files can be
+ * deleted at any time; damaged files count as missing. Thread: one per cache. */
 #ifndef PREPROCESS_PIPELINE_GEOMETRY_CACHE_H
 #define PREPROCESS_PIPELINE_GEOMETRY_CACHE_H
 #include "base/files/cache_file.h"
 #include "preprocess/pipeline/build_io.h"
 
-#define GEOMETRY_CACHE_TRIANGLES 10000u /* triangle count below which assets are not cached, because building them again is about as fast */
+/* assets with fewer triangles are not cached, because building them again takes about as long as reading the cache */
+#define GEOMETRY_CACHE_TRIANGLES 10000u
 
 struct geometry_cache { /* mapped and checked files */
     struct cache_file parts, surface;
     struct build_report report;
 };
 
-/* Maps and checks the files of a key. Returns false if either is missing or damaged; then geometry_cache_close() need not be called. */
+/* Maps and checks the cache files of a geometry key. Returns false if either is missing or damaged; then geometry_cache_close() need not be
+ * called. */
 bool geometry_cache_open(struct geometry_cache *cache, const char *folder, uint64_t key);
-/* Unmaps the files of an open or zeroed cache. */
+/* Unmaps the files. The cache may be open or zeroed. */
 void geometry_cache_close(struct geometry_cache *cache);
 
 /* Copies geometry, levels and surface out of the cache; the caller owns all three. Returns false with nothing to free if the contents are

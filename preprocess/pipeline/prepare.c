@@ -22,30 +22,31 @@
 #include "preprocess/pipeline/sensor_distances.h"
 #include "preprocess/pipeline/build_report_json.h"
 
-#define FAR_M 0.25       /* distance in metres of a sensor from its surface above which a warning is due */
-#define FAR_OF_SIZE 0.05 /* the same distance as a share of the asset's size; the smaller one applies */
+#define FAR_M 0.25       /* distance in metres between a sensor and the surface, above which a warning is printed */
+#define FAR_OF_SIZE 0.05 /* the same limit as a share of the asset's size; the smaller limit applies */
 
-/* triangle count of a batch: models are parsed until their assets have this many triangles, then these assets are built */
+/* number of triangles in a batch: models are parsed until their assets have this many triangles, then these assets are built */
 #define BATCH_TRIANGLES 4e6
-/* triangle count above which assets are built one at a time with all cores, because building two at once would need twice the memory */
+/* assets with more triangles are built one at a time with all cores, because two at a time would need twice the memory */
 #define ALONE_TRIANGLES 1e6
-#define SENSORS_WORK 6e4 /* for the progress estimate: measured cost of an asset's first sensor, in equivalent triangles */
+/* for the estimate of the remaining time: measured cost of an asset's first sensor, as a number of triangles that cost the same */
+#define SENSORS_WORK 6e4
 
 struct prepare_run {
     struct prepare *prepare;
     struct log *log;
     struct workers *workers;
     const struct prepare_params *params;
-    size_t *todo; /* indices of assets to build, grouped by model */
+    size_t *todo; /* indices of the assets to build, grouped by model */
     size_t todo_count, batch_begin, batch_end;
-    struct model_cache known, cuts; /* model caches of the last run and of this run */
-    /* triangle count of the models that were parsed to compute keys and stay in memory until their assets are built */
+    struct model_cache known, cuts; /* known: model cache of the last run; cuts: model cache that this run writes */
+    /* number of triangles of the models that were parsed to compute keys, and stay in memory until their assets are built */
     double parsed_triangles;
     pthread_mutex_t lock;
     /* --- members protected by `lock` */
     struct diag *diag;
     struct progress progress;
-    /* failed: an error occurred; unusable: an error occurred that is not a model's, so the manifest cannot be written */
+    /* failed: an error occurred; unusable: an error occurred for which no model is to blame, so the manifest is not written */
     bool failed, unusable;
 };
 
@@ -76,7 +77,7 @@ static void fail_asset(struct prepare_run *run, const struct prepare_asset *asse
     fail(run, run->prepare->plant->path, asset->plant->line, "asset %s: %s: %s", asset->plant->id, asset->plant->model, why);
 }
 
-/* Marks an asset as failed because its model is invalid or lacks something the plant refers to. */
+/* Marks an asset as failed because its model is invalid, or lacks something to which the plant refers. */
 static void lose(struct prepare_asset *asset, const char *why)
 {
     asset->state = PREPARE_FAILED;
@@ -122,7 +123,7 @@ static double all_triangles(const struct gltf_model *model)
     return corners / 3;
 }
 
-/* Ensures that the model is parsed. Returns false if it cannot be parsed; the error is reported once. */
+/* Parses the model unless it is parsed already. Returns false if that fails; the error is reported only once. */
 static bool have_parsed(struct prepare_run *run, struct model_file *model)
 {
     if (model->is_parsed || !model->good)
@@ -172,8 +173,8 @@ static void take_cut(struct prepare_run *run, struct prepare_asset *asset, uint6
             model_cache_add_node(&run->cuts, asset->recipe, asset->sensors[s].node_hash, asset->sensors[s].position_m);
 }
 
-/* Computes the keys of all wanted assets of one model. Keeps the parsed model for building, unless too many triangles are in memory
- * already. */
+/* Computes the keys of all wanted assets of one model. Keeps the parsed model in memory for building, unless too many triangles are in
+ * memory already. */
 static void find_keys_of_model(struct prepare_run *run, size_t number)
 {
     struct model_file *model = &run->prepare->models.at[number];
@@ -225,7 +226,7 @@ static void find_keys(struct prepare_run *run)
 /* --- existing files in the folder of prepared files
  * -------------------------------------------------------------------------------------------------- */
 
-/* Copies from an existing, checked file the numbers that the report and the warnings need. */
+/* Copies the numbers that the report and the warnings need from an existing, checked asset file. */
 static void take_file(struct prepare_asset *asset, const struct asset_view *view)
 {
     const struct asset_level *finest = &view->levels[0];
@@ -281,7 +282,7 @@ static void look_at_some(void *arg, size_t begin, size_t end)
     }
 }
 
-/* Separates assets that are up to date from those to build, and groups those to build by model. */
+/* Determines which assets are up to date and which must be built, and groups the latter by model. */
 static void sort_out(struct prepare_run *run)
 {
     struct prepare *prepare = run->prepare;
@@ -311,7 +312,7 @@ static int write_file(const struct prepare_run *run, const struct prepare_asset 
     return status;
 }
 
-/* Reports the result of building an asset; returns false if it failed. The caller holds the lock. */
+/* Reports the result of building an asset. Returns false if building failed. The caller holds the lock. */
 static bool is_built(struct prepare_run *run, const struct prepare_asset *asset, bool good, int status, const char *why)
 {
     if (!good)
@@ -394,8 +395,8 @@ static double own_triangles(const struct prepare_asset *asset, const struct mode
     return asset->cache.parts.bytes ? asset->cache.report.triangles : (double)geometry_triangles(&model->parsed, &geometry);
 }
 
-/* Parses the models of the assets todo[batch_begin] and after until there is enough work for a batch. Assets whose model cannot be parsed
- * fail. */
+/* Parses the models of the assets in todo[], from index batch_begin on, until there is enough work for a batch (BATCH_TRIANGLES). Assets
+ * whose model cannot be parsed fail. */
 static void parse_batch(struct prepare_run *run)
 {
     struct prepare *prepare = run->prepare;
@@ -421,7 +422,7 @@ static void parse_batch(struct prepare_run *run)
     }
 }
 
-/* Builds the assets of a batch, except those whose model is invalid: large assets one after the other, small ones in parallel. */
+/* Builds the assets of a batch whose model is valid: large assets one after the other, small ones in parallel. */
 static void build_batch(struct prepare_run *run)
 {
     struct prepare *prepare = run->prepare;
@@ -495,7 +496,8 @@ static void warn(struct prepare_run *run, const struct prepare_asset *asset)
     }
 }
 
-/* Writes the cache of models. Entries of assets not prepared in this run are kept. A failure is ignored: the next run only takes longer. */
+/* Writes the cache of models. Entries of assets that this run does not prepare are kept. Errors are ignored: then the next run only takes
+ * longer. */
 static void write_cuts(struct prepare_run *run)
 {
     bool all = !run->params->only && !run->prepare->interrupted;
@@ -519,7 +521,7 @@ static void write_manifest(struct prepare_run *run)
 {
     struct prepare *prepare = run->prepare;
     struct folder_entry *entries = mem_array(prepare->asset_count, sizeof(*entries));
-    /* capacity is enough: each tag is a sensor of at most one asset */
+    /* one element per tag is enough, because each tag is a sensor of at most one asset */
     const char **tags = mem_array(prepare->plant->tag_count, sizeof(*tags)), **next = tags;
     for (size_t i = 0; i < prepare->asset_count; i++) {
         const struct prepare_asset *asset = &prepare->assets[i];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Prepares all assets of a plant: keeps files that are up to date and builds the others. Each finished asset is written to disk at once, so
- * that the next run continues after an interruption. Thread: one. */
+/* Prepares all assets of a plant: keeps files that are up to date and builds the others. Each finished asset is written to disk before the
+ * next one, so that after an interruption the next run continues there. Thread: one. */
 #ifndef PREPROCESS_PIPELINE_PREPARE_H
 #define PREPROCESS_PIPELINE_PREPARE_H
 #include <stdatomic.h>
@@ -19,17 +19,17 @@ struct prepare_asset {
     size_t model; /* index in prepare.models */
     struct plant_sensor *sensors;
     size_t sensor_count;
-    float *surface_distances_m; /* distance of each sensor from the surface, metres; NULL: preparing the asset failed */
-    double size_m[3];           /* size of the asset in its own frame, the last is the height; 0: unknown */
-    double far_m;               /* distance of a sensor from its surface above which a warning is due */
+    float *surface_distances_m; /* by sensor: its distance from the surface, metres; NULL: the asset could not be prepared */
+    double size_m[3];           /* size of the asset in its own frame, metres; size_m[2] is the height; 0: unknown */
+    double far_m;               /* distance between a sensor and the surface, metres, above which a warning is printed */
     uint64_t recipe, key, geometry_key, distances_key; /* recipe: result of build_recipe() */
     char *missing;               /* reason why the model, or the node of a sensor, cannot be used; NULL: no such failure */
-    struct geometry_cache cache; /* geometry cache, open while the asset is built; parts.bytes NULL: not open */
-    size_t same_as;              /* index of the first asset with the same key, which owns the file */
+    struct geometry_cache cache; /* the geometry cache, open while the asset is built; parts.bytes NULL: not open */
+    size_t same_as;              /* index of the first asset with the same key; both use that asset's file */
     enum prepare_state state;
-    char *rebuilt_because; /* defect of the existing file, which caused a rebuild; NULL: none */
+    char *rebuilt_because; /* defect of the existing file, because of which it was built again; NULL: none */
     uint32_t triangles, vertices;
-    bool reported; /* `report` is valid: always after a build; for an unchanged asset only if KEY.report.json exists */
+    bool reported; /* `report` is valid: always for a built asset; for an unchanged asset only if KEY.report.json exists */
     struct build_report report;
     double seconds, work;
 };
@@ -46,16 +46,16 @@ struct prepare {
 
 struct prepare_params {
     const char *folder;
-    const char *only;                  /* id of the only asset to prepare, with the manifest unchanged; NULL: all assets */
+    const char *only;                  /* id of the only asset to prepare; the manifest then stays unchanged; NULL: all assets */
     FILE *progress;                    /* stream for progress lines; NULL: prints nothing */
-    struct service_patience *patience; /* service manager that is told the status after each asset; NULL: not reported */
-    const atomic_bool *stop;           /* stop request: once true, no further asset is started; NULL: never stops */
+    struct service_patience *patience; /* service manager that receives a status line after each asset; NULL: none */
+    const atomic_bool *stop;           /* set to true by the caller to stop: no further asset is begun; NULL: never stops */
 };
 
 /* Prepares the plant's assets into params->folder, one process at a time per folder. Errors go to diag, by line of the plant file or tag
  * list. Returns false if something failed or the run was interrupted; good assets have been written. After a failure the manifest stays
- * unchanged, except if only models caused it: then the manifest lists the good assets, and the reason for each missing asset. Call
- * prepare_finish() in both cases. */
+ * unchanged, unless only faulty models caused the failure: then the manifest lists the good assets, and for each other asset the reason why
+ * it is missing. Call prepare_finish() in both cases. */
 bool prepare_run(struct prepare *prepare, struct log *log, struct workers *workers, const struct plant *plant,
                  const struct prepare_params *params, struct diag *diag);
 /* Frees the results. */
@@ -63,8 +63,8 @@ void prepare_finish(struct prepare *prepare);
 
 /* Returns the parameters by which an asset is cut out of its model. */
 struct geometry_params prepare_geometry(const struct plant_asset *asset);
-/* Returns the distance of a sensor from the surface, in metres, above which a warning is due, for an asset whose bounding box has this
- * diagonal. */
+/* Returns the distance between a sensor and the surface, in metres, above which a warning is printed. diagonal_m: diagonal of the asset's
+ * bounding box. */
 double prepare_far_m(double diagonal_m);
 
 #endif

@@ -67,7 +67,7 @@ static void drop_sensors(const struct sensor_distances *measured, struct workers
         drop_some(&drop, 0, input->sensor_count);
 }
 
-/* Returns the number of vertices without a finite distance to any sensor. */
+/* Returns the number of vertices that are not connected to any sensor. */
 static size_t unreachable(const struct sensor_distances *measured, size_t vertex_count)
 {
     size_t count = 0, sensors = measured->field.source_count;
@@ -83,7 +83,7 @@ static size_t unreachable(const struct sensor_distances *measured, size_t vertex
     return count;
 }
 
-/* Computes the distances, reusing cached ones of sensors whose position has not changed. */
+/* Computes the distances from all sensors. Distances from a sensor whose position has not changed come from the cache. */
 static bool solve(struct sensor_distances *measured, const struct build_input *input, uint32_t triangles, uint32_t *kept)
 {
     const double(*places_m)[3] = (const double(*)[3])measured->places_m;

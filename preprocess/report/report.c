@@ -9,10 +9,10 @@
 #include "plant/models/asset_size.h"
 #include "preprocess/report/text_table.h"
 
-#define ROWS_MAX 40 /* maximum rows per table, unless all rows are requested */
+#define ROWS_MAX 40 /* maximum number of rows per table, unless the caller requests all rows */
 #define CONCERNS_MAX 20
 
-struct order { /* display order of assets: those with problems first, then the slowest */
+struct order { /* an asset in the order of the tables: assets with problems first, then the slowest to build */
     const struct prepare_asset *asset;
     double weight;
 };

@@ -5,18 +5,18 @@
 #define PREPROCESS_REPORT_H
 #include "preprocess/pipeline/prepare.h"
 
-/* A possible problem that a person should look at. */
+/* A possible problem to which the report draws attention. */
 struct report_concern {
     const struct prepare_asset *asset;
     char *text;
-    double weight; /* severity for sorting: the most serious problem has the highest weight */
+    double weight; /* severity, for sorting: the report lists problems with a higher weight first */
 };
 /* Lists possible problems, most serious first; *count receives their number. The caller frees the list with report_concerns_free(). */
 struct report_concern *report_concerns(const struct prepare *prepare, size_t *count);
 /* Frees a list of report_concerns(). */
 void report_concerns_free(struct report_concern *concerns, size_t count);
 
-/* Prints tables of the results, each limited to some rows unless `all`. */
+/* Prints tables of the results, each limited to ROWS_MAX rows unless `all`. */
 void report_text(const struct prepare *prepare, bool all, FILE *out);
 /* Prints the report as one JSON object. Returns false if out of memory. */
 bool report_json(const struct prepare *prepare, FILE *out);

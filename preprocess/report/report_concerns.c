@@ -9,14 +9,16 @@
 #include "preprocess/report/text_table.h"
 
 /* minimum root mean square difference between two methods' distances that is reported, relative to the largest distance; smaller
- * differences are due to the heat method's smoothing */
+ * differences come from the heat method, which smooths distances */
 #define METHODS_DIFFER 0.05
-/* factor on the target error of subdivision, above which a field error is reported; allows for single-precision rounding */
+/* factor on the error limit of subdivision; an error of the field above the product is reported; allows for single-precision rounding */
 #define FIELD_SLACK 1.05
-#define BENT_SHARE 1e-3 /* minimum share of an asset's surface with a bend or unknown error that is reported */
-/* minimum power p that is reported: from there on, the error of distances alone can exceed two colour steps */
+/* share of an asset's surface on which the bend (interpolation error inside triangles) is too large or unknown; reported from this share
+ * on */
+#define BENT_SHARE 1e-3
+/* smallest power of inverse distance weights that is reported: from there on, the error of distances alone can exceed two colour steps */
 #define HIGH_POWER 5
-#define DISTANCE_ERROR 0.0031 /* relative error of a distance along the surface: the worst of accuracy_test's whole shapes */
+#define DISTANCE_ERROR 0.0031 /* largest relative error of a distance along the surface, of all whole shapes in the test accuracy_test */
 
 const char *const report_states[] = { "left", "failed", "unchanged", "shared", "built" };
 
@@ -71,7 +73,8 @@ static void add_numbers(struct concerns *concerns, const struct prepare_asset *a
                        (double)left->steps, text_table_number(left->edges).text));
 }
 
-/* Reports the bend (interpolation error inside triangles) of harmonic, fin and gp fields: the triangles are subdivided for other fields. */
+/* Reports the bend (interpolation error inside triangles) of harmonic, fin and gp fields: these triangles are not refined for these fields,
+ * only for those with distance weights. */
 static void add_bend(struct concerns *concerns, const struct prepare_asset *asset)
 {
     const struct bend_report *bend = &asset->report.bend;
@@ -86,8 +89,8 @@ static void add_bend(struct concerns *concerns, const struct prepare_asset *asse
                        bend->unmeasured > 0 ? 100 : 100 * bend->unknown_share));
 }
 
-/* Reports high powers. A weight is a power p of a distance, so the ratio of two sensors' weights has a relative error of up to p/2 times
- * the relative error of a distance. */
+/* Reports high powers of inverse distance weights. A weight is the power -p of a distance, so the ratio of two sensors' weights has a
+ * relative error of up to p/2 times the relative error of a distance. */
 static void add_powers(struct concerns *concerns, const struct prepare *prepare, const struct prepare_asset *asset)
 {
     for (size_t g = 0; g < prepare->plant->group_count; g++) {
@@ -106,7 +109,8 @@ static void add_powers(struct concerns *concerns, const struct prepare *prepare,
     }
 }
 
-/* Reports doubtful sizes, also of assets not built in this run, because a wrong unit is an error until somebody corrects it. */
+/* Reports doubtful sizes of assets (wrong unit?), also of assets that were not built in this run, because a wrong unit remains an error
+ * until somebody corrects it. */
 static void add_sizes(struct concerns *concerns, const struct prepare *prepare)
 {
     double *longest_m = mem_array(prepare->asset_count, sizeof(*longest_m));
@@ -118,7 +122,7 @@ static void add_sizes(struct concerns *concerns, const struct prepare *prepare)
     for (size_t i = 0; i < prepare->asset_count; i++) {
         const struct prepare_asset *asset = &prepare->assets[i];
         char why[SIZE_WHY_BYTES];
-        bool stray = asset->reported && asset->report.stray[0]; /* stray pieces explain the size and are reported already */
+        bool stray = asset->reported && asset->report.stray[0]; /* pieces far from the main part explain the size, and have been reported */
         if (!stray && asset_longest_m(asset->size_m) > 0 && asset_size_doubtful(asset->plant, asset->size_m, median_m, why))
             add(concerns, asset, 1e6, mem_strdup(why));
     }

@@ -27,7 +27,7 @@ static size_t width_of(const char *text)
     return width;
 }
 
-/* Returns the width of a column, or 0 if it has no content. */
+/* Returns the width of a column in characters, or 0 if it has no content. */
 static size_t column_width(const struct text_table *table, size_t column, size_t rows)
 {
     size_t width = 0;

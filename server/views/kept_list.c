@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Stores each list in one file, which every change rewrites: the lists are short. */
+/* Stores each list in one file. Every change writes the whole file, because the lists are short. */
 #include "views/kept_list.h"
 
 #include <errno.h>
@@ -57,7 +57,7 @@ enum refusal_code kept_list_put(struct kept_list *kept, json_t *list)
     json_t *file = json_pack("{s:i,s:O}", "version", 1, kept->kind->key, list);
     char *text = json_dumps(file, JSON_INDENT(1));
     if (kept->folder)
-        mkdir(kept->folder, 0777); /* if the folder cannot be created, writing the file reports the reason */
+        mkdir(kept->folder, 0777); /* errors are ignored, because writing the file reports them */
     int error = !text ? -ENOMEM : kept->path ? atomic_file_keep(kept->path, text, strlen(text)) : 0;
     free(text);
     json_decref(file);
@@ -78,7 +78,7 @@ bool kept_list_mirror(struct kept_list *kept, json_t *list)
         return false;
     if (json_equal(kept->list, list))
         return true;
-    if (kept->path && !kept->unreadable) /* a standby core stores the list, since it may become the leader */
+    if (kept->path && !kept->unreadable) /* a standby core also writes the list to disk, because it may become the leader */
         return kept_list_put(kept, json_incref(list)) == REFUSAL_NONE;
     json_decref(kept->list);
     kept->list = json_incref(list);

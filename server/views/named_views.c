@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Named views, stored in the JSON form of their file. */
+/* Stores named views as JSON, in the same form in memory and in the file. */
 #include "views/named_views.h"
 
 #include <string.h>
@@ -75,7 +75,7 @@ static enum refusal_code refusal(const struct named_views *views, const char *id
     return why ? why : find_fixed(views->plant, id) ? REFUSAL_FIXED : REFUSAL_NONE;
 }
 
-/* Returns the earlier versions of a view that is about to change: its current version, then the older ones. */
+/* Returns the earlier versions that a view has after a change: its current version, then its current earlier versions. */
 static json_t *versions(const json_t *view)
 {
     json_t *all = json_copy(json_object_get(view, "before"));
@@ -100,7 +100,7 @@ enum refusal_code named_views_save(struct named_views *views, const struct named
     json_t *old = json_array_get(views->kept.list, at), *list, *view;
     if (why || (!old && count >= NAMED_VIEWS))
         return why ? why : REFUSAL_VIEWS;
-    if (old && same(old, edit)) /* only its position changes */
+    if (old && same(old, edit)) /* same content: only the position of the view in the list changes */
         view = json_incref(old);
     else
         view = json_pack("{s:s,s:s,s:s,s:s,s:I,s:o}", "id", edit->id, "title", edit->title, "view", edit->address, "by", who, "time_us",

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Named views in an order that all clients share: first those of the plant file, which only that file changes, then those saved by
-   users, in views.json in the history's folder, with earlier versions of each. Thread: the loop. */
+/* Named views, in an order that all clients share: first the views of the plant file, which users cannot change, then those that users
+ * saved. The latter are stored with earlier versions in views.json in the history's folder. Thread: the loop. */
 #ifndef VIEWS_NAMED_VIEWS_H
 #define VIEWS_NAMED_VIEWS_H
 #include <jansson.h>
@@ -17,25 +17,25 @@ enum { NAMED_VIEW_VERSIONS = 10 /* number of earlier versions stored per view */
 
 struct named_view_edit {
     char id[NAMED_VIEW_ID_BYTES], title[NAMED_VIEW_TITLE_BYTES], address[NAMED_VIEW_ADDRESS_BYTES];
-    int at; /* new position among the saved views, from 0; -1: unchanged, or last for a new view */
+    int at; /* new index of the view among the saved views; -1: the index stays unchanged, or a new view becomes the last one */
 };
 
 struct named_views;
 /* Reads the views of a plant. folder: the history's folder, which need not exist; NULL: saving is refused. An unreadable file counts as
    empty (logged) and is not overwritten. Never returns NULL. `plant` and `folder` must outlive the views. */
 struct named_views *named_views_open(struct log *log, const struct plant *plant, const char *folder);
-void named_views_close(struct named_views **views); /* Frees the views. &NULL is fine; leaves NULL. */
+void named_views_close(struct named_views **views); /* Frees the views and sets *views to NULL. *views may be NULL. */
 /* Saves a new or changed view, and writes the file. who: the user; time_us: UTC. Returns REFUSAL_NONE, or why it failed. */
 enum refusal_code named_views_save(struct named_views *views, const struct named_view_edit *edit, const char *who, int64_t time_us);
 /* Removes a saved view with its earlier versions, and writes the file. Returns REFUSAL_NONE, or why it failed. */
 enum refusal_code named_views_remove(struct named_views *views, const char *id);
 /* Returns a counter that increases with each change of the views; 0: there has been no view. */
 uint64_t named_views_number(const struct named_views *views);
-/* Returns the message `views` with all views; only the view `id` includes its earlier versions, as `before` (id NULL: none does). The
-   caller owns it. */
+/* Returns the JSON message `views` with all views. Only the view `id` includes its earlier versions, as `before` (id NULL: none does). The
+ * caller releases it. */
 json_t *named_views_message(const struct named_views *views, const char *id);
-/* For a core and its renderers: return the list of saved views, owned by `views`; replace it by that of the other daemon (false:
-   invalid, nothing changed). */
+/* For the connection between a core and its renderers: the first returns the list of saved views, owned by `views`. The second replaces the
+ * list by that of the other daemon, and returns false, with nothing changed, if it is invalid. */
 json_t *named_views_list(const struct named_views *views);
 bool named_views_mirror(struct named_views *views, json_t *list);
 

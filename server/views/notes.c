@@ -18,7 +18,7 @@ static int64_t time_of(const json_t *note, const char *name)
     return json_integer_value(json_object_get(note, name));
 }
 
-/* Returns when a note ends or ended; 0: it has no end and nobody has ended it. */
+/* Returns when a note ends or ended, UTC in microseconds; 0: it has no end and nobody has ended it. */
 static int64_t end_of(const json_t *note)
 {
     int64_t until_us = time_of(note, "until_us"), ended_us = time_of(note, "ended_us");
@@ -94,7 +94,8 @@ static void forget_oldest(json_t *list, int64_t now_us)
         }
 }
 
-/* Makes an id from the time; the next free one if that exists, since two notes may be simultaneous or the clock may be set back. */
+/* Makes the id of a note from the time. If a note has that id already (notes at the same time, or a clock that was set back), takes the
+ * next free one. */
 static void make_id(const json_t *list, int64_t now_us, char id[NOTE_ID_BYTES])
 {
     do

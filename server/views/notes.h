@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Notes of users on a position, an asset or a tag, with an optional end; stored in notes.json in the history's folder. Notes that have
-   expired or been removed are stored for the next shift. Thread: the loop. */
+ * expired or been removed stay in the file for the next shift. Thread: the loop. */
 #ifndef VIEWS_NOTES_H
 #define VIEWS_NOTES_H
 #include <jansson.h>
@@ -16,30 +16,30 @@ enum { NOTES = 100, NOTES_ENDED = 400, NOTE_TEXT_BYTES = 401, NOTE_ID_BYTES = 24
 
 struct note {
     const char *text;
-    const char *tag, *asset; /* id of the tag or asset to which the note is attached; both NULL: at position_m */
+    const char *tag, *asset; /* id of the tag or of the asset to which the note is attached; both NULL: it is attached to position_m */
     const double *position_m;
-    int64_t until_us; /* end, UTC; 0: until the note is removed */
+    int64_t until_us; /* time at which the note ends, UTC in microseconds; 0: it has no end */
 };
 
 struct notes;
 /* Reads the notes. folder: the history's folder; NULL: no notes can be made. An unreadable file counts as empty (logged) and is not
    overwritten. Never returns NULL. `folder` must outlive the notes. */
 struct notes *notes_open(struct log *log, const char *folder);
-void notes_close(struct notes **notes); /* Frees the notes. &NULL is fine; leaves NULL. */
-/* Adds a user's note and writes the file. Returns REFUSAL_NONE with the note's id, or why it failed. */
+void notes_close(struct notes **notes); /* Frees the notes and sets *notes to NULL. *notes may be NULL. */
+/* Adds a user's note and writes the file. Returns REFUSAL_NONE, with the note's id in `id`, or the reason of the failure. */
 enum refusal_code notes_add(struct notes *notes, const struct note *note, const char *who, int64_t now_us, char id[NOTE_ID_BYTES]);
-/* Ends a note and writes the file. Returns REFUSAL_NONE, or why it failed. */
+/* Ends a note and writes the file. Returns REFUSAL_NONE, or the reason of the failure. */
 enum refusal_code notes_end(struct notes *notes, const char *id, const char *who, int64_t now_us);
 /* Returns a counter that increases with each change of the notes; 0: there has been no note. */
 uint64_t notes_number(const struct notes *notes);
-/* Return the message `notes` with the notes valid at an instant, or with all notes valid at some time between two instants, and how they
-   ended. Free with mem_free(). */
+/* Return the message `notes`: notes_text() with the notes valid at an instant; notes_text_between() with all notes valid at some time
+ * between two instants, and how they ended. The caller frees the text (mem_free()). */
 char *notes_text(const struct notes *notes, int64_t now_us);
 char *notes_text_between(const struct notes *notes, int64_t from_us, int64_t to_us);
-/* Returns whether the sets of notes valid at two instants differ. */
+/* Returns whether the notes valid at one instant are others than those valid at another instant. */
 bool notes_differ(const struct notes *notes, int64_t one_us, int64_t other_us);
-/* For a core and its renderers: return the list of notes, owned by `notes`; replace it by that of the other daemon (false: invalid,
-   nothing changed). */
+/* For the connection between a core and its renderers: the first returns the list of notes, owned by `notes`. The second replaces the list
+ * by that of the other daemon, and returns false, with nothing changed, if it is invalid. */
 json_t *notes_list(const struct notes *notes);
 bool notes_mirror(struct notes *notes, json_t *list);
 

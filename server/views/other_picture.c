@@ -21,7 +21,7 @@ static int hex(char c)
     return at ? (int)(at - digits) : -1;
 }
 
-/* Reads a name up to the next comma or blank; "" unless it is UTF-8 without control characters and fits. */
+/* Reads a name up to the next comma or blank. Writes "" if the name is too long, is not UTF-8 or has control characters. */
 static void read_name(const char *at, char out[OTHER_NAME_BYTES])
 {
     size_t count = 0;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Checks the answer of another plant's server to a request for a picture. Pure. Thread: any. */
+/* Checks the answer of another plant's server to a request for a picture. No side effects. Thread: any. */
 #ifndef VIEWS_OTHER_PICTURE_H
 #define VIEWS_OTHER_PICTURE_H
 #include <stdbool.h>
@@ -9,11 +9,12 @@
 enum { OTHER_NAME_BYTES = 257 };
 
 struct other_picture {
-    int64_t oldest_age_ms;       /* age of the oldest reading in the picture when it was drawn; -1: no readings */
+    int64_t oldest_age_ms;       /* age, when the picture was drawn, of the oldest reading in it; -1: the picture shows no readings */
     char name[OTHER_NAME_BYTES]; /* name of the plant; "": not stated by its server */
 };
 
-/* Parses the header `Plantcast-Frame` of an answer. Returns false if it is invalid: the answer is then not a Plantcast picture. */
+/* Parses the header `Plantcast-Frame` of an answer. Returns false if the header is invalid; the answer then does not come from a Plantcast
+ * server. */
 bool other_picture_read_header(const char *header, struct other_picture *out);
 /* Returns whether the bytes are one complete PNG file of that size; does not decode its pixels. */
 bool other_picture_is_png(const uint8_t *bytes, size_t count, int width_px, int height_px);

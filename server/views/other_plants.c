@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The thread that requests pictures. A picture's age counts from the time of the request, which includes the time the server took to
-   draw it. */
+/* The thread that requests pictures. A picture's age is counted from the time of the request, so it includes the time that the server took
+ * to draw it. */
 #include "views/other_plants.h"
 
 #include <jansson.h>
@@ -21,7 +21,7 @@
 enum { CONNECT_S = 5, TIMEOUT_S = 10, PICTURE_BYTES = 8 << 20, HEADER_BYTES = 1024, MIN_RETRY_S = 5, MAX_RETRY_S = 60, REST_MS = 60000 };
 static const int64_t WANTED_NS = 30 * NS_PER_S;
 
-/* reasons for a missing picture, as sent to clients; the log has details */
+/* reasons why there is no picture, as sent to clients; the log has details */
 enum why { WHY_NONE, WHY_WAITING, WHY_UNREACHABLE, WHY_TLS, WHY_TOKEN, WHY_REFUSED, WHY_BUSY, WHY_SLOW, WHY_LARGE, WHY_NO_PICTURE };
 static const char *const why_names[] = { [WHY_NONE] = "",
                                          [WHY_WAITING] = "waiting",
@@ -45,9 +45,12 @@ struct other {
     struct other_picture about;
     char *png; /* picture; NULL: none */
     size_t bytes;
-    int64_t asked_ns, asked_us; /* request time of the last picture; asked_us also serves as the picture's id; 0: no picture has arrived */
-    int64_t since_us; /* request time of the last good picture, or the time since which none is available; by this plant's clock */
-    enum why why;     /* WHY_NONE: there is a picture */
+    /* time of the request that returned the last picture; asked_us also serves as the picture's id; 0: no picture has arrived */
+    int64_t asked_ns, asked_us;
+    /* time of the request that returned the last good picture; if there is none, the time since which there is none; by this plant's
+     * clock */
+    int64_t since_us;
+    enum why why; /* WHY_NONE: there is a picture */
 };
 
 struct other_plants {
@@ -93,7 +96,7 @@ static bool make_request(struct other *other)
     return true;
 }
 
-/* Reads the token file and sets the token. Returns NULL, or the reason of a failure (mem_free). */
+/* Reads the token file and sets the token of the request. Returns NULL, or an error text that the caller frees (mem_free). */
 static char *set_token(struct other *other)
 {
     char *why = NULL, *token = other->plant->token_file ? secret_read(other->plant->token_file, &why) : NULL;
@@ -124,7 +127,7 @@ static enum why why_of_status(long status)
                                             : WHY_NO_PICTURE;
 }
 
-/* Checks a complete answer. Returns the reason to reject it, with a description for the log, or WHY_NONE. */
+/* Checks a complete answer. Returns WHY_NONE if it is a valid picture, else the reason to reject it, with a description for the log. */
 static enum why judge(struct other *other, struct other_picture *about, char said[160])
 {
     const struct other_plant *plant = other->plant;
@@ -145,7 +148,7 @@ static enum why judge(struct other *other, struct other_picture *about, char sai
     return why;
 }
 
-/* Records a failed request. A server that is busy or slow is not gone: its last picture is shown until it is too old. */
+/* Records a failed request. If the server is only busy or slow, its last picture is shown until it is too old. */
 static void note_failure(struct other_plants *others, struct other *other, enum why why, const char *said)
 {
     pthread_mutex_lock(&others->lock);
@@ -177,7 +180,7 @@ static void note_picture(struct other_plants *others, struct other *other, const
     other->failing = false;
 }
 
-/* Sets the time of the next request: one interval after the last one began, or later if the server states Retry-After. */
+/* Sets the time of the next request: one interval after the last request began, or later if the server states Retry-After. */
 static void rest(struct other *other, bool good)
 {
     curl_off_t pause_s = 1;
@@ -240,7 +243,7 @@ static int begin_due(struct other_plants *others)
         struct other *other = &others->at[i];
         pthread_mutex_lock(&others->lock);
         bool wanted = other->wanted_ns && now_ns - other->wanted_ns < WANTED_NS;
-        if (!wanted && other->wanted_ns && !other->running) { /* no display has asked for the picture lately: drop it */
+        if (!wanted && other->wanted_ns && !other->running) { /* no display has asked for the picture lately, so it is dropped */
             mem_free(other->png);
             other->png = NULL;
             other->wanted_ns = other->asked_us = 0;
@@ -303,7 +306,7 @@ char *other_plants_text(struct other_plants *others, const int *which, size_t co
     pthread_mutex_lock(&others->lock);
     for (size_t i = 0; i < count; i++) {
         struct other *other = &others->at[which[i]];
-        if (!other->wanted_ns) { /* first request after a time without displays */
+        if (!other->wanted_ns) { /* this is the first request after a time in which no display wanted the picture */
             other->why = WHY_WAITING;
             other->since_us = clock_plant_ns() / 1000;
             wakes = true;

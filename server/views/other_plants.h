@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Pictures of other plants for wall panes: requests them from their servers with a viewer's token, as long as some display shows them.
-   Each picture is checked, and passed on until it is too old or its server sends another answer. Uses one thread and libcurl; no other
-   thread waits for it. Thread: any, for the functions below. */
+/* Pictures of other plants for wall panes: requests them from their servers with a viewer's token, while some display shows them. Each
+ * picture is checked. It is passed on to displays until it is too old or the server sends another answer. Uses one thread and libcurl; no
+ * other thread waits for it. Thread: any, for the functions below. */
 #ifndef VIEWS_OTHER_PLANTS_H
 #define VIEWS_OTHER_PLANTS_H
 #include "base/log/log.h"
@@ -11,11 +11,12 @@
 struct other_plants;
 /* Starts the thread. plant: has `other_plants`; must outlive the result. Returns NULL if it cannot be started (logged). */
 struct other_plants *other_plants_start(struct log *log, const struct plant *plant);
-void other_plants_stop(struct other_plants **others); /* Ends the thread, aborting requests in progress. &NULL is fine; leaves NULL. */
-/* Returns the state of these plants, given by index, and keeps requesting their pictures for the next half a minute:
-   /api/v1/other_plants in PROTOCOL.md. now_ns: monotonic. Returns JSON; free with mem_free(). */
+/* Ends the thread, aborts requests in progress and sets *others to NULL. *others may be NULL. */
+void other_plants_stop(struct other_plants **others);
+/* Returns the state of the plants whose indices `which` lists, as JSON (/api/v1/other_plants in PROTOCOL.md), and keeps requesting their
+ * pictures for the next half minute. now_ns: monotonic. The caller frees the text (mem_free()). */
 char *other_plants_text(struct other_plants *others, const int *which, size_t count, int64_t now_ns);
-/* Returns the picture with that id (free with mem_free()), or NULL if it is no longer the current one. */
+/* Returns the picture with this id, or NULL if it is no longer the newest one. The caller frees it (mem_free()). */
 char *other_plants_picture(struct other_plants *others, int which, int64_t number, int64_t now_ns, size_t *bytes);
 
 #endif

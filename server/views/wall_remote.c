@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Stores, for each wall pane, the newest order that a desk gave; older orders are replaced. */
+/* Stores the newest order that a desk gave for each wall pane. A new order for a pane replaces the older one. */
 #include "views/wall_remote.h"
 
 #include <stdio.h>
@@ -127,7 +127,7 @@ static bool same_place(const struct wall_place *a, const struct wall_place *b)
 
 static void set_pointer(struct wall_remote *remote, const struct wall_place *place, const double *position_m, const char *by)
 {
-    struct pointer *pointer = &remote->pointers[0]; /* reuses the pane's own pointer, else the one moved least recently */
+    struct pointer *pointer = &remote->pointers[0]; /* take the pane's own pointer; if it has none, the one that was moved least recently */
     for (int i = 0; i < WALL_POINTERS; i++) {
         if (same_place(&remote->pointers[i].place, place)) {
             pointer = &remote->pointers[i];
@@ -209,8 +209,8 @@ uint64_t wall_remote_pointer_number(const struct wall_remote *remote)
     return remote->pointed;
 }
 
-/* Returns whether the pane of an order exists. An order for a missing pane is stored but not sent: a later plant file may have the pane
-   again. */
+/* Returns whether the pane of an order exists in the plant file. An order for a missing pane is stored but not sent, because a later plant
+ * file may have the pane again. */
 static bool is_there(const struct wall_remote *remote, const json_t *order)
 {
     struct wall_place place = { .display = (int)json_integer_value(json_object_get(order, "display")) };

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Remote control of wall panes from desks: a view sent to a pane, a pane held, a position pointed at; and which displays are connected.
-   Orders are stored in walls.json in the history's folder, if any, until the pane is released. Thread: the loop. */
+/* Remote control of the panes of video walls from desks: a user sends a view to a pane, holds a pane, or points at a position in it. Also
+ * records which displays are connected. Orders are stored in walls.json in the history's folder, if any, until the pane is released.
+ * Thread: the loop. */
 #ifndef VIEWS_WALL_REMOTE_H
 #define VIEWS_WALL_REMOTE_H
 #include <jansson.h>
@@ -20,8 +21,8 @@ struct wall_place {
 
 struct wall_order {
     struct wall_place place;
-    const char *view, *title; /* address and title as in a named view; view "": the pane's own views */
-    bool held;                /* the pane stops changing. Neither `view` nor `held`: the pane is released */
+    const char *view, *title; /* address and title of a view, as in a named view; view "": the pane shows its own views */
+    bool held;                /* true: the pane stops changing. An order with neither `view` nor `held` releases the pane */
     const char *desk;
 };
 
@@ -29,27 +30,28 @@ struct wall_remote;
 /* Reads the orders. folder: the history's folder; NULL: orders are lost when the daemon ends. An unreadable file counts as empty
    (logged) and is not overwritten. Never returns NULL. `plant` and `folder` must outlive the result. */
 struct wall_remote *wall_remote_open(struct log *log, const struct plant *plant, const char *folder);
-void wall_remote_close(struct wall_remote **remote); /* Frees the orders. &NULL is fine; leaves NULL. */
-/* Returns the reason why a pane cannot be controlled: it is missing in the plant file, or has no views (static text). NULL: the pane can be
-   controlled. */
+void wall_remote_close(struct wall_remote **remote); /* Frees the orders and sets *remote to NULL. *remote may be NULL. */
+/* Returns why a pane cannot be controlled (static text): it is missing in the plant file, or has no views. NULL: it can be controlled. */
 const char *wall_place_wrong(const struct plant *plant, const struct wall_place *place);
-/* Carries out an order and writes the file. The place must exist in the plant file. Returns REFUSAL_NONE, or why it failed. */
+/* Carries out an order and writes the file. The pane must exist in the plant file. Returns REFUSAL_NONE, or the reason of the failure. */
 enum refusal_code wall_remote_order(struct wall_remote *remote, const struct wall_order *order, const char *who, int64_t now_us);
-/* Shows in a pane the position at which a user points. position_m NULL: removes the pointer. */
+/* Shows in a pane the position at which a user points. position_m NULL: removes the pointer from the pane. */
 void wall_remote_point(struct wall_remote *remote, const struct wall_place *place, const double *position_m, const char *who,
                        const char *desk);
-/* Replaces the pointers by `pointed`, the wall_remote_pointers_text() of another daemon. Returns false if it is invalid. */
+/* Replaces all pointers by those of another daemon. pointed: the result of wall_remote_pointers_text() there. Returns false if it is
+ * invalid. */
 bool wall_remote_mirror_pointers(struct wall_remote *remote, const json_t *pointed);
 /* Records whether a display is connected. */
 void wall_remote_see(struct wall_remote *remote, const char *wall, int display, bool there);
-/* Return counters that increase with each change of the two messages below. */
+/* Return counters that increase with each change of the messages `walls` and `pointed`. */
 uint64_t wall_remote_number(const struct wall_remote *remote);
 uint64_t wall_remote_pointer_number(const struct wall_remote *remote);
-/* Return the message `walls`, and the message `pointed` with the changes whose counter is above `after`. Free with mem_free(). */
+/* Return the message `walls`, and the message `pointed` with those changes whose counter is above `after`. The caller frees the text
+ * (mem_free()). */
 char *wall_remote_text(const struct wall_remote *remote);
 char *wall_remote_pointers_text(const struct wall_remote *remote, uint64_t after);
-/* For a core and its renderers: return the list of orders, owned by `remote`; replace it by that of the other daemon (false: invalid,
-   nothing changed). */
+/* For the connection between a core and its renderers: the first returns the list of orders, owned by `remote`. The second replaces the
+ * list by that of the other daemon, and returns false, with nothing changed, if it is invalid. */
 json_t *wall_remote_list(const struct wall_remote *remote);
 bool wall_remote_mirror(struct wall_remote *remote, json_t *list);
 
