@@ -245,7 +245,8 @@ static void camera_look(const struct camera *camera, struct basis *basis)
     double forward[3];
     for (int i = 0; i < 3; i++)
         forward[i] = camera->target_m[i] - camera->eye_m[i];
-    /* camera_valid() rejects such a camera; use the view to the north, so that the numbers stay finite */
+    /* camera_valid() rejects a camera whose `up` is along the view direction; the view to the north is used instead, so that the numbers
+       stay finite */
     if (!basis_of(forward, camera->up, basis))
         basis_of((double[]){ 0, 1, 0 }, (double[]){ 0, 0, 1 }, basis);
 }

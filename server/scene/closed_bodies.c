@@ -27,7 +27,7 @@ struct bodies {
     float apart_m;
     size_t table_mask, edge_mask;
     struct edge_count *edges;
-    uint8_t *open; /* by root of a body in the union-find forest: 1 if the body is open */
+    uint8_t *open; /* by root of a body in the union-find forest: 1 if the body is open, else 0 */
 };
 
 static size_t power_above(size_t count)

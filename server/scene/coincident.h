@@ -5,7 +5,7 @@
 #define SCENE_COINCIDENT_H
 #include "scene/scene.h"
 
-/* Sets `front` (rank) of every asset: 0, or a number higher than that of each asset that it should hide where faces coincide. */
+/* Sets `front` of every asset: 0, or a rank higher than that of each asset that it should hide where faces of the two coincide. */
 void coincident_find(struct scene *scene);
 /* Returns how far the asset is shifted towards the viewer, relative to its distance (in an orthographic view, to camera_parallel_m()). */
 double coincident_forward(const struct scene_asset *asset);

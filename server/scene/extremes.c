@@ -12,7 +12,7 @@
 enum { DIRECTIONS = 96 };
 /* Limits for recognising an asset as the plant's ground: it has no sensor, is low for its size, including lamps and kerbs, and covers most
  * of the plant's area. */
-/* largest height of ground, relative to its larger side; smallest area, relative to the plant's */
+/* GROUND_HEIGHT: largest height of the ground, relative to its larger side; GROUND_PART: smallest area, relative to the plant's */
 static const double GROUND_HEIGHT = 0.25, GROUND_PART = 0.8;
 static const double GROUND_LEAST_M = 5; /* smallest larger side of ground, metres: a smaller plate counts as equipment */
 /* largest error of the level whose vertices are searched, relative to the asset's size; with a coarser level the view would crop the

@@ -8,7 +8,8 @@
 #include "history/history.h"
 
 struct drift_report {
-    struct neighbours *neighbours; /* NULL: no sensor has a known position */
+    /* estimates each sensor from its neighbours (field/neighbours.h); NULL: no sensor has a known position */
+    struct neighbours *neighbours;
     size_t count;                  /* number of sensors */
     struct drift *drifts;          /* verdict of each sensor */
     /* hourly means of the readings, and their estimates from the neighbouring sensors, [hour][sensor]; NaN: none */

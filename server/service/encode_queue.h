@@ -13,9 +13,9 @@ struct encode_queue_params {
     struct workers *workers;
     struct counters *counters;
     const char *h264_library; /* name of the libavcodec encoder */
-    /* Called on a worker for each ticket, with the packets that bring its client up to date, oldest first. count 0: the client already
-       shows this content, or, if `failed` is true, the frame could not be encoded. The packets are borrowed for the duration of the
-       call. */
+    /* Called on a worker for each ticket (request whose drawing has begun), with the packets that bring its client up to date, oldest
+       first. count 0: the client already shows this content, or, if `failed` is true, the frame could not be encoded. The packets are
+       borrowed for the duration of the call. */
     void (*done)(void *arg, const struct request_ticket *ticket, struct packet *const *packets, int count, bool failed);
     void (*all_done)(void *arg); /* called after the last ticket of a frame */
     void *done_arg;              /* argument of both callbacks */

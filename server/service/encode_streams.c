@@ -82,7 +82,7 @@ static bool reaches(const struct encode_stream *stream, const struct encode_stre
 
 /* --- planning --------------------------------------------------------------------------------------------------------- */
 
-/* Returns the stream to which most of these clients already belong and still get all packets that they lack. */
+/* Returns the stream to which most of these clients already belong and from which they can still get all packets that they lack. */
 static struct encode_stream *most_common(struct encode_streams *streams, const struct request_group *tickets)
 {
     struct encode_stream *best = NULL;
@@ -223,7 +223,7 @@ static struct encode_stream *choose(struct encode_streams *streams, const struct
     if (stream && !shows(stream, frame, request))
         other = showing(streams, frame, request, true);
     if (other)
-        return other; /* that key frame was just made for clients that joined earlier, so it is reused */
+        return other; /* `other` has just made a key frame of this content, so these clients can join it without another key frame */
     if (!stream)
         stream = showing(streams, frame, request, false);
     else if (stream->content != frame->content && belongs_to_others(streams, stream, frame))
@@ -243,8 +243,8 @@ static bool must_again(const struct request_group *tickets)
     return false;
 }
 
-/* Returns whether the frame is complete without earlier packets in any case: after a camera move JPEG and PNG send the whole picture, so
-   clients can join at no cost. */
+/* Returns whether every packet of this frame decodes without earlier packets: after a camera move, JPEG and PNG send the whole picture.
+   Clients can then join the stream without an additional key frame. */
 static bool is_whole(const struct encode_stream *stream, const struct frame *frame, const struct frame_request *request)
 {
     return request->codec != WIRE_CODEC_H264 && !view_equal(&stream->shown.view, &frame->view);

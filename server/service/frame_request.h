@@ -17,9 +17,10 @@ struct frame_request {
     int64_t asked_ns; /* monotonic: when the request was made */
     int64_t read_ns;  /* monotonic: the client knows the readings up to this time; later changes of readings cause another request */
     int step;         /* step of the quality ladder, for previews */
-    bool draft;       /* refined draft: of lower quality than the final refined frame */
-    bool of_data;     /* made because a reading changed, at view.input_ns */
-    bool or_moving;   /* draw refined only if that is as quick as a preview; otherwise draw a preview with moving_quality */
+    bool draft;       /* true: a refined draft, of lower quality than the final refined frame */
+    bool of_data;     /* true: the request was made because a reading changed, at view.input_ns */
+    /* true: a refined frame is drawn only if that is as quick as a preview; otherwise a preview with moving_quality is drawn */
+    bool or_moving;
     struct encoder_params moving_quality;
     /* codec of the preview that may be drawn in place of a refined frame, without a record of inputs; 0: codec and record as requested */
     enum wire_codec moving_codec;
@@ -28,9 +29,9 @@ struct frame_request {
     /* the request is only valid in place of an earlier one whose drawing has not begun, because the client may have no more frames in
        flight */
     bool only_replace;
-    bool always; /* draw and send even if the client already shows the content */
-    bool alone;  /* the frame must decode without any packet sent before */
-    bool record; /* the frame includes the record of its inputs (render/frame_record.h), for signing; PNG only */
+    bool always; /* true: the frame is drawn and sent even if the client already shows the content */
+    bool alone;  /* true: the frame must decode without any packet sent before */
+    bool record; /* true: the frame includes the record of its inputs (render/frame_record.h), for signing; PNG only */
     /* overlay on top of the scene: FULL: legend, clock, sensors and alarms; BARE: legend and clock */
     enum { OVERLAY_NONE, OVERLAY_FULL, OVERLAY_BARE } overlay;
 };

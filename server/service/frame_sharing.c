@@ -63,7 +63,7 @@ void frame_sharing_submit(struct render_service *service, struct frame *frame, s
     request_group_finish(&overtaken);
 }
 
-/* Answers "nothing new" to the clients of the group that already show this content. */
+/* Answers "nothing new" to those clients of the group that already show this content, and removes them from the group. */
 static void answer_same(struct render_thread *thread, struct request_group *group, uint64_t content)
 {
     struct render_service *service = thread->service;
@@ -75,8 +75,8 @@ static void answer_same(struct render_thread *thread, struct request_group *grou
     render_service_answer_without_frame(service, &thread->same, false);
 }
 
-/* Returns whether a frame that was drawn for others can answer the group: the frame may lack the record of its inputs, which some requests
-   want. */
+/* Returns whether a frame that was drawn for other clients can answer the group. It cannot if a request wants the record of the frame's
+   inputs and the frame has none. */
 static bool answers(const struct frame *frame, const struct request_group *group)
 {
     return frame && (frame->record || !request_group_wants_record(group));

@@ -172,7 +172,7 @@ static struct history_answer *read_piece(struct history_queries *queries, struct
                : query->drift ? read_asset(queries, reader, question, &text)
                               : read_tag(queries, reader, question, &text);
     piece->last = !good || !pieces || question->next_tag == steps_of(queries, query);
-    if (good && text.length > 0) { /* copied without the spare capacity, because the text may wait long for a slow client */
+    if (good && text.length > 0) { /* the text is copied without its spare capacity, because it may wait long for a slow client */
         piece->text = mem_array(text.length + 1, 1);
         piece->length = text.length;
         memcpy(piece->text, text.at, text.length);
@@ -273,7 +273,8 @@ static void *run(void *arg)
         queries->at_work[index] = 0;
         queries->working[index] = NULL;
         give(queries, question, piece);
-        pthread_cond_broadcast(&queries->wake); /* the other thread may take another query of that address now */
+        /* this query's address has no thread any more, so the other thread may take another query of that address */
+        pthread_cond_broadcast(&queries->wake);
         pthread_mutex_unlock(&queries->lock);
         queries->notify(queries->notify_arg);
         pthread_mutex_lock(&queries->lock);

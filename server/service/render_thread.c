@@ -142,7 +142,7 @@ static void finish_complete(struct render_thread *thread)
 
 /* --- frames that take long (long jobs) -------------------------------------------------------------------------------- */
 
-/* Clears `left` for the group's clients: it says that they left the previous long job, and must not apply to the new one. */
+/* Clears `left` for the group's clients: the flag means that a client left the previous long job, and must not apply to the new one. */
 static void stay(struct render_service *service, const struct request_group *group)
 {
     pthread_mutex_lock(&service->lock);
@@ -322,7 +322,8 @@ static void long_job_leave(struct render_thread *thread)
    (a frame drawn in steps). */
 static void choose_other(struct request_group *group)
 {
-    bool moving = group->tickets[0].request.or_moving; /* one frame answers all tickets, so all tickets get the same tier */
+    /* one frame answers all tickets (requests whose drawing has begun) of the group, so all get the same tier */
+    bool moving = group->tickets[0].request.or_moving;
     for (size_t i = 0; i < group->count; i++) {
         struct frame_request *request = &group->tickets[i].request;
         if (!moving) {

@@ -68,7 +68,7 @@ void frame_sharing_answer_from_recent(struct render_thread *thread, struct reque
 void render_thread_memory_init(struct thread_memory *memory, struct render_service *service);
 /* Measures the caches and shrinks them to their limit. */
 void render_thread_bound_memory(struct render_thread *thread);
-/* Call it when caches were filled: they are then released only after another period without clients. */
+/* Call it when caches were filled: they are then kept until 10 s have passed without clients. */
 void render_thread_note_work(struct render_thread *thread);
 /* Limits the caches (at most once a second) and records that they are filled. Call it after each turn. */
 void render_thread_check_memory(struct render_thread *thread);
@@ -95,7 +95,7 @@ bool render_thread_overtakes(const struct render_thread *thread, const struct re
 /* Waits for work and moves the requests to be answered next into the group. The group stays empty if the thread must instead draw a step of
    the long job, or deliver a submitted frame. Returns false if the thread must end. */
 bool render_thread_next(struct render_thread *thread, const struct scheduler *scheduler, struct request_group *group);
-/* Updates thread->snapshot if readings changed or it is too old. */
+/* Updates thread->snapshot if readings changed or if it is older than SNAPSHOT_MAX_AGE_NS. */
 void render_thread_refresh(struct render_thread *thread);
 /* Returns the readings that a view shows: those of its instant, with a reference in *historical (release it with snapshot_cache_give),
    or the newest ones, with *historical NULL. Returns NULL if the instant is no longer in the cache; then no client waits for that view. */

@@ -6,8 +6,8 @@
 /* How long changed readings wait for a refined frame of the same client. After that the refined frame is given up for a preview and the
    delay doubles, so that at some time one gets finished. */
 static const int64_t OWN_DATA_NS = 1 * NS_PER_S, OWN_DATA_MAX_NS = 16 * NS_PER_S;
-/* a frame may overtake a long job that has this many times its pixels: memory suffices for one more frame of the smaller size, but not for
-   two large ones */
+/* a frame may overtake a long job (a frame drawn in steps) that has this many times its pixels: memory suffices for one more frame of the
+   smaller size, but not for two large ones */
 enum { OVERTAKE_SMALLER = 4 };
 /* maximum age of a snapshot, which limits the error of the clock and of the ages in a frame */
 static const int64_t SNAPSHOT_MAX_AGE_NS = 100 * NS_PER_MS;
@@ -70,7 +70,7 @@ static bool goes_before(const struct render_thread *thread, const struct render_
     return !other || has_had_less(client, other, scheduler_share(urgency));
 }
 
-/* Chooses what the next turn draws. The caller holds the lock. */
+/* Chooses what the render thread does in its next turn: draw a step of the long job, or serve a client. The caller holds the lock. */
 static struct render_turn next_turn(const struct render_thread *thread, const struct scheduler *scheduler)
 {
     const struct render_service *service = thread->service;

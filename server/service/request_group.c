@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Lists of requests that are answered by the same frame. */
+/* Request groups: lists of requests that one frame answers. */
 #include "service/request_group.h"
 
 #include "base/mem.h"

@@ -27,7 +27,8 @@ void time_accounts_leave(struct time_accounts *accounts, struct time_account **a
 /* Call it when a client of the account makes a request. It raises the account's charge to that of the account served last, so that time
    left unused earlier gives no advantage. */
 void time_accounts_asked(const struct time_accounts *accounts, struct time_account *account, int share);
-/* Call it when a request of the account is drawn next; its charge becomes the least that accounts with new requests start with. */
+/* Call it when a request of the account is drawn next. The account's charge becomes the least charge with which other accounts enter the
+   queue. */
 void time_accounts_served(struct time_accounts *accounts, const struct time_account *account, int share);
 /* Frees all accounts; they must have no clients. */
 void time_accounts_finish(struct time_accounts *accounts);
