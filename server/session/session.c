@@ -297,7 +297,7 @@ bool session_may_be(struct session *session, const struct wall_place *place, str
     return false;
 }
 
-/* Makes the session a wall display, which is sent the pointers of desks from now on. */
+/* Makes the session a wall display. From now on it is also sent the mouse pointers that users at desks show on the wall. */
 static bool on_display(struct session *session, const struct message *message, struct message_error *error)
 {
     if (!session_may_be(session, &message->wall.place, error))

@@ -10,7 +10,7 @@
 #include "session/session_state.h"
 #include "session/view/session_view.h"
 
-#define SESSION_MAX_INPUT_BYTES (1024 * 1024) /* bytes of one message; a longer one closes the connection */
+#define SESSION_MAX_INPUT_BYTES (1024 * 1024) /* largest size in bytes of a message from a client; a longer one closes the connection */
 
 /* --- life cycle ------------------------------------------------------------------------------------------------------ */
 

@@ -14,7 +14,8 @@ static const int64_t LASTED_NS = 5 * NS_PER_S; /* a step up counts as right if i
 static const int64_t SETTLE_NS = 500 * NS_PER_MS;
 static const int64_t SLOW_DECODE_NS = 40 * NS_PER_MS; /* decoding that takes longer cannot keep up with 25 frames a second */
 static const int64_t FAST_DECODE_NS = 20 * NS_PER_MS;
-/* the server makes two pictures at a time, so a longer time for one means fewer than 15 pictures a second */
+/* limit of the time for making a picture: the server makes two pictures at a time, so a longer time means fewer than 15 pictures a
+   second */
 static const int64_t SLOW_MADE_NS = 130 * NS_PER_MS;
 static const int64_t FAST_MADE_NS = 90 * NS_PER_MS;
 static const int64_t HARD_FOR_NS = 500 * NS_PER_MS, EASY_FOR_NS = 3 * NS_PER_S;

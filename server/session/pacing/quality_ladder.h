@@ -14,8 +14,8 @@ struct rung {
 };
 
 struct quality_ladder { /* initialise with quality_ladder_init() */
-    int step;           /* index of the quality step, 0: best; set by the bandwidth */
-    int size;           /* index of the picture size, 0: full; set by the client's decoding time or by the server's rendering time */
+    int step;           /* index of the quality step, 0: best; chosen by the bandwidth */
+    int size;           /* index of the picture size, 0: full; chosen by the client's decoding time or by the server's rendering time */
     double unit_bytes;  /* estimated size in bytes of a frame at step 0, smoothed */
     bool known;         /* at least one frame was acknowledged */
     /* monotonic times since when: a better step fits; a larger picture fits; decoding takes too long. 0: not the case now */

@@ -6,7 +6,7 @@
 #include "session/session_context.h"
 
 char *reply_welcome_text(const struct session *session, int64_t now_utc_ns);
-/* open: the text is for clients without a token; names of tags and baselines are left out. */
+/* Lists the parameters of a view. open: the text is for clients without a token; names of tags and baselines are left out. */
 char *reply_params_text(const struct session_context *context, const struct view *view, uint32_t seq, bool open);
 /* Lists the followers of a session by session number, at most REPLY_FOLLOWERS. */
 enum { REPLY_FOLLOWERS = 256 };
