@@ -10,7 +10,7 @@ void matrix_translation(const double by[3], double out[16]);
 void matrix_point(const double m[16], const double p[3], double out[4]);
 /* Inverts any regular matrix, also one with perspective. The matrix must not be singular. */
 void matrix_invert(const double m[16], double out[16]);
-/* Matrix for normals under m: the inverse transpose of its 3x3 part, column-major. */
+/* Writes the matrix that transforms normals if m transforms points: the inverse transpose of the 3x3 part of m, column-major. */
 void matrix_normals(const double m[16], float out[9]);
 /* Transforms a plane (n . p + d = 0, given as n.x, n.y, n.z, d) into the coordinates from which m maps. */
 void matrix_plane(const double m[16], const double plane[4], float out[4]);

@@ -14,7 +14,7 @@ static const double NEIGHBOUR_UNITS = 30, HELD_FACTOR = 0.8;
 struct item_buckets {
     const struct crowd_item *items;
     double cell;
-    /* heads: index of the last item of each hash bucket; next: by item, index of the previous item in its bucket; -1: none */
+    /* heads: index of the last item (marker) of each hash bucket; next: by item, index of the previous item in its bucket; -1: none */
     int *heads, *next;
     size_t mask;
 };
@@ -50,7 +50,7 @@ static void put(struct item_buckets *crowd, int index)
     *head = index;
 }
 
-/* Counts the items of a grid cell whose squared distance to `item` is less than `least`, up to MAX_NEIGHBOURS. */
+/* Counts the items (markers) of a grid cell whose squared distance to `item` is less than `least`, up to MAX_NEIGHBOURS. */
 static int count_cell(const struct item_buckets *crowd, double column, double row, const struct crowd_item *item, double least)
 {
     int count = 0;

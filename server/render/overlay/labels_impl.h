@@ -28,19 +28,20 @@ struct label_layout {
     int columns, rows, *heads; /* grid over the frame; heads: for each grid cell, the index of the first of its occupied boxes; -1: none */
     struct cell_entry *entries;
     size_t entry_count, entry_capacity;
-    int *labelled; /* indices of items that have a label */
+    int *labelled; /* indices of items (markers) that have a label */
     int labelled_count;
     double used;
 };
 
-/* Returns the box of an item's label in a slot. across, down: half the width and height of the group of markers around item->x, item->y; 0
-   for a single marker. */
+/* Returns the box of an item's label in a slot (candidate position around the marker). across, down: half the width and height of the group
+   of markers around item->x, item->y; 0 for a single marker. */
 struct label_box layout_box(const struct label_item *item, int slot, double unit, double across, double down);
 /* Returns whether a box lies within the label area. */
 bool layout_is_inside(const struct label_layout *layout, const struct label_box *box);
 /* Returns whether a box overlaps no occupied box. Boxes of `owner` and boxes that `over` allows to cover are ignored. */
 bool layout_is_free(const struct label_layout *layout, const struct label_box *box, int owner, enum label_over over);
-/* Places the label of these items and marks its box as occupied; more than one item makes it a call-out. */
+/* Places one label for these items (markers) in `box` and marks the box as occupied; more than one item makes the label a call-out. slot:
+   the label's slot, stored for the next frame. */
 void layout_set(struct label_layout *layout, const int *members, size_t count, const struct label_box *box, int slot);
 /* Gives every item with an alarm ring a label of its own or adds it to a call-out, a label shared by several rings. order: indices of the
    items, most important first. */

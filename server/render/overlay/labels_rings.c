@@ -101,7 +101,7 @@ static size_t join_close(const struct rings *rings, int *first)
     return groups;
 }
 
-/* Computes a group's centre and size, and the slot that its label had in the previous frame. */
+/* Computes a group's centre and size, and the slot (candidate position) that its label had in the previous frame. */
 static void measure(struct rings *rings, struct ring_group *group)
 {
     const struct label_area *area = rings->layout->area;
@@ -114,7 +114,8 @@ static void measure(struct rings *rings, struct ring_group *group)
         right = fmax(right, item->x);
         top = fmin(top, item->y);
         bottom = fmax(bottom, item->y);
-        /* the slot only counts if the label was of the same kind in the previous frame: of a single ring, or a call-out */
+        /* the slot (candidate position) only counts if the label was of the same kind in the previous frame: of a single ring, or a
+           call-out */
         if ((item->callout == LABEL_NONE) == (group->count == 1))
             group->item.held = item->held;
     }

@@ -40,7 +40,7 @@ void isolines_finish(struct isolines *isolines)
 
 /* --- points on lines --------------------------------------------------------------------------------------------------------- */
 
-/* State of the search in one asset. */
+/* State of the search for isoline points in one asset. */
 struct isoline_search {
     const struct scene_asset *asset;
     const struct fields_entry *field;

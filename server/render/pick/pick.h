@@ -21,7 +21,8 @@ struct pick {
     bool uncertain, inside;
     /* field value for PICK_BETWEEN and PICK_MEASURED, in the view's unit. SHOW_OPERATOR: the reading, not its position between limits */
     double value;
-    double drawn_error; /* error bound, in the same unit, that frames state for this point if they mark it uncertain; 0: not marked */
+    /* error bound of `value`, in its unit, which frames state for this point if they mark it as uncertain; 0: not marked */
+    double drawn_error;
     int nearest_count;
     struct pick_sensor {
         int tag;

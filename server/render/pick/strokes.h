@@ -13,7 +13,8 @@ struct stroke_point {
     struct direction to;
 };
 struct stroke_set { /* strokes of one asset; zero-initialise, free with strokes_finish() */
-    /* [triangle][i]: the neighbour across the edge that begins at corner i, as 3 * triangle + edge; STROKE_NONE: no neighbour */
+    /* [triangle][i]: the neighbour across the edge that begins at corner i, as 3 * index of the triangle + index of its edge; STROKE_NONE:
+       no neighbour */
     uint32_t (*across)[3];
     struct stroke_point (*points)[STROKE_POINTS];
     int *lengths; /* number of points per stroke; 0: the direction at its start is unknown */

@@ -15,7 +15,7 @@ struct soft_kernels {
        listed faces. If some faces are clipped, it does so for all vertices of the part. */
     void (*place_part)(struct soft_tile *tile, const struct soft_mesh *mesh, const struct soft_parts *parts, const struct soft_part *part);
     void (*carry_part)(struct soft_tile *tile, const struct soft_mesh *mesh, const struct soft_parts *parts, const struct soft_part *part);
-    /* Lists those faces (front-facing triangles) of the part whose corners are all projected and need no clipping. */
+    /* Lists those faces (front-facing triangles) of the part (group of triangles) whose corners are all projected and need no clipping. */
     void (*find_faces)(struct soft_tile *tile, const struct soft_mesh *mesh, const struct soft_found *found, const struct soft_part *part);
     /* Draws depth and marks (contents of pixels, soft_impl.h) of all listed faces. */
     void (*raster_faces)(const struct soft_tile *tile, uint32_t mark);
@@ -27,7 +27,8 @@ struct soft_kernels {
        SOFT_STRETCH_MOST pixels. */
     void (*color)(const struct raster *raster, const struct soft_rect *rect);
     /* --- of refined frames */
-    /* Shades surfaces that show the field. For each item, writes triangle, corner weights and colour map row to `out`. */
+    /* Shades surfaces that show the field. For each item (surface to shade), writes triangle, corner weights and colour map row to
+       `out`. */
     void (*shade_field)(const struct refined *refined, struct visibility_band *band, const struct refined_item *items, size_t count,
                         const struct shaded_items *out);
     /* Shades surfaces of the field in the glossy look: as shade_field, and also writes reflected light to out->gloss. */
@@ -36,7 +37,7 @@ struct soft_kernels {
     /* Shades all other surfaces and writes their colours. alphas: receives their opacity, 0..1; NULL: not needed. */
     void (*shade_surfaces)(const struct refined *refined, const struct refined_item *items, size_t count, uint32_t *colors, float *alphas);
     void (*shade_sky)(const struct refined *refined, int row, const uint8_t *wanted, uint32_t *colors);
-    /* Draws the feature edges of a band (group of pixel rows) into the ink of the visibility buffer. */
+    /* Draws the feature edges of a band (group of pixel rows) into the visibility buffer's ink (lines drawn over pixels). */
     void (*ink_band)(const struct refined *refined, int band);
 };
 /* _wide (AVX2) and _widest (AVX-512) exist on x86 only */

@@ -60,7 +60,7 @@ static void include(struct soft_rect *rect, const struct soft_rect *other)
     rect->bottom = other->bottom > rect->bottom ? other->bottom : rect->bottom;
 }
 
-/* Returns true if section planes remove the whole part, and no triangle of the part bounds a body that is cut open. */
+/* Returns true if section planes remove the whole part (group of triangles), and no triangle of the part bounds a body that is cut open. */
 static bool is_cut_away(const struct raster *raster, const struct soft_mesh *mesh, const struct asset_cluster *box, struct soft_item *item)
 {
     item->cut = item->beyond = false;

@@ -30,7 +30,7 @@ static void add_vertex(struct parts_maker *maker, struct soft_part *part, uint32
     maker->number[vertex] = (uint8_t)part->vertex_count++;
 }
 
-/* Returns false if the part has no room for the triangle's vertices. */
+/* Returns false if the part (group of triangles) has no room for the triangle's vertices. */
 static bool add_triangle(struct parts_maker *maker, struct soft_part *part, const uint32_t *indices)
 {
     uint32_t part_number = (uint32_t)maker->parts->part_count + 1, fresh = 0;
@@ -99,7 +99,7 @@ static int direction_of(const float n[3])
     return row * DIRECTION_CELLS + (row % 2 ? DIRECTION_CELLS - 1 - column : column);
 }
 
-/* Writes the triangles into the part, sorted by direction. */
+/* Writes the triangles into the part (group of triangles), sorted by direction. */
 static void write_triangles(const struct parts_maker *maker, const struct soft_part *part)
 {
     struct soft_parts *parts = maker->parts;
@@ -161,7 +161,7 @@ static void end_part(struct parts_maker *maker, struct soft_part *part)
     parts->parts[parts->part_count++] = *part;
 }
 
-/* Splits a cluster into parts; most clusters are one part. */
+/* Splits a cluster into parts (groups of triangles); most clusters are one part. */
 static void add_cluster(struct parts_maker *maker, const struct asset_cluster *cluster, const struct asset_primitive *primitive)
 {
     for (uint32_t done = 0; done < cluster->index_count;) {

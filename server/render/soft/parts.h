@@ -17,7 +17,7 @@ struct soft_part {
     uint16_t rounded; /* triangle_count rounded up to a multiple of LANES; the padding triangles have no area */
     uint16_t material;
     bool double_sided;
-    bool blended; /* the material is transparent; the part is blended unless it shows a field */
+    bool blended; /* the material is transparent; the part (group of triangles) is blended unless it shows a field */
 };
 
 struct soft_parts {
@@ -50,7 +50,7 @@ static inline void soft_part_triangle(const struct soft_parts *parts, const stru
         vertices[i] = parts->vertices[part->first_vertex + corners[i * part->rounded]];
 }
 
-/* Makes the parts of a level of detail. Returns false when out of memory. Call soft_parts_finish() in either case. */
+/* Makes the parts (groups of triangles) of a level of detail. Returns false when out of memory. Call soft_parts_finish() in either case. */
 bool soft_parts_init(struct soft_parts *parts, const struct asset_view *file, const struct model_level *level);
 /* Computes `closed` if it is NULL. vertex_count: vertices of the level of detail. Returns false when out of memory. */
 bool soft_parts_close(struct soft_parts *parts, const struct asset_view *file, const struct closed_bodies *closed, uint32_t vertex_count);

@@ -160,7 +160,8 @@ SOFT_INLINE void draw_face(const struct soft_tile *tile, const struct soft_sampl
                            const struct setup *setup, const struct soft_cutout *cutout, const struct mark_ink *ink)
 {
     bool wide = face->right - face->left >= 2 * LANES;
-    /* last column at which a stamp may begin without reaching beyond the tile, where another thread draws */
+    /* last column at which a stamp (block of pixels drawn as a unit) may begin without reaching beyond the tile, where another thread
+       draws */
     int last = tile->rect.right + 1 - LANES;
     for (int row = face->top; row <= face->bottom; row++) {
         size_t start = place_in(tile, tile->rect.left, row);

@@ -55,7 +55,7 @@ struct refined_item { /* one surface within a pixel */
     uint16_t share; /* area of the pixel that the surface covers, 0..VISIBILITY_SHARES */
 };
 
-struct shaded_items { /* results of shading, by index of the refined_item; only for items that show the field */
+struct shaded_items { /* results of shading, by index of the refined_item (surface to shade); only for items that show the field */
     uint32_t *triangles, *weights;
     uint8_t *rows;
     struct visibility_gloss *gloss;
@@ -66,8 +66,8 @@ struct shaded_items { /* results of shading, by index of the refined_item; only 
 void refined_raster_band(const struct refined *refined, int band, const struct soft_sample samples[SAMPLES],
                          struct soft_fragments *fragments);
 bool refined_shade_band(const struct refined *refined, int band); /* false: out of memory */
-/* Adds the item's triangle to the band's list of triangles. Writes the index of the triangle in the list, and its corner weights w1 and w2,
-   to element `at` of `out`. */
+/* Adds the triangle of an item (surface to shade) to the band's list of triangles. Writes the index of the triangle in the list, and its
+   corner weights w1 and w2, to element `at` of `out`. */
 void refined_keep_place(const struct refined *refined, struct visibility_band *band, const struct refined_item *item, float w1, float w2,
                         const struct shaded_items *out, size_t at);
 

@@ -406,7 +406,7 @@ SOFT_INLINE uint32_t bits_of_bytes(uint64_t x)
     return (uint32_t)((tops >> 7 & 0x0101010101010101) * 0x0102040810204080 >> 56);
 }
 
-/* Returns the colours of eight pixels in a row; the colours of pixels with several surfaces are arbitrary and must be overwritten. */
+/* Returns the colours of eight pixels in a row. Pixels that show several surfaces get arbitrary colours, which the caller overwrites. */
 SOFT_INLINE lanes_int color_lanes(const struct coloring *coloring, const struct visibility_band *band, size_t at, int x, int y)
 {
     const struct visibility_buffer *buffer = coloring->buffer;

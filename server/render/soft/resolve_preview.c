@@ -228,7 +228,8 @@ SOFT_INLINE void carried_steps(const struct pixel_row *pixels, const struct soft
     *by_y = carried_of(pixels, values.value) - carried;
 }
 
-/* Returns the marks of eight pixels, with the field of `pixels` evaluated at each pixel. */
+/* Returns the marks (contents of pixels) of eight pixels as if all showed the field of `pixels`; the caller ignores those of other
+   pixels. */
 SOFT_INLINE lanes_int marks_of_field(const struct pixel_row *pixels, const struct soft_rect *rect, lanes_int marks, int column, int row)
 {
     const struct raster *raster = pixels->raster;

@@ -28,7 +28,7 @@ struct mixed { /* a pixel that shows several surfaces, and the range of its item
 
 struct refined_row { /* a row of pixels; the arrays of items (surfaces to shade) have room for SAMPLES items per pixel */
     struct refined_item *field, *surfaces;
-    /* by item: column of its pixel; -1: the pixel shows several surfaces and is composed after its items are shaded */
+    /* by item (surface to shade): column of its pixel; -1: the pixel shows several surfaces and is composed after its items are shaded */
     int *field_columns, *surface_columns;
     struct mixed *mixed;
     uint8_t *sky;  /* by column: 1 if the pixel shows some of the sky, else 0 */

@@ -40,8 +40,8 @@ SOFT_INLINE void many_put_floats(float *at, size_t pitch, int width, sixteen val
     }
 }
 
-/* Stores the pixels of a stamp whose bit in `seen` is set. Memory of its other pixels is not accessed, since another thread may write
-   there. */
+/* Stores the pixels of a stamp (block of pixels drawn as a unit) whose bit in `seen` is set. Memory of its other pixels is not accessed,
+   since another thread may write there. */
 SOFT_INLINE void many_put_ints(uint32_t *at, size_t pitch, int width, uint32_t seen, sixteen_int value)
 {
     __m512i all = (__m512i)value;
@@ -138,8 +138,8 @@ SOFT_INLINE void draw_by_many(const struct soft_tile *tile, const struct soft_sa
     }
 }
 
-/* Returns whether faces may be drawn in stamps of 16 pixels: the tile is large enough for a stamp of any shape, and there are no
-   isolines. */
+/* Returns whether faces may be drawn in stamps (blocks drawn as a unit) of 16 pixels: the tile is large enough for a stamp of any shape,
+   and there are no isolines. */
 SOFT_INLINE bool can_draw_sixteen(const struct soft_tile *tile, const struct mark_ink *ink)
 {
     return !ink->rich && tile->rect.right - tile->rect.left >= MANY - 1 && tile->rect.bottom - tile->rect.top >= 3;

@@ -154,8 +154,9 @@ SOFT_INLINE size_t place_in(const struct soft_tile *tile, int column, int row)
     return (size_t)(row - tile->rect.top) * (size_t)tile->pitch_px + (size_t)(column - tile->rect.left);
 }
 
-/* Draws one stamp of eight pixels: depth and mark where the face covers a pixel and is nearest. l: index of the face in `small`. left, top:
-   position in the frame. two: two rows of four instead of one of eight. two, thin: compile-time constants. */
+/* Draws one stamp (block of pixels drawn as a unit) of eight pixels: depth and mark where the face covers a pixel and is nearest. l: index
+   of the face in `small`. left, top: position in the frame. two: two rows of four instead of one of eight. two, thin: compile-time
+   constants. */
 SOFT_INLINE void draw_stamp(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *face,
                             const struct small *small, int l, int left, int top, uint32_t mark, const struct mark_ink *ink, bool two,
                             bool thin)
@@ -167,8 +168,8 @@ SOFT_INLINE void draw_stamp(const struct soft_tile *tile, const struct soft_samp
     lanes_int side = small_side(small, l, 0, x, y) | small_side(small, l, 1, x, y) | small_side(small, l, 2, x, y);
     lanes depth = stamp_floats(sample->depth + place, pitch, two), here = small_value(small, l, 0, from_x, from_y, thin), none = { 0 };
     lanes_int seen = (side >= 0) & (here >= depth);
-    /* nearly half of all stamps show nothing. Where lanes_choose() is a single instruction, finishing them costs less than a branch
-       misprediction */
+    /* nearly half of all stamps (blocks of pixels drawn as a unit) show nothing. Where lanes_choose() is a single instruction, finishing
+       them costs less than a branch misprediction */
     if (!LANES_CHOOSE_AT_ONCE && !lanes_any(seen))
         return;
     if (sample->marks) {
@@ -189,8 +190,8 @@ SOFT_INLINE void draw_stamp(const struct soft_tile *tile, const struct soft_samp
                                         stamp_ints(sample->ids + place, pitch, two)));
 }
 
-/* Draws a face stamp by stamp. Stamps stay within the tile, because other threads draw outside. The last stamps of a row or column may
-   therefore overlap earlier ones, which is harmless: drawing a pixel twice has no effect. */
+/* Draws a face stamp by stamp (blocks of pixels drawn as a unit). Stamps stay within the tile, because other threads draw outside. The last
+   stamps of a row or column may therefore overlap earlier ones, which is harmless: drawing a pixel twice has no effect. */
 SOFT_INLINE void draw_small(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *face,
                             const struct small *small, int l, uint32_t mark, const struct mark_ink *ink, bool two)
 {
@@ -210,8 +211,8 @@ SOFT_INLINE void draw_small(const struct soft_tile *tile, const struct soft_samp
 
 struct kinds {          /* classes of faces by size; bit l of a mask: face l is in the class */
     uint32_t one, four; /* one: at most 4 x 2 pixels; four: larger, but at most 4 x 4 */
-    /* two: larger faces for which two-row stamps (4 x 2 pixels) need fewer stamps than one-row stamps (8 x 1); low: faces one pixel high
-       that are in none of the other classes */
+    /* two: larger faces for which two-row stamps (blocks of 4 x 2 pixels drawn as a unit) need fewer stamps than one-row stamps (8 x 1);
+       low: faces one pixel high that are in none of the other classes */
     uint32_t two, low;
 };
 

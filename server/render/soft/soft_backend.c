@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The software render backend: draws a preview in a single call, a refined frame in steps, or recolours a kept refined frame. */
+/* The software render backend: draws a preview in a single call, a refined frame in steps, or recolours a refined frame whose visibility
+   buffer is kept. */
 #include "base/clock.h"
 #include "base/mem.h"
 #include "render/render_backend.h"

@@ -69,7 +69,7 @@ struct soft_item { /* a part (group of neighbouring triangles, parts.h) that may
     float near;    /* depth of the part's nearest point; above 1: the part reaches in front of the near plane */
     struct soft_rect rect;
     uint32_t part;
-    bool cut;    /* true if a section plane cuts through the part */
+    bool cut;    /* true if a section plane cuts through the part (group of triangles) */
     bool beyond; /* true if section planes remove the whole part; it is listed because it may bound a body that is cut open */
 };
 
@@ -79,7 +79,7 @@ struct soft_found { /* list of the parts of one mesh that may be visible; its me
     bool both_sides;
     float eye_m[3]; /* eye position in the file's coordinates */
     struct soft_rect rect;
-    uint32_t first_id; /* id of the first triangle of the first item; each further item's ids begin PART_TRIANGLES higher */
+    uint32_t first_id; /* id of the first triangle of the first item (part); the ids of each further item begin PART_TRIANGLES higher */
     struct soft_item *items;
     size_t count, capacity;
 };
@@ -152,7 +152,7 @@ struct raster { /* source and target of one frame's rasterization; its memory is
     int cut_count, entry_count;
     float shift_px[2];  /* offset of the samples from pixel centres */
     bool counts_bodies; /* the frame has section caps, for which the closed bodies at each pixel are counted (caps.c) */
-    bool blends;        /* true: some of the parts found are blended (transparent) */
+    bool blends;        /* true: some of the parts (groups of triangles) found are blended (transparent) */
     bool has_ground;
     bool greys;                                                                /* context is drawn grey */
     float sun_from_pixel[4][4], ground_from_pixel[3][3], ray_from_pixel[3][3]; /* matrices, as columns */
@@ -180,7 +180,7 @@ struct soft { /* shared by all frames */
     uint64_t glossy_version;
     struct soft_light lights[SOFT_LIGHTS];
     uint64_t uses;
-    struct soft_parts **parts;                      /* parts by model, then by level; made when first needed */
+    struct soft_parts **parts;                      /* parts (groups of triangles) by model, then by level; made when first needed */
     struct visibility_store kept[TIER_REFINED + 1]; /* by tier: visibility buffers of views whose camera stands still */
     /* content_hash_shape() of the last previews drawn; a repeated one means that the camera stands still */
     uint64_t shapes[SOFT_SHAPES];
@@ -215,7 +215,7 @@ float raster_entry_depth(const struct raster *raster, float x, float y);
    plane cuts open. Returns false when out of memory. */
 bool raster_find(struct raster *raster, bool bodies);
 bool raster_find_only(struct raster *raster, int asset); /* lists one asset's parts; their back faces are drawn, too */
-bool raster_find_ghosts(struct raster *raster);          /* lists the parts of ghosted assets */
+bool raster_find_ghosts(struct raster *raster);          /* lists the parts (groups of triangles) of ghosted assets */
 /* writes how much of each pixel a ghost line covers, 0..255, to `veil`, rows of width_px; overwrites the marks. bgr: receives the line's
    colour. Returns false when out of memory */
 bool raster_ghosts(struct raster *raster, uint8_t *veil, uint8_t bgr[3]);
@@ -231,17 +231,17 @@ const uint8_t *raster_rim(const struct raster *raster);
 /* Returns a visibility buffer from which the frame can be recoloured. Call it while raster->ids is valid, and before edges, rims and
    markers are drawn. NULL: out of memory. */
 struct visibility_buffer *raster_keep(struct raster *raster);
-/* adds the outline of the selected asset to the buffer's ink; overwrites raster->depth */
+/* adds the outline of the selected asset to the buffer's ink (lines drawn over pixels); overwrites raster->depth */
 void raster_keep_rim(const struct raster *raster, struct visibility_buffer *buffer);
-/* Puts the buffer, with the frame's markers, into the store of kept buffers. */
+/* Puts the buffer, with the frame's markers, into soft->kept, the store of buffers for recolouring. */
 void soft_keep(struct soft *soft, const struct frame_context *context, struct visibility_buffer *buffer, const struct frame *frame);
 struct soft_triangle {
     uint32_t id; /* id of the triangle, as in struct soft_sample or raster->ids */
     uint32_t mesh, material;
     uint32_t vertices[3]; /* vertex numbers in the file */
 };
-/* Finds the triangle with this id among the found parts. On entry triangle->mesh is the index of the mesh to try first: that of a
-   neighbouring pixel, or 0. */
+/* Finds the triangle with this id among the found parts (groups of triangles). On entry triangle->mesh is the index of the mesh to try
+   first: that of a neighbouring pixel, or 0. */
 void raster_find_triangle(const struct raster *raster, uint32_t id, struct soft_triangle *triangle);
 /* Computes the weights of the triangle's three corners at any point of the frame, up to a common factor: weight i = weights[i][0] x +
    weights[i][1] y + weights[i][2]. vertices: indices in the asset file. */

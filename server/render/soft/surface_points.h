@@ -26,11 +26,12 @@ struct corners {                    /* corners of eight triangles relative to th
     /* a, b: x and y of the vector from the point to the corner, pixels; times clip w if a corner of the triangle cannot be projected */
     float a[3][LANES], b[3][LANES];
     float w[3][LANES];              /* 1 / clip w of the corner; 1 if a corner of the triangle cannot be projected */
-    float z[3][LANES], g[3][LANES]; /* g: 1, or clip w if a corner of the triangle cannot be projected; z: depth times g */
+    /* for interpolating depth: g is 1, or clip w if a corner of the triangle cannot be projected; z is depth * g */
+    float z[3][LANES], g[3][LANES];
 };
 
-/* Projects the corners of an item's triangle into lane i, as soft_place_part() in faces.c does. If a corner cannot be projected, which may
-   lie behind the eye, homogeneous coordinates are stored. */
+/* Projects the corners of the triangle of an item (surface to shade) into lane i, as soft_place_part() in faces.c does. If a corner cannot
+   be projected, which may lie behind the eye, homogeneous coordinates are stored. */
 SOFT_INLINE void see_corners(const struct refined *refined, const struct refined_item *item, int i, struct corners *out)
 {
     const struct raster *raster = &refined->raster;
@@ -157,7 +158,7 @@ SOFT_INLINE void attributes_at(const struct refined *refined, const struct soft_
     out[OPEN] = baked[2] * (1 / 255.0f);
 }
 
-/* Computes the surface points (struct eight_points) of up to eight items; unused lanes repeat the last item. */
+/* Computes the surface points (struct eight_points) of up to eight items (surfaces to shade); unused lanes repeat the last item. */
 SOFT_INLINE void look(const struct refined *refined, const struct refined_item *items, size_t count, bool with_material,
                       struct eight_points *spot)
 {

@@ -26,7 +26,8 @@ struct soft_corners { /* vertices of a part with the members of struct soft_vert
 
 struct soft_face { /* a triangle that faces the eye and covers a pixel centre of the tile; its area in pixels is positive */
     uint16_t corners[3];
-    uint16_t triangle;                /* index of the triangle in the part; for meshes that a section plane cuts also the flag FACE_BACK */
+    /* index of the triangle in the part (group of triangles); for meshes that a section plane cuts also the flag FACE_BACK */
+    uint16_t triangle;
     int16_t left, right, top, bottom; /* in pixels of the frame */
 };
 
@@ -63,8 +64,8 @@ struct soft_tile {
     struct soft_corners corners;
     struct soft_face faces[MOST_FACES];
     int face_count;
-    uint32_t first_id; /* id of the part's first triangle, in raster->ids */
-    int cuts;          /* number of section planes, from the first in raster->cuts, that clip the part */
+    uint32_t first_id; /* id, in raster->ids, of the first triangle of the part (group of triangles) that is being drawn */
+    int cuts;          /* number of section planes, from the first in raster->cuts, that clip the part (group of triangles) */
     enum { DRAW_ALL, DRAW_OPAQUE, DRAW_BLENDED } draws;
     /* list to which DRAW_BLENDED appends the transparent triangles at each sample; it writes neither depth nor ids */
     struct soft_fragments *fragments;
@@ -80,8 +81,9 @@ static inline uint32_t soft_id(const struct soft_tile *tile, const struct soft_f
     return (tile->first_id + (face->triangle & FACE_TRIANGLE)) | (face->triangle & FACE_BACK ? ID_BACK : 0);
 }
 
-/* Rasterizes the parts that raster_find() listed into a rectangle (a multiple of LANES wide, at most a tile). `samples` already hold the
-   depth of nearer surfaces. Writes only depth and ids. Appends the blended fragments that nothing opaque hides. Runs on a worker. */
+/* Rasterizes the parts (groups of triangles) that raster_find() listed into a rectangle (a multiple of LANES wide, at most a tile).
+   `samples` already hold the depth of nearer surfaces. Writes only depth and ids. Appends the blended fragments that nothing opaque hides.
+   Runs on a worker. */
 void raster_samples(const struct raster *raster, const struct soft_rect *rect, const struct soft_sample samples[MOST_SAMPLES], int pitch_px,
                     float reach_px, struct soft_fragments *fragments);
 
@@ -98,14 +100,14 @@ bool soft_is_hole(const struct soft_cutout *cutout, float x, float y);
 /* Appends a fragment to tile->fragments. column, row: pixel of the frame. */
 void soft_add_fragment(const struct soft_tile *tile, int sample, const struct soft_face *face, int column, int row, float depth);
 
-/* Counts, in the marks of the pixels, the closed bodies to which the part's triangles belong: +1 where a ray leaves a body, -1 where it
-   enters one. */
+/* Counts, in the marks of pixels, the closed bodies to which the triangles of a part (group of triangles) belong: +1 where a ray leaves a
+   body, -1 where it enters one. */
 void soft_count_part(struct soft_tile *tile, const struct soft_found *found, const struct soft_item *item);
 void soft_cap_tile(struct soft_tile *tile); /* turns the counts of soft_count_part() into marks and depth of section caps */
-/* Marks those vertices of the tile's part that a section plane cuts off, by setting inverse_w to 0. */
+/* Marks those vertices of the tile's part (group of triangles) that a section plane cuts off, by setting inverse_w to 0. */
 void soft_cut_corners(struct soft_tile *tile);
-/* Clips the faces of the tile's part and appends the resulting faces to the tile's list. The part's vertices must be projected and carry
-   field and light. */
+/* Clips the faces of the tile's current part (group of triangles) and appends the resulting faces to the tile's list. The vertices must be
+   projected and carry field and light. */
 void soft_cut_faces(struct soft_tile *tile, bool both_sides);
 
 #endif

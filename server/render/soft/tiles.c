@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draws tile by tile: in each tile the parts that may be visible, nearest first, skipping parts behind surfaces drawn already. */
+/* Draws tile by tile: in each tile the parts (groups of triangles) that may be visible, nearest first, skipping parts behind surfaces drawn
+   already. */
 #include "render/soft/kernels.h"
 
 #include <stdlib.h>
@@ -7,7 +8,7 @@
 
 #include "base/mem.h"
 
-struct tile_entry { /* entry for one part in a tile's list of the parts that may be visible in the tile */
+struct tile_entry { /* entry for one part (group of triangles) in a tile's list of the parts that may be visible in the tile */
     uint64_t order; /* sort key: depth, nearest first; parts at equal depth in the order in which they were found */
     uint32_t mesh, item;
 };
@@ -146,8 +147,8 @@ static void draw_part(struct soft_tile *tile, const struct soft_found *found, co
     kernels->look_again(tile, &blocks);
 }
 
-/* Returns whether the tile's current mode draws the part: all parts, opaque ones or blended ones. A part that shows the field is never
-   blended, since that would mix its colours. */
+/* Returns whether the tile's current mode draws the part (group of triangles): all parts, opaque ones or blended ones. A part that shows
+   the field is never blended, since that would mix its colours. */
 static bool is_drawn(const struct soft_tile *tile)
 {
     bool blended = tile->part->blended && !tile->mesh->has_field;

@@ -244,7 +244,8 @@ static size_t mesh_of_vertex(const struct visibility_buffer *buffer, uint32_t ve
     size_t low = 0, high = buffer->mesh_count;
     if (vertex >= meshes[likely].first_vertex && vertex - meshes[likely].first_vertex < meshes[likely].vertex_count)
         return likely;
-    while (high - low > 1) { /* a mesh without vertices has the same first vertex as the next one, which is the one searched for */
+    /* meshes without vertices have the same first vertex as the next mesh; the search ends at the last of these, which has vertices */
+    while (high - low > 1) {
         size_t middle = (low + high) / 2;
         if (meshes[middle].first_vertex <= vertex)
             low = middle;

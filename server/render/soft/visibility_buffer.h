@@ -75,7 +75,7 @@ struct visibility_mesh { /* an asset with a field */
     /* range of vertices that the mesh uses: indices among all of the frame, after visibility_buffer_settle() among the kept (visible)
        ones */
     uint32_t first_vertex, vertex_count;
-    bool read;        /* true if `carried` has the values of the field version `content` */
+    bool read;        /* true if `carried` holds the values of the field version `content` */
     uint64_t content; /* hash from struct fields_entry */
     struct pixel_field pixels; /* from struct fields_entry */
 };
@@ -87,8 +87,8 @@ struct visibility_buffer {
     uint8_t *rows;                  /* row of the colour map (brightness) for each pixel */
     struct visibility_gloss *gloss; /* by pixel: light on it in the glossy look; NULL: another look, in which `rows` holds the brightness */
     const struct soft_tones *tones; /* set with gloss; not owned */
-    /* ink of each pixel (VISIBILITY_INK: lines drawn over its colour). visibility_buffer_settle() draws ink and veil over colours that no
-       reading changes, and sets both to 0 there */
+    /* ink of each pixel (VISIBILITY_INK: lines drawn over its colour). visibility_buffer_settle() draws ink and veil (coverage by ghost
+       lines) over colours that no reading changes, and sets both to 0 there */
     uint8_t *ink;
     uint8_t *veil; /* coverage by ghost lines, 0..255. NULL: there are no ghosts */
     uint8_t veil_bgr[3];
@@ -99,9 +99,9 @@ struct visibility_buffer {
     size_t mesh_count, mesh_capacity, vertex_count;
     bool evaluates;     /* some mesh's field is evaluated at pixels */
     float scale[4];     /* struct frame_uniforms.scale at the time when the vertices' values were read */
-    uint32_t *vertices; /* kept vertices, mesh by mesh: index in the asset's file */
-    /* carried value of each kept vertex: column of the colour map (logarithmic scale: the field's value); NAN: a flag of the vertex selects
-       a pattern */
+    uint32_t *vertices; /* kept (visible) vertices, mesh by mesh: index in the asset's file */
+    /* carried value of each kept (visible) vertex: column of the colour map (logarithmic scale: the field's value); NAN: a flag of the
+       vertex selects a pattern */
     float *carried;
     float *plain;                 /* the same without NAN */
     uint32_t *flags;              /* from soft_flags() */
@@ -124,11 +124,11 @@ struct resolve_lines {
 /* Adds a triangle to the band's list, unless it equals the triangle added last. Returns its index in the list. Runs on a worker. */
 uint32_t visibility_add_triangle(struct visibility_band *band, const uint32_t vertices[3]);
 void visibility_buffer_add_mesh(struct visibility_buffer *buffer, const struct visibility_mesh *mesh);
-/* Completes the buffer once all pixels and ink are set: drops vertices that no pixel shows and renumbers the others. Returns false when out
-   of memory. */
+/* Completes the buffer once all pixels and ink (lines drawn over pixels) are set: drops vertices that no pixel shows and renumbers the
+   others. Returns false when out of memory. */
 bool visibility_buffer_settle(struct visibility_buffer *buffer, struct workers *workers);
 
-/* Reads the fields of the frame into buffer->carried, plain and flags of the kept vertices. */
+/* Reads the fields of the frame into the members carried, plain and flags of the kept (visible) vertices. */
 void resolve_read(struct visibility_buffer *buffer, const struct frame_context *context, struct workers *workers);
 /* Stores the slopes of the triangle that visibility_add_triangle() added last. weights: from soft_weights(). Runs on a worker. */
 void visibility_add_slopes(struct visibility_band *band, const double weights[3][3]);
