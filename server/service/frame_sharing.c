@@ -20,8 +20,9 @@ static bool has_it(const struct request_ticket *ticket, void *arg)
     return has;
 }
 
-/* Returns whether a frame for a later request of the client was already handed to the encoders, because a deferred request or a long job
-   was drawn late. The client would not show the older frame, so its encode stream must not count it as shown. The caller holds the lock. */
+/* Returns whether a frame for a later request of the client was already handed to the encoders, because a deferred request or a long job (a
+   frame drawn in steps) was drawn late. The client would not show the older frame, so its encode stream must not count it as shown. The
+   caller holds the lock. */
 static bool is_overtaken(const struct request_ticket *ticket, void *arg)
 {
     const struct content_of *now = arg;

@@ -140,9 +140,10 @@ static void finish_complete(struct render_thread *thread)
         finish_oldest(thread);
 }
 
-/* --- frames that take long (long jobs) -------------------------------------------------------------------------------- */
+/* --- long jobs: frames drawn in steps ------------------------------------------------------------------------------------- */
 
-/* Clears `left` for the group's clients: the flag means that a client left the previous long job, and must not apply to the new one. */
+/* Clears `left` for the group's clients: the flag means that a client left the previous long job (a frame drawn in steps), and must not
+   apply to the new one. */
 static void stay(struct render_service *service, const struct request_group *group)
 {
     pthread_mutex_lock(&service->lock);
@@ -154,7 +155,7 @@ static void stay(struct render_service *service, const struct request_group *gro
     pthread_mutex_unlock(&service->lock);
 }
 
-/* Exchanges the long job with the parked one (suspended in favour of another). */
+/* Exchanges the running long job (a frame drawn in steps) with the parked one, which was suspended in favour of it. */
 static void long_job_swap(struct render_thread *thread)
 {
     struct long_job parked = thread->parked;
@@ -162,7 +163,7 @@ static void long_job_swap(struct render_thread *thread)
     thread->long_job = parked;
 }
 
-/* Parks (suspends) the running long job if the frame of the group's first client may overtake it. */
+/* Parks (suspends) the running long job (a frame drawn in steps) if the frame of the group's first client may overtake it. */
 static void long_job_park(struct render_thread *thread, const struct request_group *group)
 {
     struct render_service *service = thread->service;
@@ -265,7 +266,7 @@ static void long_job_forget_instant(struct render_thread *thread)
         snapshot_cache_give(thread->service->params.snapshot_cache, &thread->long_job.historical);
 }
 
-/* Draws one step of the long job. Returns true once it is done. */
+/* Draws one step of the long job (a frame drawn in steps). Returns true once the frame is complete. */
 static bool long_job_step(struct render_thread *thread)
 {
     int64_t start_ns = clock_mono_ns();
@@ -294,14 +295,14 @@ static bool long_job_step(struct render_thread *thread)
     return true;
 }
 
-/* Returns whether the client no longer wants the long job's frame. The caller holds the lock. */
+/* Returns whether the client no longer wants the frame that the long job (a frame drawn in steps) draws. The caller holds the lock. */
 static bool has_left(const struct request_ticket *ticket, void *arg)
 {
     const struct render_client *client = render_service_find(arg, ticket->client);
     return !client || client->left || (client->pending && client->request.urgency == URGENCY_INPUT);
 }
 
-/* Removes clients that no longer want the frame from the long job; abandons the job once it has no clients. */
+/* Removes clients that no longer want the frame from the long job (a frame drawn in steps); abandons the job once it has no clients. */
 static void long_job_leave(struct render_thread *thread)
 {
     struct render_service *service = thread->service;
@@ -360,7 +361,8 @@ static void draw_plan(struct render_thread *thread, struct request_group *group,
         fail(thread, group);
 }
 
-/* Draws the group's frame. Returns false if the group must wait: its field is not computed yet, or another long job is running. */
+/* Draws the group's frame. Returns false if the group must wait: its field is not computed yet, or another long job (a frame drawn in
+   steps) is running. */
 static bool draw_of(struct render_thread *thread, struct request_group *group, const struct snapshot *snapshot,
                     const struct historical_snapshot **historical)
 {
@@ -501,7 +503,7 @@ static bool pause_for(struct render_service *service, int64_t pause_ns)
 }
 
 /* Rebuilds a lost GL context. Attempts are repeated, because a restarting driver takes some seconds. Meanwhile nothing is drawn; all else
-   in the daemon continues. The long job in progress is requested again. */
+   in the daemon continues. The long job (a frame drawn in steps) in progress is requested again. */
 static void rebuild(struct render_thread *thread)
 {
     struct render_service *service = thread->service;

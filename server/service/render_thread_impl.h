@@ -18,7 +18,7 @@ struct thread_memory { /* memory of the caches (render_thread_memory.c) */
 };
 
 struct long_job {                                 /* a frame that is drawn in steps, between other clients' frames */
-    struct split_view *split;                     /* the frame; NULL: no long job is running */
+    struct split_view *split;                     /* the frame being drawn; NULL: no long job is running */
     struct request_group group;                   /* requests that the frame answers */
     const struct historical_snapshot *historical; /* reference to the readings of a past instant; NULL: the readings are in `snapshot` */
     struct snapshot *snapshot;
@@ -40,7 +40,8 @@ struct render_thread {
     struct request_group same; /* scratch memory: requests that are answered without drawing a frame */
     struct recent_frames recent;
     struct long_job long_job;
-    /* a suspended long job for a large frame; it continues after a smaller frame of another address, which was allowed to overtake it */
+    /* a suspended long job (a frame drawn in steps) for a large frame; it continues after a smaller frame of another address, which was
+       allowed to overtake it */
     struct long_job parked;
     bool warm;              /* the warm-up is complete */
     int64_t turn_began_ns;  /* monotonic: since when the thread has been drawing without a wait or other work */
@@ -89,11 +90,11 @@ void render_thread_warm_up(struct render_thread *thread);
 
 /* --- render_thread_next.c: choice of what is drawn next --------------------------------------------------------------- */
 
-/* Returns whether the client's small frame may be drawn before another address's large long job ends. The caller holds the service's
-   lock. */
+/* Returns whether the client's small frame may be drawn before another address's large long job (a frame drawn in steps) ends. The caller
+   holds the service's lock. */
 bool render_thread_overtakes(const struct render_thread *thread, const struct render_client *client);
 /* Waits for work and moves the requests to be answered next into the group. The group stays empty if the thread must instead draw a step of
-   the long job, or deliver a submitted frame. Returns false if the thread must end. */
+   the long job (a frame drawn in steps), or deliver a submitted frame. Returns false if the thread must end. */
 bool render_thread_next(struct render_thread *thread, const struct scheduler *scheduler, struct request_group *group);
 /* Updates thread->snapshot if readings changed or if it is older than SNAPSHOT_MAX_AGE_NS. */
 void render_thread_refresh(struct render_thread *thread);

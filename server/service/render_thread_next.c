@@ -20,8 +20,8 @@ static bool long_job_is_for(const struct long_job *long_job, const struct render
     return false;
 }
 
-/* Returns whether the client's long job is running and still wanted, so that its other requests can wait for it. The caller holds the
-   lock. */
+/* Returns whether the client's long job (a frame drawn in steps) is running and still wanted, so that its other requests can wait for it.
+   The caller holds the lock. */
 static bool waits_for_long_job(const struct render_thread *thread, const struct render_client *client, int64_t now_ns)
 {
     bool moving = client->request.view.tier == TIER_PREVIEW || client->request.or_moving;
@@ -70,7 +70,8 @@ static bool goes_before(const struct render_thread *thread, const struct render_
     return !other || has_had_less(client, other, scheduler_share(urgency));
 }
 
-/* Chooses what the render thread does in its next turn: draw a step of the long job, or serve a client. The caller holds the lock. */
+/* Chooses what the render thread does in its next turn: draw a step of the long job (a frame drawn in steps), or serve a client. The caller
+   holds the lock. */
 static struct render_turn next_turn(const struct render_thread *thread, const struct scheduler *scheduler)
 {
     const struct render_service *service = thread->service;
@@ -106,8 +107,8 @@ static void change_patience(const struct render_thread *thread, struct render_cl
         client->patience_ns = twice_ns < OWN_DATA_MAX_NS ? twice_ns : OWN_DATA_MAX_NS;
 }
 
-/* Begins the client's request. A long job for the client is no longer wanted, unless it will show the new readings too. The caller holds
-   the lock. */
+/* Begins the client's request. A long job (a frame drawn in steps) for the client is no longer wanted, unless it will show the new readings
+   too. The caller holds the lock. */
 static void begin(const struct render_thread *thread, struct render_client *client, struct request_group *group, int64_t now_ns)
 {
     enum urgency urgency = client->request.urgency;

@@ -60,7 +60,7 @@ bool session_hello(struct session *session, const struct message *message, int64
 /* Applies the parameters of a message to a view. Returns false with *error if a parameter is wrong; then the view is unchanged. */
 bool session_apply_params(const struct session *session, const struct message *message, struct view *view, struct message_error *error);
 
-/* --- session_scope.c: tokens that are limited to views of the plant file, or to a wall's display ---------------------------------- --- */
+/* --- session_scope.c: tokens limited to views of the plant file, or to a display of a wall --- */
 
 /* Returns whether the token allows the client to send that message. If not, *error says why. */
 bool session_scope_allows(const struct session *session, const struct message *message, struct message_error *error);

@@ -141,7 +141,7 @@ double overlay_bar_width(struct pen *pen)
     return overlay_bar_left(pen) + 2.3 * pen->text_px + text_width(pen, &ticks);
 }
 
-/* Fills each row of pixels by the rule that the colour map uses. */
+/* Draws the colours of the bar, one row of pixels at a time, with the colour of the value at the row's centre. */
 static void draw_colors(struct pen *pen, const struct label_box *bar, const struct scale *scale)
 {
     int top = (int)lround(bar->y), rows = (int)lround(bar->height);

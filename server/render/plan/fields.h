@@ -16,8 +16,8 @@ struct fields_entry { /* field of one asset. An entry without a slice could not 
     struct field_params params;
     double step;            /* smallest value step that can be seen (scale_step) */
     uint64_t flags_version; /* scalars->flags_version of the shown values */
-    /* value of scalars->travel when the shown values were computed, less their known error. `scalars->travel - travel` is an upper bound of
-       the change of any value since */
+    /* scalars->travel (sum of all changes so far) when the shown values were computed, less their known error. `scalars->travel - travel`
+       is an upper bound of the error of any shown value */
     double travel;
     uint64_t content; /* hash of the first `hashed` shown scalars, as many as the last request needed */
     size_t hashed;

@@ -107,7 +107,8 @@ static bool draw_all(struct raster *raster, const struct isoline_points *points,
     return good;
 }
 
-/* Fills the glossy colour map: each row holds the middle row's colours in one brightness step, as GLOSSY in shaders/preview.frag. */
+/* Fills the colour map of the glossy look. For each colour of the plain colour map (its middle row), a column holds the colour from dark to
+   bright, one row per brightness step, as GLOSSY in shaders/preview.frag. */
 static void make_glossy(struct soft *soft, const struct shaded_colormap *colormap)
 {
     if (soft->glossy_version == colormap->version)

@@ -46,7 +46,7 @@ struct soft_mesh { /* one asset in this frame */
     bool has_field;
     /* field values at the vertices; NULL: the asset has no field, or the field could not be computed and shows no data */
     const struct scalar *scalars;
-    int32_t pixels; /* index in raster->pixels; -1: the field is interpolated between vertices */
+    int32_t pixels; /* index in raster->pixels of the field, which is evaluated at each pixel; -1: it is interpolated between vertices */
     const uint8_t (*baked)[4];
     /* matrix, column by column: from coordinates of the file to (x w, y w, z, w), with x and y in pixels and z, w of clip space */
     float place[4][4];
