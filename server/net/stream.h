@@ -64,12 +64,14 @@ void stream_on_pong(struct stream *stream, const void *bytes, size_t count);
 
 /* --- tile_walls.c: sessions that are tiles of one picture over many displays --- */
 
-/* Requests the next picture of a tile's wall, and presents a picture that all tiles have, if due. */
+/* Requests the next picture of the wall to which a tile (one display's part of a wall's picture) belongs, and presents a picture that all
+   tiles have, if due. */
 void tiles_pump(struct server_context *server, const struct stream *stream);
-/* Call it when tiles of a wall connected, disconnected or were dropped: chooses the leader and informs all tiles. leaving: a stream that
-   is being closed, or NULL. */
+/* Call it when tiles (each one display's part of a picture) of a wall connected, disconnected or were dropped: chooses the leader and
+   informs all tiles. leaving: a stream that is being closed, or NULL. */
 void tiles_gather(struct server_context *server, const char *wall, const struct stream *leaving);
-/* Drops tiles that delay their wall, and readmits them once they keep up. Call it every tick. */
+/* Drops tiles (each one display's part of a wall's picture) that delay their wall, and readmits them once they keep up. Call it every
+   tick. */
 void tiles_on_tick(struct server_context *server);
 
 /* --- stream_follow.c: sessions that are shown another session's view --- */

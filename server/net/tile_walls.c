@@ -94,7 +94,8 @@ static void tell(struct server_context *server, const struct tile_wall *wall, co
         }
 }
 
-/* Applies the burn-in shift to all tiles of a wall; also before the first picture of a new tile. */
+/* Applies the burn-in shift to all tiles (each one display's part of the picture) of a wall; also before the first picture of a new
+   tile. */
 static void move_all(struct server_context *server, const char *wall)
 {
     struct burn_shift shift = burn_shift_at(clock_plant_ns());

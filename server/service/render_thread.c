@@ -155,7 +155,7 @@ static void stay(struct render_service *service, const struct request_group *gro
     pthread_mutex_unlock(&service->lock);
 }
 
-/* Exchanges the running long job (a frame drawn in steps) with the parked one, which was suspended in favour of it. */
+/* Exchanges the running long job (a frame drawn in steps) with the parked one, which was suspended before. */
 static void long_job_swap(struct render_thread *thread)
 {
     struct long_job parked = thread->parked;

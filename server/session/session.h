@@ -173,8 +173,8 @@ bool session_is_tile(const struct session *session);
 /* Shifts the part of the picture that this display shows, as burn-in protection. The shift takes effect with the next picture, which is
    requested for it. */
 void session_tile_move(struct session *session, struct burn_shift shift, int64_t now_ns);
-/* Drops the tile from its wall if it has delayed the others for too long, and readmits it after a pause. Returns true if the tile was
-   dropped or readmitted. */
+/* Drops the tile (one display's part of a wall's picture) from its wall if it has delayed the others for too long, and readmits it after a
+   pause. Returns true if the tile was dropped or readmitted. */
 bool session_tile_judge(struct session *session, int64_t now_ns, int64_t now_utc_ns);
 /* Tells the client which displays of its wall are connected, if that changed. there, late_us: arrays indexed by display - 1. late_us:
    UTC microseconds since when that tile is dropped; 0: it takes part. leads: this session leads the wall. */

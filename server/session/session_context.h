@@ -13,7 +13,7 @@ struct view_token_keys;
 
 enum audience_lists { LISTS_NAMED, LISTS_OPEN, LISTS_VIEWS, LISTS };
 
-/* State that all sessions share about answers that wait until the disk has their actions (session_kept.c). */
+/* State that all sessions share about answers that wait until their actions are on disk (session_kept.c). */
 struct kept_answers {
     bool waiting;         /* an answer waits for the disk: call session_settle() and session_settle_gone() soon */
     struct session *gone; /* sessions whose client has gone, kept until it is known whether their actions reached the disk */

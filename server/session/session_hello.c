@@ -48,7 +48,8 @@ static bool identify(struct session *session, const struct message *message, int
     return false;
 }
 
-/* Reserves pixels for the session. A tile counts only its own display, because all tiles share one picture. */
+/* Reserves pixels for the session. A tile (one display's part of a wall's picture) counts only its own display, because all tiles share one
+   picture. */
 static bool admit(struct session *session, const struct message *message, const struct view *view, struct message_error *error)
 {
     const struct session_context *context = session->context;
@@ -63,8 +64,8 @@ static bool admit(struct session *session, const struct message *message, const 
     return false;
 }
 
-/* Starts the session as a tile. A tile may lead its wall and can delay it, so this requires the token of that display or the role
-   engineer. */
+/* Starts the session as a tile (one display's part of a wall's picture). A tile may lead its wall and can delay it, so this requires the
+   token of that display or the role engineer. */
 static bool begin_tile(struct session *session, const struct message *message, struct view *view, struct message_error *error)
 {
     const struct wall_place *place = &message->tile;

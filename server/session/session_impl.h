@@ -153,8 +153,8 @@ void session_look_again(struct session *session, const struct view *before, cons
 
 /* --- tile_session.c --------------------------------------------------------------------------------------------------- */
 
-/* Sets the view's size to that of the whole picture, computed from the size of one display. Returns false if the plant has no such tile
-   (any more). */
+/* Sets the view's size to that of the whole picture, computed from the size of one display. Returns false if the plant has no such tile any
+   more. */
 bool session_tile_fit(const struct session *session, const struct wall_place *place, int width_px, int height_px, struct view *view,
                       struct tile_layout *layout);
 /* session_tile_unchanged(): call it when a request was answered without a picture because the client already shows it. session_tile_sent():

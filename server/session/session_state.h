@@ -55,7 +55,7 @@ struct session_close {
 
 /* The pixels that the session's view takes from the admission budget (session_admission.c). */
 struct session_room {
-    struct address_share *share; /* share of the client's address; NULL: none */
+    struct address_share *share; /* admission figures of the client's address; NULL: the session has no address */
     int64_t pixels;              /* pixels counted in the admission totals; 0: returned while the page was hidden */
     int64_t hidden_ns, shown_ns; /* monotonic: when the page was last hidden; when the page was last shown again, 0: never */
 };

@@ -40,7 +40,7 @@ void bake_programs_finish(struct bake_programs *programs);
 struct bake;
 /* Returns the lower bound of openness, 0..1, for this visibility: it keeps surfaces that are next to hidden assets from staying dark. */
 double bake_least_open(const struct gpu_scene *gpu_scene, const struct visibility *shown);
-/* Begins to bake a set for `key`. from: a light set to copy openness from, read during the call only. `from` must not be rough, and
+/* Begins to bake a light set for `key`. from: a light set to copy openness from, read during the call only. `from` must not be rough, and
    bake_least_open() of its visibility must not exceed that of the key's. kept: the plant's openness file, used if `from` is NULL; read
    during the call only. Both NULL: openness is baked as well, which is most of the work, unless the key is rough. The caller ends the bake
    with bake_end() or bake_abandon(). Returns NULL when the GPU is out of memory, logged. */
@@ -59,7 +59,7 @@ void bake_abandon(struct bake **bake);
 
 /* Returns the bytes of GPU memory that one light set of this scene takes. Pure. */
 size_t bake_bytes(const struct gpu_scene *gpu_scene);
-/* Deletes the textures and buffers of a set. */
+/* Deletes the textures and buffers of a light set (baked light). */
 void light_set_finish(struct light_set *set, const struct gpu_scene *gpu_scene);
 
 #endif

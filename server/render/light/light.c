@@ -107,7 +107,8 @@ void light_drop(struct light *light, const struct light_key *usual)
             drop(light, &light->sets[i]);
 }
 
-/* Returns an empty slot of the cache. Before, drops sets that exceed the memory bound and that nobody holds. NULL: all slots are held. */
+/* Returns an empty slot of the cache. Before, drops light sets that exceed the memory bound and that nobody holds. NULL: all slots are
+   held. */
 static struct light_set *make_room(struct light *light, size_t bytes)
 {
     for (;;) {
@@ -125,7 +126,7 @@ static struct light_set *make_room(struct light *light, size_t bytes)
     }
 }
 
-/* Returns a set from which the openness of a new set for `key` can be copied. NULL: the cache has none. */
+/* Returns a light set (baked light) from which the openness of a new set for `key` can be copied. NULL: the cache has none. */
 static const struct light_set *find_open(const struct light *light, const struct light_key *key)
 {
     double most = bake_least_open(light->gpu_scene, &key->shown);
@@ -165,7 +166,7 @@ static void drop_rough(struct light *light)
             drop(light, &light->sets[i]);
 }
 
-/* Ends a bake whose work is all issued and puts the set into the cache. Returns NULL on failure, logged. */
+/* Ends a bake whose work is all issued and puts the light set (baked light) into the cache. Returns NULL on failure, logged. */
 static struct light_set *end(struct light *light)
 {
     struct light_set baked, *set;

@@ -14,7 +14,7 @@ struct light {
     /* matrix to the plant frame, from the ground's texture coordinates (x, y) and the height above the ground (z) */
     double plant_from_ground[16];
     double ground_height_m;    /* along `up` */
-    size_t bound_bytes, bytes; /* bytes: limit, and sum over all sets; a held set is never dropped, even above the limit */
+    size_t bound_bytes, bytes; /* bytes: limit, and sum over all light sets; a held set is never dropped, even above the limit */
     struct light_set sets[LIGHT_SETS];
     struct bake *bake; /* in progress; NULL: none */
     uint64_t uses, last_id;
@@ -25,21 +25,21 @@ struct light {
 /* Compiles the programs; bakes nothing yet. Returns false on failure, logged. */
 bool light_init(struct light *light, const struct gpu_scene *gpu_scene, struct environments *environments);
 void light_finish(struct light *light);
-/* Returns the set for `key`; if it is not cached, bakes it and waits. A key with `rough` set takes a fraction of the time; such a set is
-   shown until the first full set is ready. Returns NULL when the GPU is out of memory, logged. */
+/* Returns the light set (baked light) for `key`; if it is not cached, bakes it and waits. A key with `rough` set takes a fraction of the
+   time; such a set is shown until the first full set is ready. Returns NULL when the GPU is out of memory, logged. */
 struct light_set *light_get(struct light *light, const struct light_key *key);
-/* Returns the cached set most similar to `key`: sets of the same environment come first, among them sets with the same visible assets, then
-   the nearest direction of the sun. NULL: none is cached. */
+/* Returns the cached light set (baked light) most similar to `key`: sets of the same environment come first, among them sets with the same
+   visible assets, then the nearest direction of the sun. NULL: none is cached. */
 struct light_set *light_near(struct light *light, const struct light_key *key);
-/* Bakes the set for `key` for about budget_ns, at least one step, unless another set is being baked. Returns true if the set is cached, so
-   that light_get() does not wait. */
+/* Bakes the light set for `key` for about budget_ns, at least one step, unless another set is being baked. Returns true if the set is
+   cached, so that light_get() does not wait. */
 bool light_step(struct light *light, const struct light_key *key, int64_t budget_ns);
-/* Sets the memory limit and drops sets beyond it, but keeps two: one to show while the next is baked. */
+/* Sets the memory limit and drops light sets (baked light) beyond it, but keeps two: one to show while the next is baked. */
 void light_bound(struct light *light, size_t bytes);
-/* Drops all sets but the one for `usual`, or, if that is not cached, the most similar one; abandons the bake in progress unless it is for
-   `usual`. */
+/* Drops all light sets (baked light) but the one for `usual`, or, if that is not cached, the most similar one; abandons the bake in
+   progress unless it is for `usual`. */
 void light_drop(struct light *light, const struct light_key *usual);
-/* Hold and release a set; a held set is not dropped. light_release() accepts NULL. */
+/* Hold and release a light set (baked light); a held set is not dropped. light_release() accepts NULL. */
 void light_hold(struct light_set *set);
 void light_release(struct light_set *set);
 

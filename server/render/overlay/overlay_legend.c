@@ -116,7 +116,7 @@ static void choose_rows(const struct pen *pen, struct legend *legend)
         legend->rows[legend->row_count++] = ROW_UNPROVEN;
     if (shows_assumed(pen))
         legend->rows[legend->row_count++] = ROW_ASSUMED;
-    if (overlay_has_arrows(pen)) { /* arrows alone have a row: strokes have none, since their length has no meaning */
+    if (overlay_has_arrows(pen)) { /* arrows alone have a row: strokes (short streamlines) have none, since their length has no meaning */
         if (view->directions == DIRECTIONS_ARROWS)
             legend->rows[legend->row_count++] = ROW_ARROW;
         if (shows_unknown_direction(pen))

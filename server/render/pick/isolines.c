@@ -365,14 +365,16 @@ static void project_arrow(const struct frame_context *context, const struct isol
         label->dx = dx < 0 ? -0.01f : 0.01f;
 }
 
-/* The stroke being emitted. Only the first run of visible points of a stroke is drawn. */
+/* The stroke (short streamline) whose points are being added to the frame. Only the first sequence of visible points of a stroke is
+   drawn. */
 struct emitted_stroke {
     uint16_t stroke;
     bool begun, ended;
     int count;
 };
 
-/* Returns whether a point of a stroke is drawn. The starts of strokes keep the same minimum distance from each other as arrows. */
+/* Returns whether a point of a stroke (short streamline) is drawn. The starts of strokes keep the same minimum distance from each other as
+   arrows. */
 static bool on_stroke(struct emitted_stroke *stroke, const struct frame *frame, const float place[4], const struct isoline_point *point)
 {
     if (point->stroke != stroke->stroke)
@@ -396,7 +398,7 @@ static bool on_stroke(struct emitted_stroke *stroke, const struct frame *frame, 
     return !stroke->ended;
 }
 
-/* Removes the last stroke from the frame if only one of its points is visible. */
+/* Removes the last stroke (short streamline) from the frame if only one of its points is visible. */
 static void drop_short_stroke(struct frame *frame, uint16_t next)
 {
     const size_t count = frame->label_count;

@@ -24,7 +24,7 @@ struct isoline_set { /* points of one asset */
 };
 
 struct isolines {
-    struct isoline_set *sets; /* isoline points per asset; `arrows` and `strokes` are indexed by asset, too */
+    struct isoline_set *sets; /* isoline points, by asset; `arrows` and `strokes` are indexed by asset, too */
     struct arrow_set *arrows;
     struct stroke_set *strokes;
     size_t asset_count;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Traces strokes over a surface: finds neighbours of triangles by their corner positions, and steps from triangle to triangle. */
+/* Traces strokes (short streamlines) over a surface: finds neighbours of triangles by their corner positions, and steps from triangle to
+   triangle. */
 #include "render/pick/strokes.h"
 
 #include <math.h>
@@ -186,8 +187,8 @@ static struct direction midway(const struct stroke_point *last, const struct dir
     return out;
 }
 
-/* Traces all strokes of the asset together, one step of each at a time, because computing directions for many positions in one call is
-   faster. */
+/* Traces all strokes (short streamlines) of the asset together, one step of each at a time, because computing directions for many positions
+   in one call is faster. */
 static void trace(struct stroke_set *set, const struct tracing *tracing, const struct arrow_set *arrows, const struct scene *scene,
                   int asset, const struct fields_entry *field)
 {

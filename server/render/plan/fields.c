@@ -76,7 +76,7 @@ static struct fields_entry *entry_create(struct fields *fields, int asset, const
     return entry;
 }
 
-/* Takes a slice of GPU memory for the entry. Returns false when there is none, logged; the entry is then destroyed. */
+/* Takes a slice (range of a GPU buffer) for the entry. Returns false when there is none, logged; the entry is then destroyed. */
 static bool take_slice(struct fields *fields, struct fields_entry *entry)
 {
     size_t at = 0;
@@ -140,8 +140,8 @@ static void show(struct fields_entry *entry)
     }
 }
 
-/* Uploads the entry. A slice that a frame under way still uses is left unchanged and replaced. Returns false when there is no room for
-   another slice, logged. */
+/* Uploads the entry. A slice (range of a GPU buffer) that a frame under way still uses is left unchanged and replaced. Returns false when
+   there is no room for another slice, logged. */
 static bool upload(struct fields *fields, struct fields_entry *entry)
 {
     if (entry->slice->holds > 1) {
@@ -212,7 +212,8 @@ static struct fields_entry *look(struct fields *fields, const struct fields_ask 
     return entry;
 }
 
-/* Takes GPU slices for all entries without one, after announcing them together to the pool, so that they lie next to each other. */
+/* Takes slices (ranges of a GPU buffer) for all entries without one, after announcing them together to the pool, so that they lie next to
+   each other. */
 static void make_room(struct fields *fields, const struct fields_ask *ask, const struct fields_entry **entries)
 {
     size_t texels = 0, slices = 0;

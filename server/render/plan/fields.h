@@ -11,7 +11,8 @@
 #include "gpu/gl.h"
 #include "gpu/pool.h"
 
-struct fields_entry { /* field of one asset. An entry without a slice could not be computed or had no room, and is drawn as no data */
+/* field of one asset. An entry without a slice (range of a GPU buffer) could not be computed or had no room, and is drawn as no data */
+struct fields_entry {
     int asset;
     struct field_params params;
     double step;            /* smallest value step that can be seen (scale_step) */
@@ -26,7 +27,7 @@ struct fields_entry { /* field of one asset. An entry without a slice could not 
     struct scalar *shown;
     size_t count, ready; /* count: vertices of the file; ready: the first `ready` values are shown */
     struct pool_slice *slice;
-    bool uploaded;  /* true if the slice on the GPU holds the shown values */
+    bool uploaded;  /* true if `slice` (range of a GPU buffer) holds the shown values */
     GLuint sensors; /* buffer of sensors for shaders that compute the field at each fragment (render/reference/reference.h); 0: none */
     int64_t oldest_age_ns;
     double drawn_error; /* error bound of the scalars (field/scalars.h) */
