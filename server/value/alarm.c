@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Names of alarms, and alarms computed from a tag's limits alone. */
+/* Names of alarms, and alarms computed from a tag's limits without an alarm service. */
 #include "value/alarm.h"
 
 #include <math.h>
@@ -80,7 +80,7 @@ enum alarm_kind alarm_beyond(const struct plant_tag *tag, const struct reading *
     const double *limits = tag->limits, value = reading->value;
     if (quality_is_bad(reading->quality) || !isfinite(value))
         return ALARM_NONE;
-    if (value >= limits[LIMIT_HH]) /* false for NaN: a limit that is NaN is not configured */
+    if (value >= limits[LIMIT_HH]) /* the comparison is false for NaN: a limit that is NaN is not configured */
         return ALARM_HH;
     if (value <= limits[LIMIT_LL])
         return ALARM_LL;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Kinds and states of alarms, their names and priorities, and the limit that a reading violates. Pure functions. Thread: any. */
+/* Kinds and states of alarms, their names and priorities, and the limit that a reading violates. No side effects. Thread: any. */
 #ifndef VALUE_ALARM_H
 #define VALUE_ALARM_H
 #include "plant/plant.h"
@@ -10,20 +10,20 @@ enum alarm_kind {
     ALARM_LL,
     ALARM_L,
     ALARM_H,
-    ALARM_HH,   /* alarm at a limit of the tag; the values from here on are 1 + enum limit */
-    ALARM_ON,   /* another alarm system has set the tag's alarm bit */
+    ALARM_HH,   /* the reading is beyond a limit of the tag; the values ALARM_HH and following are 1 + enum limit */
+    ALARM_ON,   /* the alarm bit of the tag, which another alarm system sets, is set */
     ALARM_BAD,  /* the quality of the tag's reading is Bad (OPC UA severity) */
-    ALARM_LINK, /* a device has failed: none of its measurements can be used */
+    ALARM_LINK, /* a device has failed, so none of its measurements can be used */
     ALARM_KINDS
 };
 
-enum alarm_status { /* alarm states of ISA-18.2 and IEC 62682; ALARM_ACTIVE: an active alarm that another system manages */
+enum alarm_status { /* alarm states of ISA-18.2 and IEC 62682; plus ALARM_ACTIVE for active alarms that another system manages */
                     ALARM_NORMAL,
-                    ALARM_ACTIVE, /* active; acknowledgement is unknown, because the other alarm system manages the alarm */
+                    ALARM_ACTIVE, /* active; whether it is acknowledged is unknown, because another alarm system manages it */
                     ALARM_UNACKNOWLEDGED,
                     ALARM_ACKNOWLEDGED,
                     ALARM_RETURNED, /* returned to normal, not acknowledged */
-                    ALARM_LATCHED,  /* latched: the cause is gone, but the alarm stands until an operator resets it */
+                    ALARM_LATCHED,  /* the cause is gone, but the alarm remains until an operator resets it */
                     ALARM_SHELVED,
                     ALARM_SUPPRESSED, /* by design */
                     ALARM_OUT_OF_SERVICE,
@@ -40,24 +40,24 @@ const char *alarm_status_name(enum alarm_status status);
 enum alarm_status alarm_status_find(const char *name);
 /* Returns true if operators see an alarm in this state; false if the state is normal, shelved, suppressed or out of service. */
 bool alarm_status_is_annunciated(enum alarm_status status);
-/* Returns whether the cause of an alarm in this state is gone although the alarm still stands: returned or latched. */
+/* Returns whether the cause of an alarm in this state is gone although the alarm remains: ALARM_RETURNED or ALARM_LATCHED. */
 bool alarm_status_is_cleared(enum alarm_status status);
 
-/* Returns the priority of one of a tag's alarms, from 1 (most urgent) to ALARM_PRIORITIES. */
+/* Returns the priority of a tag's alarm of this kind, from 1 (most urgent) to ALARM_PRIORITIES. */
 int alarm_priority(const struct plant_tag *tag, enum alarm_kind kind);
 
-/* Sort key that orders the alarms of one tag; the first one is shown for the tag. Active comes before cleared, then the higher priority,
-   then the outer limit (which implies the inner one), then the unacknowledged alarm. */
+/* Sort key of the alarms of one tag; the first alarm in this order is shown for the tag. Active alarms come before cleared ones. Of these,
+ * the higher priority comes first, then the outer limit (HH before H), then the unacknowledged alarm. */
 struct alarm_grade {
     int priority;
     enum alarm_kind kind;
     enum alarm_status status;
 };
-/* Returns whether alarm `a` is shown rather than alarm `b`. */
+/* Returns whether alarm `a` comes before alarm `b` in the order of struct alarm_grade. */
 bool alarm_graver(const struct alarm_grade *a, const struct alarm_grade *b);
 
-/* Returns the limit that a usable reading has reached or passed, the outer limit if the reading passed two; ALARM_NONE if the reading is
-   within limits. */
+/* Returns the limit that a usable reading has reached or passed: the outer limit if it passed two; ALARM_NONE if the reading is within
+ * limits. */
 enum alarm_kind alarm_beyond(const struct plant_tag *tag, const struct reading *reading);
 /* Sets the alarms of a snapshot from the limits alone, for daemons without an alarm service: each reading beyond a limit has an active
    alarm. */

@@ -4,22 +4,23 @@
 #define VALUE_BACKOFF_H
 #include <stdint.h>
 
-struct backoff { /* number of recent failures; zero-initialise, and zero it again after a success */
+struct backoff { /* number of failures since the last success; initialise with zeros, and set to zero after a success */
     int failures;
 };
 
 /* Counts one more failure and returns the delay before the next attempt, 0.5 to 10 s. `random`: any random bits, used for the jitter. */
 int64_t backoff_next_ns(struct backoff *backoff, uint64_t random);
 
-/* Chooses the next of several hosts: tries each host once without a delay, then waits with backoff before the next round. */
+/* Chooses the next of several hosts: tries each host once without a delay, then waits with backoff before the next round. Initialise with
+ * zeros. */
 struct host_turn { /* zero-initialise */
-    int index;     /* index of the host that is tried or connected */
-    int tried;     /* number of hosts tried one after the other since the last session */
+    int index;     /* index of the host that is being tried or is connected */
+    int tried;     /* number of hosts tried since the last session */
     struct backoff backoff;
 };
 
-/* Moves on to the next of `count` hosts. Returns the monotonic time at which to try it: now_ns, unless all hosts have failed since the
-   last session. */
+/* Moves on to the next of `count` hosts. Returns the monotonic time at which to try it: now_ns, or later if all hosts have failed since the
+ * last session. */
 int64_t host_turn_next_ns(struct host_turn *turn, int count, int64_t now_ns);
 /* Records that a session with the host was established. */
 void host_turn_succeeded(struct host_turn *turn);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A short list of reference-counted snapshots, so that a baseline can be replaced while it is read. */
+/* Stores baselines as a short list of reference-counted snapshots, so that a baseline can be replaced while it is read. */
 #include "value/baselines.h"
 
 #include <pthread.h>
@@ -8,7 +8,7 @@
 
 #include "base/mem.h"
 
-struct baseline_copy { /* the snapshot must be the first member: users hold a pointer to it */
+struct baseline_copy { /* the snapshot must be the first member, because users hold a pointer to it, which is converted to the struct */
     struct snapshot snapshot;
     int users; /* number of users, under `lock` */
 };
@@ -62,7 +62,7 @@ void baselines_destroy(struct baselines **baselines_ptr)
     *baselines_ptr = NULL;
 }
 
-/* Returns the named baseline, or NULL. Call with the lock held. */
+/* Returns the baseline with this name, or NULL. Call with the lock held. */
 static struct baseline_slot *find_name(struct baselines *baselines, const char *name)
 {
     for (size_t i = 0; i < baselines->count; i++)
@@ -125,7 +125,7 @@ uint32_t baselines_set(struct baselines *baselines, const char *name, const stru
     return id;
 }
 
-/* Returns the first unnamed baseline of that time (taken_utc_ns < 0: of any time), or NULL. Call with the lock held. */
+/* Returns the first unnamed baseline of the time taken_utc_ns (below 0: of any time), or NULL. Call with the lock held. */
 static struct baseline_slot *find_unnamed(struct baselines *baselines, int64_t taken_utc_ns)
 {
     for (size_t i = 0; i < baselines->count; i++)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Baselines: stored snapshots from which a view can show the difference. Named baselines are set by sessions; unnamed ones are identified
-   by their time alone. Ids increase and are never reused, so the id of a dropped baseline never names a newer one. Thread: any. */
+/* Baselines: stored snapshots of all readings. A view can show the difference between the current readings and a baseline. Named baselines
+ * are set by sessions; unnamed ones are identified by their time alone. Ids increase and are never reused, so the id of a dropped baseline
+ * never names a newer one. Thread: any. */
 #ifndef VALUE_BASELINES_H
 #define VALUE_BASELINES_H
 #include <stdbool.h>
@@ -17,25 +18,26 @@ struct baseline {                   /* description of one baseline */
 
 struct baselines;
 struct baselines *baselines_create(void);
-void baselines_destroy(struct baselines **baselines); /* Frees the baselines. &NULL is fine; leaves NULL. */
+void baselines_destroy(struct baselines **baselines); /* Frees the baselines and sets *baselines to NULL. *baselines may be NULL. */
 
-/* Stores a copy of the snapshot under a name and returns its id. An existing baseline of that name is replaced and keeps its id, so views
-   that show that baseline show the new snapshot. Returns 0 if BASELINES_NAMED other names are in use. */
+/* Stores a copy of the snapshot under a name and returns its id. An existing baseline with this name is replaced and keeps its id, so that
+ * views with this baseline use the new snapshot. Returns 0 if BASELINES_NAMED other names are in use. */
 uint32_t baselines_set(struct baselines *baselines, const char *name, const struct snapshot *snapshot);
 /* Stores an unnamed copy of the snapshot and returns its id; the oldest unnamed baseline is dropped if there are too many. A snapshot of
    the same instant is stored only once. */
 uint32_t baselines_keep(struct baselines *baselines, const struct snapshot *snapshot);
 void baselines_remove(struct baselines *baselines, const char *name);
-uint32_t baselines_find(struct baselines *baselines, const char *name); /* Returns the id of the baseline of that name; 0: none. */
-bool baselines_may_set(struct baselines *baselines, const char *name);  /* Returns whether baselines_set() has room for that name. */
-/* Copies the description of a baseline; returns false if it was dropped. */
+uint32_t baselines_find(struct baselines *baselines, const char *name); /* Returns the id of the baseline with this name; 0: none. */
+/* Returns whether baselines_set() would accept this name: it is in use, or another named baseline can be added. */
+bool baselines_may_set(struct baselines *baselines, const char *name);
+/* Copies the description of a baseline to *out. Returns false if the baseline was dropped. */
 bool baselines_describe(struct baselines *baselines, uint32_t id, struct baseline *out);
 /* Lists the named baselines, oldest first, and returns their number. */
 size_t baselines_list(struct baselines *baselines, struct baseline out[BASELINES_NAMED]);
 
 /* Returns the snapshot of a baseline, valid until baselines_give(); NULL if the baseline was dropped. */
 const struct snapshot *baselines_take(struct baselines *baselines, uint32_t id);
-/* Ends the use of a snapshot from baselines_take(). &NULL is fine; leaves NULL. */
+/* Ends the use of a snapshot from baselines_take() and sets *snapshot to NULL. *snapshot may be NULL. */
 void baselines_give(struct baselines *baselines, const struct snapshot **snapshot);
 
 #endif

@@ -18,8 +18,8 @@ int decode_width(const struct plant_tag *tag)
     return is_bit(tag) ? 1 : data_type_registers(tag->type);
 }
 
-/* Byte orders such as ABCD name the bytes in the order on the wire; A is the most significant byte. B first: bytes swapped within each
-   word. C or D first: the least significant word comes first. */
+/* Joins the words of a number. A byte order such as ABCD names the bytes in their order on the wire, where A is the most significant byte.
+ * If B or D comes first, the bytes within each word are swapped. If C or D comes first, the least significant word comes first. */
 static uint64_t join_words(enum byte_order order, const uint16_t *words, int count)
 {
     bool swap_bytes = order == BYTE_ORDER_BADC || order == BYTE_ORDER_DCBA;
@@ -97,13 +97,14 @@ static bool is_sentinel(const struct plant_tag *tag, uint64_t bits, double raw)
     return false;
 }
 
-/* NAMUR NE 43: a current from 3.8 to 20.5 mA is a measurement; at most 3.6 or at least 21 mA means that the transmitter or its loop has
-   failed. */
+/* Returns the quality of a current in mA by NAMUR NE 43: from 3.8 to 20.5 mA it is a measurement; at most 3.6 or at least 21 mA means that
+ * the transmitter or its loop has failed. */
 static uint32_t judge_current(const struct plant_tag *tag, double raw)
 {
     static const double MEASURED_LOW_MA = 3.8, MEASURED_HIGH_MA = 20.5, FAILED_LOW_MA = 3.6, FAILED_HIGH_MA = 21;
     double ma = 4 + 16 * (raw - tag->raw_low) / (tag->raw_high - tag->raw_low);
-    double half_step_ma = 8 / (tag->raw_high - tag->raw_low); /* half of one raw count, in mA: tolerance for the transmitter's rounding */
+    /* half of a step of the raw number, in mA: tolerance for the transmitter's rounding */
+    double half_step_ma = 8 / (tag->raw_high - tag->raw_low);
     double rounding_ma = half_step_ma < 0.05 ? half_step_ma : 0;
     if (ma <= FAILED_LOW_MA + rounding_ma || ma >= FAILED_HIGH_MA - rounding_ma)
         return QUALITY_BAD_SENSOR_FAILURE;
@@ -134,10 +135,10 @@ static void fail(struct sample *out)
     out->quality = QUALITY_BAD_SENSOR_FAILURE;
 }
 
-/* `bits`: width of `raw` on the wire, in bits. */
+/* Decodes a numeric value. bits: width of `raw` on the wire. */
 static void decode_analog(const struct plant_tag *tag, uint64_t bits, double raw, struct sample *out)
 {
-    /* must be checked before scaling, after which the special value would look like a measurement */
+    /* checked before scaling, because a scaled special value would look like a measurement */
     if (!isfinite(raw) || is_sentinel(tag, bits, raw)) {
         fail(out);
         return;

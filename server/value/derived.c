@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes derived tags: their values are expressions of other tags. */
+/* Computes derived tags, whose values are expressions of other tags. */
 #include "value/derived.h"
 
 #include <errno.h>
@@ -51,8 +51,8 @@ void derived_destroy(struct derived_state **state)
     *state = NULL;
 }
 
-/* Evaluates a tag's expression in the units of the tag list. The result has the worst quality of its inputs, and the age of the newest
-   input. */
+/* Evaluates a tag's expression in the units of the tag list. The result has the worst quality among its inputs, and the age of the newest
+ * input. */
 static struct reading combine(const struct derived_state *state, const struct plant_tag *tag)
 {
     const struct plant *plant = state->plant;
@@ -78,8 +78,8 @@ static struct reading combine(const struct derived_state *state, const struct pl
     return all;
 }
 
-/* Writes a result only if an input is newer than at the last write, or the quality differs. Otherwise the result's age would be too
-   small. */
+/* Writes a result to the store only if an input is newer than at the last write, or the quality differs. Writing an unchanged result would
+ * make it look newer than its inputs. */
 static void write_new(struct derived_state *state, struct store *store, size_t i, struct reading *reading)
 {
     struct written *written = &state->written[i];
@@ -101,7 +101,7 @@ void derived_compute(struct derived_state *state, struct store *store, int64_t n
     store_snapshot(store, now_mono_ns, now_utc_ns, state->snapshot);
     for (size_t i = 0; i < plant->derived_count; i++) {
         struct reading *reading = &state->snapshot->readings[plant->derived[i]];
-        /* keeps the result for derived tags later in the list, which may use it */
+        /* the result may be an input of derived tags later in the list */
         *reading = combine(state, &plant->tags[plant->derived[i]]);
         write_new(state, store, i, reading);
     }

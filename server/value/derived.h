@@ -5,15 +5,15 @@
 #define VALUE_DERIVED_H
 #include "value/source.h"
 
-struct derived_state; /* results written last, for comparison; use the struct in one thread only */
+struct derived_state; /* results that were written last, to find changes; use the struct in one thread only */
 
 /* Starts the thread that computes derived tags. Returns it as a source, to be ended by source_stop(), although it is not in
    plant->sources; NULL if the thread could not be started (logged). */
 struct source *derived_start(struct log *log, const struct plant *plant, struct store *store);
 
-/* The same computation without thread and clock: each call of derived_compute() computes all derived tags once. */
+/* Does the same computation without thread and clock: each call of derived_compute() computes all derived tags once. */
 struct derived_state *derived_create(const struct plant *plant);
-void derived_destroy(struct derived_state **state); /* Frees the state. &NULL is fine; leaves NULL. */
+void derived_destroy(struct derived_state **state); /* Frees the state and sets *state to NULL. *state may be NULL. */
 void derived_compute(struct derived_state *state, struct store *store, int64_t now_mono_ns, int64_t now_utc_ns);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Runs getaddrinfo on a detached thread; the last user of the lookup frees it. */
+/* Runs getaddrinfo() on a detached thread. The last user of the lookup, caller or thread, frees it. */
 #include "value/lookup.h"
 
 #include <errno.h>

@@ -11,10 +11,11 @@ struct lookup *lookup_start(const char *host, int port);
 /* Waits for the result until the deadline. Returns 0 with the list of addresses in *out, valid until lookup_destroy(); -ETIMEDOUT: not
    resolved yet, call again; -ECANCELED: stop_fd became readable; -EHOSTUNREACH: the host name does not resolve. */
 int lookup_wait(struct lookup *lookup, int stop_fd, int64_t deadline_mono_ns, const struct addrinfo **out);
-/* Frees the lookup without waiting for the resolver. &NULL is fine; leaves NULL. */
+/* Frees the lookup without waiting for the resolver, and sets *lookup to NULL. *lookup may be NULL. */
 void lookup_destroy(struct lookup **lookup);
 
-/* Waits until fd is ready for `events`; fd -1: waits for the deadline. Returns 0, -ETIMEDOUT, or -ECANCELED if stop_fd became readable. */
+/* Waits until fd is ready for `events`; with fd -1 only waits. Returns 0, -ETIMEDOUT at the deadline, or -ECANCELED if stop_fd became
+ * readable. */
 int wait_for(int fd, short events, int stop_fd, int64_t deadline_mono_ns);
 
 #endif

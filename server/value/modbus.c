@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A Modbus source: reads each block of its plan when it is due, and retries units that do not answer. */
+/* A Modbus source: reads each block of its read plan when the block is due, and retries units (slave addresses) that do not answer. */
 #include "value/modbus_impl.h"
 
 #include <errno.h>
@@ -33,8 +33,8 @@ static void read_block(struct modbus_source *modbus, size_t index)
     int64_t now_ns = clock_mono_ns(), next_ns = block->due_ns + block->scan_ms * NS_PER_MS;
     modbus->asked_ns = now_ns;
     if (status < 0 && modbus_manners_excuse_read(modbus, status, unit->state == UNIT_UP))
-        return; /* the block stays due, so that the next connection reads it first */
-    /* if the reader is late, missed reads are skipped, not made up in a burst */
+        return; /* the block's due time does not change, so that the next connection reads the block first */
+    /* a late reader skips missed reads and does not make them up in a burst */
     block->due_ns = next_ns > now_ns ? next_ns : now_ns + block->scan_ms * NS_PER_MS;
     counter_inc(status == 0 ? modbus->reads_ok : modbus->reads_failed, 1);
     if (status < 0) {
@@ -53,7 +53,8 @@ static void read_block(struct modbus_source *modbus, size_t index)
     modbus_manners_after(modbus);
 }
 
-/* Returns the time from which a block may be read: the latest of its due time, its unit's retry time and the connection's retry time. */
+/* Returns the time from which a block may be read: the latest of the block's due time, its unit's retry time and the connection's retry
+ * time. */
 static int64_t ready_ns(const struct modbus_source *modbus, const struct read_plan_block *block)
 {
     const struct modbus_unit *unit = modbus_unit_of(modbus, block);
@@ -65,8 +66,8 @@ static int64_t ready_ns(const struct modbus_source *modbus, const struct read_pl
     return at_ns;
 }
 
-/* Returns the ready block that has waited longest, so that a block that always fails cannot starve the rest. Returns block_count if none
-   is ready; *wake_ns is then the time when one will be. */
+/* Returns the index of the readable block that has waited longest, so that a block that always fails cannot keep others from being read.
+ * block_count: no block may be read yet; *wake_ns is then the time when one may. */
 static size_t choose_block(const struct modbus_source *modbus, int64_t now_ns, int64_t *wake_ns)
 {
     size_t chosen = modbus->plan.block_count;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A Modbus source: writes responses to the store and updates the read plan after exceptions. */
+/* A Modbus source: writes the values in responses to the store, and changes the read plan after exceptions (Modbus error responses). */
 #include <modbus.h>
 
 #include "base/clock.h"
@@ -7,8 +7,8 @@
 #include "value/modbus_impl.h"
 #include "value/quality.h"
 
-/* Delay before a refused register is read again, doubled after each refusal up to MAX_REFUSED_DELAY_NS: a device may refuse while it starts
-   up. */
+/* Delay before a register that the device refused is read again. It doubles after each refusal up to MAX_REFUSED_DELAY_NS, because a device
+ * may refuse only while it starts up. */
 static const int64_t REFUSED_DELAY_NS = 2 * NS_PER_S, MAX_REFUSED_DELAY_NS = 60 * NS_PER_S;
 static const int64_t BUSY_DELAY_NS = 50 * NS_PER_MS;
 enum { BUSY_TRIES = 4 };
@@ -41,7 +41,8 @@ void modbus_take_values(struct modbus_source *modbus, struct read_plan_block *bl
     block->answered = true;
     store_write(modbus->base.store, modbus->samples, block->tag_count, clock_mono_ns(), clock_utc_ns());
     bool repaired = modbus_note_refused(modbus, block, false, "read again");
-    modbus_unit_is_up(modbus, modbus_unit_of(modbus, block)); /* may rebuild the plan; the pointer `block` is invalid afterwards */
+    /* this call may rebuild the read plan, which makes the pointer `block` invalid */
+    modbus_unit_is_up(modbus, modbus_unit_of(modbus, block));
     if (repaired)
         modbus_replan(modbus);
 }
@@ -62,12 +63,13 @@ static uint32_t quality_of_exception(int code)
     case MODBUS_EXCEPTION_ILLEGAL_DATA_VALUE: return QUALITY_BAD_CONFIGURATION;
     case MODBUS_EXCEPTION_SLAVE_OR_SERVER_FAILURE:
     case MODBUS_EXCEPTION_MEMORY_PARITY: return QUALITY_BAD_DEVICE_FAILURE;
-    default: /* the device answered busy, or a similar exception: the block is retried soon; readings go stale if the device stays busy */
-        return QUALITY_GOOD;
+    /* the device is busy, or answered with a similar exception: the block is retried soon; its readings go stale if the device stays
+     * busy */
+    default: return QUALITY_GOOD;
     }
 }
 
-/* Logs that a device answers each request with acknowledge (5) or busy (6). Its tags go stale. */
+/* Logs that a device answers every request with the exception acknowledge (5) or busy (6). The tags of the block go stale. */
 static void note_busy(struct modbus_source *modbus, const struct read_plan_block *block, int code, int64_t now_ns)
 {
     char more[LOG_PACE_BYTES];
@@ -102,14 +104,15 @@ void modbus_take_exception(struct modbus_source *modbus, size_t index, int code,
         note_busy(modbus, block, code, now_ns);
         return;
     }
-    if (block->answered) { /* the block was readable before: it is read once more before it is split */
+    if (block->answered) { /* the device answered this block before, so the block is read once more before it is split */
         block->answered = false;
         block->due_ns = now_ns;
         return;
     }
     modbus->plan_cut = true;
     if (code != MODBUS_EXCEPTION_ILLEGAL_FUNCTION && block->tag_count > 1) {
-        /* both parts of the split block are read in the same poll; splitting repeats until the refused register is found */
+        /* the two blocks that result from the split are read in the same poll; refused blocks are split again until the refused register is
+         * found */
         block->due_ns = now_ns;
         read_plan_split(&modbus->plan, modbus->base.plant, index);
         return;

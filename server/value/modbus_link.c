@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Opens a TCP socket or serial line within a deadline, and closes it after any error. libmodbus handles RTU frames only. */
+/* Opens a TCP socket or serial line within a deadline, and closes it after any error. Uses libmodbus for RTU frames, and modbus_tcp.c for
+ * TCP frames. */
 #include "value/modbus_link.h"
 
 #include <errno.h>
@@ -25,26 +26,29 @@ static const int64_t SETTLE_NS = 50 * NS_PER_MS;
 
 struct modbus_link {
     const struct plant_source *source;
-    modbus_t *modbus; /* libmodbus context for RTU frames; NULL: TCP frames */
-    uint16_t number;  /* transaction identifier of the last request in TCP frames */
+    modbus_t *modbus; /* libmodbus context for RTU frames; NULL: the link uses TCP frames */
+    uint16_t number;  /* transaction identifier of the last request, for TCP frames */
     int stop_fd;
     int null_fd;
-    /* A low file descriptor reserved at creation; dup3() moves each connection into it. libmodbus calls select(), whose sets end at
-       FD_SETSIZE, while the daemon may have more files open than that by the time of a reconnect. */
+    /* A low file descriptor that is reserved at creation; dup3() moves each connection into it. libmodbus calls select(), which cannot
+     * handle descriptors from FD_SETSIZE on, and the daemon may have that many files open when it reconnects. */
     int slot_fd;
     bool open;
-    bool suspect; /* serial line: the late answer to an abandoned request may still arrive */
+    bool suspect; /* serial line only: an abandoned request may still be answered, so the next answer may belong to it */
     int host;     /* index in source->hosts of the host in use */
     int answers;  /* of this connection */
     bool any_unit;
-    struct modbus_answered answered; /* identifier and unit of the last response in TCP frames */
+    struct modbus_answered answered; /* transaction identifier and unit in the last response, for TCP frames */
     int64_t patience_ns;
-    int64_t opened_ns, sent_ns, first_answered_ns; /* monotonic times; sent_ns: when the first request that was answered was sent */
+    /* monotonic times. opened_ns: connection opened; sent_ns: first request that was answered was sent; first_answered_ns: its answer
+     * arrived */
+    int64_t opened_ns, sent_ns, first_answered_ns;
     struct lookup *lookup;
     char name[300];
 };
 
-/* Makes an RTU context with 8 data bits, as RTU demands. libmodbus does not connect when it is given a socket. */
+/* Makes a libmodbus context for RTU frames with 8 data bits, as RTU requires. The link itself opens the connection and passes it to
+ * libmodbus. */
 static modbus_t *new_modbus(const struct plant_source *source)
 {
     bool line = source->transport == TRANSPORT_RTU;
@@ -52,7 +56,7 @@ static modbus_t *new_modbus(const struct plant_source *source)
     if (!modbus)
         return NULL;
     modbus_set_response_timeout(modbus, (uint32_t)(source->timeout_ms / 1000), (uint32_t)(source->timeout_ms % 1000) * 1000);
-    modbus_set_byte_timeout(modbus, 0, 0); /* no timeout per byte: the response timeout limits the whole reply */
+    modbus_set_byte_timeout(modbus, 0, 0); /* no timeout between bytes, because the response timeout limits the whole reply */
     return modbus;
 }
 
@@ -209,18 +213,19 @@ static int connect_any(struct modbus_link *link, int64_t deadline_ns, int *out_f
     if (!link->lookup)
         link->lookup = lookup_start(link->source->hosts[link->host], link->source->port);
     int status = lookup_wait(link->lookup, link->stop_fd, deadline_ns, &to);
-    if (status == -ETIMEDOUT) /* the system resolver does not return: the next attempt waits for the same lookup */
+    if (status == -ETIMEDOUT) /* the system resolver has not returned: the next attempt waits for the same lookup */
         return status;
     for (; to; to = to->ai_next) {
         status = connect_one(to, link->stop_fd, deadline_ns, out_fd);
         if (status == 0 || status == -ECANCELED)
             break;
     }
-    lookup_destroy(&link->lookup); /* each connection resolves the host name again, since addresses change */
+    lookup_destroy(&link->lookup); /* discard the result: each connection resolves the host name again, because addresses change */
     return status;
 }
 
-/* Opens the serial line with exclusive access. libmodbus configures the line and remembers its previous settings. */
+/* Opens the serial line with exclusive access. libmodbus sets the line's parameters and remembers the previous ones. Returns 0 or
+ * -errno. */
 static int open_line(struct modbus_link *link, int *out_fd)
 {
     if (modbus_connect(link->modbus) != 0) {
@@ -248,7 +253,7 @@ int modbus_link_open(struct modbus_link *link)
     link->open = status == 0;
     link->answers = 0;
     link->opened_ns = clock_mono_ns();
-    /* modbus_link_interrupt() was called before the socket was in its reserved descriptor, so it could not close it */
+    /* modbus_link_interrupt() was called before the socket was in its reserved descriptor, so it could not end this connection */
     if (link->open && wait_for(-1, 0, link->stop_fd, 0) == -ECANCELED) {
         close_link(link);
         status = -ECANCELED;
@@ -258,8 +263,8 @@ int modbus_link_open(struct modbus_link *link)
 
 /* --- reading ---------------------------------------------------------------------------------------------------------------- */
 
-/* Discards bytes that have arrived unasked, such as a duplicate reply or noise. modbus_flush() cannot do this for RTU frames over a socket.
-   Returns false if the device has closed the connection meanwhile. */
+/* Discards received bytes that no request is waiting for, such as a duplicate reply or noise. modbus_flush() does not do this for RTU
+ * frames over a socket. Returns false if the device has closed the connection meanwhile. */
 static bool flush(struct modbus_link *link)
 {
     uint8_t bytes[512];
@@ -311,7 +316,7 @@ static int ask_framed(struct modbus_link *link, const struct modbus_question *qu
         numbered.number = ++link->number;
         status = modbus_tcp_ask(link->slot_fd, link->stop_fd, clock_mono_ns() + timeout_ns, &numbered, words, &link->answered);
     } while (status == -ETIMEDOUT && link->answers == 0 && !link->answered.began && clock_mono_ns() < begin_ns + link->patience_ns);
-    if (link->answers == 0) /* time at which the answered copy of the request was sent: copies are one timeout apart */
+    if (link->answers == 0) /* send time of the copy of the request that was answered: copies are sent one timeout apart */
         link->sent_ns = begin_ns + (uint16_t)(link->answered.number - numbered.oldest) * timeout_ns;
     return status;
 }
@@ -330,8 +335,9 @@ static int ask(struct modbus_link *link, const struct modbus_question *question,
     return status_of(got, question->count);
 }
 
-/* RTU frames have no transaction numbers: the answer to an abandoned request may arrive as the answer to the next one. After an error
-   this function discards one answer, then waits one timeout for stray bytes. Returns false if the device does not answer. */
+/* Discards the answer to an abandoned request. RTU frames have no transaction numbers, so such an answer could be taken for that to the
+ * next request. After an error, discards one answer, then waits one timeout for stray bytes. Returns false if the device does not
+ * answer. */
 static bool clear_line(struct modbus_link *link, const struct modbus_question *question, uint16_t *words)
 {
     if (ask(link, question, words) == -ETIMEDOUT)
@@ -341,16 +347,16 @@ static bool clear_line(struct modbus_link *link, const struct modbus_question *q
     return true;
 }
 
-/* Call it after an answer with another request's transaction number (a late or duplicate answer). Waits SETTLE_NS for more stray answers,
-   then repeats the request. A second wrong answer makes the caller disconnect. */
+/* Called after an answer with the transaction number of another request (a late or duplicate answer). Waits SETTLE_NS for more stray
+ * answers, then repeats the request. A second wrong answer makes the caller disconnect. */
 static int ask_again(struct modbus_link *link, const struct modbus_question *question, uint16_t *words)
 {
     wait_for(-1, 0, link->stop_fd, clock_mono_ns() + SETTLE_NS);
     return ask(link, question, words);
 }
 
-/* Selects a unit; returns false if its number is invalid. Valid numbers are 0 to 247; over TCP also 255, which means the device at the IP
-   address itself. */
+/* Selects a unit for the next requests. Returns false if its number is invalid. Valid numbers are 0 to 247; over TCP also 255, which means
+ * the device at the IP address itself. */
 static bool can_ask_unit(struct modbus_link *link, int unit)
 {
     return link->modbus ? modbus_set_slave(link->modbus, unit) == 0 : (unit >= 0 && unit <= 247) || unit == 255;

@@ -11,41 +11,40 @@
 
 struct modbus_link;
 
-/* Creates a closed link. stop_fd: an eventfd; when it becomes readable, all waiting calls return. `source` must outlive the link. Returns
-   NULL on failure (logged). */
+/* Creates a link that is not connected. stop_fd: an eventfd; all calls that wait return when it becomes readable. `source` must outlive the
+ * link. Returns NULL on failure (logged). */
 struct modbus_link *modbus_link_create(struct log *log, const struct plant_source *source, int stop_fd);
-void modbus_link_destroy(struct modbus_link **link); /* Closes and frees the link. &NULL is fine; leaves NULL. */
+void modbus_link_destroy(struct modbus_link **link); /* Closes the connection, frees the link and sets *link to NULL. *link may be NULL. */
 
 bool modbus_link_is_open(const struct modbus_link *link);
 /* Returns the address of the host in use, such as "10.0.0.1:502" or "/dev/ttyS0", valid until the next call. */
 const char *modbus_link_name(const struct modbus_link *link);
 /* Returns the index of the host in use among the source's hosts. */
 int modbus_link_host(const struct modbus_link *link);
-/* Connects within the source's timeout_ms. Returns 0 or -errno; -ECANCELED: stopping. */
+/* Connects within the source's timeout_ms. Returns 0 or -errno; -ECANCELED: stop_fd became readable. */
 int modbus_link_open(struct modbus_link *link);
-/* Switches to the next of the source's hosts. Returns true if the switch went from the last host to the first. */
+/* Switches to the next of the source's hosts. Returns true if that was a switch from the last host back to the first. */
 bool modbus_link_next_host(struct modbus_link *link);
-/* Reads `count` registers, or bits as 0 and 1, into `words`, within the source's timeout_ms however slowly the device sends. Returns 0;
-   a Modbus exception code (> 0; the link stays open); or -errno with the link closed, so that a late or foreign response is never taken
-   for the response to the next request. */
+/* Reads `count` registers, or bits as 0 and 1, into `words`, within the source's timeout_ms however slowly the device sends. Returns 0, or
+ * a Modbus exception code (> 0; the link stays open), or -errno with the link closed, so that a late or foreign response is never taken for
+ * the response to the next request. */
 int modbus_link_read(struct modbus_link *link, int unit, enum register_table table, int first, int count, uint16_t *words);
 /* Closes the connection; modbus_link_open() makes a new one. */
 void modbus_link_close(struct modbus_link *link);
-/* Sets whether a response may name unit 0 or 255 instead of the unit requested. Set it only if the device is known to be the only one
-   there. */
+/* Sets whether a response may name unit 0 or 255 instead of the unit requested. Allow this only if the address has no other unit. */
 void modbus_link_allow_any_unit(struct modbus_link *link, bool any);
-/* Returns the unit number in the last response. */
+/* Returns the unit number that the last response states. */
 int modbus_link_answered_unit(const struct modbus_link *link);
-/* Modbus TCP: repeats the first request of each connection every timeout_ms until an answer comes or patience_ns have passed. 0: no
-   repeats. */
+/* Modbus TCP: sets that the first request of each connection is repeated every timeout_ms until an answer arrives or patience_ns have
+ * passed. 0: it is sent once. */
 void modbus_link_set_patience(struct modbus_link *link, int64_t patience_ns);
 /* Returns the number of requests answered on the current connection, or on the last one if the link is closed. */
 int modbus_link_answers(const struct modbus_link *link);
-/* Returns the time in nanoseconds from connecting to sending the first request that was answered; *answered_ns: from connecting to its
-   answer. */
+/* Returns the time in nanoseconds from connecting until the first request that was answered was sent. *answered_ns: time from connecting
+ * until its answer. */
 int64_t modbus_link_first_ns(const struct modbus_link *link, int64_t *answered_ns);
-/* Ends a read in progress. Call it from another thread, after stop_fd became readable. A read on a serial line ends by its deadline
-   instead. */
+/* Ends a read that is in progress. Called from another thread, after stop_fd became readable. A read on a serial line ends only at its
+ * deadline. */
 void modbus_link_interrupt(struct modbus_link *link);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A Modbus source: learns how the device handles connections, adapts, and logs once which key of the plant file would set that from the
-   start. */
+/* A Modbus source: learns how the device handles connections and adapts to it. Logs once which key of the plant file would set this from
+ * the start. */
 #include <errno.h>
 #include <stdio.h>
 
@@ -8,14 +8,14 @@
 #include "value/modbus_impl.h"
 
 enum { SHORT_CONNECTIONS = 3, REFUSED_CONNECTIONS = 6, CLOSED_CONNECTIONS = 2 };
-/* first delay before reconnecting, doubled each time: some devices free a closed connection late */
+/* first delay before reconnecting, doubled each time: some devices free a closed connection only after a while */
 static const int64_t RECONNECT_DELAY_NS = 50 * NS_PER_MS;
 static const int64_t TOLERANCE_NS = 2 * NS_PER_S; /* time since the last answer after which the device counts as lost */
-/* time limit for the first answer on the second connection without any answer; doubled on each later one */
+/* time limit for the first answer on a connection, after one earlier connection without any answer; doubled after more such connections */
 static const int64_t FIRST_ANSWER_TIMEOUT_NS = 3 * NS_PER_S;
-/* first connect delay to try for RTU over TCP, whose requests have no transaction numbers */
+/* first delay that is tried between connecting and the first request, for RTU over TCP, whose requests have no transaction numbers */
 static const int64_t RTU_DELAY_NS = 500 * NS_PER_MS;
-/* time limit for the answer of a unit that is up, after another unit behind the same gateway timed out */
+/* time limit for the answer of a unit that is up, if another unit behind the same gateway has just timed out */
 static const int64_t GATEWAY_TIMEOUT_NS = 5 * NS_PER_S;
 static const int64_t MAX_CONNECT_DELAY_NS = 8 * NS_PER_S;
 
@@ -62,7 +62,8 @@ static void log_found(struct modbus_source *modbus, const char *found)
     log_info(modbus->base.log, "source %s: device %s %s", modbus->base.config->id, modbus_link_name(modbus->link), found);
 }
 
-/* Learns from a late first answer of a connection: either the device answered a repeated request, or it was slow to answer. */
+/* Learns from a late first answer on a connection why it was late: the device answered only a repeated request, or it was slow to answer
+ * the first one. */
 static void learn_start(struct modbus_source *modbus)
 {
     struct modbus_manners *manners = &modbus->manners;
@@ -89,8 +90,8 @@ static void learn_start(struct modbus_source *modbus)
     log_found(modbus, found);
 }
 
-/* Logs the connect delay with which an RTU-over-TCP device answers. Its answers have no numbers, so requests must not be repeated;
-   instead each silent connection makes the next one wait longer before its first request. */
+/* Logs the connect delay with which an RTU-over-TCP device answers. Its answers have no transaction numbers, so requests must not be
+ * repeated. Instead, after each connection without an answer, the next connection waits longer before its first request. */
 static void learn_rtu_delay(struct modbus_source *modbus)
 {
     struct modbus_manners *manners = &modbus->manners;
@@ -133,7 +134,8 @@ static bool is_closed(int status)
     return status == -ECONNRESET || status == -EPIPE || status == -ECONNREFUSED || status == -ECONNABORTED;
 }
 
-/* Counts a connection that the device closed after answering on it, and switches to one request per connection after a few. */
+/* Counts a connection that the device closed after answering on it. After a few consecutive ones, switches to one request per
+ * connection. */
 static void learn_end(struct modbus_source *modbus, int answers)
 {
     struct modbus_manners *manners = &modbus->manners;
@@ -149,8 +151,8 @@ static void learn_end(struct modbus_source *modbus, int answers)
     }
 }
 
-/* Returns true, and sets the retry time, if a connection was refused or closed soon after one on which the device answered: the device may
-   free connections late. */
+/* Returns true, and sets the retry time, if the device refused or closed a connection soon after one on which it answered: it may free the
+ * earlier connection late. */
 static bool may_be_early(struct modbus_source *modbus, int status, int most)
 {
     struct modbus_manners *manners = &modbus->manners;

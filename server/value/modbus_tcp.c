@@ -11,7 +11,7 @@
 
 enum {
     HEADER_BYTES = 7, /* bytes of the frame header: transaction identifier, protocol, length of the rest, unit */
-    REFUSED = 0x80,   /* bit that an exception response sets in the function code */
+    REFUSED = 0x80,   /* bit of the function code that marks an exception response */
     LAST_EXCEPTION = 11,
     MAX_VALUE_BYTES = 2 * READ_PLAN_MAX_REGISTERS, /* READ_PLAN_MAX_BITS take as many bytes */
 };
@@ -73,14 +73,14 @@ static int receive_all(int fd, int stop_fd, int64_t deadline_ns, uint8_t *bytes,
     return 0;
 }
 
-/* Returns the number of bytes of values that the response must have. */
+/* Returns the number of bytes that the values in the response must have. */
 static int value_bytes(const struct modbus_question *question)
 {
     return is_bits(question->table) ? (question->count + 7) / 8 : 2 * question->count;
 }
 
-/* Checks the unit of a response. Unit identifiers 0 and 255 mean the device at the address itself (MODBUS Messaging on TCP/IP V1.0b,
-   4.4.1.2); many devices that are no gateways answer with one of these whatever unit was requested. */
+/* Returns whether a response may state this unit. Unit identifiers 0 and 255 mean the device at the address itself (MODBUS Messaging on
+ * TCP/IP V1.0b, 4.4.1.2); many devices that are no gateways answer with one of these, whatever unit was requested. */
 static bool fits_unit(const struct modbus_question *question, uint8_t unit)
 {
     bool itself = unit == 0 || unit == 255 || question->unit == 0 || question->unit == 255;
@@ -98,7 +98,7 @@ static int check_header(const struct modbus_question *question, const uint8_t *h
     return sized && fits_unit(question, header[6]) ? 0 : -EPROTO;
 }
 
-/* Decodes a response. length: number of bytes from the function code on. */
+/* Checks and decodes a response. length: number of bytes from the function code on. Returns 0, a Modbus exception code, or -errno. */
 static int take_answer(const struct modbus_question *question, const uint8_t *answer, int length, uint16_t *words)
 {
     int function = function_of(question->table);

@@ -12,7 +12,7 @@ struct modbus_question {
     uint16_t number; /* transaction identifier */
     uint8_t unit;
     bool any_unit; /* a response may name unit 0 or 255 instead of the unit requested; or any unit if 0 or 255 was requested */
-    /* transaction identifier of the first copy of a repeated request on this connection; equals `number` if the request was sent once */
+    /* transaction identifier of the first copy of a request that was repeated on this connection; equal to `number` if it was sent once */
     uint16_t oldest;
     enum register_table table;
     int first, count;
@@ -24,9 +24,9 @@ struct modbus_answered {
     bool began; /* at least one byte of the response has arrived */
 };
 
-/* Sends a request and receives its response; `words` as in modbus_link_read(). `answered` gets the response's transaction identifier and
-   unit. Returns 0, a Modbus exception code, or -errno. -EBADMSG: the response has another transaction identifier. -EPROTO: header, unit,
-   function or size of the response do not match the request; returned at once, without waiting for the length that the header announces. */
+/* Sends a request and receives its response; `words` as in modbus_link_read(). *answered receives the response's transaction identifier and
+ * unit. Returns 0, a Modbus exception code, or -errno. -EBADMSG: the response has another transaction identifier. -EPROTO: header, unit,
+ * function or size of the response do not match the request; returned without waiting for the number of bytes that the header announces. */
 int modbus_tcp_ask(int fd, int stop_fd, int64_t deadline_mono_ns, const struct modbus_question *question, uint16_t *words,
                    struct modbus_answered *answered);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A Modbus source: tracks which units answer, and when a silent unit or a refused block is requested again. */
+/* A Modbus source: records which units (slave addresses) answer, and when a silent unit or a refused block is requested again. */
 #include <errno.h>
 #include <string.h>
 
@@ -7,7 +7,7 @@
 #include "value/lookup.h"
 #include "value/modbus_impl.h"
 
-/* delay before other blocks of a unit are read while addresses without an answer are being isolated */
+/* delay before the next block of a unit is read, while blocks are being split to find addresses that are not answered */
 static const int64_t SPLIT_PAUSE_NS = 500 * NS_PER_MS;
 
 struct modbus_unit *modbus_unit_of(const struct modbus_source *modbus, const struct read_plan_block *block)
@@ -35,7 +35,7 @@ static void link_lost(struct modbus_source *modbus, const char *why)
 void modbus_unit_is_up(struct modbus_source *modbus, struct modbus_unit *unit)
 {
     if (unit->state == UNIT_DOWN && modbus->plan_cut)
-        modbus_replan(modbus); /* rebuilds the plan, because the unit may have been replaced by another device */
+        modbus_replan(modbus); /* rebuild the read plan, because the unit may have been replaced by another device */
     if (unit->loss_said)
         log_info(modbus->base.log, "source %s: unit %d answers again", modbus->base.config->id, unit->id);
     unit->loss_said = false;
@@ -71,7 +71,8 @@ static void lose_tags_of(struct modbus_source *modbus, const struct modbus_unit 
     store_tags_lost(modbus->base.store, modbus->lost, count, clock_mono_ns());
 }
 
-/* Switches to the next host. Connects to it at once if it was not tried since a unit last answered, otherwise after a backoff delay. */
+/* Switches to the next host. Connects without a delay to a host that was not tried since a unit last answered; after a backoff delay if all
+ * were tried. */
 static void try_elsewhere(struct modbus_source *modbus)
 {
     int64_t now_ns = clock_mono_ns();
@@ -100,9 +101,10 @@ void modbus_unit_is_down(struct modbus_source *modbus, struct modbus_unit *unit,
     lose_tags_of(modbus, unit);
 }
 
-/* --- decides whether a block or its unit is at fault ------------------------------------------------------------------------ */
+/* --- deciding whether a block or its unit is to blame ----------------------------------------------------------------------- */
 
-/* Returns the block of the same unit that is due next, other than `block`; NULL if there is none. */
+/* Returns the block of the same unit, other than `block`, that is due first, of those whose last request was answered; NULL if there is
+ * none. */
 static struct read_plan_block *other_block(struct modbus_source *modbus, const struct read_plan_block *block)
 {
     struct read_plan_block *other = NULL;
@@ -122,11 +124,12 @@ bool modbus_unit_doubt(struct modbus_source *modbus, struct modbus_unit *unit, s
     unit->doubted = true;
     unit->doubted_table = failed->table;
     unit->doubted_first = failed->first;
-    other->due_ns = failed->due_ns - failed->scan_ms * NS_PER_MS; /* makes block `other` the first one to be read */
+    other->due_ns = failed->due_ns - failed->scan_ms * NS_PER_MS; /* makes block `other` the next block that is read */
     return true;
 }
 
-/* Marks a block as unanswered. Splits the block until single addresses remain; these are requested again after growing delays. */
+/* Records that a block is to blame for a missing answer: splits the block, or, if it has a single address, requests it again after growing
+ * delays. */
 static void blame(struct modbus_source *modbus, size_t index)
 {
     struct read_plan_block *block = &modbus->plan.blocks[index];

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Quality of a reading, as an OPC UA status code (Part 4, 7.39; Part 8, annex A): the two top bits are the severity. */
+/* Quality of a reading as an OPC UA status code (Part 4, 7.39; Part 8, annex A), whose two top bits are the severity: Good, Uncertain or
+ * Bad. */
 #ifndef VALUE_QUALITY_H
 #define VALUE_QUALITY_H
 #include <stdbool.h>
@@ -36,9 +37,10 @@ static inline bool quality_is_bad(uint32_t q)
 {
     return (q >> 30) >= 2;
 }
-/* Returns the name of a code, such as "Bad_CommunicationError"; for a code missing in the table the name of its severity, such as "Bad". */
+/* Returns the name of a status code, such as "Bad_CommunicationError". For a code that is not in the table, returns the name of its
+ * severity, such as "Bad". */
 const char *quality_name(uint32_t q);
-/* Returns "good", "uncertain" or "bad", as in JSON messages. */
+/* Returns the severity of a status code as in JSON messages: "good", "uncertain" or "bad". */
 const char *quality_class(uint32_t q);
 
 #endif

@@ -10,34 +10,35 @@
 /* maximum number of registers, or of bits, in one request (Modbus Application Protocol 6.1-6.4) */
 enum { READ_PLAN_MAX_REGISTERS = 125, READ_PLAN_MAX_BITS = 2000 };
 
-/* one request to the device; each tag is in one block; gaps between its tags are at most the source's max_gap registers */
+/* a block: the tags that one request to the device reads. Gaps between their registers are at most the source's max_gap registers. */
 struct read_plan_block {
     int unit; /* Modbus unit identifier */
     enum register_table table;
     int scan_ms;
     int first, count;            /* registers or bits */
     size_t first_tag, tag_count; /* index of the first tag in read_plan.tags, and number of tags */
-    int64_t due_ns;              /* monotonic time of the next read, set by the reader; 0 in a new plan, copied by read_plan_split() */
-    /* The following members are set by the reader too: 0 in a new plan, copied by read_plan_split(). */
+    /* monotonic time of the next read; set by the reader (modbus.c); 0 in a new plan; copied by read_plan_split() */
+    int64_t due_ns;
+    /* The following members are set by the reader too. They are 0 in a new plan, and read_plan_split() copies them. */
     int busy_count;    /* number of successive "busy" responses */
-    int refused_count; /* number of successive refusals; counted for blocks that have only one tag */
-    int silent_count;  /* number of successive requests without an answer, while other blocks of the unit were answered */
+    int refused_count; /* number of consecutive refusals; counted only for blocks with a single tag */
+    int silent_count;  /* number of consecutive requests without an answer while other blocks of the unit were answered */
     bool answered;     /* the last request was answered */
 };
 
 struct read_plan { /* zero-initialise */
-    int *tags;     /* indices in plant->tags, in the order of their registers */
+    int *tags;     /* indices in plant->tags, sorted by register address; a block has a range of these indices */
     size_t tag_count;
     struct read_plan_block *blocks;
     size_t block_count, block_capacity;
-    int *units; /* numbers of all Modbus units in the plan, each once */
+    int *units; /* numbers of the Modbus units (slave addresses) in the plan, each once */
     size_t unit_count;
 };
 
-/* Builds the read plan of one Modbus source of the plant. Keeps no pointer to the plant. Free with read_plan_finish(). */
+/* Builds the read plan of one Modbus source. Keeps no pointer to the plant. Free with read_plan_finish(). */
 void read_plan_init(struct read_plan *plan, const struct plant *plant, int source);
 void read_plan_finish(struct read_plan *plan);
-/* Splits a block of at least two tags in two; the second half becomes block index + 1. */
+/* Splits a block of at least two tags in two; the second one gets the index block + 1. */
 void read_plan_split(struct read_plan *plan, const struct plant *plant, size_t index);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Prints a read plan in words and numbers. */
+/* Prints a read plan as text. */
 #include "value/read_plan_text.h"
 
 #include <string.h>
@@ -24,7 +24,7 @@ static bool of_bits(const struct read_plan_block *block)
     return block->table == TABLE_COIL || block->table == TABLE_DISCRETE;
 }
 
-/* Returns the number of bytes of request and response on the wire. */
+/* Returns the number of bytes of a block's request and response on the wire. */
 static double bytes_of(const struct plant_source *source, const struct read_plan_block *block)
 {
     int values = of_bits(block) ? (block->count + 7) / 8 : 2 * block->count;
@@ -69,7 +69,7 @@ static void add_load(struct text *out, const struct read_plan *plan, const struc
     text_add(out, "  load: %.4g requests, %.4g values and %.4g bytes in a second", requests, values, bytes);
     if (source->pause_ms > 0)
         text_add(out, "; the pauses take %.3g %% of the time", requests * source->pause_ms / 10);
-    /* a byte takes 11 bits with start, parity and stop bits; a pause of 3.5 bytes separates frames */
+    /* a byte takes 11 bits on a serial line: start, data, parity and stop bits; a pause of 3.5 bytes separates frames */
     if (source->transport == TRANSPORT_RTU) {
         double bits = 1 + 8 + (source->parity != 'N') + source->stop_bits, part = (bytes + 7 * requests) * bits / source->baud;
         text_add(out, "; %.3g %% of what the line can carry%s", part * 100, part > 1 ? ": TOO MUCH, scans will be late" : "");

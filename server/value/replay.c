@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes recorded series to the store when their times come. */
+/* A source that replays recorded series: writes their samples to the store when their times come. */
 #include "value/source_impl.h"
 
 #include <errno.h>
@@ -14,13 +14,13 @@
 #include "value/series.h"
 
 static const int64_t ROUND_NS = 50 * NS_PER_MS;
-/* samples that are overdue by more than this are skipped, for example after the machine slept */
+/* samples that are late by more than this are skipped, for example after the machine slept */
 static const int64_t LATEST_NS = 10 * NS_PER_S;
 
 struct replay_lane { /* a tag and its series */
     int tag;
-    struct unit_change change; /* unit conversion from the series to readings */
-    struct series series;      /* samples of the series; count 0: none */
+    struct unit_change change; /* conversion from the series' unit to the tag's unit */
+    struct series series;      /* samples of the series; count 0: the tag has none */
     size_t next;
     int64_t rounds; /* completed rounds of a loop */
 };
@@ -68,7 +68,7 @@ static bool ended(const struct replay *replay, const struct replay_lane *lane)
     return lane->series.count == 0 || (!replay->base.config->loop && lane->next == lane->series.count);
 }
 
-/* Moves to the next sample; a looping series starts again after its last sample. */
+/* Moves to the next sample. A looping series starts again after its last sample. */
 static void step(const struct replay *replay, struct replay_lane *lane)
 {
     if (++lane->next < lane->series.count || !replay->base.config->loop)

@@ -76,7 +76,8 @@ static bool number_of(const struct series_cell *cell, double *out)
     return cell->length && end == cell->at + cell->length && isfinite(*out);
 }
 
-/* Reads a value; NaN if the cell has a state word for "no value". Returns false if the cell is neither a number nor a state word. */
+/* Reads a value; NaN if the cell has a word for "no value" (state_word.h). Returns false if the cell is neither a number nor such a
+ * word. */
 static bool value_of(const struct series_cell *cell, double *out)
 {
     char text[64];
@@ -110,8 +111,8 @@ static void add(struct series *series, double time_s, double value)
     series->value[series->count++] = value;
 }
 
-struct clock {     /* state needed to convert the time column of one file to seconds */
-    bool instants; /* true: the column has dates and times; false: it has numbers */
+struct clock {     /* state for converting the time column of a file to seconds */
+    bool instants; /* true: the column contains dates and times; false: numbers */
     bool begun;    /* first or first_us is set */
     double unit_s, first, last_s;
     int64_t first_us, last_us;
@@ -153,8 +154,8 @@ static bool read_number(struct clock *clock, const struct series_cell *cell, dou
     return true;
 }
 
-/* Reads a line's time in seconds since the first line. Returns false if the cell is no time, or its time lies before that of the previous
-   line. */
+/* Reads a line's time in seconds since the first line. Returns false if the cell is not a time, or the time is before that of the previous
+ * line. */
 static bool tick(struct clock *clock, const struct series_cell *cell, double *time_s)
 {
     if (!(clock->instants ? read_instant : read_number)(clock, cell, time_s) || *time_s < clock->last_s)
@@ -208,14 +209,14 @@ static bool read_long(struct series *series, struct series_lines *lines, struct 
     return true;
 }
 
-struct header {              /* indices of columns; a column that is absent has the number of columns as its index */
-    size_t time, column;     /* wide form: the time column and the series' column */
-    size_t tag, value, unit; /* columns of the values form (one value a line) */
+struct header {              /* indices of columns; a missing column has the number of columns as its index */
+    size_t time, column;     /* wide form (series.h): the time column, and the column of the series */
+    size_t tag, value, unit; /* columns of the values form (series.h), with one value a line */
     bool of_values;
 };
 
-/* Finds the file's first and last time and its number of distinct times. Times may go back within the file, because each tag's lines may
-   follow those of another tag. */
+/* Finds the first and the last time of a file, and its number of distinct times. Times need not rise through the file, because the lines of
+ * one tag may follow those of another. */
 static void scan_values(struct series_lines lines, const struct header *header, struct clock *clock)
 {
     int64_t t_us;
@@ -232,8 +233,8 @@ static void scan_values(struct series_lines lines, const struct header *header, 
     mem_free(lines.cells);
 }
 
-/* Reads the values form: lines of one tag and one value, as `plantcast history export` prints. A blank value means that its quality was
-   Bad. */
+/* Reads a file in the values form: each line has a tag and a value, as `plantcast history export` prints. A blank value means that the
+ * quality was Bad. */
 static bool read_values(struct series *series, struct series_lines *lines, const struct header *header, struct clock *file, char why[200])
 {
     double time_s, value;
@@ -270,7 +271,7 @@ static bool read_values(struct series *series, struct series_lines *lines, const
     return true;
 }
 
-/* Returns whether the first line below the header has a date and time in this column, whatever the column is called. */
+/* Returns whether the first line below the header has a date and time in this column, whatever its header says. */
 static bool begins_with_instant(const struct series_lines *header, size_t column)
 {
     struct series_lines next = { .at = header->at };
@@ -405,7 +406,7 @@ static void add_name(struct series_names *names, char *name)
     names->at[names->count++] = name;
 }
 
-/* Lists the series of a file with one value a line: entity/property, or the tag's name. */
+/* Lists the series of a file with one value a line. Their names are entity/property in the long form, the tag's name in the values form. */
 static void list_lines(struct series_names *names, struct series_lines *lines, size_t tag)
 {
     int first = lines->number;

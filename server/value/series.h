@@ -13,19 +13,19 @@
 
 struct series {
     char *name;
-    char *unit; /* unit from the file's lines; NULL: not stated */
-    /* times in seconds, rising, 0 at the first line of the file; a value is NaN where the file marks it as missing */
+    char *unit; /* unit stated in the lines of the file; NULL: none */
+    /* time_s: times in seconds, rising, 0 at the first line of the file; value: NaN where the file marks a value as missing */
     double *time_s, *value;
     size_t count, capacity, value_capacity;
-    double length_s; /* length of the whole file: its last time plus one interval; a looping series starts again then */
+    double length_s; /* duration of the whole file: its last time plus one interval; a looping series starts again then */
 };
 
-/* Reads the series of that name. Returns false with file and line in `why` if it cannot; *found tells whether the file has the series at
-   all. Free with series_finish(). */
+/* Reads the series with this name. Returns false with file, line and reason in `why` on failure; *found then tells whether the file has the
+ * series at all. Free with series_finish(). */
 bool series_read(struct series *series, const char *path, const char *name, bool *found, char why[200]);
 void series_finish(struct series *series);
-/* Returns the last value recorded at or before time_s, or the first value if time_s is earlier. `loop`: the series repeats after
-   length_s. */
+/* Returns the last value recorded at or before time_s, or the first value if time_s is earlier. loop: the series is continued by repeating
+ * it after length_s. */
 double series_at(const struct series *series, double time_s, bool loop);
 
 struct series_names {
@@ -34,7 +34,7 @@ struct series_names {
     bool whole; /* the whole file was read */
 };
 
-/* Lists the series of a file by reading its beginning. Returns false with the reason in `why` if it cannot. */
+/* Lists the series of a file by reading its beginning. Returns false with the reason in `why` if the file cannot be read. */
 bool series_list(struct series_names *names, const char *path, char why[200]);
 void series_names_finish(struct series_names *names);
 

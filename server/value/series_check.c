@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Checks that the series named by the tags' addresses are in the files. */
+/* Checks that the series to which the tags' addresses refer are in the files. */
 #include "value/series_check.h"
 
 #include <string.h>

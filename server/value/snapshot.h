@@ -6,10 +6,10 @@
 #include <stdint.h>
 
 struct reading {
-    double value;                /* engineering units; never NaN while quality is not Bad */
-    uint32_t quality;            /* OPC UA status code, staleness already applied */
-    uint32_t changes;            /* change counter: increases with each change of value, quality or alarm */
-    uint8_t alarm, alarm_status; /* alarm shown for the tag (enum alarm_kind), and its state (enum alarm_status) */
+    double value;                /* value in engineering units; never NaN unless the quality is Bad */
+    uint32_t quality;            /* OPC UA status code, which includes the effect of the reading's age */
+    uint32_t changes;            /* counter that increases with each change of value, quality or alarm */
+    uint8_t alarm, alarm_status; /* alarm: the alarm shown for the tag (enum alarm_kind); alarm_status: its state (enum alarm_status) */
     int64_t received_utc_ns;     /* time when the value arrived; 0: never */
     int64_t age_ns;              /* age at the time of the snapshot, by the monotonic clock; INT64_MAX: no value was ever received */
 };
@@ -20,8 +20,10 @@ struct snapshot {
     struct reading *readings; /* by tag index */
 };
 
-struct snapshot *snapshot_create(size_t tag_count); /* Creates a snapshot with all readings Bad_WaitingForInitialData; never NULL. */
-/* snapshot_copy_readings() copies the array of readings, snapshot_copy() the whole snapshot. The caller frees the copy; never NULL. */
+/* Creates a snapshot in which all readings are Bad_WaitingForInitialData. Never returns NULL. */
+struct snapshot *snapshot_create(size_t tag_count);
+/* snapshot_copy_readings() copies the array of readings, snapshot_copy() the whole snapshot. The caller frees the copy. Neither returns
+ * NULL. */
 struct reading *snapshot_copy_readings(const struct snapshot *snapshot);
 struct snapshot *snapshot_copy(const struct snapshot *snapshot);
 void snapshot_destroy(struct snapshot **snapshot);

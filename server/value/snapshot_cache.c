@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A short list of reference-counted snapshots. */
+/* Stores historical snapshots as a short list with reference counts. */
 #include "value/snapshot_cache.h"
 
 #include <pthread.h>
@@ -10,7 +10,7 @@
 
 #include "base/mem.h"
 
-struct snapshot_entry { /* the snapshot must be the first member: users hold a pointer to it */
+struct snapshot_entry { /* the snapshot must be the first member, because users hold a pointer to it, which is converted to the struct */
     struct historical_snapshot historical;
     int users;
     uint64_t used;
@@ -59,7 +59,7 @@ static struct snapshot_entry *find(const struct snapshot_cache *snapshot_cache, 
     return NULL;
 }
 
-/* Returns the lowest slot number that no snapshot in use has. Call with the lock held. */
+/* Returns the lowest slot number that no snapshot with a user has. Call with the lock held. */
 static int free_slot(const struct snapshot_cache *snapshot_cache)
 {
     for (int slot = 1;; slot++) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The table of source kinds, and the start and end of their threads. */
+/* The table of the kinds of sources, and functions that start and end their threads. */
 #include "value/source.h"
 
 #include <errno.h>

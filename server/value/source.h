@@ -9,10 +9,10 @@
 
 struct source;
 
-/* Starts the thread of one of the plant's sources. A device that does not answer is no error: the source retries for ever. Returns NULL
-   (logged) if the kind is unknown or the thread could not be started. */
+/* Starts the thread of one of the plant's sources. A device that does not answer is not an error: the source retries without end. Returns
+ * NULL (logged) if the kind is unknown or the thread could not be started. */
 struct source *source_start(struct log *log, const struct plant *plant, int source, struct store *store, struct counters *counters);
-/* Ends the thread within 2 s and frees the source. &NULL is fine; leaves NULL. */
+/* Ends the thread within 2 s, frees the source and sets *source to NULL. *source may be NULL. */
 void source_stop(struct source **source);
 
 #endif

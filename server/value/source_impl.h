@@ -20,28 +20,29 @@ struct source { /* part that all kinds of source share; the first member of the 
 
 struct source_impl {
     const char *kind;
-    /* Creates a source that begins with a copy of *base; its thread is not running yet. Returns NULL on failure (logged). */
+    /* creates a source that begins with a copy of *base; its thread is not running yet; returns NULL on failure (logged) */
     struct source *(*create)(const struct source *base, struct counters *counters);
-    /* The thread's main function: runs until stop_fd becomes readable or no more data can arrive. */
+    /* main function of the thread: runs until stop_fd becomes readable or no more data can arrive */
     void (*run)(struct source *source);
-    /* Interrupts a wait in which the thread does not watch stop_fd. Thread: any. NULL: the kind has no such wait. */
+    /* interrupts a wait in which the thread does not watch stop_fd; called from any thread; NULL: the kind has no such wait */
     void (*interrupt)(struct source *source);
-    /* Frees the source; its thread has ended or never ran. */
+    /* frees the source; its thread has ended or never ran */
     void (*destroy)(struct source *source);
 };
 
-/* Creates a source of the kind params->impl and starts its thread. Set all of `params` except stop_fd and thread; config may be NULL for a
-   kind that is not in the table. `what`: the source's name in the log. Returns NULL on failure (logged). The caller ends the source with
-   source_stop(). */
+/* Creates a source of the kind params->impl and starts its thread. The caller sets all members of `params` except stop_fd and thread;
+ * config may be NULL for a kind that is not in the table. what: name of the source in the log. Returns NULL on failure (logged). The caller
+ * ends the source with source_stop(). */
 struct source *source_begin(const struct source *params, const char *what, struct counters *counters);
 
-/* Registers the metric plantcast_source_NAME{source="ID"MORE}. `more`: further labels, such as ",result=\"ok\"", or "". */
+/* Registers the metric plantcast_source_NAME{source="ID"MORE} and returns its counter. more: further labels, such as ",result=\"ok\"", or
+ * "". */
 counter *source_counter(const struct source *source, struct counters *counters, const char *name, const char *more, const char *type,
                         const char *help);
 
 extern const struct source_impl modbus_impl; /* Modbus TCP and RTU, read only */
 extern const struct source_impl mqtt_impl;   /* values published to an MQTT broker; subscribes only */
-extern const struct source_impl opcua_impl;  /* OPC UA subscriptions, only subscribing; present if the build has open62541 */
+extern const struct source_impl opcua_impl;  /* OPC UA, subscribes only; exists if the build has open62541 */
 extern const struct source_impl replay_impl; /* recorded series from a CSV file (series.h), at the speed set in the plant file */
 
 #endif

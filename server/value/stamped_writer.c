@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Collects readings that have the same time and writes them to the store together. */
+/* Collects consecutive readings that have the same time, and writes them to the store together. */
 #include "value/stamped_writer.h"
 
 #include <stdlib.h>
@@ -13,7 +13,8 @@ void stamped_writer_init(struct stamped_writer *writer, const struct plant *plan
     *writer = (struct stamped_writer){ .store = store, .plant = plant };
     writer->samples = mem_array(plant->tag_count, sizeof(*writer->samples));
     writer->last = mem_array(plant->tag_count, sizeof(*writer->last));
-    for (size_t i = 0; i < plant->tag_count; i++) /* INT64_MIN and not 0, because a time before the machine's start is negative */
+    /* INT64_MIN means that there was no sample; 0 would not, because a monotonic time before the machine's start is negative */
+    for (size_t i = 0; i < plant->tag_count; i++)
         writer->last[i].mono_ns = INT64_MIN;
 }
 
@@ -40,15 +41,16 @@ void stamped_writer_end(struct stamped_writer *writer)
     writer->count = 0;
 }
 
-/* Converts UTC to monotonic time. The two clocks are never read at the same instant, so a sample with the same UTC time as the tag's
-   last one gets at least that one's monotonic time. */
+/* Converts UTC to monotonic time. Both clocks are never read at exactly the same instant, so the result may be off. A sample with the UTC
+ * time of the tag's last sample, or a later one, gets at least the monotonic time of the last sample. */
 static int64_t mono_of(const struct stamped_writer *writer, int tag, int64_t utc_ns)
 {
     int64_t mono_ns = writer->mono_ns - (writer->utc_ns - utc_ns);
     return utc_ns >= writer->last[tag].utc_ns && mono_ns < writer->last[tag].mono_ns ? writer->last[tag].mono_ns : mono_ns;
 }
 
-/* Adds a sample to the batch, in which all samples have the same time; the batch has room for one sample of each tag. */
+/* Adds a sample to the batch. A batch contains samples of one time, at most one per tag; if the sample does not fit, the batch is written
+ * first. */
 static void add(struct stamped_writer *writer, const struct sample *sample, int64_t utc_ns)
 {
     int64_t mono_ns = mono_of(writer, sample->tag, utc_ns);
@@ -76,7 +78,7 @@ void stamped_writer_add(struct stamped_writer *writer, int tag, const struct sta
         writer->worst_skew_ns = utc_ns - writer->utc_ns;
     if (!quality_is_bad(value->quality)) {
         decode_number(&writer->plant->tags[tag], value->value, &sample);
-        /* at equal or worse severity, the sender's quality code is used, because it is more specific */
+        /* the sender's quality code replaces ours unless ours is worse, because it is more specific */
         if (value->quality >> 30 >= sample.quality >> 30)
             sample.quality = value->quality;
         if (was_kept && quality_is_good(sample.quality))

@@ -14,28 +14,29 @@ struct stamped_value {
 struct stamped_writer {
     struct store *store;
     const struct plant *plant;
-    int64_t mono_ns, utc_ns; /* arrival time of the message being read */
-    int64_t worst_skew_ns;   /* largest difference between a time stated in the message and our clock; > 0: the sender is ahead. 0: none */
-    size_t written;          /* readings of this message written so far */
-    struct sample *samples;  /* samples not written yet, all of the same time; room for one of each tag */
+    int64_t mono_ns, utc_ns; /* arrival time of the message that is being processed */
+    /* largest difference between a time stated in the message and our clock; above 0: the sender's clock is ahead; 0: no difference */
+    int64_t worst_skew_ns;
+    size_t written;         /* number of readings of this message that were written so far */
+    struct sample *samples; /* samples that are not written yet, all with the same time; room for one per tag */
     size_t count;
     int64_t at_utc_ns, at_mono_ns; /* time of the pending samples */
     struct {
-        int64_t utc_ns, mono_ns; /* time of the tag's last sample; array by tag */
+        int64_t utc_ns, mono_ns; /* by tag: time of its last sample */
         bool is_stated;          /* the sender stated that time */
     } * last;
 };
 
 void stamped_writer_init(struct stamped_writer *writer, const struct plant *plant, struct store *store);
 void stamped_writer_finish(struct stamped_writer *writer);
-/* Begins a message with its arrival time. */
+/* Begins a message that arrived at this time. */
 void stamped_writer_begin(struct stamped_writer *writer, int64_t now_mono_ns, int64_t now_utc_ns);
-/* Adds the value that the message holds for a tag, before scaling. was_kept: the broker retained the value, which may have changed
-   since, so its quality is Uncertain_LastUsableValue at best. A time ahead of our clock is replaced by now. in_order: a time before that
-   of the tag's last sample is replaced by the latter; without in_order the store ignores such a sample. */
+/* Adds the value, not scaled yet, that the message contains for a tag. was_kept: the broker had retained the value, which may have changed
+ * since, so its quality is Uncertain_LastUsableValue at best. A time ahead of our clock is replaced by the current time. A time before that
+ * of the tag's last sample is replaced by that sample's time if in_order is set; otherwise the store ignores the sample. */
 void stamped_writer_add(struct stamped_writer *writer, int tag, const struct stamped_value *value, bool was_kept, bool in_order);
-/* Sets a Bad quality for a tag from now on. If the sender states times, the quality counts from the tag's last time instead: otherwise a
-   later value from a sender whose clock is behind would count as older, and be ignored. */
+/* Sets a Bad quality for a tag from now on. If the sender states times, the quality counts from the time of the tag's last sample instead.
+ * Otherwise the next value from a sender whose clock is behind ours would count as older than this quality, and be ignored. */
 void stamped_writer_add_bad(struct stamped_writer *writer, int tag, uint32_t quality);
 void stamped_writer_end(struct stamped_writer *writer); /* Writes the pending samples. */
 

@@ -9,7 +9,7 @@
 
 enum { LONGEST_WORD = 40 };
 
-/* Words are separated by blanks; each is written as letters and digits only, in lower case. */
+/* Words for each quality, separated by blanks; each consists of letters and digits only, in lower case. */
 static const struct {
     uint32_t quality;
     const char *words;
@@ -34,8 +34,8 @@ static const struct {
       " unitdown notinservice " },
 };
 
-/* Returns whether the text begins with a word: "Bad", "Bad_NotConnected", "BadSensorFailure", "BAD INPUT" begin with "bad", "badge" does
-   not. */
+/* Returns whether the text begins with this word and not only with its letters: "Bad", "Bad_NotConnected", "BadSensorFailure" and "BAD
+ * INPUT" begin with "bad", "badge" does not. */
 static bool begins_as(const char *text, const char *word)
 {
     size_t length = strlen(word);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The latest reading of every tag and its current quality. */
+/* Stores the newest reading of every tag, and computes its current quality. */
 #include "value/store.h"
 
 #include <assert.h>
@@ -13,15 +13,16 @@
 struct held {
     double value;                              /* last usable value */
     uint32_t quality;                          /* of the last sample */
-    bool has_value, lost;                      /* true: the tag could not be read since its last sample */
-    bool dead;                                 /* true: lost is true too, and the last value may not be used any more */
-    int64_t sampled_mono_ns;                   /* time of the last sample, also if that was Bad */
-    int64_t received_mono_ns, received_utc_ns; /* time of the last usable value */
-    int64_t changed_mono_ns;                   /* time of the last change of the usable value */
+    bool has_value, lost;                      /* lost: the tag could not be read since its last sample */
+    bool dead;                                 /* the tag is lost, and its last value may not be used any more */
+    int64_t sampled_mono_ns;                   /* time of the last sample, Good or Bad */
+    int64_t received_mono_ns, received_utc_ns; /* arrival time of the last usable value */
+    int64_t changed_mono_ns;                   /* time at which the usable value changed last */
     int64_t stale_ns, flatline_ns;
-    /* index of the first tag whose quality this tag gives, and of the next tag in the same list; -1: none */
+    /* A quality tag gives its quality to other tags, which form a list. first_vouched: index of the first tag to which this tag gives its
+     * quality; next_vouched: index of the next tag in the list that contains this tag; -1: none. */
     int first_vouched, next_vouched;
-    uint32_t shown_quality; /* quality at the last increase of `changes` */
+    uint32_t shown_quality; /* quality at the last increment of `changes` */
     uint32_t changes;
     uint8_t alarm, alarm_status;
 };
@@ -44,9 +45,9 @@ struct store {
     struct {
         void (*changed)(void *arg); /* NULL: no callback */
         void *arg;
-        bool told; /* the watch callback was called since the last store_take() */
+        bool told; /* the watch callback has been called since the last store_take(), so it is not called again */
     } watch;
-    int64_t utc_ahead_ns; /* UTC minus monotonic time at the last sample */
+    int64_t utc_ahead_ns; /* UTC minus monotonic time, when the last sample arrived */
     bool has_utc;         /* a sample has arrived */
 };
 
@@ -107,7 +108,8 @@ static int find_source(const struct plant *plant, const char *id)
     return i;
 }
 
-/* Returns whether a tag has the same unit in the new plant. If not, its old reading is not copied; the next one comes soon. */
+/* Returns whether a tag has the same unit in the old and the new plant. If not, its old reading is not taken over; the source will soon
+ * send a new one. */
 static bool same_unit(const struct plant_tag *a, const struct plant_tag *b)
 {
     struct unit_change change;
@@ -126,7 +128,7 @@ void store_adopt(struct store *store, struct store *before)
             continue;
         const struct held own = *to;
         *to = before->tags[i];
-        to->alarm = own.alarm; /* the alarm is not copied, because limits may have changed: the alarm service sets it again */
+        to->alarm = own.alarm; /* the alarm is not taken over: limits may have changed, and the alarm service sets it again */
         to->alarm_status = own.alarm_status;
         to->stale_ns = own.stale_ns;
         to->flatline_ns = own.flatline_ns;
@@ -190,7 +192,7 @@ static void tell(struct store *store, size_t tag, uint32_t quality, int64_t mono
             store->listeners[i].hear(store->listeners[i].arg, &event);
 }
 
-/* Returns the quality that follows from the tag's own samples and their age. */
+/* Returns the quality that follows from the tag's own samples and the age of the last value. */
 static uint32_t own_quality(const struct held *held, int64_t now_mono_ns)
 {
     bool stale = held->has_value && now_mono_ns - held->received_mono_ns >= held->stale_ns;
@@ -221,7 +223,7 @@ static uint32_t heartbeat_quality(const struct store *store, size_t tag, int64_t
     return now_mono_ns - heart->changed_mono_ns >= ns_of(source->heartbeat_s) ? QUALITY_BAD_DEVICE_FAILURE : QUALITY_GOOD;
 }
 
-/* Returns the quality that the tag's quality tag gives; Good if it has none. */
+/* Returns the quality that the tag's quality tag gives; Good if it has no quality tag. */
 static uint32_t vouched_quality(const struct store *store, size_t tag, int64_t now_mono_ns)
 {
     const struct plant_quality_tag *by = &store->plant->tags[tag].quality;
@@ -234,7 +236,8 @@ static uint32_t vouched_quality(const struct store *store, size_t tag, int64_t n
     return good ? QUALITY_GOOD : QUALITY_BAD_SENSOR_FAILURE;
 }
 
-/* Returns the worst of three qualities: from the tag's samples, its source's heartbeat and its quality tag. */
+/* Returns the worst of three qualities: the one from the tag's own samples, the one from the heartbeat of its source, and the one from its
+ * quality tag. */
 static uint32_t quality_now(const struct store *store, size_t tag, int64_t now_mono_ns)
 {
     uint32_t quality = own_quality(&store->tags[tag], now_mono_ns);
@@ -245,7 +248,7 @@ static uint32_t quality_now(const struct store *store, size_t tag, int64_t now_m
     return quality;
 }
 
-/* Updates the change counter. Returns whether value or quality changed. */
+/* Increments the change counter if value or quality changed. Returns whether it did. */
 static bool count_change(struct store *store, size_t tag, bool value_changed, int64_t now_mono_ns)
 {
     struct held *held = &store->tags[tag];
@@ -261,7 +264,8 @@ static bool hold(struct store *store, const struct sample *sample, int64_t now_m
     struct held *held = &store->tags[sample->tag];
     bool bad = quality_is_bad(sample->quality), finite = isfinite(sample->value), value_changed = false;
     if (now_mono_ns < held->sampled_mono_ns) {
-        /* A sample with the same value and sender's time as the last one shows that a lost source is back. */
+        /* A sample older than the last one is ignored, unless the tag is dead and the sample has the UTC time of the last value or a later
+         * one: then it shows that the lost source is back. */
         if (!held->dead || !held->has_value || now_utc_ns < held->received_utc_ns)
             return false;
         now_mono_ns = held->sampled_mono_ns;
@@ -283,7 +287,7 @@ static bool hold(struct store *store, const struct sample *sample, int64_t now_m
     return true;
 }
 
-/* Reports changes for all tags whose quality is given by this tag. */
+/* Reports changes of all tags to which this tag gives its quality. */
 static void tell_vouched(struct store *store, int tag, int64_t now_mono_ns, int64_t now_utc_ns)
 {
     for (int i = store->tags[tag].first_vouched; i >= 0; i = store->tags[i].next_vouched) {
@@ -318,7 +322,7 @@ static void mirror(struct store *store, const struct mirrored *reading, int64_t 
     held->received_utc_ns = reading->received_utc_ns;
     held->sampled_mono_ns = held->changed_mono_ns = now_mono_ns;
     held->lost = held->dead = false;
-    held->stale_ns = held->flatline_ns = INT64_MAX; /* the core decides about staleness */
+    held->stale_ns = held->flatline_ns = INT64_MAX; /* the core decides when a reading is stale, so this daemon does not */
     if (count_change(store, (size_t)reading->tag, value_changed, now_mono_ns))
         tell_watch(store);
 }
@@ -336,7 +340,7 @@ static void lose(struct store *store, size_t tag, bool dead, int64_t now_mono_ns
     struct held *held = &store->tags[tag];
     if (now_mono_ns < held->sampled_mono_ns)
         return;
-    /* reports even if this tag's own quality stays, because the quality of tags that depend on it may change */
+    /* listeners are called even if the tag's own quality stays the same, because the quality of tags that depend on it may change */
     if (!held->lost || (dead && !held->dead))
         tell_watch(store);
     held->lost = true;
@@ -449,14 +453,14 @@ void store_snapshot(struct store *store, int64_t now_mono_ns, int64_t now_utc_ns
     pthread_mutex_unlock(&store->lock);
 }
 
-/* Returns next_ns, or since_ns + after_ns if that is earlier and in the future. */
+/* Returns the earlier one of next_ns and since_ns + after_ns; next_ns if the latter is not in the future. */
 static int64_t sooner(int64_t next_ns, int64_t since_ns, int64_t after_ns, int64_t now_mono_ns)
 {
     bool comes = after_ns < INT64_MAX && since_ns + after_ns > now_mono_ns;
     return comes && since_ns + after_ns < next_ns ? since_ns + after_ns : next_ns;
 }
 
-/* Returns when the next reading goes stale, or the next heartbeat counts as stopped. */
+/* Returns when the next reading becomes stale, or the next heartbeat counts as stopped; INT64_MAX: never. */
 static int64_t next_change_ns(const struct store *store, int64_t now_mono_ns)
 {
     int64_t next_ns = INT64_MAX;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Walks a path through a JSON document and counts the values it selects. */
+/* Follows a path through a JSON document, and counts the values that the path selects. */
 #include "value/mqtt/json_select.h"
 
 #include <stdbool.h>
@@ -16,7 +16,7 @@ static const json_t *item_at(const json_t *array, long index)
     return (size_t)-index <= count ? json_array_get(array, count - (size_t)-index) : NULL;
 }
 
-/* --- array items that name themselves --------------------------------------------------------------------------------------- */
+/* --- array items that state their own name ---------------------------------------------------------------------------------- */
 
 static bool names_its_object(const char *key)
 {
@@ -29,7 +29,7 @@ static bool names_its_object(const char *key)
     return false;
 }
 
-/* Returns true if an item's name equals the tag's, or ends in the tag's name after a separator: `A.T1` matches T1. */
+/* Returns true if an item's name is the tag's name, or ends in the tag's name after a separator, as `A.T1` for the tag T1. */
 static bool is_name_of(const json_t *name, const char *tag)
 {
     const char *text = json_string_value(name);
@@ -39,7 +39,7 @@ static bool is_name_of(const json_t *name, const char *tag)
     return length == tag_length || strchr("./:\\!|", text[length - tag_length - 1]);
 }
 
-/* Returns true if the rest of a path selects this member: the member then holds the tag's value and is not the item's name. */
+/* Returns true if the rest of a path selects this member. The member then holds the tag's value, and is not the item's name. */
 static bool is_selected(const char *key, const char *rest)
 {
     struct json_path_step step;
@@ -47,8 +47,8 @@ static bool is_selected(const char *key, const char *rest)
     return *rest && json_path_next(&rest, &step, why) && step.kind == JSON_PATH_NAME && !strcmp(step.name, key);
 }
 
-/* Returns the name of an item whose names all differ from the tag's; NULL if one matches or the item has no name. `rest`: path below the
-   item. */
+/* Returns a name that an array item states of itself, if none of the item's names fits the tag; NULL if a name fits or the item has no
+ * name. rest: path below the item. */
 static const json_t *foreign_name(const json_t *item, const char *tag, const char *rest)
 {
     const char *key;
@@ -122,7 +122,8 @@ static void walk_matches(const json_t *holder, const struct json_path_step *step
     }
 }
 
-/* The recursion is as deep as the path has steps, which the length limit of a tag's address bounds. */
+/* Selects the values below `value` by the path from `at` on. Recursive: the depth is the number of steps of the path, which the maximum
+ * length of a tag's address limits. */
 static void walk(const json_t *value, const json_t *holder, const char *at, const char *tag, struct json_selected *out)
 {
     struct json_path_step step;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* An MQTT source: connects, subscribes, and marks all readings as lost when the broker is. It can publish nothing but the request for a
-   Sparkplug birth certificate, and that only where the plant file allows it. */
+/* An MQTT source: connects, subscribes, and marks all readings as lost when the connection to the broker is lost. The only message it can
+ * publish is the request for a Sparkplug birth certificate, if the plant file allows it. */
 #include <errno.h>
 #include <string.h>
 #include <sys/random.h>
@@ -21,7 +21,7 @@ static bool stopping(const struct mqtt_source *mqtt, int64_t until_ns)
 
 /* --- the link --------------------------------------------------------------------------------------------------------------- */
 
-/* Marks all readings of the source as lost: while the broker was gone, values may have changed unnoticed. */
+/* Marks all readings of the source as lost, because values may have changed unnoticed while the broker could not be reached. */
 static void link_lost(struct mqtt_source *mqtt, const char *why)
 {
     int64_t now_ns = clock_mono_ns();
@@ -80,7 +80,7 @@ static void on_message(void *arg, const struct mqtt_message *message)
 
 /* --- the thread ------------------------------------------------------------------------------------------------------------- */
 
-/* Runs one connection until it ends. Returns -ECANCELED when the source must stop, else another code with the reason in `why`. */
+/* Runs one connection until it ends. Returns -ECANCELED when the source must stop, else another negative code with the reason in `why`. */
 static int run_session(struct mqtt_source *mqtt, char why[200])
 {
     const struct mqtt_client_events events = {
@@ -150,7 +150,8 @@ static void add_counters(struct mqtt_source *mqtt, struct counters *counters)
     mqtt->host = source_counter(base, counters, "host", "", "gauge", "number of the host that delivers readings: 1 is the first, 0 none");
 }
 
-/* Returns the configured client id or makes a random one: a broker disconnects one of two clients with the same id. */
+/* Returns the configured client id, or a random one. Two clients with one id would disconnect each other from the broker. The caller frees
+ * it. */
 static char *make_client_id(const struct plant_source *config)
 {
     unsigned random = 0;

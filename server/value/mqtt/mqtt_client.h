@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One connection to an MQTT broker through libmosquitto, which no other file includes. Each connection has a new client. Thread: one;
-   only connecting has a thread of its own, because the resolver and the library have no timeout there. */
+/* One connection to an MQTT broker through libmosquitto, which no other file includes. Each connection needs a new client. Thread: one.
+ * Connecting runs on a thread of its own inside this module, because the resolver and the library have no timeout for it. */
 #ifndef VALUE_MQTT_CLIENT_H
 #define VALUE_MQTT_CLIENT_H
 #include <stdbool.h>
@@ -17,39 +17,39 @@ struct mqtt_message {
     const char *topic;
     const void *payload;
     size_t count;
-    bool is_retained; /* the message is a retained one, which the broker had stored before the subscription */
+    bool is_retained; /* the broker had stored the message before the subscription (MQTT's retained flag) */
 };
 
 /* Callbacks made from mqtt_client_serve(). */
 struct mqtt_client_events {
     void *arg;
     void (*connected)(void *arg, bool session_present);
-    void (*subscribed)(void *arg); /* callback: the broker has acknowledged all topics, including those that it refused */
+    void (*subscribed)(void *arg); /* the broker has acknowledged all topics, including those that it refused */
     void (*topic_refused)(void *arg, const char *topic);
     void (*message)(void *arg, const struct mqtt_message *message);
 };
 
-/* Starts connecting to one of the source's hosts. Returns NULL with the reason in `why` if the attempt cannot even be started. `source`
-   and `events` must outlive the client. */
+/* Starts connecting to one of the source's hosts. Returns NULL with the reason in `why` if the attempt could not be started. `source` and
+ * `events` must outlive the client. */
 struct mqtt_client *mqtt_client_start(const struct plant_source *source, int host, const char *id, const struct mqtt_client_events *events,
                                       char why[200]);
-/* Closes the connection and frees the client without waiting for the broker. &NULL is fine; leaves NULL. */
+/* Closes the connection and frees the client without waiting for the broker; sets *client to NULL. *client may be NULL. */
 void mqtt_client_destroy(struct mqtt_client **client);
-/* Waits for the connection until the deadline. Returns 0; -ECANCELED if stop_fd became readable; -ETIMEDOUT; other < 0 with the reason
-   in `why`. */
+/* Waits for the connection until the deadline. Returns 0; -ECANCELED if stop_fd became readable; -ETIMEDOUT; another negative code with the
+ * reason in `why`. */
 int mqtt_client_wait(struct mqtt_client *client, int stop_fd, int64_t deadline_mono_ns, char why[200]);
-/* Sends and receives, with callbacks, until the deadline or one message. Returns 0; -ECANCELED if stop_fd became readable; other < 0
-   with the reason in `why` when the connection has ended. */
+/* Sends and receives, and makes the callbacks. Returns after one message or at the deadline: 0; -ECANCELED if stop_fd became readable;
+ * another negative code with the reason in `why` when the connection has ended. */
 int mqtt_client_serve(struct mqtt_client *client, int stop_fd, int64_t deadline_mono_ns, char why[200]);
-/* Subscribes to topics, which must outlive the client; call it once per client. Returns false if the request cannot be sent:
-   mqtt_client_serve() then reports the reason. */
+/* Subscribes to topics, which must outlive the client; may be called once per client. Returns false if the request cannot be sent:
+ * mqtt_client_serve() then reports the reason. */
 bool mqtt_client_subscribe(struct mqtt_client *client, char *const *topics, size_t count);
 
-/* Publishes a retained text; only to topics that begin with plantcast/, which no device subscribes to. Returns 0; -ENOTCONN if the
-   connection has ended (mqtt_client_serve() reports the reason); other < 0: refused, for example because the text is too long for the
-   broker. */
+/* Publishes a text with the retained flag; only to topics that begin with plantcast/, to which no device subscribes. Returns 0; -ENOTCONN
+ * if the connection has ended (mqtt_client_serve() reports the reason); another negative code if the message is refused, for example
+ * because the text is too long for the broker. */
 int mqtt_client_publish(struct mqtt_client *client, const char *topic, const char *text);
-/* Returns whether the operating system has taken all published messages. */
+/* Returns whether all published messages have been passed to the operating system. */
 bool mqtt_client_has_sent(const struct mqtt_client *client);
 /* Asks a Sparkplug node for its birth certificate. This is the only message that can be published outside plantcast/. */
 void mqtt_client_ask_rebirth(struct mqtt_client *client, const char *group, const char *node);

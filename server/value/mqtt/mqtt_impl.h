@@ -15,7 +15,7 @@ struct mqtt_source {
     struct source base;
     counter *messages_ok, *messages_refused, *samples, *connects, *up, *host, *gaps, *historical, *rebirths;
     char *client_id;
-    /* --- below: used by the source's thread only */
+    /* --- below: used only by the source's thread */
     struct mqtt_topics topics;
     struct stamped_writer writer;
     struct sparkplug *sparkplug; /* Sparkplug decoder; NULL: the source uses other payloads */
@@ -24,20 +24,21 @@ struct mqtt_source {
     struct mqtt_client *client;
     struct host_turn turn;
     bool link_up, link_known;
-    bool subscribed;          /* the subscription is complete: messages without the retained flag are new */
+    bool subscribed;          /* all topics are subscribed, so messages without the retained flag are new values */
     struct log_pace refusals; /* rate limit of the log line about refused messages */
     char last_refused[300];   /* topic and reason of the last refused message, for the log */
-    /* rate limit of the log line "value missing": messages lack the value of a tag that no message has contained yet */
+    /* rate limit of the log line "value missing", about tags whose value no message has contained yet */
     struct log_pace absences;
-    bool *matched;           /* flag by index in plant->tags: some JSON message has contained this tag's value */
-    int64_t skew_said_ns[2]; /* monotonic times of the last log lines about senders' clocks: [0] behind ours, [1] ahead of ours */
+    bool *matched; /* by index in plant->tags: a JSON message has contained this tag's value */
+    /* monotonic times of the last log lines about clocks of senders: [0] a clock behind ours, [1] a clock ahead of ours */
+    int64_t skew_said_ns[2];
 };
 
-/* Processes a message for the source's tags: writes its values, or refuses the message and logs why. */
+/* Processes a message for the source's tags: writes their values, or refuses the message and logs the reason. */
 void mqtt_take_message(struct mqtt_source *mqtt, const struct mqtt_message *message);
-/* Counts a refused message, and logs at most one line a minute. */
+/* Counts a refused message, and logs at most one such message a minute. */
 void mqtt_refuse(struct mqtt_source *mqtt, const struct mqtt_message *message, const char *why);
-/* Logs, at most once a minute, how many refused messages got no log line of their own. */
+/* Logs, at most once a minute, how many refused messages were not logged by mqtt_refuse(). */
 void mqtt_log_left_out(struct mqtt_source *mqtt, int64_t now_ns);
 
 #endif

@@ -10,7 +10,7 @@
 
 static const int64_t SKEW_NS = 5 * NS_PER_S, SKEW_SAID_NS = 60 * NS_PER_S;
 
-/* Returns a name shortened and without control characters, for a log line. */
+/* Returns a name for a log line, shortened and without control characters, in `out`. */
 static const char *shown(const char *name, char out[64])
 {
     size_t n = 0;
@@ -44,7 +44,7 @@ static void report_skew(struct mqtt_source *mqtt, const char *topic)
     int64_t skew_ns = mqtt->writer.worst_skew_ns, now_ns = mqtt->writer.mono_ns;
     char name[64];
     int64_t *said_ns = &mqtt->skew_said_ns[skew_ns > 0];
-    if (mqtt->sparkplug && skew_ns < 0) /* Sparkplug: an old time is normal, because a metric's time is that of its last change */
+    if (mqtt->sparkplug && skew_ns < 0) /* Sparkplug states the time of a metric's last change, so an old time is normal */
         return;
     if ((skew_ns < SKEW_NS && skew_ns > -SKEW_NS) || (*said_ns && now_ns - *said_ns < SKEW_SAID_NS))
         return;
@@ -69,7 +69,8 @@ static bool take_number(struct mqtt_source *mqtt, const struct mqtt_topic *topic
     return true;
 }
 
-/* Handles a message that lacks a tag's value. A tag that no message has ever contained probably has a wrong address: it is Bad_NoMatch. */
+/* Handles a message that lacks a tag's value. A tag whose value no message has ever contained probably has a wrong address, so it becomes
+ * Bad_NoMatch. */
 static void note_absent(struct mqtt_source *mqtt, const struct mqtt_topic *topic, const struct mqtt_reader *reader, int tag)
 {
     char name[64], more[LOG_PACE_BYTES];
@@ -81,7 +82,8 @@ static void note_absent(struct mqtt_source *mqtt, const struct mqtt_topic *topic
                  shown(topic->name, name), reader->tag, *reader->path ? reader->path : "value", more);
 }
 
-/* Writes the tags of a JSON message. Returns false if at least one tag's value is refused; that tag is Bad. */
+/* Writes the values in a JSON message to the tags of its topic. Returns false if the value of at least one tag is refused; such a tag
+ * becomes Bad. */
 static bool take_json(struct mqtt_source *mqtt, const struct mqtt_topic *topic, const json_t *root, const struct mqtt_message *message,
                       char why[200])
 {

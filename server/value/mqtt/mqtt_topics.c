@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sorts tags by topic, then by path, so that the tags of one topic are adjacent. */
+/* Groups tags by topic: sorts them by topic, then by path. */
 #include "value/mqtt/mqtt_topics.h"
 
 #include <stdlib.h>

@@ -8,21 +8,21 @@
 
 struct mqtt_topic {
     const char *name; /* topic name, owned by the plant */
-    const int *tags;  /* indices in plant->tags, sorted by path */
+    const int *tags;  /* indices in plant->tags of the topic's tags, sorted by path */
     size_t tag_count;
 };
 
 struct mqtt_topics {
     struct mqtt_topic *at;
     size_t count;
-    int *tags; /* indices of the source's tags, grouped by topic */
+    int *tags; /* indices in plant->tags of the source's tags, grouped by topic */
     size_t tag_count;
 };
 
-/* Builds the topics of one source; `plant` must outlive them. */
+/* Builds the topics of one source. `plant` must outlive them. */
 void mqtt_topics_init(struct mqtt_topics *topics, const struct plant *plant, int source);
 void mqtt_topics_finish(struct mqtt_topics *topics);
-/* Returns the topic of that name, or NULL. */
+/* Returns the topic with this name, or NULL. */
 const struct mqtt_topic *mqtt_topics_find(const struct mqtt_topics *topics, const char *name);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tracks birth and death certificates: a node's readings are valid between its birth and its death, and a device's only while its node is
-   alive. */
+/* Processes birth and death certificates. A node's readings are valid from its birth to its death. A device's readings are valid only while
+ * its node is alive too. */
 #include "value/mqtt/sparkplug.h"
 
 #include <stdio.h>
@@ -18,18 +18,18 @@ static const char PREFIX[] = "spBv1.0/";
 
 struct alias {
     uint64_t number;
-    size_t topic;           /* index of the topic (of the node or device) whose birth certificate defined the alias */
-    size_t first_tag, tags; /* the tags of that topic that show the metric: index of the first, and count */
+    size_t topic;           /* index of the topic, of a node or device, whose birth certificate defined the alias */
+    size_t first_tag, tags; /* the tags of the topic whose value is this metric: index of the first, and number of tags */
 };
 
 struct sparkplug_node {
     char *group, *name;
     bool is_born;
-    bool told;      /* the log says already that this node sends values before its birth certificate */
+    bool told;      /* the log already says that this node sends values before its birth certificate */
     int64_t bd_seq; /* session number (bdSeq) of the node's birth certificate; -1: none */
     int next_seq;
     int64_t asked_ns;      /* monotonic time of the last birth request; 0: never */
-    bool is_wanted;        /* a birth request is to be sent once ASK_NS have passed since the last one */
+    bool is_wanted;        /* a birth request must be sent when ASK_NS have passed since the last one */
     struct alias *aliases; /* by number */
     size_t alias_count, alias_capacity;
 };
@@ -38,9 +38,9 @@ struct sparkplug {
     struct sparkplug_params params;
     struct sparkplug_node *nodes;
     size_t node_count;
-    size_t *node_of;             /* index of the node, by topic */
-    bool *is_born;               /* flag by topic: the node or device is alive (born and not dead) */
-    uint32_t *types;             /* metric type by tag, as in the birth certificate; 0: no birth certificate has the metric */
+    size_t *node_of;             /* by topic: index of its node */
+    bool *is_born;               /* by topic: the node or device is alive (its birth certificate arrived, and no death certificate since) */
+    uint32_t *types;             /* by tag: type of its metric as in the birth certificate; 0: no birth certificate contains the metric */
     struct stamped_value *last;  /* last value, by tag */
     bool *has_last, *in_message; /* by tag */
 };
@@ -50,7 +50,7 @@ static const char *const verbs[] = { "NBIRTH", "NDEATH", "NDATA", "DBIRTH", "DDE
 
 /* --- nodes and topics ------------------------------------------------------------------------------------------------------- */
 
-/* Finds a node by linear search: there are few nodes, and one search per message suffices. */
+/* Finds a node by its name. A linear search suffices, because there are few nodes and one search per message. */
 static struct sparkplug_node *find_node(const struct sparkplug *sparkplug, const char *group, size_t group_length, const char *name,
                                         size_t length)
 {
@@ -110,7 +110,8 @@ void sparkplug_destroy(struct sparkplug **sparkplug)
     mem_free(gone);
 }
 
-/* Subscribes to all messages of a node and its devices, including devices without tags: they share one sequence number. */
+/* Returns subscriptions to all messages of each node and its devices. Devices without tags are included, because a node and its devices
+ * share one sequence number. */
 char **sparkplug_subscriptions(const struct sparkplug *sparkplug, size_t *count)
 {
     char **names = mem_array(sparkplug->node_count, sizeof(*names));
@@ -167,8 +168,8 @@ static void topic_dies(struct sparkplug *sparkplug, size_t topic)
     store_tags_dead(sparkplug->params.store, dead->tags, dead->tag_count, sparkplug->params.writer->mono_ns);
 }
 
-/* Marks a node and all its devices as dead. `spared`: index of a topic that stays unmarked because its birth is being processed; SIZE_MAX:
-   none. */
+/* Marks a node and all its devices as dead. spared: index of a topic that is not marked, because its birth certificate is being processed;
+ * SIZE_MAX: none. */
 static void node_dies(struct sparkplug *sparkplug, struct sparkplug_node *node, size_t spared)
 {
     for (size_t i = 0; i < sparkplug->params.topics->count; i++)
@@ -179,7 +180,8 @@ static void node_dies(struct sparkplug *sparkplug, struct sparkplug_node *node, 
 
 /* --- metrics ---------------------------------------------------------------------------------------------------------------- */
 
-/* Finds the adjacent tags of a topic that show a metric. Returns their count; *first receives the index of the first. */
+/* Finds the tags of a topic whose value is the metric with this name; they are adjacent. Returns their number; *first receives the index of
+ * the first. */
 static size_t tags_named(const struct sparkplug *sparkplug, size_t topic, const char *name, size_t *first)
 {
     const struct mqtt_topic *of = &sparkplug->params.topics->at[topic];
@@ -213,7 +215,7 @@ static void drop_aliases(struct sparkplug_node *node, size_t topic)
     node->alias_count = kept;
 }
 
-/* Finds the tags that show a metric, by its name or else its alias. Returns their count, which is 0 for most metrics. */
+/* Finds the tags whose value is a metric, by its name or else its alias. Returns their number, which is 0 for most metrics. */
 static size_t tags_of(const struct sparkplug *sparkplug, const struct sparkplug_node *node, size_t topic,
                       const struct sparkplug_metric *metric, size_t *first)
 {
@@ -236,7 +238,7 @@ static void write_value(struct sparkplug *sparkplug, int tag, const struct stamp
     stamped_writer_add(sparkplug->params.writer, tag, value, false, true);
 }
 
-/* Writes one metric to a tag. Returns false if the metric has another type than at its birth, or is no number. */
+/* Writes a metric to a tag. Returns false if the metric has another type than in the birth certificate, or is not a number. */
 static bool take_metric(struct sparkplug *sparkplug, const struct sparkplug_metric *metric, int tag, char why[200])
 {
     struct stamped_value value = { .quality = metric->quality, .utc_ns = metric->utc_ns };
@@ -255,7 +257,7 @@ static bool take_metric(struct sparkplug *sparkplug, const struct sparkplug_metr
     return good;
 }
 
-/* Writes the metrics of a payload. Returns false if some metric is wrong; the tags of that metric become Bad. */
+/* Writes the metrics of a payload to their tags. Returns false if a metric is wrong; the tags of that metric become Bad. */
 static bool take_metrics(struct sparkplug *sparkplug, const struct sparkplug_node *node, size_t topic,
                          const struct sparkplug_payload *payload, char why[200])
 {
@@ -293,7 +295,8 @@ static void learn(struct sparkplug *sparkplug, struct sparkplug_node *node, size
         qsort(node->aliases, node->alias_count, sizeof(*node->aliases), by_number);
 }
 
-/* Processes a birth certificate. Tags whose metric it does not contain become Bad_ConfigurationError. */
+/* Processes a birth certificate. Tags whose metric is not in the certificate become Bad_ConfigurationError. Returns false if the
+ * certificate is refused. */
 static bool take_birth(struct sparkplug *sparkplug, struct sparkplug_node *node, size_t topic, const struct sparkplug_payload *payload,
                        char why[200])
 {
@@ -321,7 +324,7 @@ static bool take_birth(struct sparkplug *sparkplug, struct sparkplug_node *node,
 
 /* --- sequence numbers ------------------------------------------------------------------------------------------------------- */
 
-/* Makes all readings of a node uncertain after lost messages: values in the lost messages are unknown. */
+/* Makes all readings of a node uncertain, because messages were lost whose values are unknown. */
 static void doubt_all(struct sparkplug *sparkplug, const struct sparkplug_node *node)
 {
     for (size_t i = 0; i < sparkplug->params.topics->count; i++) {
@@ -359,7 +362,7 @@ static void follow(struct sparkplug *sparkplug, struct sparkplug_node *node, con
 struct said {
     enum verb verb;
     struct sparkplug_node *node;
-    size_t topic; /* index of the topic; SIZE_MAX: the node or device has no tags */
+    size_t topic; /* index of the topic of the node or device; SIZE_MAX: no tag has this topic */
 };
 
 /* Parses a topic spBv1.0/GROUP/VERB/NODE[/DEVICE]. Returns false if the topic has another form. */
@@ -390,8 +393,8 @@ static bool read_topic(const struct sparkplug *sparkplug, const char *topic, str
     return true;
 }
 
-/* Refuses a message of a node or device whose birth is unknown, since it may be dead and its aliases have no meaning. Requests the
-   birth. */
+/* Refuses a message of a node or device whose birth certificate has not arrived: it may be dead, and its aliases are unknown. Requests the
+ * birth certificate. */
 static bool refuse_unborn(struct sparkplug *sparkplug, struct sparkplug_node *node, char why[200])
 {
     ask(sparkplug, node, sparkplug->params.writer->mono_ns);
@@ -406,7 +409,7 @@ static bool refuse_unborn(struct sparkplug *sparkplug, struct sparkplug_node *no
 static bool take_node_birth(struct sparkplug *sparkplug, const struct said *said, const struct sparkplug_payload *payload, char why[200])
 {
     struct sparkplug_node *node = said->node;
-    node_dies(sparkplug, node, said->topic); /* makes earlier births of this node and its devices invalid */
+    node_dies(sparkplug, node, said->topic); /* the node's new birth ends the previous life of the node and its devices */
     node->is_born = true;
     node->told = node->is_wanted = false;
     node->bd_seq = sparkplug_bd_seq(payload);
@@ -432,7 +435,8 @@ static bool take_node_death(struct sparkplug *sparkplug, struct sparkplug_node *
     return true;
 }
 
-/* Processes a message of a node that is alive, except the node's own birth and death certificates, after checking the sequence number. */
+/* Processes a message of a node that is alive, after checking its sequence number. Does not get the node's own birth and death
+ * certificates. */
 static bool take_in_order(struct sparkplug *sparkplug, const struct said *said, const struct sparkplug_payload *payload, char why[200])
 {
     follow(sparkplug, said->node, payload);

@@ -19,21 +19,23 @@ struct sparkplug_params {
     struct store *store;
     struct stamped_writer *writer;
     counter *gaps, *historical; /* counters of sequence gaps and of historical metrics; NULL: not counted */
-    bool rebirth;               /* nodes may be asked for their birth certificates, by this callback: */
+    bool rebirth;               /* true: nodes may be asked for their birth certificates, with the callback below */
     void (*ask)(void *arg, const char *group, const char *node);
     void *arg;
 };
 
-/* Creates a decoder. All that `params` points to must outlive it. */
+/* Creates a decoder. Everything to which `params` points must outlive it. */
 struct sparkplug *sparkplug_create(const struct sparkplug_params *params);
-void sparkplug_destroy(struct sparkplug **sparkplug); /* Frees the decoder. &NULL is fine; leaves NULL. */
-/* Returns the topic filters to subscribe to, and their count. Free each filter and the array with mem_free(). */
+void sparkplug_destroy(struct sparkplug **sparkplug); /* Frees the decoder and sets *sparkplug to NULL. *sparkplug may be NULL. */
+/* Returns the topic filters for the subscription; *count receives their number. The caller frees each filter and the array with
+ * mem_free(). */
 char **sparkplug_subscriptions(const struct sparkplug *sparkplug, size_t *count);
-/* Forgets all births after a new subscription, since any node may have died in between. Asks all nodes for their births, if permitted. */
+/* Called after a new subscription: marks all nodes as not alive, because a node may have died in between. Asks all nodes for their birth
+ * certificates, if permitted. */
 void sparkplug_on_subscribed(struct sparkplug *sparkplug, int64_t now_mono_ns);
-/* Sends the birth requests that were held back because the last request to the node was too recent. Call it about once a second. */
+/* Sends those birth requests that were delayed because the last request to the node was too recent. Call about once a second. */
 void sparkplug_on_tick(struct sparkplug *sparkplug, int64_t now_mono_ns);
-/* Processes a message; call stamped_writer_begin() before. Returns false with the reason in `why` if the message is refused. */
+/* Processes a message; stamped_writer_begin() must be called before. Returns false with the reason in `why` if the message is refused. */
 bool sparkplug_take(struct sparkplug *sparkplug, const struct mqtt_message *message, char why[200]);
 
 #endif

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Unpacks payloads with protobuf-c through an allocator with a byte limit: two bytes of a message may take two hundred in memory. */
+/* Unpacks payloads with protobuf-c and an allocator that has a byte limit, because two bytes of a message may take two hundred bytes of
+ * memory. */
 #include "value/mqtt/sparkplug_payload.h"
 
 #include <stdio.h>
@@ -44,13 +45,13 @@ static void give_back(void *arg, void *p)
 
 /* --- reading ---------------------------------------------------------------------------------------------------------------- */
 
-/* Converts milliseconds to nanoseconds. Returns 0 if the time is not stated (0) or out of range. */
+/* Converts milliseconds since 1970 to nanoseconds. Returns 0 if there is no time (`has` false) or it is out of range. */
 static int64_t ns_of_ms(bool has, uint64_t ms)
 {
     return has && ms <= INT64_MAX / 1000000 ? (int64_t)ms * 1000000 : 0;
 }
 
-/* Maps the Quality property with Sparkplug's OPC-derived codes (192 good, 0 bad, 500 stale) to an OPC UA status. */
+/* Converts the property Quality, with Sparkplug's codes (192 good, 0 bad, 500 stale), to an OPC UA status code. */
 static uint32_t quality_of(const Sparkplug__Payload__PropertySet *set)
 {
     for (size_t i = 0; set && i < set->n_keys && i < set->n_values; i++) {
@@ -152,7 +153,8 @@ void sparkplug_payload_finish(struct sparkplug_payload *payload)
 
 /* --- values ----------------------------------------------------------------------------------------------------------------- */
 
-/* Reads an integer. The payload holds the integer's memory image; a negative number is sign-extended only to the width of its type. */
+/* Reads an integer. The payload contains the integer's memory image, in which a negative number is sign-extended only to the width of its
+ * type. */
 static double whole_of(const struct sparkplug_metric *metric, uint32_t type)
 {
     switch (type) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decodes Sparkplug B payloads from untrusted bytes. Pure. Thread: any. */
+/* Decodes Sparkplug B payloads from untrusted bytes. No side effects. Thread: any. */
 #ifndef VALUE_SPARKPLUG_PAYLOAD_H
 #define VALUE_SPARKPLUG_PAYLOAD_H
 #include <stdbool.h>
@@ -17,10 +17,10 @@ enum sparkplug_form { /* type of a metric's value on the wire */
 };
 
 struct sparkplug_metric {
-    const char *name; /* metric name; NULL: identified by its alias */
+    const char *name; /* name of the metric; NULL: the alias identifies it */
     bool has_alias, is_historical, is_null;
     uint64_t alias;
-    int64_t utc_ns;   /* time stated for the metric, otherwise for its payload; 0: neither is stated */
+    int64_t utc_ns;   /* time that the metric states, or else its payload; 0: neither states a time */
     uint32_t type;    /* 0: not stated */
     uint32_t quality; /* quality from the metric's property Quality; Good if it has none */
     enum sparkplug_form form;
@@ -31,20 +31,21 @@ struct sparkplug_metric {
 };
 
 struct sparkplug_payload {
-    struct sparkplug_metric *metrics; /* metrics; their names live as long as the payload */
+    struct sparkplug_metric *metrics; /* metrics of the payload; their names are freed with the payload */
     size_t count;
     int seq;    /* sequence number, 0 to 255; -1: none */
     void *from; /* the unpacked protobuf message, owned */
 };
 
-/* Decodes a payload. Returns false with the reason in `why`, and nothing to free, if the bytes are no payload. */
+/* Decodes a payload. Returns false with the reason in `why`, and nothing to free, if the bytes are not a valid payload. */
 bool sparkplug_payload_read(const void *bytes, size_t count, struct sparkplug_payload *out, char why[200]);
 void sparkplug_payload_finish(struct sparkplug_payload *payload);
-/* Reads a metric's value as `type`: the metric's own type or, if it states none, the type in its birth certificate. Returns whether the
-   value is a number. */
+/* Reads a metric's value as `type`: the metric's own type, or the type in its birth certificate if it states none. Returns false if the
+ * value is not a number. */
 bool sparkplug_number(const struct sparkplug_metric *metric, uint32_t type, double *out);
-const char *sparkplug_type_name(uint32_t type); /* Returns the type's name, such as "Int32"; "a type that is unknown" for other numbers. */
-/* Returns the session number (bdSeq) of a birth or death certificate; -1 if it has none. */
+/* Returns the name of a type, such as "Int32"; "a type that is unknown" for a number that is no type. */
+const char *sparkplug_type_name(uint32_t type);
+/* Returns the session number (bdSeq) in a birth or death certificate; -1: it has none. */
 int64_t sparkplug_bd_seq(const struct sparkplug_payload *payload);
 
 enum { SPARKPLUG_REBIRTH_BYTES = 64 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* An OPC UA source: connects, subscribes, and marks all readings as lost when the server is. */
+/* An OPC UA source: connects, subscribes, and marks all readings as lost when the connection to the server is lost. */
 #include <errno.h>
 #include <stdio.h>
 
@@ -20,20 +20,20 @@ enum { REFUSALS_SAID = 8 }; /* refused nodes logged per session */
 struct opcua_source {
     struct source base;
     counter *samples, *connects, *up, *host, *refused;
-    /* --- below: used by the source's thread only */
+    /* --- below: used only by the source's thread */
     struct opcua_nodes nodes;
     struct stamped_writer writer;
     struct host_turn turn;
     bool link_up, link_known;
     int refusals_said;
-    bool *wrong; /* flag by node: its last value was no number, which was logged */
+    bool *wrong; /* by node: its last value was not a number, and this was logged */
     int64_t skew_said_ns;
 };
 
 /* --- values ----------------------------------------------------------------------------------------------------------------- */
 
-/* Logs the difference between the server's clock and ours, taken from the server timestamp; the source timestamp may be an old sensor
-   time. */
+/* Logs the difference between the server's clock and ours, taken from the server timestamp, because the source timestamp may be an old time
+ * of the sensor. */
 static void report_skew(struct opcua_source *opcua, const UA_DataValue *value)
 {
     int64_t now_ns = opcua->writer.mono_ns;
@@ -83,7 +83,7 @@ static void on_refused(void *arg, size_t index, uint32_t status, const char *why
 
 /* --- the link --------------------------------------------------------------------------------------------------------------- */
 
-/* Marks all readings of the source as lost: while the server was gone, values may have changed unnoticed. */
+/* Marks all readings of the source as lost, because values may have changed unnoticed while the server could not be reached. */
 static void link_lost(struct opcua_source *opcua, const char *why)
 {
     int64_t now_ns = clock_mono_ns();
@@ -130,7 +130,7 @@ static int serve(struct opcua_source *opcua, struct opcua_client *client, char w
     return status;
 }
 
-/* Runs one session until it ends. Returns -ECANCELED when the source must stop, else another code with the reason in `why`. */
+/* Runs one session until it ends. Returns -ECANCELED when the source must stop, else another negative code with the reason in `why`. */
 static int run_session(struct opcua_source *opcua, char why[200])
 {
     const struct opcua_events events = { .arg = opcua, .value = on_value, .refused = on_refused };

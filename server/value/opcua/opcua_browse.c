@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Follows all hierarchical references and visits each node once, because the references of servers have cycles. */
+/* Finds variables by following all hierarchical references. Visits each node once, because references may form cycles. */
 #include "value/opcua/opcua_browse.h"
 
 #include <errno.h>
@@ -25,9 +25,9 @@ struct browse {
     void *arg;
     int stop_fd;
     int64_t deadline_mono_ns;
-    struct browse_step *steps; /* all nodes found so far, in the order of visiting */
+    struct browse_step *steps; /* all nodes found so far, in the order in which they are visited */
     size_t count, capacity;
-    size_t *table; /* hash table with open addressing: index in `steps` plus 1; 0: the slot is free */
+    size_t *table; /* hash table with open addressing: index in `steps` + 1; 0: empty slot */
 };
 
 static size_t slot_of(const struct browse *browse, const UA_NodeId *id)
@@ -66,7 +66,8 @@ static void see_all(struct browse *browse, size_t parent, const UA_BrowseResult 
     }
 }
 
-/* Reads the remaining results of a continuation point. Takes ownership of the continuation point. */
+/* Requests the remaining references of a node after a partial response, and takes ownership of the continuation point. Returns 0 or a
+ * negative code. */
 static int browse_rest(struct browse *browse, size_t parent, UA_ByteString point, char why[200])
 {
     int status = 0;
@@ -111,7 +112,7 @@ static int browse_node(struct browse *browse, size_t at, char why[200])
     return status ? status : browse_rest(browse, at, point, why);
 }
 
-/* Returns the address nsu=URI;s=NAME of a node; NULL: its namespace has no URI. */
+/* Returns the address nsu=URI;s=NAME of a node, which the caller frees; NULL: its namespace has no URI. */
 static char *address_of(const struct browse *browse, const UA_NodeId *id)
 {
     UA_NodeId local = *id;

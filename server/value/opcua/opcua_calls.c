@@ -8,7 +8,7 @@
 #include "value/opcua/opcua_client.h"
 #include "value/opcua/opcua_impl.h"
 
-static const int64_t SLICE_NS = 100 * NS_PER_MS; /* interval at which stop_fd is checked */
+static const int64_t SLICE_NS = 100 * NS_PER_MS; /* interval at which a waiting call checks stop_fd */
 
 void opcua_explain(const struct opcua_client *client, UA_StatusCode status, char why[200])
 {
@@ -43,7 +43,7 @@ void opcua_on_answer(UA_Client *library, void *arg, UA_UInt32 id, void *response
     if (!client->call.response)
         return;
     memcpy(client->call.response, response, client->call.type->memSize);
-    memset(response, 0, client->call.type->memSize); /* the response's memory is now owned here, so the library's copy is cleared */
+    memset(response, 0, client->call.type->memSize); /* the caller owns the response's memory now, so the library's copy is cleared */
     client->call.response = NULL;
 }
 
@@ -57,7 +57,7 @@ void opcua_call_begin(struct opcua_client *client, void *response, const UA_Data
 
 int opcua_call_end(struct opcua_client *client, UA_StatusCode sent, int stop_fd, int64_t deadline_mono_ns, char why[200])
 {
-    const UA_ResponseHeader *header = client->call.response; /* valid for all responses, because each begins with this header */
+    const UA_ResponseHeader *header = client->call.response; /* every response begins with this header */
     if (sent != UA_STATUSCODE_GOOD) {
         client->call.response = NULL;
         opcua_explain(client, sent, why);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Opens two connections: on the first one, without security, the server lists its endpoints. We choose an endpoint ourselves and check
-   its certificate before any of our data goes over the second connection. */
+/* Opens two connections. On the first one, without security, the server lists its endpoints. This code chooses an endpoint and checks its
+ * certificate before any of our data is sent over the second connection. */
 #include "value/opcua/opcua_client.h"
 
 #include <arpa/inet.h>
@@ -15,8 +15,8 @@
 #include "value/opcua/opcua_impl.h"
 
 enum { TIMEOUT_MS = 5000, CLOSING_MS = 300, CHANNEL_MS = 3600000, SESSION_MS = 60000 };
-enum { MESSAGE_BYTES = 2 << 20, CHUNKS = 512, BUFFER_BYTES = 65536 }; /* limits for one message that the server sends */
-enum { DISCOVERIES = 3 }; /* maximum number of discovery attempts: a server may redirect the client to another address */
+enum { MESSAGE_BYTES = 2 << 20, CHUNKS = 512, BUFFER_BYTES = 65536 }; /* limits of one message from the server */
+enum { DISCOVERIES = 3 }; /* maximum number of discovery attempts: the server may redirect the client to another address */
 
 /* --- library callbacks ------------------------------------------------------------------------------------------------------ */
 
@@ -41,7 +41,7 @@ static void on_subscription_silence(UA_Client *library, UA_UInt32 subscription, 
     on_silence(library);
 }
 
-/* Creates an open62541 client for one channel. Returns NULL with the reason in `why` on failure. */
+/* Creates an open62541 client for one secure channel. Returns NULL with the reason in `why` on failure. */
 static UA_Client *make_library(struct opcua_client *client, const UA_EndpointDescription *endpoint, bool with_session, char why[200])
 {
     UA_ClientConfig config = { .clientContext = client, .logging = &client->logger, .timeout = TIMEOUT_MS,
@@ -76,7 +76,7 @@ static void close_library(struct opcua_client *client)
     client->library = NULL;
 }
 
-/* Opens a secure channel, and a session if with_session. */
+/* Opens a secure channel; with_session: and a session. Returns 0 or a negative code with the reason in `why`. */
 static int open_library(struct opcua_client *client, const UA_EndpointDescription *endpoint, bool with_session, int stop_fd,
                         int64_t deadline_mono_ns, char why[200])
 {
@@ -132,7 +132,8 @@ static bool takes_us(const struct opcua_client *client, const UA_EndpointDescrip
     return false;
 }
 
-/* Returns the most secure endpoint among those that may be used; NULL with the reason in `why` if there is none. */
+/* Returns the endpoint with the best security among those that the configuration permits; NULL with the reason in `why` if there is
+ * none. */
 static UA_EndpointDescription *choose(const struct opcua_client *client, UA_EndpointDescription *endpoints, size_t count, char why[200])
 {
     static const char TCP[] = "http://opcfoundation.org/UA-Profile/Transport/uatcp-uasc-uabinary";
@@ -204,7 +205,7 @@ static int discover(struct opcua_client *client, int stop_fd, int64_t deadline_m
 
 /* --- connecting ------------------------------------------------------------------------------------------------------------- */
 
-/* Requests the endpoints at one IP address of the host. */
+/* Requests the list of endpoints at one IP address of the host. Returns 0 or a negative code. */
 static int discover_at(struct opcua_client *client, const struct addrinfo *at, int stop_fd, int64_t deadline_mono_ns, char why[200])
 {
     char address[INET6_ADDRSTRLEN + 20];
@@ -220,8 +221,8 @@ static int discover_at(struct opcua_client *client, const struct addrinfo *at, i
     return discover(client, stop_fd, deadline_mono_ns, why);
 }
 
-/* Tries each IP address of the host in turn, dividing the remaining time between them. We resolve the name ourselves because the
-   library's resolver call cannot be interrupted. */
+/* Requests the list of endpoints at each IP address of the host in turn; each gets an equal share of the remaining time. The name is
+ * resolved here, because the library's resolver call cannot be interrupted. */
 static int discover_somewhere(struct opcua_client *client, int stop_fd, int64_t deadline_mono_ns, char why[200])
 {
     const struct addrinfo *found;
@@ -249,8 +250,8 @@ int opcua_client_connect(struct opcua_client *client, int stop_fd, int64_t deadl
         status = open_library(client, &client->endpoint, true, stop_fd, deadline_mono_ns, why);
     if (status == 0) {
         UA_ClientConfig *config = UA_Client_getConfig(client->library);
-        config->noReconnect = true; /* the library must not reconnect, because a lost session is replaced by a new client */
-        config->connectivityCheckInterval = TIMEOUT_MS; /* milliseconds; detects a silent server even if values are published rarely */
+        config->noReconnect = true; /* the library must not reconnect by itself, because a lost session is replaced by a new client */
+        config->connectivityCheckInterval = TIMEOUT_MS; /* in milliseconds; notices a silent server even if values are published rarely */
         *client->said = 0;
     }
     return status;

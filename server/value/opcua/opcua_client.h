@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One session with an OPC UA server through open62541's client, which only this folder includes. Each session has a new client, because
-   the library neither recreates its subscriptions nor notices that they are gone. All requests it can send are in opcua_client.c,
-   opcua_subscription.c and opcua_browse.c: none writes to a node, none calls a method. Thread: one. */
+/* One session with an OPC UA server through open62541's client, which only this folder includes. Each session has a new client, because the
+ * library neither recreates its subscriptions nor notices that they are gone. opcua_client.c, opcua_subscription.c and opcua_browse.c
+ * contain all requests that it can send: none writes to a node or calls a method. Thread: one. */
 #ifndef VALUE_OPCUA_CLIENT_H
 #define VALUE_OPCUA_CLIENT_H
 #include "value/opcua/opcua_nodes.h"
@@ -9,7 +9,7 @@
 
 struct opcua_client;
 
-/* Callbacks; any function that takes a deadline may call them. */
+/* callbacks, which any function with a deadline may make */
 struct opcua_events {
     void *arg;
     void (*value)(void *arg, size_t node, const UA_DataValue *value); /* `node`: index in opcua_nodes */
@@ -20,17 +20,18 @@ struct opcua_events {
    `why` if a file cannot be used. All arguments must outlive the client. */
 struct opcua_client *opcua_client_create(const struct plant_source *source, int host, const struct opcua_nodes *nodes,
                                          const struct opcua_events *events, char why[200]);
-/* Ends the session, waiting at most 0.3 s for the server. &NULL is fine; leaves NULL. */
+/* Ends the session, waiting at most 0.3 s for the server, frees the client and sets *client to NULL. *client may be NULL. */
 void opcua_client_destroy(struct opcua_client **client);
 /* Connects: finds an endpoint, checks its certificate, opens a session, all by the deadline. Returns 0; -ECANCELED if stop_fd became
-   readable; other < 0 with the reason in `why`. */
+ * readable; another negative code with the reason in `why`. */
 int opcua_client_connect(struct opcua_client *client, int stop_fd, int64_t deadline_mono_ns, char why[200]);
-/* Subscribes to all nodes; a repeated call asks again for the nodes that were refused. Returns the same codes as opcua_client_connect(). */
+/* Subscribes to all nodes. A repeated call requests only those nodes again that the server refused. Returns the same codes as
+ * opcua_client_connect(). */
 int opcua_client_subscribe(struct opcua_client *client, int stop_fd, int64_t deadline_mono_ns, char why[200]);
-/* Receives until the deadline. Returns 0; -ECANCELED if stop_fd became readable; other < 0 with the reason in `why` when the session or
-   the subscription has ended. */
+/* Receives until the deadline. Returns 0; -ECANCELED if stop_fd became readable; another negative code with the reason in `why` when the
+ * session or the subscription has ended. */
 int opcua_client_serve(struct opcua_client *client, int stop_fd, int64_t deadline_mono_ns, char why[200]);
-/* Returns the publishing interval of the server in milliseconds if that is longer than requested; 0: as requested. */
+/* Returns the server's publishing interval in milliseconds if it is longer than the requested one; 0: it is not. */
 double opcua_client_publishing_ms(const struct opcua_client *client);
 /* Returns the number of nodes that the server has refused. */
 size_t opcua_client_refused(const struct opcua_client *client);

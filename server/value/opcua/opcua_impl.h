@@ -19,37 +19,37 @@ struct opcua_client {
     char *numeric_url; /* endpoint URL with the host's IP address, to which the connection is made */
     UA_Logger logger;
     char said[160];                  /* last error that the library logged */
-    UA_Client *library;              /* open62541 client of the channel that is open now; NULL: none */
-    UA_EndpointDescription endpoint; /* chosen endpoint; its certificate is checked */
+    UA_Client *library;              /* open62541 client of the channel that is open; NULL: no channel is open */
+    UA_EndpointDescription endpoint; /* the chosen endpoint, whose certificate has been checked */
     bool lost;                       /* the subscription is lost */
     uint32_t max_items;              /* maximum items of one request */
     UA_UInt32 subscription;
-    double publishing_ms; /* server's publishing interval in milliseconds; 0: as requested */
+    double publishing_ms; /* the server's publishing interval in milliseconds if it is longer than the requested one; 0: it is not */
     char **namespaces;    /* namespace URIs of the server, by namespace index */
     size_t namespace_count;
-    UA_UInt16 *numbers;        /* namespace index of each node; NO_NAMESPACE: the server has no such URI */
-    bool *refused, *no_filter; /* flags by node: the server refused the node; the node is to be subscribed without a deadband */
+    UA_UInt16 *numbers;        /* by node: index of its namespace on the server; NO_NAMESPACE: the server has no such namespace */
+    bool *refused, *no_filter; /* by node: refused: the server refused the node; no_filter: the node is subscribed without a deadband */
     size_t refused_count;
     struct { /* the request in progress */
         bool done;
-        void *response; /* receives the response; NULL: the caller waits no longer, so the response is dropped */
+        void *response; /* receives the response; NULL: the caller has stopped waiting, so the response is dropped */
         const UA_DataType *type;
     } call;
 };
 
-/* Receives until *done, or the deadline. Returns 0, -ECANCELED, -ETIMEDOUT (with `why`), or other < 0 with `why` if the connection has
-   ended. */
+/* Receives until *done is true, or until the deadline. Returns 0; -ECANCELED; -ETIMEDOUT with the reason in `why`; another negative code
+ * with the reason in `why` if the connection has ended. */
 int opcua_wait(struct opcua_client *client, const bool *done, int stop_fd, int64_t deadline_mono_ns, char why[200]);
-/* Sends a request and waits for its response. Returns the codes of opcua_wait(), or -EPROTO if the server refuses. Clear the response
-   with UA_clear() in all cases. */
+/* Sends a request and waits for its response. Returns the codes of opcua_wait(), or -EPROTO if the server refuses the request. The caller
+ * clears the response with UA_clear() in all cases. */
 int opcua_call(struct opcua_client *client, const void *request, const UA_DataType *request_type, void *response,
                const UA_DataType *response_type, int stop_fd, int64_t deadline_mono_ns, char why[200]);
-/* The two halves of opcua_call(), for requests that the library sends through functions of its own: call opcua_call_begin() before, and
-   opcua_call_end() with the library function's result. Pass opcua_on_answer as the callback, with the client as userdata. */
+/* opcua_call() in two steps, for requests that are sent by functions of the library: call opcua_call_begin() before the library function,
+ * and opcua_call_end() with its result. Pass opcua_on_answer as the callback, with the client as userdata. */
 void opcua_call_begin(struct opcua_client *client, void *response, const UA_DataType *type);
 int opcua_call_end(struct opcua_client *client, UA_StatusCode sent, int stop_fd, int64_t deadline_mono_ns, char why[200]);
 void opcua_on_answer(UA_Client *library, void *client, UA_UInt32 id, void *response);
-/* Reads the server's namespaces and its limits on items per request. Returns the codes of opcua_call(). */
+/* Reads the server's namespaces, and its limits on the number of items per request. Returns the codes of opcua_call(). */
 int opcua_read_namespaces(struct opcua_client *client, int stop_fd, int64_t deadline_mono_ns, char why[200]);
 /* Writes an explanation of a status code into `why`. */
 void opcua_explain(const struct opcua_client *client, UA_StatusCode status, char why[200]);

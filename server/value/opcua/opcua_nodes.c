@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sorts tags by node, so that the tags of one node are adjacent. */
+/* Groups tags by node: sorts them by node, then by array element. */
 #include "value/opcua/opcua_nodes.h"
 
 #include <string.h>

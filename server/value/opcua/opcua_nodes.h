@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The nodes of an OPC UA source with the tags of each node. A node is subscribed once, however many of its array elements are tags.
-   Immutable once made. Thread: any. */
+/* The nodes of an OPC UA source with the tags of each node. A node is subscribed only once, even if several elements of its array are tags.
+ * Immutable once made. Thread: any. */
 #ifndef VALUE_OPCUA_NODES_H
 #define VALUE_OPCUA_NODES_H
 #include <stddef.h>
@@ -8,20 +8,20 @@
 #include "plant/plant.h"
 
 struct opcua_node {
-    const char *name_space, *id; /* namespace URI, and identifier such as s=NAME; owned by the plant */
+    const char *name_space, *id; /* namespace URI, and identifier in the namespace, such as s=NAME; owned by the plant */
     const int *tags;             /* indices in plant->tags */
     size_t tag_count;
-    int sampling_ms; /* milliseconds; shortest sampling interval among its tags */
+    int sampling_ms; /* sampling interval in milliseconds, the shortest that one of its tags requests */
 };
 
 struct opcua_nodes {
     struct opcua_node *at;
     size_t count;
-    int *tags; /* indices of the source's tags, grouped by node */
+    int *tags; /* indices in plant->tags of the source's tags, grouped by node */
     size_t tag_count;
 };
 
-/* Builds the nodes of one source; `plant` must outlive them. */
+/* Builds the nodes of one source. `plant` must outlive them. */
 void opcua_nodes_init(struct opcua_nodes *nodes, const struct plant *plant, int source);
 void opcua_nodes_finish(struct opcua_nodes *nodes);
 

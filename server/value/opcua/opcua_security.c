@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Checks certificates with OpenSSL: the library's own check ignores the host name, and accepts a server whose first response contains no
-   certificate. */
+/* Checks certificates with OpenSSL, because the library's own check ignores the host name, and accepts a server whose first response
+ * contains no certificate. */
 #include "value/opcua/opcua_security.h"
 
 #include <arpa/inet.h>
@@ -62,7 +62,7 @@ static UA_ByteString taken(unsigned char *der, int bytes)
     return out;
 }
 
-/* Reads a certificate and its key and converts both to DER. Returns false with the file and the reason in `why`. */
+/* Reads a certificate and its private key from files, and converts both to DER. Returns false with the file and the reason in `why`. */
 static bool read_pair(const char *certificate_path, const char *key_path, UA_ByteString *certificate, UA_ByteString *key, X509 **out,
                       char why[200])
 {
@@ -134,7 +134,7 @@ static bool trust_file(struct opcua_security *security, const char *path, char w
     return good;
 }
 
-/* Verification callback: accepts a certificate if its issuer has no revocation list. */
+/* Verification callback of OpenSSL: accepts a certificate whose issuer has published no revocation list, which OpenSSL would reject. */
 static int on_verified(int good, X509_STORE_CTX *context)
 {
     int error = X509_STORE_CTX_get_error(context);
@@ -298,14 +298,14 @@ static UA_StatusCode verify(const UA_CertificateVerification *verification, cons
     return opcua_security_check(security, &chain, why);
 }
 
-/* Accepts our own certificate's URI without a check: the URI was read from that certificate. */
+/* Accepts the application URI in our own certificate without a check, because our URI was read from that certificate. */
 static UA_StatusCode verify_uri(const UA_CertificateVerification *verification, const UA_ByteString *certificate, const UA_String *uri)
 {
     (void)verification, (void)certificate, (void)uri;
     return UA_STATUSCODE_GOOD;
 }
 
-/* Adds all security policies to a client. with_none: adds the policy None first. */
+/* Adds all supported security policies to a client. with_none: also the policy None, as the first one. Returns false if out of memory. */
 static bool add_policies(UA_SecurityPolicy **out, size_t *count, UA_ByteString certificate, UA_ByteString key, bool with_none,
                          const UA_Logger *logger)
 {
@@ -325,7 +325,7 @@ static bool add_policies(UA_SecurityPolicy **out, size_t *count, UA_ByteString c
     return good && *out;
 }
 
-/* Sets the user from the login file or certificate. Returns false with the reason in `why`. */
+/* Sets the user from the login file or the user's certificate. Returns false with the reason in `why`. */
 static bool log_in(const struct opcua_security *security, const char *path, UA_ClientConfig *config, char why[200])
 {
     struct login_file login;

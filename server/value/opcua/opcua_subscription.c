@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Implements the subscription of a session: resolves each namespace URI to its current index, and creates one monitored item per node. */
+/* Implements the subscription of a session: finds the index of each namespace URI on the server, and creates one monitored item per
+ * node. */
 #include <errno.h>
 #include <string.h>
 
@@ -9,7 +10,7 @@
 #include "value/opcua/opcua_client.h"
 #include "value/opcua/opcua_impl.h"
 
-enum { NAMESPACE_ARRAY = 2255, MAX_ITEMS_PER_CALL = 11714 }; /* standard node ids of every server */
+enum { NAMESPACE_ARRAY = 2255, MAX_ITEMS_PER_CALL = 11714 }; /* standard node ids that every server has */
 enum { ITEMS_PER_CALL = 500, KEPT_ALIVE_MS = 5000, LIFETIMES = 12 };
 enum { NO_NAMESPACE = 0xffff };
 static const UA_StatusCode NO_SUCH_NODE = 0x80340000; /* Bad_NodeIdUnknown */
@@ -87,13 +88,14 @@ static void on_deleted(UA_Client *library, UA_UInt32 subscription, void *arg)
 
 static int begin_subscription(struct opcua_client *client, int stop_fd, int64_t deadline_mono_ns, char why[200])
 {
-    /* Creates the subscription with the source's interval, and a keep-alive interval short enough to notice a silent server. */
+    /* Creates the subscription. Its keep-alive interval is short enough to notice a silent server soon. */
     int poll_ms = client->source->poll_ms < KEPT_ALIVE_MS ? client->source->poll_ms : KEPT_ALIVE_MS;
     UA_CreateSubscriptionRequest request = { .requestedPublishingInterval = poll_ms, .publishingEnabled = true };
     UA_CreateSubscriptionResponse response;
     request.requestedMaxKeepAliveCount = (UA_UInt32)(KEPT_ALIVE_MS / poll_ms) + 1;
     request.requestedLifetimeCount = LIFETIMES * request.requestedMaxKeepAliveCount;
-    request.maxNotificationsPerPublish = 2000; /* number of items per request: more would exceed the maximum message size */
+    /* limits the number of items in a notification, because more would exceed the maximum message size */
+    request.maxNotificationsPerPublish = 2000;
     opcua_call_begin(client, &response, &UA_TYPES[UA_TYPES_CREATESUBSCRIPTIONRESPONSE]);
     UA_StatusCode sent =
         UA_Client_Subscriptions_create_async(client->library, request, client, on_status, on_deleted, opcua_on_answer, client, NULL);
@@ -104,8 +106,8 @@ static int begin_subscription(struct opcua_client *client, int stop_fd, int64_t 
     return status;
 }
 
-/* Makes the NodeId of a node. Returns false if the server lacks its namespace or the identifier is invalid. Free it with
-   UA_NodeId_clear(). */
+/* Makes the NodeId of a node, which the caller frees with UA_NodeId_clear(). Returns false if the server does not have its namespace, or
+ * the identifier is invalid. */
 static bool node_id(const struct opcua_client *client, size_t node, UA_NodeId *out)
 {
     UA_UInt16 number = client->numbers[node];
@@ -138,8 +140,8 @@ static void refuse(struct opcua_client *client, size_t node, UA_StatusCode statu
     client->events->refused(client->events->arg, node, status, UA_StatusCode_name(status));
 }
 
-/* Handles the result for one node. A node that cannot have a deadband is requested again without one, which only causes more
-   notifications. */
+/* Handles the server's result for one node. A node whose deadband the server refuses is requested again without a deadband, which only
+ * causes more notifications. */
 static void take_result(struct opcua_client *client, size_t node, UA_StatusCode status)
 {
     bool of_filter = status == UA_STATUSCODE_BADFILTERNOTALLOWED || status == UA_STATUSCODE_BADMONITOREDITEMFILTERUNSUPPORTED ||
@@ -154,7 +156,7 @@ static void take_result(struct opcua_client *client, size_t node, UA_StatusCode 
     }
 }
 
-/* Creates monitored items for a batch of nodes whose NodeIds are known. */
+/* Creates monitored items for a batch of nodes whose NodeIds have been made. Returns the codes of opcua_call(). */
 static int create_items(struct opcua_client *client, const size_t *batch, UA_MonitoredItemCreateRequest *items, size_t count, int stop_fd,
                         int64_t deadline_mono_ns, char why[200])
 {
@@ -187,8 +189,8 @@ static int create_items(struct opcua_client *client, const size_t *batch, UA_Mon
     return status;
 }
 
-/* Collects, from index *at on, the next nodes that are not subscribed; nodes that cannot even be requested are marked as refused. Returns
-   the batch size. */
+/* Collects the next nodes that are not subscribed yet, from index *at on. Nodes that cannot be requested are marked as refused. Returns the
+ * number of nodes collected. */
 static size_t gather(struct opcua_client *client, size_t *at, UA_DataChangeFilter *filter, size_t *batch,
                      UA_MonitoredItemCreateRequest *items)
 {
