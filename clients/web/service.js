@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Service worker of an installed page (https only): serves the page's files from the network or else from the cache, so that the page opens
-// offline and shows that it is disconnected. Only one version is cached. Plant data is never cached.
+// Service worker of an installed page (https only). It serves the page's files from the network, or else from the cache, so that the page
+// opens offline and shows that it is disconnected. Only one version is cached. Plant data is never cached.
 const OURS = /^(\/|\/(index|wall)\.html|\/(app|core|words|vendor|made|wall)\/.*)$/;
 const PREFIX = 'plantcast-';
-let kept = null; // promise of the cache for the current version
+let kept = null; // promise of the cache of the server's version; null: not opened yet
 
 self.addEventListener('install', () => self.skipWaiting());
 self.addEventListener('activate', (event) => event.waitUntil(self.clients.claim()));
@@ -13,8 +13,8 @@ self.addEventListener('fetch', (event) => {
         event.respondWith(newest(event.request));
 });
 
-// Opens the cache of the server's version and deletes others; without the server, uses the existing one. Other pages of this host have
-// their own caches.
+// Opens the cache of the server's version and deletes the others; if the server does not answer, opens the one that exists. Other pages of
+// this host have caches of their own.
 async function choose() {
     const text = await fetch('made/version.js', { cache: 'no-store' }).then((answer) => (answer.ok ? answer.text() : ''), () => '');
     const names = (await caches.keys()).filter((name) => name.startsWith(PREFIX)), version = text.match(/version = '(\w+)'/)?.[1];

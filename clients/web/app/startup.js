@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Connection, session and viewport: everything that the first picture needs. main.js loads the rest meanwhile.
+// Creates connection, session and viewport: everything that the first picture needs. main.js loads the rest in the meantime.
 import { Connection } from '../core/connection.js';
 import { browserDecoding } from '../core/decoding.js';
 import { Session } from '../core/session.js';
@@ -11,19 +11,20 @@ import { chooseTheme } from './common/theme.js';
 import { Viewport } from './viewport/viewport.js';
 
 const query = new URLSearchParams(location.search);
-// the value of `wall` in the URL is the id of a wall, not its size in inches and metres
+// if `wall` in the URL is not the size in inches and metres but the id of a wall, goes to that wall's page
 if (query.has('wall') && !/^[\d.,]*$/.test(query.get('wall'))) {
     location.replace(`wall.html${location.search}`);
-    await new Promise(() => {}); // never resolves: the browser is leaving for the wall's page
+    await new Promise(() => {}); // never resolves, because the browser is leaving for that page
 }
 export const page = { unit: 1, onUnit: () => {} };
 
-// Everything that affects the picture's size comes first.
+// everything that affects the size of the picture comes first
 document.documentElement.lang = language;
 sayAll(document);
 const backdrop = chooseTheme(query);
-export const narrow = window.matchMedia('(max-width: 1023px)'); // on narrow screens the equipment list overlays the picture
-const turned = window.matchMedia('(any-pointer: coarse)'); // touch devices may turn narrow while the server is unreachable
+export const narrow = window.matchMedia('(max-width: 1023px)'); // true on narrow screens, where the equipment list covers the picture
+// a device that a user can turn may become narrow later, when the server may be unreachable
+const turned = window.matchMedia('(any-pointer: coarse)');
 const fold = () => (narrow.matches || turned.matches) && styled('common/narrow').catch(() => {});
 narrow.addEventListener('change', fold);
 document.querySelector('.stage').classList.toggle('without-assets', narrow.matches);
@@ -34,7 +35,7 @@ if (query.has('wall'))
 const named = location.hash.length > 1 ? (await import('../core/address.js')).readAddress(location.hash) : {};
 export const address = { camera: null, params: {}, tag: null, time: {}, ...named };
 
-// JPEG can be shown at once. H.264 support is probed later, when it pays, unless the URL asks for it.
+// JPEG can be shown immediately. Whether the browser decodes H.264 is tested later, when it pays, unless the URL asks for H.264.
 const wantedCodec = query.get('codec') ?? 'auto';
 const decoding = browserDecoding();
 const codecs = () => decoding.codecs.filter((name) => name !== 'auto' || wantedCodec === 'auto');
@@ -57,7 +58,8 @@ const wanted = { ...address, params: { ...address.params, backdrop } };
 export const session = new Session({ connection, now: clock.now, wanted, codecs: codecs() });
 session.token = stored('token');
 session.leader = Number(new URLSearchParams(location.hash.slice(1)).get('follow')) || null;
-// After a reload, followers find this session again by its secret. It is stored only between pages, so that two tabs never share it.
+// After a reload, followers find this session again by its secret. The secret is stored only from one page to the next, so that two tabs
+// never share it.
 session.resume = sessionStorage.getItem('resume');
 session.anew = session.resume !== null;
 sessionStorage.removeItem('resume');

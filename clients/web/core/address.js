@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Writes the view to the fragment of the page's URL (after #) and reads it, so that a reload or a shared link shows the same.
+// Writes the view to the fragment of the page's URL (after #) and reads it, so that a reload or a shared link shows the same view.
 import { valid } from './camera.js';
 import { clipText, numbersText, readNumbers, readSensors, sensorsText } from './query.js';
 
@@ -17,12 +17,12 @@ const CHOICES = {
     environment : null,
 };
 const SETS = { hide: 'hidden', only: 'isolate', ghost: 'ghost' }; // lists of assets
-const LISTS = { range: 2, light: 3, breaks: null, isolines: null }; // parameter -> required number of values; null: any
-const FACTORS = { strength: 1, decay: 1, power: null, radius: 0, reach: null }; // parameter -> default value; null: the group's
+const LISTS = { range: 2, light: 3, breaks: null, isolines: null }; // parameter -> number of values that it must have; null: any number
+const FACTORS = { strength: 1, decay: 1, power: null, radius: 0, reach: null }; // parameter -> default value; null: the group's default
 const PARAMS = { radius: 'radius_m', reach: 'reach_m' };
 const HALF = ['group', 'show', 'distance', 'interpolation', 'colormap', 'look'];
 
-// Returns the fragment for a view. own: default values of parameters, such as those of a group; equal values are left out.
+// Returns the fragment for a view. own: default values of parameters, such as those of a group; parameters with these values are left out.
 export function writeAddress({ camera, params = {}, tag = null, time = null, own = {} }) {
     const parts = [], differs = (name) => JSON.stringify(params[name]) !== JSON.stringify(own[name]);
     const put = (name, value) => parts.push(`${name}=${encodeURIComponent(value).replace(/%2C|%3A|%3B/g, decodeURIComponent)}`);
@@ -53,7 +53,7 @@ export function writeAddress({ camera, params = {}, tag = null, time = null, own
     if (params.selected)
         put('asset', params.selected);
     for (const [name, param] of Object.entries(SETS)) {
-        if (params[param] && differs(param)) // an empty list is written too where the plant's default is not empty
+        if (params[param] && differs(param)) // an empty list is written, too, if the plant's default is not empty
             put(name, params[param].join(','));
     }
     if (params.clip)
@@ -69,7 +69,7 @@ export function writeAddress({ camera, params = {}, tag = null, time = null, own
 
 export const addressOf = ({ camera, params, time, ownParams: own }, tag) => writeAddress({ camera, params, tag, time, own });
 
-// Parses a split such as group:pressure;look:flat
+// Parses the text of a split view's right half, such as group:pressure;look:flat
 function readSplit(text) {
     const pairs = text.split(';').map((part) => [part.slice(0, part.indexOf(':')), part.slice(part.indexOf(':') + 1)]);
     return Object.fromEntries(pairs.filter(([name, value]) => HALF.includes(name) && value));
@@ -92,7 +92,7 @@ function readCamera(text) {
     return (n.length === 10 || n.length === 11) && valid(camera) ? camera : null;
 }
 
-// Parses a fragment and skips invalid parts. Returns { camera or null, params (only those given), tag or null, time: { atUs } if given }.
+// Parses a fragment, skipping invalid parts. Returns { camera or null, params (only those given), tag or null, time: { atUs } if given }.
 export function readAddress(hash) {
     const fields = new URLSearchParams(hash.replace(/^#/, ''));
     const params = {};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Actions on alarms by role and state, and the list of shelved, suppressed and out-of-service alarms.
+// Actions on alarms by the user's role and the alarm's state, and the list of shelved, suppressed and out-of-service alarms.
 import { calls, isGone } from './alarms.js';
 
 const ACTIONS = { // actions by alarm state, for alarms that Plantcast manages itself
@@ -9,7 +9,7 @@ const ACTIONS = { // actions by alarm state, for alarms that Plantcast manages i
 };
 const ROLES = { in_service: ['engineer'] };
 
-// Returns the actions that a role may do to an alarm in this state. mode: the plant's alarm mode.
+// Returns the actions that a role may do to an alarm. mode: the plant's alarm mode.
 export function actionsFor({ state }, mode, role) {
     const may = (action) => (ROLES[action] ?? ['operator', 'engineer']).includes(role);
     return mode === 'local' ? (ACTIONS[state] ?? []).filter(may) : [];
@@ -19,26 +19,26 @@ export function actionsFor({ state }, mode, role) {
 export const asideOf = ({ rows }) =>
     [...rows.values()].filter(({ state }) => !calls(state)).sort((a, b) => (a.tag.index ?? -1) - (b.tag.index ?? -1));
 
-// Returns all alarms of a row in the list: the tag's displayed alarm, and the tag's other alarms.
+// Returns all alarms of a row in the alarm list: the alarm that the tag shows, and the tag's other alarms.
 const allOf = (row) => [row, ...(row.others ?? [])];
 
-// Returns the alarms of a row to which an action applies.
+// Returns those alarms of a row to which an action applies.
 export const targetsOf = (row, action, mode, role) => allOf(row).filter((alarm) => actionsFor(alarm, mode, role).includes(action));
 
-// Returns the distinct actions that apply to a row.
+// Returns the actions that apply to any alarm of a row, each once.
 export const rowActions = (row, mode, role) => [...new Set(allOf(row).flatMap((alarm) => actionsFor(alarm, mode, role)))];
 
 const IS = { // predicates by filter choice
     all: () => true, waiting: ({ waiting }) => waiting, active: ({ state }) => !isGone(state), gone: ({ state }) => isGone(state),
 };
 
-// Returns whether a row passes the filter. which: a key of IS, or a priority; words: every one must be in the text of the row.
+// Returns true if a row passes the filter. which: a key of IS, or a priority; words: each must occur in the text of the row.
 export function passes(row, text, { which, words }) {
     const is = IS[which] ?? (({ priority }) => priority === Number(which)), lower = text.toLowerCase();
     return is(row) && words.toLowerCase().split(/\s+/).every((word) => lower.includes(word));
 }
 
-// Splits alarms into lists that are small enough for one message each.
+// Splits a list of alarms into lists that are small enough for one message each.
 const MOST_AT_ONCE = 256;
 export function inMessages(alarms) {
     const out = [];

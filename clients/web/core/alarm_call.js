@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Selects the alarm that a wall's pane shows in place of its view: unacknowledged alarms in turn, active before returned, then by urgency
-// and age. Selects none during a flood of alarms, since a picture that keeps changing would help nobody.
+// Selects the alarm whose position a wall's pane shows instead of its view: the unacknowledged alarms in turn, active before returned, then
+// by urgency and age. Selects none during a flood of alarms, because a picture that keeps changing would help nobody.
 import { isGone } from './alarms.js';
 
-export const TURN_MS = 10000;  // minimum time between two changes of the picture
-export const FLOOD = 10; // more than this many alarms within FLOOD_US are a flood
+export const TURN_MS = 10000;  // smallest time between two changes of the picture
+export const FLOOD = 10; // more alarms than this within FLOOD_US are a flood
 const FLOOD_US = 600e6;
 
 const byGravity = (a, b) => a.priority - b.priority || a.raisedUs - b.raisedUs;
@@ -12,7 +12,7 @@ const keyOf = ({ tag, kind }) => `${tag.index}/${kind}`;
 
 export class AlarmCall {
     constructor() {
-        this.shown = null; // key of the shown alarm; null: the pane shows its view
+        this.shown = null; // key of the alarm that the pane shows; null: the pane shows its view
         this.changedAt = -Infinity;
     }
 
@@ -20,7 +20,7 @@ export class AlarmCall {
         return alarms.filter((alarm) => !isGone(alarm.state) && nowUs - alarm.raisedUs <= FLOOD_US).length > FLOOD;
     }
 
-    // Returns the alarm to show, or null. alarms: the annunciated ones, one per tag; nowMs: a monotonic time.
+    // Returns the alarm to show, or null. alarms: those that are annunciated, one per tag; nowMs: monotonic time.
     next(alarms, nowMs, nowUs) {
         const waiting = this.isFlood(alarms, nowUs) ? [] : alarms.filter(({ tag, waiting: calls }) =>
             calls && tag.asset && tag.position).sort((a, b) => isGone(a.state) - isGone(b.state) || byGravity(a, b));
@@ -35,11 +35,11 @@ export class AlarmCall {
     }
 }
 
-// Returns equipment with its alarms, the most urgent first: [{ asset, count, worst }].
+// Returns the equipment that has alarms, the most urgent first: [{ asset, count, worst }].
 export function byEquipment(alarms) {
     const all = new Map();
     for (const alarm of alarms) {
-        const key = alarm.tag.asset ?? alarm.tag.name; // each device, and each tag without equipment, forms its own entry
+        const key = alarm.tag.asset ?? alarm.tag.name; // a device, or a tag without equipment, has an entry of its own
         const known = all.get(key) ?? { asset: alarm.tag.asset, count: 0, worst: alarm };
         all.set(key, { ...known, count: known.count + 1, worst: byGravity(alarm, known.worst) < 0 ? alarm : known.worst });
     }

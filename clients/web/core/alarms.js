@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Stores the alarms that are not normal, as the server sends them, and selects the annunciated ones, one per tag and sorted.
+// Keeps the alarms that are not normal, as the server sends them, and selects one annunciated alarm per tag.
 
 const CALLS = ['unacknowledged', 'active', 'returned', 'latched', 'acknowledged']; // annunciated states
 
 export const calls = (state) => CALLS.includes(state);
 const isWaiting = (state) => state === 'unacknowledged' || state === 'returned';
 export const isGone = (state) => state === 'returned' || state === 'latched'; // returned to normal: drawn hollow
-// Object used in place of a tag in the alarms of a device.
+// Makes an object that takes the place of a tag in the alarms of a device.
 const deviceOf = (name) => ({ name, index: null, group: null, asset: null, description: '' });
 
 const isOuter = ({ kind }) => kind === 'HH' || kind === 'LL';
-// Compares two alarms for sorting: active before cleared, then the more urgent, then the outer limit, which implies the inner one.
+// Compares two alarms for sorting: active before cleared, then the more urgent one, then the outer limit (HH, LL), whose alarm implies that
+// of the inner one.
 export const graver = (a, b) => isGone(a.state) - isGone(b.state) || a.priority - b.priority || isOuter(b) - isOuter(a) ||
     isWaiting(b.state) - isWaiting(a.state) || b.raisedUs - a.raisedUs;
 
@@ -18,9 +19,8 @@ export class Alarms {
     constructor(tags) {
         Object.assign(this, { tags, mode: 'display', known: false });
         this.rows = new Map(); // "tag index/kind" -> alarm
-        this.then = null; // readings of a past instant that is shown; they then determine each tag's alarm
-        // tag index or device name -> its most urgent annunciated alarm, with `waiting`: true if the tag or device has any unacknowledged
-        // alarm
+        this.then = null; // readings of the past instant that is shown, which then determine each tag's alarm; null: the present is shown
+        // tag index or device name -> its most urgent annunciated alarm; `waiting` true: any of its alarms is unacknowledged
         this.byTag = new Map();
         // and `others` (its other alarms)
     }
@@ -45,7 +45,7 @@ export class Alarms {
             [key, { ...gravest, others, waiting: [gravest, ...others].some(({ state }) => isWaiting(state)) }]));
     }
 
-    // Returns one alarm per tag: unacknowledged first, then active, then by priority, newest first.
+    // Returns one alarm per tag: unacknowledged first, then active, then by priority, then newest first.
     list() {
         return [...this.byTag.values()].sort((a, b) => b.waiting - a.waiting || isGone(a.state) - isGone(b.state) ||
             a.priority - b.priority || b.raisedUs - a.raisedUs);
@@ -59,8 +59,8 @@ export class Alarms {
         return this.byTag.get(index) ?? null;
     }
 
-    // Returns numbers of tags and devices with alarms: { active, waiting (unacknowledged), latched, of: active ones by priority, gone: ones
-    // that have returned to normal, by priority }
+    // Returns how many tags and devices have alarms: { active, waiting (unacknowledged), latched, of: active ones by priority, gone: those
+    // that returned to normal, by priority }
     counts() {
         const list = this.list(), of = [0, 0, 0, 0], gone = [0, 0, 0, 0];
         for (const { priority, state } of list)

@@ -9,15 +9,15 @@ const TURNS = [ // degrees: about the vertical, up
     [180, 0], [70, 30], [-70, 30], [180, 30], [50, -20], [-50, -20], [0, -45], [90, -45], [-90, -45], [180, -45],
 ];
 
-// Returns the distance from which equipment with these bounds can be recognised: by the second longest side, since pipes and columns are
-// long.
+// Returns a distance from which equipment with these bounds can be recognised. It depends on the second longest side, since pipes and
+// columns are long.
 export function approachDistance({ min, max }) {
     const [, middle] = subtract(max, min).sort((a, b) => a - b);
     return PART * middle < MOST_M ? Math.max(LEAST_M, PART * middle) : MOST_M;
 }
 
-// Returns copies of a camera, turned about a point.
+// Returns copies of a camera, each turned about a point by another angle.
 export const sidesOf = (first, point) => TURNS.map(([azimuth, rise]) => orbit(first, azimuth, rise, point));
 
-// Returns the cameras to try for a point on equipment with these bounds.
+// Returns the cameras to try, in order, for a point on equipment with these bounds.
 export const approaches = (camera, point, bounds) => sidesOf(face(camera, point, bounds, approachDistance(bounds)), point);

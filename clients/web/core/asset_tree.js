@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The tree of equipment as rows: areas, assets, their tags, and tags without an asset; and which rows are expanded.
+// The tree of equipment as a list of rows (areas, assets, their tags, and tags without an asset), and which rows are expanded.
 
-// A row is { kind: area | asset | tag, level, id, open (areas and assets), item (asset or tag), text (of an area), setSize, place }.
+// A row is { kind: area | asset | tag, level, id, open (of areas and assets: expanded), item (asset or tag), text (of an area), setSize,
+// place }.
 export class Tree {
-    // loose: heading for tags without equipment.
+    // loose: heading above the tags without equipment.
     constructor(model, loose) {
         this.folded = new Set(); // ids of collapsed areas
         this.open = new Set();   // ids of expanded assets
@@ -29,13 +30,14 @@ export class Tree {
             set.delete(id);
     }
 
-    // Expands an asset and its area.
+    // Expands an asset, and the area that contains it.
     unfold(asset) {
         this.open.add(asset.id);
         this.folded.delete(asset.area ?? '');
     }
 
-    // find(asset): search function (search.js) that returns { asset, tags, byTag } or null; null: no search.
+    // Returns the rows. find(asset) is a search function (search.js) that returns { asset, tags, byTag }, or null for an asset to leave
+    // out; find null: no search.
     rows(find = null) {
         const rows = [];
         for (const { name, assets } of this.areas) {

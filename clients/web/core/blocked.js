@@ -1,31 +1,31 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Finds the reason if no WebSocket opens although the page was loaded from the same server. Usually a proxy in between is set up without
-// WebSockets: the message names the proxy and the settings that it needs.
+// Finds out why no WebSocket opens although the page was loaded from the same server. Usually a proxy in between does not pass WebSockets
+// on: the message names the proxy and the settings that it needs.
 import { put } from './refusals.js';
 import { say } from './words.js';
 
 const ANSWER_MS = 5000;
 const NGINX = 'proxy_http_version 1.1; proxy_set_header Upgrade $http_upgrade; proxy_set_header Connection "upgrade";';
 
-// Returns the proxy's name from the headers of an answer; our server sends none of these headers.
+// Returns the proxy's name from the headers of an HTTP answer; our server sends none of these headers.
 const proxyOf = (headers) => headers.get('server')?.split(/[/ ]/)[0] || /^\S+ ([^ ,]+)/.exec(headers.get('via') ?? '')?.[1] || '';
 
-// url: of the WebSocket. Returns the reason; '' if the server does not answer over HTTP either.
+// Returns the reason why the WebSocket at `url` does not open; '' if the server does not answer over HTTP either.
 async function whyBlocked(url) {
     const address = new URL(url.replace(/^ws/, 'http'));
-    address.search = '?why'; // ?why keeps the server from logging this request as a failed WebSocket
+    address.search = '?why'; // with ?why the server does not log this request as a failed WebSocket
     const answer = await fetch(address, { cache: 'no-store', signal: AbortSignal.timeout(ANSWER_MS) });
     if (answer.status >= 500)
         return '';
     const refused = answer.status === 426 ? /^refused: (.+)$/m.exec(await answer.text())?.[1] : null;
-    if (refused) // the handshake reached the server: no proxy blocks it
+    if (refused) // the request reached the server as a WebSocket handshake, so no proxy blocks it
         return refused;
     const proxy = proxyOf(answer.headers), isNginx = /nginx|openresty/i.test(proxy);
     const needs = isNginx ? put('page.blocked_lines', { lines: NGINX }) : put('page.blocked_page');
     return put('page.blocked', { proxy: proxy || put('page.blocked_proxy'), needs });
 }
 
-// Finds the reason over HTTP and stores it in the connection.
+// Finds the reason over HTTP and stores it in connection.blocked.
 export async function explain(connection) {
     const tried = connection.unopened;
     connection.blocked = await whyBlocked(connection.url).catch(() => '');

@@ -1,24 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Places the labels of alarm rings: each ring gets its own label, or several rings that are close together share one label, a call-out
-// (protocol/LABELS.md).
+// Places the labels of alarm rings (circles around markers of tags in alarm). Each ring gets its own label, or several rings that are close
+// together share one, a call-out (protocol/LABELS.md).
 import { boxAt, CLEARANCE, hasArea, meets, SLOTS } from './labels.js';
 
-// units: rings closer than CLOSE share a call-out; those that already do stay together up to STILL_CLOSE
+// distances in units: rings closer than CLOSE share a call-out; rings that share one already do so up to STILL_CLOSE
 const CLOSE = 26, STILL_CLOSE = 34;
-const MOST_GROUPS = 24, FARTHER = 1.25;     // maximum number of ring labels; distances grow by FARTHER until the limit is met
-const STEP_X = 24, STEP_Y = 15, STEPS = 60; // units: spacing of the grid of label positions around the centre of the rings
-const FARTHEST = 170; // units: largest distance of a label from its rings, unless it is the only label left
-const MOST_GROWTHS = 100;                   // maximum number of growth steps; by then distances exceed any picture
+// MOST_GROUPS: maximum number of labels; the distances grow by the factor FARTHER until the number is met
+const MOST_GROUPS = 24, FARTHER = 1.25;
+const STEP_X = 24, STEP_Y = 15, STEPS = 60; // units: spacing of the grid of candidate positions around the centre of the rings
+const FARTHEST = 170; // units: largest distance of a label from its rings, unless it is the only label that remains
+const MOST_GROWTHS = 100;                   // maximum number of times that the distances grow; by then they exceed any picture
 
-const OFFSETS = []; // [x, y, squared distance], nearest first
+const OFFSETS = []; // candidate positions [x, y, squared distance], nearest first
 for (let j = -STEPS; j <= STEPS; j++) {
     for (let i = -STEPS; i <= STEPS; i++)
         OFFSETS.push([i * STEP_X, j * STEP_Y, (i * STEP_X) ** 2 + (j * STEP_Y) ** 2]);
 }
-OFFSETS.sort((a, b) => a[2] - b[2]); // sort() is stable: offsets of equal distance keep the row order
+OFFSETS.sort((a, b) => a[2] - b[2]); // sort() is stable, so equally distant positions stay in the order of rows
 
-// Returns the connected components as [[index, ...], ...], each ascending, in the order of their first index. linked(i, k), k < i: whether
-// two are joined.
+// Returns the connected components of a graph as [[index, ...], ...], each ascending, in the order of their first index. linked(i, k), for
+// k < i, returns whether nodes i and k are joined.
 function components(count, linked) {
     const first = Array.from({ length: count }, (_, i) => i);
     const root = (i) => (first[i] === i ? i : (first[i] = root(first[i])));
@@ -42,7 +43,7 @@ function group(members, measure) {
     const xs = members.map(({ x }) => x), ys = members.map(({ y }) => y);
     const [left, right, top, bottom] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
     const [one] = members, alone = members.length === 1, { width, height } = alone ? one : measure(members);
-    // the member whose previous position is reused: its previous label was of the same kind (single or call-out)
+    // the ring whose previous position is reused: its previous label was of the same kind (own label or call-out)
     const before = members.find(({ callout }) => (callout === undefined) === alone);
     return {
         members, x: (left + right) / 2, y: (top + bottom) / 2, across: (right - left) / 2, down: (bottom - top) / 2, width, height,
@@ -62,8 +63,9 @@ const hasFiniteBox = ({ x, y, across, down, width, height }) => [x, y, across, d
 const placeable = (items, area, unit) => (hasArea(area) && unit > 0 && unit < Infinity
     ? items.filter(({ x, y, width, height }) => [x, y, width, height].every(Number.isFinite)) : []);
 
-// all: items with rings, most important first; measure(members): { width, height } of their call-out; taken: occupied space (labels.js).
-// Returns [{ members, box, slot }, ...]; each item at a finite position belongs to one. An area of 0x0 has no labels.
+// Places labels. all: items with rings, the most important first; measure(members) returns { width, height } of their call-out; taken:
+// occupied space (labels.js). Returns [{ members, box, slot }, ...]; each item at a finite position is a member of one. In an area of 0x0
+// there are no labels.
 export function placeRings(all, { area, unit, taken, measure }) {
     const order = placeable(all, area, unit);
     let lists, least = unit;
@@ -89,11 +91,11 @@ export function placeRings(all, { area, unit, taken, measure }) {
         const joined = components(groups.length, (i, k) => mates.get(i) === k || mates.get(k) === i)
             .map((list) => group(order.filter((item) => list.some((i) => groups[i].members.includes(item))), measure)).filter(hasFiniteBox);
         if (joined.length >= groups.length)
-            return out; // no two groups can be merged: the groups without room stay without labels
+            return out; // no groups are left to merge, so those without room get no label
         groups = joined;
     }
 
-    // Returns the index of a free position; null: there is none nearby; Infinity: there is none, and no other label to merge with.
+    // Returns the index of a free position; null: none is free nearby; Infinity: none is free, and there is no other label to merge with.
     function find(one, out, alone) {
         const free = (slot, more, over) => {
             const box = boxOf(one, slot, unit), owner = slot < SLOTS.length ? one.owner : null;
@@ -109,7 +111,7 @@ export function placeRings(all, { area, unit, taken, measure }) {
                     return slot;
             }
         }
-        for (const over of alone ? [1, 2] : [1]) { // a single ring's label may, as a last resort, cover its own ring
+        for (const over of alone ? [1, 2] : [1]) { // as a last resort, the label of a single ring may cover that ring
             for (let n = 0; n < OFFSETS.length && (alone || OFFSETS[n][2] <= FARTHEST ** 2); n++) {
                 if (free(SLOTS.length + n, CLEARANCE * unit, over))
                     return SLOTS.length + n;
@@ -118,7 +120,7 @@ export function placeRings(all, { area, unit, taken, measure }) {
         return alone ? Infinity : null;
     }
 
-    // Returns a position inside the area that may cover other things.
+    // Returns the index of a position inside the area, which may cover other things.
     function forced(one) {
         const left = Math.max(area.left, Math.min(area.right - one.width, one.x - one.width / 2));
         const top = Math.max(area.top, Math.min(area.bottom - one.height, one.y - one.height / 2));

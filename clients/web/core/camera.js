@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cameras (camera_moves.js moves them). A camera is { eye, target, up, fov }: metres in the plant frame, fov vertical in degrees; target is
-// the centre of orbits. A camera with height_m (the picture's height in metres) is orthographic and only stores fov. Every function returns
-// a new camera. Picture positions are pixels from the top left.
+// Cameras (camera_moves.js moves them). A camera is { eye, target, up, fov }: positions in metres in plant coordinates, fov vertical in
+// degrees; target is the centre of orbits. A camera with height_m (height of the picture in metres) is orthographic and only keeps fov.
+// Every function returns a new camera. Positions in the picture are pixels from the top left.
 import { along, cross, dot, finite, length, middle, scale, subtract, unit } from './vector.js';
 
 export const RADIANS = Math.PI / 180;
-export const LEAST_M = 1e-5; // minimum of a distance or a picture height that the server accepts
+export const LEAST_M = 1e-5; // smallest distance, or height of a picture, that the server accepts
 export const MAX_COORDINATE_M = 1e7;
 export const USUAL_FOV = 45;
 
-// Returns whether the server accepts the camera.
+// Returns true if the server accepts the camera.
 export function valid(camera) {
     if (!camera || !finite(camera.eye) || !finite(camera.target) || !finite(camera.up) || !Number.isFinite(camera.fov))
         return false;
@@ -21,41 +21,41 @@ export function valid(camera) {
     return length(view) > 1e-9 && length(camera.up) > 1e-9 && length(cross(unit(view), unit(camera.up))) > 1e-6;
 }
 
-// Returns the moved camera, or the previous one if the server would reject the move, as in a picture of 0x0.
+// Returns the moved camera, or `before` if the server would reject the moved one, as in a picture of 0x0.
 export const validOr = (moved, before) => (valid(moved) ? moved : before);
 
-// Returns whether two cameras are equal.
+// Returns true if two cameras are equal.
 export function same(a, b) {
     const sameLens = !!a && !!b && a.fov === b.fov && a.height_m === b.height_m;
     return a === b || (sameLens && ['eye', 'target', 'up'].every((k) => a[k].every((x, i) => x === b[k][i])));
 }
 
-// Returns the unit vectors of the picture: forward into it, right, and up in it (camera.up is the vertical of the plant).
+// Returns the picture's unit vectors: `forward` into the picture, `right`, and `up` within it (camera.up is the plant's vertical instead).
 export function basis(camera) {
     const forward = unit(subtract(camera.target, camera.eye));
     const right = unit(cross(forward, camera.up));
     return { forward, right, up: cross(right, forward) };
 }
 
-// Returns whether the camera is orthographic.
+// Returns true if the camera is orthographic.
 export const isParallel = (camera) => camera.height_m !== undefined;
 
-// Return, for a depth along the view, the height of the picture in metres, and the metres per pixel.
+// heightAt() returns the picture's height in metres at a depth along the view; metresPerPixel() returns the metres per pixel there.
 export const heightAt = (camera, depth) => camera.height_m ?? 2 * depth * Math.tan((camera.fov * RADIANS) / 2);
 export const metresPerPixel = (camera, heightPx, depth) => heightAt(camera, depth) / heightPx;
 
-// Converts a camera to a message of plantcast.v1.
+// Converts a camera to the form that messages of plantcast.v1 have.
 export function cameraMessage({ eye, target, up, fov, height_m }) {
     return { eye, target, up, ...(height_m === undefined ? { fov } : { projection: 'orthographic', height_m }) };
 }
 
-// Converts a message to a camera.
+// Converts a camera in a message of plantcast.v1 to a camera.
 export function cameraOfMessage({ eye, target, up, fov, height_m }) {
     return { eye, target, up, fov: fov ?? USUAL_FOV, ...(height_m === undefined ? {} : { height_m }) };
 }
 
-// Returns a function that projects a point of the plant to [x, y, depth in metres] in the picture; null for points behind the camera or a
-// picture of 0x0.
+// Returns a function from a point of the plant to [x, y, depth in metres] in the picture; it returns null for points behind the camera, or
+// if the picture is 0x0.
 export function projector(camera, widthPx, heightPx) {
     const { forward, right, up } = basis(camera);
     const perMetre = 1 / metresPerPixel(camera, heightPx, 1), parallel = isParallel(camera);
@@ -68,15 +68,14 @@ export function projector(camera, widthPx, heightPx) {
     };
 }
 
-// Returns the window of the picture that the legend leaves free, in coordinates from -1 to 1. title: length of the legend's title in
-// letters.
+// Returns the part of the picture that the legend leaves free, in coordinates from -1 to 1. title: length of the legend's title in letters.
 export const besideLegend = (width, height, lies, title = 14) => (lies ? { top: 1 - 2 * share(130, height) }
     : { right: 1 - 2 * share(Math.max(128, 7.6 * title + 24) + (height <= 320 ? 110 : 28), width) });
 const share = (part, whole) => (whole > 0 && part / whole <= 0.4 ? part / whole : 0.4);
 
 const FIT = 1.08; // margin, as a factor
 
-// Returns a perspective camera with the same direction, just far enough away that all points are in the window.
+// Returns a perspective camera with the same direction, just far enough away that all points are in the free part of the picture.
 function fitPoints(camera, points, aspect, { left = -1, right = 1, bottom = -1, top = 1 }) {
     const axes = basis(camera), tall = Math.tan((camera.fov * RADIANS) / 2);
     const centre = middle(...[Math.min, Math.max].map((f) => [0, 1, 2].map((i) => f(...points.map((p) => p[i])))));
@@ -92,8 +91,8 @@ function fitPoints(camera, points, aspect, { left = -1, right = 1, bottom = -1, 
     return { ...camera, eye: along(target, axes.forward, -back), target };
 }
 
-// Returns the camera of the home view, which shows the whole plant. A home camera from the plant file is used unchanged if everything it
-// shows at 16:9 is visible here; else it is moved back.
+// Returns the camera of the home view, which shows the whole plant. A home camera from the plant file is used as it is if everything that
+// it shows at 16:9 is visible here, or else moved back.
 export function home({ home: { given, ...view }, outline }, width, height, window = {}) {
     const aspect = width / height, sees = (shape, { right = 1, top = 1 }) => {
         const project = projector(view, 2 * shape, 2);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Animates a camera from one view to another, with a level horizon and the shorter turn.
+// Flies a camera from one view to another: keeps the horizon level and turns the shorter way.
 import { isParallel, valid } from './camera.js';
 import { distance, toParallel, toPerspective } from './camera_moves.js';
 import { add, cross, dot, mix, scale, subtract, unit } from './vector.js';
@@ -18,7 +18,7 @@ function angles(camera, axes) {
     return { azimuth: Math.atan2(dot(v, axes.y), dot(v, axes.x)), elevation: Math.asin(Math.max(-1, Math.min(1, dot(v, axes.z)))) };
 }
 
-// Returns a function from milliseconds since the start to the camera; from `durationMs` on it is exactly `to`.
+// Returns a function from milliseconds since the start to the camera; from durationMs on it returns exactly `to`.
 export function flight(start, to, durationMs = FLIGHT_MS) {
     const from = isParallel(start) === isParallel(to) ? start : isParallel(to) ? toParallel(start) : toPerspective(start);
     const axes = frame(to.up);

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Camera moves: orbit, pan, zoom, look around, fit. Every function that moves returns a new camera, or the given one if the server would
-// not accept the moved one. Positions in the picture are pixels from the top left.
+// Camera moves: orbit, pan, zoom, look around, fit. Each move returns a new camera, or the given one if the server would not accept the new
+// one. Positions in the picture are pixels from the top left.
 import { basis, heightAt, isParallel, LEAST_M, MAX_COORDINATE_M, metresPerPixel, RADIANS, USUAL_FOV, validOr } from './camera.js';
 import { add, along, cross, dot, length, middle, scale, subtract, unit } from './vector.js';
 
 export const USUAL_LIMITS = { near_m: 0.05, far_m: 1e5 }; // limits of zooming
 export const MAX_ELEVATION_DEG = 89; // at 90 degrees the horizon has no direction, and the picture would spin
 
-// Rodrigues' formula: returns v turned by `angle` radians about a unit axis, right-handed.
+// Returns v turned by `angle` radians about a unit axis, right-handed (Rodrigues' formula).
 function turn(v, axis, angle) {
     const c = Math.cos(angle), s = Math.sin(angle);
     return add(add(scale(v, c), scale(cross(axis, v), s)), scale(axis, dot(axis, v) * (1 - c)));
@@ -15,13 +15,13 @@ function turn(v, axis, angle) {
 
 const corners = (box) => [0, 1, 2, 3, 4, 5, 6, 7].map((n) => [0, 1, 2].map((i) => (n & (1 << i) ? box.max[i] : box.min[i])));
 
-// Returns the box around all assets of a plant, including those outside the plant's bounds.
+// Returns the bounds of all assets of a plant, including those outside the plant's own bounds.
 export const wholeOf = ({ assets, plant }) => ({
     min: plant.bounds.min.map((m, i) => Math.min(m, ...assets.map(({ bounds }) => bounds.min[i]))),
     max: plant.bounds.max.map((m, i) => Math.max(m, ...assets.map(({ bounds }) => bounds.max[i]))),
 });
 
-// Returns the zoom limits for a plant: the usual ones, widened for very small or large plants.
+// Returns the limits of zoom for a plant: wider than usual for very small or large plants.
 export function zoomLimits(model) {
     const size = ({ min, max }) => length(subtract(max, min));
     return { near_m: Math.max(LEAST_M, Math.min(USUAL_LIMITS.near_m, size(model.plant.bounds) / 100)),
@@ -36,7 +36,7 @@ function fitParallel(camera, box, aspect, margin) {
     return validOr({ ...camera, height_m, eye: along(centre, forward, -(2 * reach(forward) + height_m)), target: centre }, camera);
 }
 
-// Fits a box into the picture with a margin; keeps the viewing direction.
+// Returns the camera moved so that a box fits into the picture with a margin, with the same viewing direction.
 export function fit(camera, box, aspect, margin = 1.08) {
     const { forward, right, up } = basis(camera);
     const centre = middle(box.min, box.max);
@@ -55,12 +55,12 @@ export function fit(camera, box, aspect, margin = 1.08) {
 // Returns the distance from the eye to the target.
 export const distance = (camera) => length(subtract(camera.target, camera.eye));
 
-// Returns the elevation of the eye above the target, in degrees.
+// Returns how many degrees the eye is above the target.
 export function elevation(camera) {
     return Math.asin(Math.max(-1, Math.min(1, -dot(basis(camera).forward, unit(camera.up))))) / RADIANS;
 }
 
-// Orbits about the vertical through `pivot`, then about the picture's horizontal, so the horizon stays level.
+// Orbits about the vertical through `pivot`, then about the picture's horizontal axis, so the horizon stays level.
 export function orbit(camera, azimuthDeg, elevationDeg, pivot = camera.target) {
     const vertical = unit(camera.up);
     const before = elevation(camera);
@@ -74,16 +74,16 @@ export function orbit(camera, azimuthDeg, elevationDeg, pivot = camera.target) {
     return validOr({ ...camera, eye: move(camera.eye), target: move(camera.target) }, camera);
 }
 
-// Turns the view around the eye, as the pointer drags it; an orthographic camera, which has no eye to turn around, orbits instead.
+// Turns the view about the eye, as far as the pointer drags it. An orthographic camera, whose eye has no meaning, orbits instead.
 export function lookAround(camera, dxPx, dyPx, heightPx) {
     const degrees = (isParallel(camera) ? -USUAL_FOV : camera.fov) / heightPx;
     return orbit(camera, dxPx * degrees, -dyPx * degrees, isParallel(camera) ? camera.target : camera.eye);
 }
 
-// Returns the depth of a point along the viewing direction.
+// Returns the depth of a point: its distance along the viewing direction.
 export const depthOf = (camera, point) => dot(subtract(point, camera.eye), basis(camera).forward);
 
-// Return the camera with the other projection, showing the same at the depth of the target.
+// toParallel() and its inverse return the camera with the other projection, which shows the same at the depth of the target.
 export function toParallel(camera) {
     return validOr({ ...camera, height_m: heightAt(camera, distance(camera)) }, camera);
 }
@@ -95,7 +95,7 @@ export function toPerspective(camera) {
     return validOr({ ...rest, fov, eye: along(rest.target, basis(camera).forward, -back) }, camera);
 }
 
-// Pans so that a point at that depth follows the pointer exactly.
+// Pans so that a point at `depth` follows the pointer exactly.
 export function pan(camera, dxPx, dyPx, heightPx, depth = distance(camera)) {
     const { right, up } = basis(camera);
     const step = metresPerPixel(camera, heightPx, depth);
@@ -103,8 +103,7 @@ export function pan(camera, dxPx, dyPx, heightPx, depth = distance(camera)) {
     return validOr({ ...camera, eye: add(camera.eye, move), target: add(camera.target, move) }, camera);
 }
 
-// Returns the viewing ray through a pixel: { origin, direction }, `direction` is scaled so that it is one metre long when projected onto
-// `forward`.
+// Returns the viewing ray through a pixel: { origin, direction }. `direction` is as long as is needed to advance by one metre of depth.
 export function sight(camera, xPx, yPx, widthPx, heightPx) {
     const { forward, right, up } = basis(camera);
     const step = metresPerPixel(camera, heightPx, 1);
@@ -121,8 +120,8 @@ function zoomParallel(camera, factor, xPx, yPx, widthPx, heightPx, { near_m, far
     return validOr({ ...zoomed, eye: add(camera.eye, move), target: add(camera.target, move) }, camera);
 }
 
-// Zooms; factor < 1 moves nearer. The point under (xPx, yPx) stays fixed. The target moves to its depth, so that the next orbit turns about
-// that point.
+// Zooms; a factor below 1 moves nearer. The point under (xPx, yPx), at `depth`, stays there. The target moves to that depth, so that the
+// next orbit turns about that point.
 export function zoom(camera, factor, xPx, yPx, widthPx, heightPx, depth = distance(camera), limits = USUAL_LIMITS) {
     if (isParallel(camera))
         return zoomParallel(camera, factor, xPx, yPx, widthPx, heightPx, limits);
@@ -131,12 +130,12 @@ export function zoom(camera, factor, xPx, yPx, widthPx, heightPx, depth = distan
     return validOr({ ...camera, eye, target: along(eye, basis(camera).forward, wanted) }, camera);
 }
 
-// Returns where a ray enters a box, as a multiple of the ray's `direction`; null if it misses or starts inside.
+// Returns where a ray enters a box, as a multiple of `direction`; null if it misses the box or starts inside.
 export function enterBox(origin, direction, box) {
     let near = -Infinity, far = Infinity;
     for (let i = 0; i < 3; i++) {
         const a = (box.min[i] - origin[i]) / direction[i], b = (box.max[i] - origin[i]) / direction[i];
-        if (Number.isNaN(a) || Number.isNaN(b)) // 0/0: the ray is parallel to this pair of faces, and exactly in one of the two faces
+        if (Number.isNaN(a) || Number.isNaN(b)) // 0/0: the ray lies exactly in one of these two parallel faces
             continue;
         near = Math.max(near, Math.min(a, b));
         far = Math.min(far, Math.max(a, b));
@@ -144,7 +143,7 @@ export function enterBox(origin, direction, box) {
     return near <= far && near > 0 && near < Infinity ? near : null;
 }
 
-// Returns the depth of the nearest box under a pixel; null if there is none.
+// Returns the depth of the nearest bounding box under a pixel; null if there is none.
 export function depthAt(camera, xPx, yPx, widthPx, heightPx, boxes) {
     const { origin, direction } = sight(camera, xPx, yPx, widthPx, heightPx);
     let depth = Infinity;
@@ -153,7 +152,8 @@ export function depthAt(camera, xPx, yPx, widthPx, heightPx, boxes) {
     return Number.isFinite(depth) && depth > LEAST_M ? depth : null;
 }
 
-// Looks at a point of equipment from its side, slightly from above: along the normal of the ellipsoid in its bounding box.
+// Returns a camera that looks at a point of equipment from that side, slightly from above: along the normal of the ellipsoid in the
+// bounding box.
 export function face(camera, point, box, distanceM, elevationDeg = 20) {
     const vertical = unit(camera.up), centre = middle(box.min, box.max);
     const outwards = point.map((x, i) => (x - centre[i]) / Math.max(1e-6, (box.max[i] - box.min[i]) ** 2));

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Geometry of the clip gizmo: handles for each plane, each side of a box and the whole box; their positions and how dragging moves them.
+// Geometry of the clip gizmo: handles for each clip plane, each side of a clip box and the whole box, their positions, and how dragging
+// moves them.
 import { basis, isParallel } from './camera.js';
 import { AXES } from './section.js';
 import { add, along, cross, dot, finite, length, middle, mix, scale, subtract, unit } from './vector.js';
 
-const LEAST_BOX_M = 0.05, MARGIN = 1e-3; // MARGIN: a plane stays inside the plant's bounds by at least this fraction of their size
-const NEAR_M = 0.02; // lines are clipped where they are nearer to the camera than this, in metres
-const STEEP = 0.03;                      // minimum squared sine between view and handle direction; below it a drag is undefined
+// LEAST_BOX_M: smallest side of a box; MARGIN: a plane stays inside the plant's bounds by at least this fraction of their size
+const LEAST_BOX_M = 0.05, MARGIN = 1e-3;
+const NEAR_M = 0.02; // metres; of a line, the part nearer to the camera than this is cut off
+const STEEP = 0.03;                      // smallest squared sine of the angle between view and handle direction at which a drag is defined
 
 const isSound = ({ direction, at, low, high, corners }) => [at, low, high].every(Number.isFinite) && [direction, ...corners].every(finite);
-// Returns the moved clip, or the previous one if the result is not finite.
+// Returns the moved clip, or `before` if the moved one is not finite.
 const soundOr = (moved, before) =>
     ((moved.planes ?? [moved.box.min, moved.box.max]).flat().every(Number.isFinite) ? moved : before);
 
@@ -18,7 +20,7 @@ const middleOf = (points) => scale(points.reduce(add), 1 / points.length);
 const cornersOf = ({ min, max }) =>
     [0, 1, 2, 3, 4, 5, 6, 7].map((n) => [0, 1, 2].map((i) => (n & (1 << i) ? max[i] : min[i])));
 
-// Returns the ordered corners of the polygon where the plane p·direction = at meets a box.
+// Returns the corners of the polygon in which the plane p·direction = at cuts a box, in order around it.
 function crossing(direction, at, box) {
     const corners = cornersOf(box), found = [];
     for (let a = 0; a < 8; a++) {
@@ -62,8 +64,8 @@ function sideGrip(box, index, high, bounds) {
         high: high ? Math.max(bounds.max[index] + more, box.max[index]) : box.max[index] - LEAST_BOX_M };
 }
 
-// Returns the finite handles of a clip: [{ id, axis (null: oblique), turned (keeps the smaller side), direction (unit vector), at, low,
-// high (position and its limits in metres along `direction`), corners }].
+// Returns the handles of a clip that are finite: [{ id, axis (null: oblique), turned (true: keeps the side of smaller coordinates),
+// direction (unit vector), at (position in metres along `direction`), low, high (limits of `at`), corners }].
 export function gripsOf(clip, bounds) {
     if (clip?.planes)
         return clip.planes.map((plane, index) => planeGrip(plane, index, bounds)).filter(isSound);
@@ -89,14 +91,14 @@ export function wholeOf(clip) {
     return finite(centre) ? { id: 'whole', corners: [centre], direction: [0, 0, 0], low: 0, high: 0 } : null;
 }
 
-// Returns the clip with the whole box moved; its centre stays inside the plant.
+// Returns the clip with the whole box moved, but its centre inside the plant.
 export function moveBox(clip, by, bounds) {
     const { box } = clip, at = middle(box.min, box.max);
     const way = by.map((m, i) => Math.max(bounds.min[i] - at[i], Math.min(bounds.max[i] - at[i], m)));
     return soundOr({ box: { min: add(box.min, way), max: add(box.max, way) } }, clip);
 }
 
-// Returns where a viewing ray meets the plane through a point that faces the camera; the point itself if it does not.
+// Returns where a viewing ray meets the plane through `point` that is parallel to the picture; `point` itself if it does not.
 export function facing(camera, point, { origin, direction }) {
     const { forward } = basis(camera);
     const met = along(origin, direction, dot(subtract(point, origin), forward) / dot(direction, forward));
@@ -112,18 +114,18 @@ export function spotsOf({ corners }) {
     return [middle, ...[0.3, 0.6, 0.9].flatMap((part) => around.map((p) => mix(middle, p, part)))].filter(finite);
 }
 
-// Returns how far along `direction` from `point` a viewing ray passes nearest, in metres; null if they are almost parallel.
+// Returns how many metres along `direction` from `point` a viewing ray passes nearest; null if they are almost parallel.
 export function alongSight(point, direction, { origin, direction: towards }) {
     const w = subtract(point, origin), c = dot(towards, towards), b = dot(direction, towards), sine2 = 1 - (b * b) / c;
     if (sine2 < STEEP)
         return null;
-    // distance along the viewing ray; positive: in front of the camera
+    // distance along the viewing ray; if positive, in front of the camera
     const ahead = (dot(w, towards) - b * dot(w, direction)) / (c * sine2);
     const way = (b * dot(w, towards) - c * dot(w, direction)) / (c * sine2);
     return ahead > 0 && Number.isFinite(way) ? way : null;
 }
 
-// Clips a line to the part in front of the camera; null if there is none.
+// Returns the part of a line that is in front of the camera; null if there is none.
 export function beforeEye(camera, a, b) {
     if (isParallel(camera))
         return [a, b];

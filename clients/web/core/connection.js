@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A WebSocket that reconnects with increasing waits, checks that the server still answers, and reports its state to the page.
+// A WebSocket that reconnects after increasing waits, checks that the server still answers, and reports its state to the page.
 import { SUBPROTOCOL } from './wire.js';
 import { say } from './words.js';
 
 export const FIRST_WAIT_MS = 500, LONGEST_WAIT_MS = 8000, JITTER = 0.25;
-// An idle server still answers pings.
+// interval of pings, which an idle server answers, too
 export const PING_MS = 2000;
 export const QUIET_MS = 5000;
 export const DEAD_MS = 12000;
@@ -15,25 +15,25 @@ const CLOSE_REASONS = {
 };
 
 export class Connection {
-    // open(url, protocol): creates a WebSocket. clock: { now(), setTimeout(f, ms), clearTimeout(id) }. Handlers: onState(connection),
-    // onOpen(), onText(string), onBytes(ArrayBuffer). onUnopened(): at least the second WebSocket in a row did not open; `blocked` holds
-    // the reason to show. spreadMs: maximum random addition to each wait.
+    // open(url, protocol) creates a WebSocket. clock: { now(), setTimeout(f, ms), clearTimeout(id) }. Handlers: onState(connection),
+    // onOpen(), onText(string), onBytes(ArrayBuffer), onUnopened(): a second WebSocket in a row did not open; `blocked` has the reason to
+    // show. spreadMs: maximum random addition to each wait.
     constructor({ url, open, clock, random = Math.random }) {
         Object.assign(this, { url, openSocket: open, clock, random, spreadMs: 0, unopened: 0, blocked: '' });
-        // stopped | connecting | open | waiting | barred (until retryNow)
+        // stopped | connecting | open | waiting | barred (until retryNow() is called)
         this.state = 'stopped';
         // open, but silent for QUIET_MS
         this.quiet = false;
         // Why the last connection ended.
         this.reason = '';
-        // Failed attempts since the last good connection.
+        // Number of failed attempts since the last good connection.
         this.tries = 0;
         this.retryAt = null;
-        // Minimum wait before the next attempt, as the server asked, in ms.
+        // Milliseconds to wait at least before the next attempt, as the server asked.
         this.leastWait = 0;
-        // When the last good connection ended.
+        // Time when the last good connection ended.
         this.lostAt = null;
-        // Last user activity; by Date.now(), which continues while a machine sleeps.
+        // Time of the last user activity, by Date.now(), which continues while a machine sleeps.
         this.activeAt = Date.now();
         this.onState = this.onOpen = this.onText = this.onBytes = this.onUnopened = () => {};
     }
@@ -48,25 +48,25 @@ export class Connection {
         this.become('stopped');
     }
 
-    // Retries at once: the network is back, or the user asks.
+    // Tries to connect without waiting: the network is back, or the user asks.
     retryNow() {
         if (this.state === 'waiting' || this.state === 'barred')
             this.connect();
     }
 
-    // Sets the minimum wait before the next attempt, in ms; a full server asks for it.
+    // Sets the milliseconds to wait at least before the next attempt, as a full server asks.
     hold(ms) {
         this.leastWait = ms;
     }
 
-    // Stops retrying after a refusal that only a user can resolve, with a new token for example.
+    // Stops trying after a refusal that only a user can resolve, with another token for example.
     bar(reason) {
         this.drop();
         this.reason = reason;
         this.become('barred');
     }
 
-    // Resets the backoff once the peer has proved that it works.
+    // Resets the increasing waits, once the server has proved that it works.
     settle() {
         this.tries = 0;
         this.lostAt = null;
@@ -110,7 +110,7 @@ export class Connection {
             if (back)
                 this.leastWait = back[1] * 1000;
             const known = CLOSE_REASONS[event.code];
-            // Does not test after the first failure: a restarting server is back by the second attempt.
+            // not after the first failure: a server that restarts is back by the second attempt
             const again = this.state === 'connecting' && !known && this.unopened++;
             this.lose(known ? say(known) : event.reason || this.blocked || say('reason.unreachable'));
             if (again)
@@ -129,7 +129,7 @@ export class Connection {
         this.nextPing = this.lastHeard + PING_MS;
         this.watch();
         this.state = 'open';
-        // onOpen discards the state of the previous connection, so it runs before onState reports "open".
+        // before onState reports `open`, because onOpen discards the state of the previous connection
         this.onOpen();
         this.become('open');
     }
@@ -159,7 +159,8 @@ export class Connection {
         }, 500);
     }
 
-    // Sends a due ping. Returns how long the server has been silent after a ping, because timers of a hidden page may pause for a minute.
+    // Sends a ping if one is due. Returns for how long the server has not answered a ping; not simply the time since its last message,
+    // because timers of a hidden page may pause for a minute.
     ask() {
         const now = this.clock.now();
         if (now >= this.nextPing) {
@@ -170,7 +171,7 @@ export class Connection {
         return this.pingAt !== null && now - this.pingAt >= ANSWER_MS ? now - this.lastHeard : 0;
     }
 
-    // After a sleep, or when the peer may be gone for another reason: treats the peer as silent until it answers.
+    // Treats the server as silent until it answers: after a sleep, or if it may be gone for another reason.
     doubt() {
         if (this.state !== 'open')
             return;
@@ -180,7 +181,7 @@ export class Connection {
         this.watch();
     }
 
-    // Abandons the socket at once: an orderly close over a dead connection can take minutes.
+    // Drops the socket without closing it in order, which can take minutes over a dead connection.
     drop() {
         this.clock.clearTimeout(this.timer);
         const socket = this.socket;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Chooses hardware or software decoding of H.264: tested once and stored, with a fallback on failure. Loaded when H.264 pays off.
+// Chooses hardware or software decoding of H.264: tests once and stores the result; falls back after failures. Loaded when H.264 pays off.
 import { H264Decoder, whatIsWrong } from './h264.js';
 
 const ACCELERATIONS = ['no-preference', 'prefer-software']; // hardware first
 const KEPT = 'plantcast.h264';
 
-// Returns the stored result for this browser version: an acceleration, 'none', or null.
+// Returns the stored result of the test for this browser version: an acceleration mode, 'none', or null.
 function remembered({ store, agent }) {
     try {
         const known = JSON.parse(store?.getItem(KEPT) ?? 'null');
@@ -23,7 +23,7 @@ function remember({ store, agent }, way) {
     }
 }
 
-// Tests the decoders and sets the first that works. decoding: see decoding.js.
+// Tests the H.264 decoders and sets the first one that works. decoding: a Decoding (decoding.js).
 export async function probe(decoding) {
     const { env } = decoding, known = remembered(env);
     if (known === 'none')
@@ -44,7 +44,7 @@ function use(decoding, acceleration) {
     remember(env, acceleration);
 }
 
-// Falls back from hardware to software decoding, and from that to JPEG.
+// Falls back from hardware to software decoding of H.264, and from software to JPEG.
 export function demote(decoding) {
     const next = ACCELERATIONS[ACCELERATIONS.indexOf(decoding.acceleration) + 1];
     decoding.h264.close();

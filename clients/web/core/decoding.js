@@ -1,27 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Decodes frames: JPEG and PNG by the browser, H.264 once decoder_fallback.js has found a working decoder.
+// Decodes frames: JPEG and PNG by the browser; H.264 after decoder_fallback.js has found a decoder that works.
 
 export const PLAIN = ['jpeg', 'png'];
 const MIME = { jpeg: 'image/jpeg', png: 'image/png' };
 const AGAIN_MS = 10000; // two failures within this time count as a broken decoder
 
-// Turns frames into drawable pictures. onCodecs(list): codecs to request from now on. onLost(): a key frame is needed.
+// Turns frames into drawable pictures. onCodecs(list) is called with the codecs to request from now on, onLost() when a key frame is
+// needed.
 export class Decoding {
-    // env: { api (with or without VideoDecoder), store, agent, now, makeBitmap(blob), tryOut(decoder) (optional) }.
+    // env: { api (may have VideoDecoder), store, agent, now, makeBitmap(blob), tryOut(decoder) (optional) }.
     constructor(env) {
         Object.assign(this, { env, h264: null, lost: false, failedAt: -Infinity });
-        this.codecs = this.plain = PLAIN; // plain: codecs that need no VideoDecoder
+        this.codecs = this.plain = PLAIN; // plain: the codecs that need no VideoDecoder
         this.onCodecs = this.onLost = () => {};
     }
 
     // Tests whether H.264 works here.
     async probe() {
         if (this.env.api.VideoDecoder)
-            this.fallback = await import('./decoder_fallback.js').catch(() => null); // the server is unreachable: stay with JPEG
+            this.fallback = await import('./decoder_fallback.js').catch(() => null); // stays with JPEG if the server is unreachable
         await this.fallback?.probe(this);
     }
 
-    // Returns a promise of a picture with close() that a canvas can draw.
+    // Returns a promise of a picture that a canvas can draw and that has close().
     async decode(frame) {
         if (this.lost && !frame.key)
             throw new Error('the picture that it changes is missing');

@@ -5,12 +5,12 @@ import { locale, say, sayIfKnown } from './words.js';
 
 const UNITS = { degC: '°C', degF: '°F', 'deg C': '°C', 'deg F': '°F', C: '°C' };
 
-// Returns a unit as it is written on the screen.
+// Returns a unit as the page writes it.
 export function unitText(unit) {
     return UNITS[unit] ?? (unit ?? '').replace(/\^?2\b/, '²').replace(/\^?3\b/, '³').replace(/\bu(?=m\b)/, 'µ');
 }
 
-// Returns the number of decimals for a range: one for 0..160, two for 0..16.
+// Returns the number of decimals for values of a range: one for a range of 160, two for 16.
 export function decimalsFor(range) {
     return range > 0 && Number.isFinite(range) ? Math.max(0, Math.min(6, 2 - Math.floor(Math.log10(range / 4)))) : 2;
 }
@@ -25,7 +25,7 @@ function plainText(value, decimals) {
     return Number(text) === 0 ? text.replace('-', '') : text;
 }
 
-// Formats a number in the reader's locale, without thousands separators, which could be read as decimal marks.
+// Formats a number in the reader's locale, without thousands separators, which might be read as decimal marks.
 export const numberText = (value, decimals) => (known(value) ? inLocale(plainText(value, decimals)) : '–');
 
 // Formats a number without trailing zeros.
@@ -54,8 +54,8 @@ export function ageText(ms) {
 const two = (n) => String(n).padStart(2, '0');
 const clocks = new Map(); // formatters by time zone, because creating one is slow
 
-// Returns a function from an instant to { date, day (date without the year), time, offset } in a time zone given by its IANA name, in the
-// reader's date format; hours are 0 to 23. A zone unknown to the browser is shown as UTC, and labelled so.
+// Returns a function from an instant to { date, day (date without the year), time, offset } in the time zone with that IANA name, in the
+// reader's date format; hours are 0 to 23. If the browser does not know the zone, the times are UTC and say so.
 export function zoneClock(timeZone) {
     if (!clocks.has(timeZone))
         clocks.set(timeZone, makeClock(zoneOf(timeZone)));
@@ -92,7 +92,7 @@ export const qualityText = (quality) => say(QUALITIES.includes(quality) ? `quali
 
 export const title = (text) => text.charAt(0).toUpperCase() + text.slice(1);
 
-// Returns the quantity's name, translated if it is a common one.
+// Returns the name of a group's quantity, translated if it is a common one.
 export const quantityText = ({ quantity, id }) => sayIfKnown(`quantity.${(quantity || id).toLowerCase()}`, title(quantity || id));
 
 export const worst = (qualities) => QUALITIES[Math.max(-1, ...qualities.map((q) => QUALITIES.indexOf(q)))] ?? null;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Turns pointer and wheel events into camera moves. Positions are CSS pixels of the viewport. Each call returns a list of moves: { orbit:
-// [dx, dy] }, { pan: [dx, dy] }, { look: [dx, dy] }, { zoom: factor, at: [x, y] }, { click: [x, y] }. There is no momentum.
+// [dx, dy] }, { pan: [dx, dy] }, { look: [dx, dy] }, { zoom: factor, at: [x, y] }, { click: [x, y] }. Moves end with the gesture, without
+// momentum.
 
 const CLICK_MS = 500;
 const SLOP_PX = { mouse: 3, pen: 5, touch: 8 };
@@ -12,7 +13,7 @@ const apart = ([a, b]) => Math.hypot(a.x - b.x, a.y - b.y);
 
 export class Gestures {
     constructor() {
-        this.pointers = new Map(); // pressed pointers: id -> { x, y, mode }
+        this.pointers = new Map(); // pointers that are pressed: id -> { x, y, mode }
         this.moved = false;
     }
 
@@ -43,13 +44,13 @@ export class Gestures {
         return this.pointers.size === 2 ? this.pinch(before) : this.lookAround(before);
     }
 
-    // Three fingers turn the view around the eye. Further fingers are ignored.
+    // Three fingers turn the view about the eye; further fingers are ignored.
     lookAround(before) {
         const from = centre(before.slice(0, 3)), to = centre([...this.pointers.values()].slice(0, 3));
         return [{ look: [to[0] - from[0], to[1] - from[1]] }];
     }
 
-    // Two fingers pan and zoom so that the plant stays under both.
+    // Two fingers pan and zoom so that each stays on its point of the plant.
     pinch(before) {
         const then = before.slice(0, 2), now = [...this.pointers.values()].slice(0, 2);
         const from = centre(then), to = centre(now);
@@ -72,7 +73,7 @@ export class Gestures {
     }
 }
 
-// A track pad's pinch arrives as a wheel event with ctrl.
+// Returns the zoom factor of a wheel event. A pinch on a track pad arrives as a wheel event with ctrl.
 export function wheelZoom({ deltaY, deltaMode = 0, ctrlKey = false }) {
     const px = deltaY * [1, LINE_PX, PAGE_PX][deltaMode];
     const power = px * (ctrlKey ? PINCH_PER_PX : WHEEL_PER_PX);

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// H.264 by the browser's VideoDecoder: one frame in, one picture out. A self-test checks that it works.
+// H.264 by the browser's VideoDecoder: one frame in, one picture out; with a self-test.
 import { decodeBase64 } from './wire.js';
 
 const ANSWER_MS = 2000;
 const SPS = 7;
 
-// Test frames from the server's own encoder: four squares of one colour each; the second frame changes the third square.
+// Test frames from the server's own encoder: four squares of one colour each. The second frame changes the third square.
 const PROOF_SIDE = 64, PROOF_TOLERANCE = 16;
 const PROOF_KEY = 'AAAAAWdCwAraEJpuAhoMgAAAAwCAAAA8R4kTUAAAAAFozg/IAAAAAWWIhBaEYoAAhvxwABA1jgACG1JxGKAAIP0cY4AAjAydddPXNigACAzHAAEQ6OAA' +
     'IjdrFEigACUVEAAEAYAAQC0GAAIBIADgACAlEATIgCZEATJwEyC4Ai1guAi1guAItYvAEWsOtq65n/mJmTA=';
 const PROOF_CHANGE = 'AAAAAUGaIFoSLxQABKEjgACE3HAAEHXELZ/P3A==';
 const PROOF_COLOURS = [[200, 40, 40], [40, 160, 60], [240, 200, 40], [220, 220, 220]];
 
-// Returns the sequence parameter set of Annex B bytes, or null.
+// Returns the sequence parameter set in Annex B bytes, or null.
 export function findSps(bytes) {
     for (let i = 0; i + 6 < bytes.length && i < 4096; i++) {
         if (bytes[i] === 0 && bytes[i + 1] === 0 && bytes[i + 2] === 1 && (bytes[i + 3] & 31) === SPS) {
@@ -29,7 +29,7 @@ const hex = (bytes) => [...bytes].map((byte) => byte.toString(16).padStart(2, '0
 export const codecName = (sps) => `avc1.${hex(sps.subarray(1, 4))}`;
 
 export class H264Decoder {
-    // acceleration: see VideoDecoder. api: { VideoDecoder, EncodedVideoChunk }.
+    // acceleration: a VideoDecoder's hardwareAcceleration. api: { VideoDecoder, EncodedVideoChunk }.
     constructor({ acceleration = 'no-preference', api = globalThis, clock = globalThis }) {
         Object.assign(this, { acceleration, api, clock });
         this.waiting = null; // { resolve, reject } of the picture being decoded
@@ -37,7 +37,7 @@ export class H264Decoder {
         this.count = 0;
     }
 
-    // frame: { key, payload }. Returns a promise of a VideoFrame; after a failure only a key frame can be decoded.
+    // Decodes frame { key, payload }. Returns a promise of a VideoFrame. After a failure only a key frame can be decoded.
     async decode({ key, payload }) {
         if (key)
             this.open(payload);
@@ -106,7 +106,7 @@ export class H264Decoder {
     }
 }
 
-// Returns the colours at the centres of the squares: [[r, g, b] x 4].
+// Returns the colours at the centres of the four squares of a test frame: [[r, g, b], ...].
 function squares(picture, makeCanvas) {
     const context = makeCanvas(PROOF_SIDE, PROOF_SIDE).getContext('2d', { willReadFrequently: true });
     context.drawImage(picture, 0, 0);
@@ -117,7 +117,7 @@ function squares(picture, makeCanvas) {
     });
 }
 
-// Decodes both test frames and compares the colours. Returns null, or what is wrong.
+// Decodes both test frames and compares their colours. Returns null, or what is wrong.
 export async function whatIsWrong(decoder, makeCanvas = (w, h) => new OffscreenCanvas(w, h)) {
     try {
         (await decoder.decode({ key: true, payload: decodeBase64(PROOF_KEY) })).close();

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shift handover: sorts notes and the alarm journal.
+// Sorts shift notes and rows of the alarm journal for the shift handover.
 
 const WORKED = { acknowledge: 'acknowledged', shelve: 'shelved', unshelve: 'shelved', out_of_service: 'aside', in_service: 'aside' };
 
-// rows: of the journal, in any order. Returns { raised: [{ tag, kind, priority, count, first, last }, most frequent first], acknowledged,
-// shelved, aside: lists of rows, oldest first }; aside: rows about taking alarms out of service and back.
+// rows: rows of the journal, in any order. Returns { raised: [{ tag, kind, priority, count, first, last }], the most frequent first;
+// acknowledged, shelved, aside (taken out of service or put back): lists of rows, oldest first }.
 export function sortJournal(rows) {
     const raised = new Map(), out = { acknowledged: [], shelved: [], aside: [] };
     for (const row of [...rows].sort((a, b) => a.time_us - b.time_us || a.id - b.id)) {
@@ -19,7 +19,7 @@ export function sortJournal(rows) {
     return { ...out, raised: [...raised.values()].sort(order) };
 }
 
-// Reads the journal of a span page by page, up to `most` rows. Returns { rows, cut: true if rows were left out }. get(query): fetches
+// Reads the journal of a time span page by page, up to `most` rows. Returns { rows, cut: true if rows were left out }. get(query) fetches
 // /api/v1/alarms/journal.
 export async function readJournal(get, from, to, most = 20000) {
     const rows = [];

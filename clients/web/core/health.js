@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Decides whether the picture may be trusted, for all parts of the page: kind of state, words for it, and its begin.
+// Decides for all parts of the page whether the picture may be trusted: the kind of state, a text about it, and since when.
 import { ageText, title, zoneClock } from './format.js';
 import { say } from './words.js';
 
@@ -32,7 +32,7 @@ export function health(session, now) {
     return { kind: 'live', words: live, detail: '', banner: false };
 }
 
-// Returns the note to draw over the picture that all or some values are simulated; '' if none are, or the picture shows the past.
+// Returns the note over the picture that all or some values are simulated; '' if none are, or the past is shown.
 export function simulatedText({ model, picture, time }) {
     const links = model?.links ?? [], simulated = links.filter((link) => link.simulated).length;
     if (simulated === 0 || time.atUs !== null || picture?.past)
@@ -40,7 +40,7 @@ export function simulatedText({ model, picture, time }) {
     return say(simulated < links.length ? 'simulated.partly' : 'simulated.all');
 }
 
-// Describes the past. The time is that of the picture on the screen if it shows the past, else the requested one.
+// Describes that the past is shown: at the picture's instant if the picture on the screen shows the past, else at the requested instant.
 function past({ picture, time, model }) {
     const us = picture?.past ? picture.dataTimeUs : time.atUs;
     const { date, time: clock, offset } = zoneClock(model.plant.time_zone)(us / 1000);

@@ -4,10 +4,10 @@ import { calls } from './alarms.js';
 import { answerText } from './refusals.js';
 import { say } from './words.js';
 
-export const BAD = 2, UNCERTAIN = 1; // qualities: the two top bits of an OPC UA status code
+export const BAD = 2, UNCERTAIN = 1; // severity of a quality: the top two bits of an OPC UA status code
 const severity = (quality) => Math.min(BAD, quality >>> 30);
 
-// Requests a path with a query, and with the token if there is one. Returns a promise of the JSON.
+// Requests a path with a query, and with the token if there is one. Returns a promise of the response.
 export async function ask(path, query, token, fetcher = fetch) {
     const headers = token ? { Authorization: `Bearer ${token}` } : {};
     const text = new URLSearchParams(query).toString();
@@ -19,8 +19,8 @@ export async function ask(path, query, token, fetcher = fetch) {
     return response;
 }
 
-// Converts a series to seconds and values for a chart; null breaks the line. Spikes are kept: a bucket gives its first, lowest, highest and
-// last value.
+// Converts a series to seconds and values for a chart; null breaks the line. Spikes stay visible: of a bucket the first, lowest, highest
+// and last value are drawn.
 export function line(series, fromUs, toUs) {
     const xs = [], ys = [];
     const put = (us, value) => {
@@ -42,7 +42,7 @@ export function line(series, fromUs, toUs) {
     return [xs, ys];
 }
 
-// Adds a point. A step holds its value until the next point, so a point is added just before that.
+// Adds a point. Of a step tag, a value holds until the next point, so the old value is added just before that point as well.
 function putPoint(put, [us, value, quality], step, ys) {
     const shown = severity(quality) === BAD ? null : value;
     const before = ys.at(-1);
@@ -51,7 +51,7 @@ function putPoint(put, [us, value, quality], step, ys) {
     put(us, shown);
 }
 
-// Adds a bucket. A bucket that ends without a value (`last`) breaks the line, even at the end of the series.
+// Adds a bucket. A bucket that ends without a value (`last` null) breaks the line, even at the end of the series.
 function putStretch(put, [us, low, high, , first, last], lengthUs) {
     if (low === null)
         return put(us, null);
@@ -62,7 +62,7 @@ function putStretch(put, [us, low, high, , first, last], lengthUs) {
     put(us + lengthUs - 2, last);
 }
 
-// Returns the times without a value, or with an uncertain one: [{ from, to (seconds), severity }].
+// Returns the periods without a value, or with an uncertain one: [{ from, to (seconds), severity }].
 export function gaps(series, fromUs, toUs) {
     const out = [];
     const add = (from, to, grade) => {
@@ -82,14 +82,15 @@ export function gaps(series, fromUs, toUs) {
     points.forEach((point, i) => {
         const next = points[i + 1]?.[0] ?? toUs, quality = length > 0 ? point[7] : point[2];
         if (length > 0 && point[6] > 0 && severity(quality) !== BAD)
-            add(point[0], point[0] + point[6], BAD); // marks the whole bucket: the gap is at an unknown instant within
+            add(point[0], point[0] + point[6], BAD); // marks the whole bucket, because the gap is at an unknown instant within it
         add(length > 0 && severity(quality) === BAD ? Math.max(point[0], point[0] + length - point[6]) : point[0], next,
             length > 0 || point[1] !== null ? severity(quality) : BAD);
     });
     return out;
 }
 
-// Returns the tags that represent each source, its first and last: [{ source, tags: [name] }], for at most `most` sources.
+// Returns two tags of each source, the first and the last: [{ source, tags: [name] }], for at most `most` sources. If both have no values,
+// the source counts as lost.
 export function witnesses(tags, most = 16) {
     const ends = new Map();
     for (const { source, name } of tags.filter((tag) => tag.source))
@@ -97,7 +98,7 @@ export function witnesses(tags, most = 16) {
     return [...ends].slice(0, most).map(([source, pair]) => ({ source, tags: [...new Set(pair)] }));
 }
 
-// Returns the periods without any value in all of these series: [[from, to]], microseconds.
+// Returns the periods in which none of these series has a value: [[from, to]], microseconds.
 export function lost(all, fromUs, toUs) {
     let common = [[fromUs, toUs]];
     for (const series of all) {
@@ -108,8 +109,8 @@ export function lost(all, fromUs, toUs) {
     return all.length > 0 ? common : [];
 }
 
-// Returns the distinct limits of tags: [{ scale, name, value, tags }]. scaleOf(tag): the tag's axis; tags: those that have the limit, empty
-// if all on that axis do.
+// Returns the different limits of tags: [{ scale, name, value, tags }]. scaleOf(tag) returns the tag's axis. tags: those that have the
+// limit; empty if all tags on that axis have it.
 export function limitLines(tags, scaleOf) {
     const lines = new Map();
     for (const tag of tags) {
@@ -123,18 +124,18 @@ export function limitLines(tags, scaleOf) {
     return [...lines.values()].map((line) => (line.tags.length === tags.length ? { ...line, tags: [] } : line));
 }
 
-// Returns the rows of the journal that raise an annunciated alarm: [{ us, tag, kind, priority }], oldest first.
+// Returns the journal rows that raise an annunciated alarm: [{ us, tag, kind, priority }], oldest first.
 export function raised(rows) {
     return rows.filter(({ event, state }) => event === 'raise' && calls(state))
         .map(({ time_us: us, tag, kind, priority }) => ({ us, tag, kind, priority }))
         .sort((a, b) => a.us - b.us);
 }
 
-// Returns the first row of raisedAlarms() after a time, or with `backwards` the last one before it; null if there is none.
+// Returns the first mark of raised() after a time, or with `backwards` the last one before it; null if there is none.
 export const nextTo = (marks, us, backwards) =>
     (backwards ? marks.findLast((mark) => mark.us < us) : marks.find((mark) => mark.us > us)) ?? null;
 
-// Groups marks closer together than nearUs: { us and priority of the most urgent, of: all marks of the group }.
+// Groups marks that are closer together than nearUs: { us, priority (both of the most urgent mark), of: all marks of the group }.
 export function clustered(marks, nearUs) {
     const out = [];
     for (const mark of marks) {
@@ -147,12 +148,12 @@ export function clustered(marks, nearUs) {
     return out.map(({ of }) => ({ ...of.reduce((gravest, mark) => (mark.priority < gravest.priority ? mark : gravest)), of }));
 }
 
-// Returns by how many seconds an arrow key moves a slider of that span: at most a minute.
+// Returns by how many seconds an arrow key moves a slider over that span; at most a minute.
 export const arrowS = (spanS) => Math.max(1, Math.min(60, Math.round(spanS / 900)));
 
 const MOST_TICKS = 1000;
 
-// Returns at most `most` round times between two instants: [us]. Returns none if an instant is not finite or they are centuries apart.
+// Returns at most `most` round times between two instants, in microseconds; none if an instant is not finite or they are centuries apart.
 export function ticks(fromUs, toUs, most, offsetUs = 0) {
     const steps = [1, 5, 10, 30, 60, 300, 600, 1800, 3600, 7200, 14400, 28800, 43200, 86400, 172800, 604800].map((s) => s * 1e6);
     const step = steps.find((one) => (toUs - fromUs) / one <= most) ?? steps.at(-1);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Keyboard: the meaning of keys, and steady motion while a key is held.
+// The meaning of keys, and steady motion while a key is held.
 
-// speed of each key, per second: [orbit right, orbit up] degrees, [pan right, pan up] in picture heights, zoom as a natural logarithm
+// speed of each key, per second: orbit [right, up] in degrees, pan [right, up] in picture heights, zoom as a natural logarithm
 const MOTIONS = {
     ArrowLeft: { orbit: [-45, 0] }, ArrowRight: { orbit: [45, 0] }, ArrowUp: { orbit: [0, 45] }, ArrowDown: { orbit: [0, -45] },
     KeyA: { pan: [-0.5, 0] }, KeyD: { pan: [0.5, 0] }, KeyW: { pan: [0, 0.5] }, KeyS: { pan: [0, -0.5] },
@@ -13,7 +13,7 @@ const COMMANDS = {
     t: 'top', i: 'corner', o: 'projection', v: 'views', p: 'picture', x: 'hide', g: 'ghost', l: 'only', u: 'showAll', m: 'timings',
     e: 'alarms', y: 'past', n: 'live', ' ': 'hold', r: 'measure', c: 'snapshot', k: 'share', z: 'theme',
 };
-export const TAP_S = 1 / 15; // seconds of motion that each press of a key causes immediately; a key held for longer moves steadily
+export const TAP_S = 1 / 15; // each press of a key immediately causes this many seconds of motion; a key held for longer moves steadily
 export const HOLD_S = 0.25;
 
 function motionName({ key, code, shiftKey }) {
@@ -26,8 +26,7 @@ function motionName({ key, code, shiftKey }) {
     return MOTIONS[code] ? code : null;
 }
 
-// Returns the meaning of a key: { motion }, { command }, { group: index from 0 } or null. Keys with ctrl, alt or meta are left to the
-// browser.
+// Returns the meaning of a key: { motion }, { command }, { group: index from 0 } or null. Keys with ctrl, alt or meta are the browser's.
 export function keyMeaning(event) {
     if (event.ctrlKey || event.altKey || event.metaKey)
         return null;
@@ -69,7 +68,7 @@ export class HeldKeys {
     }
 
     release(event) {
-        // deletes the key under its names with and without shift, which may have been pressed or released while the key was held
+        // forgets the key under its names with and without shift, because shift may have been pressed or released since
         const names = new Set([motionName(event), event.code, SHIFTED[event.code]]);
         for (const name of names)
             this.held.delete(name);

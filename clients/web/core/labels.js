@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Decides which labels are shown next to their markers, and where (protocol/LABELS.md).
 
-// SPACINGS: minimum distances between labels, as fractions of the area's width; HELD: factor on spacing and depth of labels that were in
+// SPACINGS: smallest distances between labels, as fractions of the area's width; HELD: factor on spacing and depth of labels that were in
 // the previous picture, so that they tend to stay
 const SPACINGS = [0.16, 0.08, 0], HELD = 0.8;
 const MARK = 5, RING = 13, NEAR_GAP = 8, FAR_GAP = 22; // units
 export const CLEARANCE = 3;
 const ROOM = 0.06;                            // fraction of the area that labels may fill
-const MOST_CELLS = 1000;                      // maximum number of grid cells per side
-export const FIRST_FAR = 8;                   // slots from here on need a leader line
+const MOST_CELLS = 1000;                      // maximum number of cells per side of the grid of occupied boxes
+export const FIRST_FAR = 8;                   // slots (positions next to the marker) from this index on are far and need a leader line
 export const RANK_RING = 3;
 export const MOST_BAD = 12;
 
@@ -17,19 +17,19 @@ export const SLOTS = [ // side, upper edge in heights
     [1, -2], [-1, -2], [1, 1], [-1, 1], [1, -3.2], [-1, -3.2], [1, 2.2], [-1, 2.2],
 ];
 
-// Returns whether an area is finite and larger than 0x0; nothing is placed in others.
+// Returns true if an area is finite and larger than 0x0; otherwise no labels are placed.
 export const hasArea = ({ left, top, right, bottom }) => right > left && bottom > top && right - left < Infinity && bottom - top < Infinity;
 
 export const meets = (a, b) => a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
 
-// A grid of occupied boxes, so that thousands of labels need not all be compared.
+// A grid of the occupied boxes, so that a label need not be compared with thousands of others.
 class Taken {
     constructor(cell, area) {
         Object.assign(this, { area, cell: Math.max(cell, (area.right - area.left) / MOST_CELLS, (area.bottom - area.top) / MOST_CELLS) });
         this.cells = new Map();
     }
 
-    // Returns the cells of a box, clipped to the area plus one cell: labels lie in the area.
+    // Returns the keys of the cells that a box covers, at most one cell beyond the area, since labels are inside the area.
     keys(box) {
         const keys = [], { cell, area } = this, from = (m, least) => Math.floor(Math.max(m - least, -cell) / cell);
         const to = (m, least, most) => Math.floor(Math.min(m - least, most - least + cell) / cell);
@@ -45,14 +45,15 @@ class Taken {
             this.cells.set(key, [...(this.cells.get(key) ?? []), box]);
     }
 
-    // over: marks that may be covered: 1: marks without a ring; 2: any marks.
+    // Returns true if the box meets an occupied one. over: marks that do not count: 1: marks without a ring; 2: all marks.
     meets(box, owner, over = 0) {
         return this.keys(box).some((key) => (this.cells.get(key) ?? []).some((other) =>
             other.owner !== owner && !(other.mark <= over) && meets(box, other)));
     }
 }
 
-// Returns the box of a label in a slot. across, down: half the width and height of a group of markers around its centre; 0 for one marker.
+// Returns the box of a label in a slot. across, down: half the width and height of a group of markers around its centre; 0 for a single
+// marker.
 export function boxAt({ x, y, width, height, ring, across = 0, down = 0 }, slot, unit) {
     const [side, edge] = SLOTS[slot];
     const gap = (slot < FIRST_FAR ? NEAR_GAP : FAR_GAP) * unit;
@@ -62,9 +63,10 @@ export function boxAt({ x, y, width, height, ring, across = 0, down = 0 }, slot,
     return { left, top, right: left + width, bottom: top + height };
 }
 
-// all: items { id, x, y (of the marker), width, height, rank, depth, held (previous slot or undefined), ring (whether it has an alarm
-// ring), callout (previous call-out) }; area: { left, top, right, bottom }; rings: placeRings of callouts.js; measure(items): size of a
-// call-out. Returns Map id -> { left, top, slot }; for rings also width, height and callout (undefined: an own label).
+// Places labels. all: items { id, x, y (of the marker), width, height, rank, depth, held (previous slot or undefined), ring (true: has an
+// alarm ring), callout (previous call-out) }; area: { left, top, right, bottom }; rings: placeRings() of callouts.js; measure(items)
+// returns the size of a call-out. Returns a Map id -> { left, top, slot }; for rings also width, height and callout (undefined: the ring
+// has its own label).
 export function placeLabels(all, { area, unit = 1, blocked = [], rings = null, measure = null }) {
     if (!hasArea(area) || !(unit > 0 && unit < Infinity))
         return new Map();
@@ -91,7 +93,7 @@ export function placeLabels(all, { area, unit = 1, blocked = [], rings = null, m
         return inside && !taken.meets(grown, item.id) ? box : null;
     };
     const place = (item) => {
-        // the previous slot comes first, unless it was one of a call-out
+        // tries the previous slot first, unless it was that of a call-out
         for (let n = isHeld(item) && item.held < SLOTS.length ? -1 : 0; n < SLOTS.length; n++) {
             const slot = n < 0 ? item.held : n, box = fits(item, slot);
             if (!box)
@@ -127,7 +129,7 @@ export function placeLabels(all, { area, unit = 1, blocked = [], rings = null, m
     return placed;
 }
 
-// Returns the line from the edge of a marker to the nearest point of its label: [x1, y1, x2, y2].
+// Returns the leader line from the edge of a marker to the nearest point of its label: [x1, y1, x2, y2].
 export function leaderLine({ x, y, width, height }, { left, top }, radius) {
     const to = [Math.max(left, Math.min(left + width, x)), Math.max(top, Math.min(top + height, y))];
     const away = Math.hypot(to[0] - x, to[1] - y) || 1;

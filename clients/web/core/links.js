@@ -2,7 +2,7 @@
 // Links that open the current view on another device.
 import { writeAddress } from './address.js';
 
-// Returns URLs: { view, follow, tag and asset (if one is selected) }. The links to the tag and to the asset contain nothing else, since QR
+// Returns URLs { view, follow, tag, asset }; the last two only if one is selected. Links to tag and asset contain nothing else, because QR
 // codes with fewer modules are easier to scan.
 export function shareLinks({ location, session, tag }) {
     const { camera, params, time, ownParams: own } = session, page = `${location.origin}${location.pathname}`;
@@ -12,7 +12,7 @@ export function shareLinks({ location, session, tag }) {
         links.tag = page + writeAddress({ tag });
     if (asset)
         links.asset = page + writeAddress({ params: { selected: asset } });
-    const { node } = session.model?.plant ?? {}; // name of the server's node, by which a load balancer routes followers to it
+    const { node } = session.model?.plant ?? {}; // name of the server's node, with which a load balancer sends followers to that node
     links.follow = `${page}${node ? `?node=${node}` : ''}#follow=${session.following?.session ?? session.id}`;
     return links;
 }

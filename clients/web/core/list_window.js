@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Virtual list: computes which rows of a long list must be in the document. Rows may differ in height.
+// Computes which rows of a long list must be in the document. Rows may differ in height.
 
-// Returns the tops of rows of these heights: { tops: Float64Array with the total height at its end }.
+// Returns the upper edges of rows from their heights: { tops }, a Float64Array with the total height as its last element.
 export function stack(heights) {
     const tops = new Float64Array(heights.length + 1);
     heights.forEach((height, i) => { tops[i + 1] = tops[i] + height; });
     return tops;
 }
 
-// Returns the row at a position.
+// Returns the index of the row at a position in pixels.
 export function rowAt(tops, y) {
     let low = 0, high = tops.length - 1;
     while (high - low > 1) {
@@ -21,7 +21,7 @@ export function rowAt(tops, y) {
     return low;
 }
 
-// Returns the range [from, to) of visible rows, plus `more` on both sides.
+// Returns the range [from, to) of the rows in sight, plus `more` rows on both sides.
 export function rowsInSight(tops, scrollTop, height, more) {
     const count = tops.length - 1;
     return count === 0 ? [0, 0] : [Math.max(0, rowAt(tops, scrollTop) - more), Math.min(count, rowAt(tops, scrollTop + height) + 1 + more)];

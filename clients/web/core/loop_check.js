@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Loop check: finds the tag that moved when a transmitter was forced, by the largest change since arming compared with each tag's noise.
+// Loop check: finds the tag whose reading changed when a transmitter was forced: the one with the largest change since the check was armed,
+// relative to its noise.
 
-const KEEP = 0.9;        // weight of the previous noise estimate at each new value
-const FLOOR = 0.002;     // fraction of a tag's span; smaller changes are ignored
-const LEAST_RATIO = 8;   // minimum change, as a multiple of the tag's noise
+const KEEP = 0.9;        // weight of the old noise estimate when a value updates it
+const FLOOR = 0.002;     // smallest change that counts, as a fraction of the tag's span
+const LEAST_RATIO = 8;   // smallest change that counts, as a multiple of the tag's noise
 
 export class LoopCheckSession {
     constructor() {
-        this.noise = new Map(); // tag index -> average change from one value to the next: the tag's noise
+        this.noise = new Map(); // tag index -> noise of the tag: average change from one value to the next
         this.last = new Map();
-        this.base = null;       // tag index -> value when the check was armed; null: not armed
+        this.base = null;       // tag index -> value when the check was armed (started); null: not armed
     }
 
-    // values: by tag index, number or null (no usable reading).
+    // values: by tag index, a number or null (no usable reading).
     observe(values) {
         values.forEach((value, index) => {
             if (value === null)
@@ -20,7 +21,7 @@ export class LoopCheckSession {
             const before = this.last.get(index);
             this.last.set(index, value);
             if (before === undefined || this.base)
-                return; // once armed, changes count as signal, not noise
+                return; // while a check is armed, changes are what it looks for and do not count as noise
             const step = Math.abs(value - before), known = this.noise.get(index);
             this.noise.set(index, known === undefined ? step : Math.max(known * KEEP, KEEP * known + (1 - KEEP) * step, step / 2));
         });
@@ -34,8 +35,8 @@ export class LoopCheckSession {
         this.base = null;
     }
 
-    // Returns { index (of the tag that changed most), by (its change), ratio (of the change to the tag's noise) }, or null. spanOf(index):
-    // width of the tag's range.
+    // Returns the tag that changed most relative to its noise: { index, by (its change), ratio (change to noise) }; null: no change is
+    // large enough. spanOf(index) returns the width of the tag's range.
     stirred(spanOf) {
         let most = null;
         for (const [index, from] of this.base ?? []) {
@@ -58,7 +59,8 @@ export function readExpected(text) {
     const [name, expected, tolerance] = ['tag name', 'expected', 'tolerance'].map((column) => head.indexOf(column));
     if (name < 0 || expected < 0 || tolerance < 0)
         return null;
-    const point = (cell) => (separator === ',' ? cell : cell.replace(',', '.')); // a decimal comma counts as a decimal point
+    // unless the comma separates cells, a decimal comma counts as a decimal point
+    const point = (cell) => (separator === ',' ? cell : cell.replace(',', '.'));
     const number = (cell) => (cell?.trim() ? Number(point(cell)) : NaN);
     return new Map(lines.slice(1).map(cells).map((row) => [row[name], { expected: number(row[expected]),
         tolerance: number(row[tolerance]) }])

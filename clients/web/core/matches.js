@@ -30,7 +30,7 @@ export function readCsv(text) {
     return rows;
 }
 
-// Returns [{ tag, status, asset, reason, candidates }]; candidates: asset ids, the proposed one first.
+// Returns [{ tag, status, asset, reason, candidates }]; candidates: ids of assets, the proposed one first.
 export function readMatches(text) {
     const [header = [], ...rows] = readCsv(text);
     const column = (name) => header.indexOf(name);
@@ -41,12 +41,12 @@ export function readMatches(text) {
     }));
 }
 
-// Returns the pattern of a tag name: names that differ only in digits share one.
+// Returns the pattern of a tag name; names that differ only in digits have the same pattern.
 export const patternOf = (tag) => tag.replace(/\d/g, '#');
 
-// Matches, and unsaved decisions about them.
+// The matches, and decisions about them that are not saved yet.
 export class Matches {
-    // placed(tag): whether the tag's position is known; null: the tag is not a sensor of the plant.
+    // placed(tag) returns whether the tag's position is known; null: the tag is not a sensor of the plant.
     constructor(placed = () => null) {
         this.placed = placed;
         this.all = [];
@@ -59,12 +59,12 @@ export class Matches {
         this.decisions = new Map([...this.decisions].filter(([tag]) => known.has(tag)));
     }
 
-    // Returns the match with the unsaved decision applied.
+    // Returns the match with the user's unsaved decision applied.
     of(match) {
         return this.decisions.get(match.tag) ?? match;
     }
 
-    // Returns the filter kind of a match: undecided with several candidates is 'likely'.
+    // Returns the kind of a match for the filter: its status, but 'likely' if it is undecided and has candidates.
     kindOf(match) {
         const { status } = this.of(match), open = status === 'none' && !this.decisions.has(match.tag);
         return open && match.candidates.length > 0 ? 'likely' : status;
@@ -79,7 +79,7 @@ export class Matches {
         return Object.fromEntries(FILTERS.map((filter) => [filter, this.all.filter((match) => this.fits(match, filter)).length]));
     }
 
-    // Returns the matches whose tag, asset or reason contains all words of a text.
+    // Returns the matches that pass the filter and whose tag, asset or reason contains all words of a text.
     rows(filter, text = '') {
         const words = text.toLowerCase().split(/\s+/).filter(Boolean);
         return this.all.filter((match) => {
@@ -88,7 +88,7 @@ export class Matches {
         });
     }
 
-    // asset '': on no equipment. A decision equal to the match is dropped.
+    // Records a decision. asset '': the tag is on no equipment. A decision that equals the match is dropped.
     decide(match, asset) {
         const status = asset ? 'sure' : 'none', isOpen = match.status === 'none' && match.candidates.length > 0;
         if (match.status === status && match.asset === asset && !isOpen)
@@ -97,22 +97,22 @@ export class Matches {
             this.decisions.set(match.tag, { status, asset });
     }
 
-    // Returns the doubtful matches of the same pattern that can be accepted at once, as [match, asset]. asset: the proposed one, or the
-    // asset that the user chose for another tag of the pattern, if it is a candidate.
+    // Returns the undecided matches whose tags have the same pattern, which can be accepted together, as [match, asset]. asset: the
+    // proposed one, or the one that the user chose for another tag of the pattern, if it is a candidate.
     alike({ tag }) {
         const pattern = patternOf(tag), decided = [...this.decisions].filter(([name, { asset }]) => asset && patternOf(name) === pattern);
         return this.all.filter((one) => patternOf(one.tag) === pattern && this.kindOf(one) === 'likely').map((one) => [one, one.asset ||
             decided.findLast(([, { asset }]) => one.candidates.includes(asset))?.[1].asset]).filter(([, asset]) => asset);
     }
 
-    // Drops saved decisions, except those changed since they were sent.
+    // Drops the decisions that were saved, unless the user has changed them since they were sent.
     settle(decided) {
         for (const [tag, decision] of decided)
             if (this.decisions.get(tag) === decision)
                 this.decisions.delete(tag);
     }
 
-    // Returns the decisions as CSV text for saving.
+    // Returns the unsaved decisions as CSV text.
     text() {
         const cell = (said) => (/[",;\t\r\n]|^ /.test(said) ? `"${said.replaceAll('"', '""')}"` : said);
         const rows = [...this.decisions].map(([tag, { status, asset }]) => [tag, status, asset].map(cell).join(','));
@@ -120,7 +120,7 @@ export class Matches {
     }
 }
 
-// Returns the plant's width, depth and height in metres; times: factor, for a unit other than the assumed one.
+// sizeOf() returns the plant's width, depth and height in metres. times: factor, if another unit than the assumed one is right.
 const METRES = { m: 1, mm: 0.001, cm: 0.01, in: 0.0254, ft: 0.3048 };
 export const sizeOf = ({ min, max }, times = 1) => max.map((x, i) => (x - min[i]) * times);
 export const timesOf = (from, to) => (METRES[to] && METRES[from] ? METRES[to] / METRES[from] : 1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Meters of the status bar: drawn pictures per second, and latency from an input to the picture that shows it.
+// Meters of the status bar: pictures drawn per second, and latency from an input to the picture that shows it.
 
 export class RateMeter {
     constructor(windowMs = 1000) {
@@ -21,7 +21,7 @@ export class RateMeter {
 export class LatencyMeter {
     constructor(keepMs = 3000) {
         this.keepMs = keepMs;
-        this.inputs = new Map(); // camera sequence number -> time of the input that moved it
+        this.inputs = new Map(); // camera's sequence number -> time of the input that moved the camera
         this.samples = [];       // { time, ms }
     }
 
@@ -29,7 +29,8 @@ export class LatencyMeter {
         this.inputs.set(seq, inputTime);
     }
 
-    // A drawn picture answers its own camera's input and all earlier ones. Only its own is measured, once.
+    // Handles a drawn picture, which answers the input of its own camera and all earlier inputs. Only its own input is measured, and only
+    // once.
     drawn(seq, now) {
         const input = this.inputs.get(seq);
         if (input !== undefined)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The client's model of the plant: the `welcome` message, and the latest value, quality and age of every tag.
+// The page's model of the plant: the message `welcome`, and the newest value, quality and age of every tag.
 import { Alarms, graver } from './alarms.js';
 import { worst } from './format.js';
 import { decodeBase64 } from './wire.js';
@@ -12,7 +12,7 @@ export class Model {
         this.colormaps = welcome.colormaps.map((map) => ({ ...map, rgb: decodeBase64(map.rgb) }));
         this.readings = this.tags.map(() => ({ value: null, quality: 'bad', qualityName: '', ageMs: null, alarm: null, at: 0 }));
         this.environments = welcome.environments ?? ['sky'];
-        this.references = welcome.links ?? []; // links to other systems about assets and tags
+        this.references = welcome.links ?? []; // templates of links to other systems about assets and tags
         this.assets = welcome.assets.map((asset) => ({ ...asset, tags: [] }));
         const starting = (how) => this.assets.filter(({ start }) => start === how).map(({ id }) => id);
         this.start = { hidden: starting('hidden'), isolate: [], ghost: starting('ghost') }; // initial parameters
@@ -20,7 +20,7 @@ export class Model {
         for (const tag of this.tags)
             assets.get(tag.asset)?.tags.push(tag);
         this.alarms = new Alarms(this.tags);
-        this.placed = new Map(); // tag name -> entry of `placed`
+        this.placed = new Map(); // draft positions: tag name -> entry of the message `placed`
         this.proofs = new Map(); // by tag index
         this.provingBegun = false;
         this.links = [];
@@ -28,17 +28,17 @@ export class Model {
         this.stopped = false; // see stop()
         this.clockSet = true; // true: the server's clock is synchronised
         this.clockErrorMs = null; // maximum clock error; null: unknown
-        this.leapS = 0; // leap second announced for the end of the month: 1: inserted, -1: removed; 0: none
-        this.oldest = null; // { ms, at }: no reading that is not bad is older than `ms` at the time `at`
+        this.leapS = 0; // leap second announced for the end of the month: 1: will be inserted, -1: will be removed, 0: none
+        this.oldest = null; // { ms, at }: at the time `at`, no reading that is not bad was older than `ms`
     }
 
-    // Freezes the model at a past instant: ages and alarms then come from `tags`.
+    // Freezes the model at a past instant: ages and alarms then come from the readings of that instant.
     stop(stopped) {
         this.stopped = stopped;
         this.alarms.then = stopped ? this.readings : null;
     }
 
-    // Applies draft positions of this session; all other sensors return to their saved positions.
+    // Applies this session's draft positions; all other sensors are at their saved positions again.
     place(sensors) {
         this.placed = new Map(sensors.map((sensor) => [sensor.tag, sensor]));
         for (const tag of this.tags) {
@@ -55,8 +55,7 @@ export class Model {
             this.proofs.set(index, { state, timeUs, value, expected, tolerance, who, remark });
     }
 
-    // Returns the loop check state of a tag that has not passed; null if the tag passed, is a derived tag, or no loop check of any tag was
-    // made.
+    // Returns the loop check state of a tag that has not passed; null if it has passed, is a derived tag, or no tag was ever checked.
     unproven(tag) {
         const state = this.proofs.get(tag.index)?.state ?? 'none';
         return this.provingBegun && tag.source && state !== 'pass' ? state : null;
@@ -82,7 +81,7 @@ export class Model {
         return this.colormaps.find((map) => map.name === name) ?? this.colormaps[0];
     }
 
-    // Returns the indices of the tags whose value or quality changed.
+    // Stores readings. Returns the indices of the tags whose value or quality changed.
     update(values, now, plainAgeMs = null) {
         const changed = [];
         for (const [index, value, quality = 'good', qualityName = 'Good', ageMs = plainAgeMs, alarm = null, ...of] of values) {
@@ -98,12 +97,12 @@ export class Model {
         return changed;
     }
 
-    // The server sends a reading when it changes; `oldest` bounds the age of all unchanged readings together.
+    // Stores an upper bound for the ages of all readings that did not change: the server sends a reading only when it changes.
     notOlder(ms, now) {
         this.oldest = ms === null ? null : { ms, at: now };
     }
 
-    // Returns the age by the client's own clock since the server's message; null if there never was a value.
+    // Returns the age of a tag's reading, continued by the page's own clock since the server's message; null if there never was a value.
     ageMs(index, now) {
         const { ageMs, at, quality } = this.readings[index];
         if (ageMs === null)
@@ -124,7 +123,7 @@ export class Model {
         return oldest;
     }
 
-    // Returns the asset's most urgent annunciated alarm, or null.
+    // Returns the most urgent annunciated alarm of an asset's tags, or null.
     worstAlarm(asset) {
         const alarms = asset.tags.map((tag) => this.alarms.gravest(tag.index)).filter(Boolean);
         return alarms.sort(graver)[0] ?? null;

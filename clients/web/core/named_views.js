@@ -12,7 +12,7 @@ export const textOf = (session, tag = null) => {
     return addressOf({ camera, params, time: null, ownParams }, tag).slice(1);
 };
 
-// Returns { camera, params, tag } that bring a session to the view from any state. Without a camera, the home view is used.
+// Returns { camera, params, tag } that bring a session from any state to the view. A view without a camera gets the home camera.
 export function viewOf(session, text) {
     const { camera, params, tag } = readAddress(text), group = session.model.group(params.group) ?? session.group;
     const plain = { ...session.ownOf(group), range: null, ramp_interval: 0, breaks: group.breaks?.length ? 'group' : null,
@@ -24,7 +24,7 @@ export function viewOf(session, text) {
     return { camera: camera ?? session.homeIn(width / ratio, height / ratio), params: all, tag };
 }
 
-// Returns the query for a thumbnail; without a camera, the server uses the home view.
+// Returns the query for a thumbnail of a view; without a camera in the view, the server uses the home camera.
 export function pictureQuery(text, size) {
     const { camera, params } = readAddress(text);
     ENGINEERS.forEach((name) => delete params[name]);
@@ -34,7 +34,7 @@ export function pictureQuery(text, size) {
     return query;
 }
 
-// Returns a unique id made from a title.
+// Returns an id made from a title that no other view has.
 export function idFor(title, views) {
     const plain = title.normalize('NFKD').replace(/\p{M}/gu, '').toLowerCase().replace(/[^a-z0-9]+/g, '-').replace(/^-+|-+$/g, '');
     const base = (plain || 'view').slice(0, ID_CHARS - 4), taken = new Set(views.map(({ id }) => id));

@@ -9,10 +9,10 @@ const fract = (x) => x - Math.floor(x);
 const clamp = (x) => Math.max(0, Math.min(1, x));
 const mix = (a, b, t) => a.map((x, i) => Math.round(x + (b[i] - x) * t));
 
-// Returns the period of the pattern, in pixels, for a picture of that height.
+// Returns the period of the patterns in pixels, for a picture of that height.
 export const patternPeriodPx = (heightPx) => Math.max(PATTERNS.PATTERN_LEAST_PX, heightPx / PATTERNS.PATTERN_PERIODS);
 
-// Returns the coverage of the pattern at a pixel's centre; y upwards, as in GL.
+// Returns how much of the pixel around a position the stripes cover, 0 to 1; y is upwards, as in GL.
 const stripes = (place, edge, period) => clamp((Math.abs(fract(place) - 0.5) - edge) * period + 0.5);
 const hatch = (x, y, period) => stripes((x + y) / (period * PATTERNS.HATCH_SLANT), PATTERNS.HATCH_EDGE, period);
 
@@ -21,7 +21,7 @@ function stipple(x, y, period) {
     return clamp((PATTERNS.STIPPLE_RADIUS - Math.hypot(fract(column) - 0.5, fract(row) - 0.5)) * period + 0.5);
 }
 
-// Returns the colour of a pixel, [r, g, b]; row 0 is at the top.
+// Returns the colour of a pixel of the pattern for "no data", [r, g, b]; row 0 is at the top.
 export function hatchAt(x, row, heightPx, period) {
     return mix(HATCH[0], HATCH[1], hatch(x + 0.5, heightPx - row - 0.5, period));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Describes a status code in words.
+// Writes OPC UA status codes as text.
 import { qualityText } from './format.js';
 import { say, sayIfKnown } from './words.js';
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Parameters as text for the page's URL and for snapshot queries, in the grammar of /snapshot.png (protocol/PROTOCOL.md).
+// Writes and reads parameters as text for the page's URL and for snapshot queries, in the grammar of /snapshot.png (protocol/PROTOCOL.md).
 
 const round = (x) => Number(x.toFixed(4)) + 0;
 export const numbersText = (list) => list.map(round).join(',');
 
-// Parses a list of numbers; null if invalid or of another length than `count`.
+// Parses a list of numbers; null if it is invalid, or does not have `count` numbers (null: any number).
 export function readNumbers(text, count = null) {
     const list = (text ?? '').split(',').map((part) => (part.trim() === '' ? NaN : Number(part)));
     return list.every(Number.isFinite) && (count === null || list.length === count) ? list : null;
@@ -47,7 +47,7 @@ function text(name, value) {
 const isSaid = ([name, value]) => !APART.includes(name) && value !== null && value !== undefined &&
     !(Array.isArray(value) && value.length === 0 && !NAMES.includes(name));
 
-// Returns the query for a picture of a session's view. carried: its parameters, as sent after a reconnect.
+// Returns the query for a picture of a session's view. carried: the view's parameters, as Session.carried() returns them.
 export function snapshotQuery({ carried, camera, size, time }) {
     const query = { width: size.width, height: size.height };
     for (const [name, value] of Object.entries(carried).filter(isSaid))

@@ -5,18 +5,19 @@ import { language, phrase, readWords } from './words.js';
 const words = readWords((await import(`../words/refused.${language}.js`)).default);
 export const put = (key, values) => phrase(words, null, key, values);
 
-// Returns the text to show. text: the server's English; refusal: { code, args } or undefined; kind: `code` of an `error`.
+// Returns the text to show for a refusal. text: the server's English; refusal: { code, args } or undefined; kind: `code` of a message
+// `error`.
 export function refusalText(text, refusal, kind) {
     if (words[refusal?.code])
         return put(refusal.code, refusal.args);
     return words[`class.${kind}`] ? put(`class.${kind}`) : put('page.other', { text });
 }
 
-// Returns why a tag list was not applied, from `tags_saved`.
+// Returns from `tags_saved` why a tag list was not applied.
 export const whyNotSaved = ({ errors, refusal }) =>
     (refusal ? refusalText('', refusal) : errors.map((text) => refusalText(text)).join('; '));
 
-// Returns the text to show for an HTTP response that refuses a request.
+// Returns a promise of the text to show for an HTTP response that refuses a request.
 export async function answerText(answer) {
     const refusal = JSON.parse(answer.headers.get('plantcast-refusal') ?? 'null');
     return refusalText((await answer.text()).trim() || `HTTP ${answer.status}`, refusal);

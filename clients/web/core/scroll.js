@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Scroll position of a virtual list (list_window.js).
 
-// Returns the scroll position that makes a row completely visible; unchanged if it already is.
+// Returns a scroll position at which a row is completely visible; the present one if it is.
 export function scrollTo(tops, row, scrollTop, height) {
     if (tops[row] < scrollTop)
         return tops[row];

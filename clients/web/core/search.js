@@ -8,8 +8,8 @@ function textOf(item, ...texts) {
     return known.get(item);
 }
 
-// Returns a function that maps an asset to { asset, tags to list, byTag: listed because of its tags }, or null. All words must be found in
-// the asset, which then lists all its tags, or in one tag. Returns null for an empty search.
+// Returns a function that finds an asset: it returns { asset, tags (to list), byTag (true: found by its tags) }, or null. All words must
+// occur in the asset's texts, which lists all its tags, or in those of one tag. An empty search returns null instead.
 export function search(wanted) {
     const words = wanted.toLowerCase().split(/\s+/).filter(Boolean);
     return words.length === 0 ? null : (asset) => {

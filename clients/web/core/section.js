@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Section cuts along an axis, and which assets are hidden, transparent or isolated.
+// Sections along an axis, and which assets are hidden, transparent or isolated.
 
 export const AXES = ['x', 'y', 'z'];
 
-// Returns the clip across an axis at a position in metres that keeps the larger coordinates; turned: keeps the smaller ones.
+// Returns a clip plane across an axis at a position in metres, which keeps the larger coordinates; turned true: the smaller ones.
 export function cut(axis, at, turned) {
     const plane = [0, 0, 0, turned ? at : -at];
     plane[AXES.indexOf(axis)] = turned ? -1 : 1;
     return { planes: [plane] };
 }
 
-// Returns { axis, at, turned } of such a clip; null for other clips.
+// Returns { axis, at, turned } of a clip that cut() made; null for other clips.
 export function readCut(clip) {
     const plane = clip?.planes?.length === 1 ? clip.planes[0] : null;
     const index = plane ? plane.slice(0, 3).findIndex((n) => Math.abs(n) === 1) : -1;
@@ -20,13 +20,13 @@ export function readCut(clip) {
     return { axis: AXES[index], at: turned ? plane[3] : -plane[3], turned };
 }
 
-// Returns a box clip centred in the bounds; part: size relative to the bounds; 1: their full size.
+// Returns a clip box centred in the bounds. part: its size relative to theirs; 1: the same size.
 export function boxAround({ min, max }, part) {
     const side = (i, turn) => (min[i] + max[i]) / 2 + (turn * part * (max[i] - min[i])) / 2;
     return { box: { min: [0, 1, 2].map((i) => side(i, -1)), max: [0, 1, 2].map((i) => side(i, 1)) } };
 }
 
-// Returns `part` of a box that boxClip() made; null for other clips, and for boxes that were resized by dragging.
+// Returns `part` of a box that boxAround() made; null for other clips, and for boxes that were dragged to another shape.
 export function readBox(clip, bounds) {
     if (!clip?.box)
         return null;
@@ -38,7 +38,7 @@ export function readBox(clip, bounds) {
 
 const without = (list, id) => (list ?? []).filter((other) => other !== id);
 
-// Returns the parameters after `how` (hide, ghost, only) was pressed for an asset; pressing the same button again undoes the change.
+// Returns the parameters after the button `how` (hide, ghost, only) of an asset was pressed; pressing it again undoes that.
 export function showAsset(params, how, id) {
     const name = { hide: 'hidden', ghost: 'ghost', only: 'isolate' }[how];
     const was = (params[name] ?? []).includes(id);

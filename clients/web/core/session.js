@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One viewer's session with the server: owns camera and parameters, and sends them again after a reconnect.
+// One viewer's session with the server: has the camera and the parameters, and sends them again after a reconnect.
 import { besideLegend, cameraMessage, cameraOfMessage, home, same, valid } from './camera.js';
 import { quantityText } from './format.js';
 import { LatencyMeter, RateMeter } from './meters.js';
@@ -16,17 +16,17 @@ const SAID = [...PARAMS, 'sensor', 'baseline', 'baselines', 'sensors', 'unit']; 
 export const ENGINEERS = ['fill', 'strength', 'decay', 'power', 'radius_m', 'reach_m', 'sensors']; // parameters for engineers only
 // parameters that both halves of a split view share
 const SHARED = ['light', 'environment', 'backdrop', 'arrows', 'selected', 'hidden', 'isolate', 'ghost', 'clip', 'split'];
-// Always sent, whatever the plant's defaults are.
+// lists that are sent even if empty, because the plant's defaults may not be empty
 const SETS = ['hidden', 'isolate', 'ghost'];
 const GROUPS_OWN = ['interpolation', 'distance', 'fill', 'power', 'radius_m', 'reach_m', 'scale', 'isolines'];
-const OF_THE_INSTANT = ['tags', 'picked']; // messages whose time is the shown instant
+const OF_THE_INSTANT = ['tags', 'picked']; // messages whose data are of the instant that is shown
 const NOW = { atUs: null, speed: 0, fromUs: null };
 const QUALITIES = ['good', 'uncertain', 'bad'];
 const MOST_BACKLOG_BYTES = 64 * 1024, RECENT_MS = 5000;
 
 const pick = (from, names) => Object.fromEntries(names.filter((name) => from[name] !== undefined).map((name) => [name, from[name]]));
 
-// Returns a frame's camera as requested: frames of orthographic cameras have a field of view of 0.
+// Returns a frame's camera as it was requested: frames of orthographic cameras have a field of view of 0.
 export const asAsked = (camera) => (camera.height_m === undefined ? camera : cameraOfMessage({ ...camera, fov: undefined }));
 
 export class Session {
@@ -39,39 +39,39 @@ export class Session {
         this.model = null;
         this.camera = wanted.camera;
         this.params = { ...wanted.params };
-        this.token = null;       // access token, where one is needed
+        this.token = null;       // access token; null: none
         this.resume = null;      // secret that resumes this session on the server
-        this.anew = false; // true: resumes only the session's id, by which others follow it, and not its view
+        this.anew = false; // true: resume only this session's id, by which others follow it, and not its view
         this.confirmed = null;   // parameters that the server last confirmed
         this.size = { width: 640, height: 360 };
         this.visible = true;
         this.unsent = {};        // parameters changed while disconnected
-        this.asked = new Map();  // seq -> earlier parameters that pictures may still show
+        this.asked = new Map();  // sequence number -> earlier parameters, which pictures may still show
         this.cameraSeq = this.paramsSeq = this.fitSeq = this.pickSeq = this.alarmSeq = this.toldSeq = 0;
-        this.cameraNews = false; // true: the camera changed and was not sent yet
-        this.cameraInput = null; // time of the input that set the camera; start of the latency
+        this.cameraNews = false; // true: the camera has changed and was not sent yet
+        this.cameraInput = null; // time of the input that set the camera, from which latency is measured
         this.markers = new Map();
-        this.serverTime = null;  // { us, at }: server time, and when it arrived
-        this.freshAt = null;     // time of the last message from the server, for the picture's age once messages stop
+        this.serverTime = null;  // { us, at }: the server's time, and when it arrived here
+        this.freshAt = null;     // time of the server's last message, from which the picture's age counts once messages stop
         this.outlived = null;    // picture of the previous connection
         this.rate = new RateMeter();
         this.latency = new LatencyMeter();
-        this.recent = [];        // recent pictures: { picture, decodeMs, hereUs }
-        this.skew = null;        // { us, roundTripMs }: server clock minus ours, at the shortest round trip
+        this.recent = [];        // recent pictures: { picture, decodeMs, hereUs (server's time at decoding) }
+        this.skew = null;        // { us, roundTripMs }: server clock minus ours, measured at the shortest round trip
         this.id = null; // id of this session, by which others follow it
-        // followed session: { session: its id, width, height, gone: true if it has ended and only its last view is known }
+        // the session that is followed: { session (id), width, height, gone (true: it has ended, and its last view is shown) }; null: none
         this.following = null;
-        this.leader = null;      // session to follow, also after a reconnect; null: none
-        this.lent = null;        // camera taken over from the followed session; null: none
+        this.leader = null;      // id of the session to follow, also after a reconnect; null: none
+        this.lent = null;        // camera of the followed session that this one has taken over; null: none
         this.followers = { count: 0, sessions: [] }; // sessions that follow this one
         this.forget();
-        // state of the time bar as the server reports it: atUs null: now; fromUs null: nothing is recorded
+        // the instant shown, as the server reports it; atUs null: now; fromUs null: no history is recorded
         this.time = { ...NOW, ...wanted.time };
         connection.onOpen = () => {
             const compares = this.params.show === 'difference' && this.params.baseline?.name;
             this.hello(['camera', 'params', ...(compares ? ['baseline'] : [])]);
         };
-        this.unheard = null;     // texts queued by wait(): [[when, text], ...]; null: not waiting
+        this.unheard = null;     // texts that wait() holds back: [[arrival time, text], ...]; null: none are held back
         connection.onText = (text) => (this.unheard ? this.unheard.push([this.now(), text]) : this.hear(text));
         connection.onBytes = (bytes) => this.guard(() => {
             this.freshen();
@@ -84,19 +84,19 @@ export class Session {
         this.listeners.set(name, [...(this.listeners.get(name) ?? []), listener]);
     }
 
-    // Registers for `welcome`, and calls the listener at once if there was one.
+    // Calls the listener at each `welcome`, and immediately if there was one already.
     greeted(listener) {
         this.on('welcome', listener);
         if (this.model)
             listener();
     }
 
-    // Queues all text messages until listen() is called; frames are handled immediately.
+    // Holds back all text messages until listen() is called; frames are handled immediately.
     wait() {
         this.unheard = [];
     }
 
-    // Handles the queued messages, with their times of arrival.
+    // Handles the messages that were held back, with their arrival times.
     listen() {
         const { now, unheard } = this;
         this.unheard = null;
@@ -131,19 +131,19 @@ export class Session {
 
     // --- to the server
 
-    // Sends a message if the server has welcomed us.
+    // Sends a message, if the server has welcomed this session.
     post(message) {
         if (this.welcomed)
             this.connection.send(message);
     }
 
-    // parts: names of the parts of our view (camera, parameters, ...) to request from the server.
+    // Greets the server. parts: which parts of our view (camera, params, baseline) to ask for.
     hello(parts) {
         const { shown } = this;
         this.welcomed = false;
         this.outlived = this.picture;
         if (this.unheard)
-            this.unheard = []; // drops the queued texts of the previous connection
+            this.unheard = []; // drops the texts of the previous connection that were held back
         this.emit('hello');
         this.helloParts = parts;
         this.greetedSize = this.size;
@@ -167,26 +167,26 @@ export class Session {
         this.connection.send(message);
     }
 
-    // Returns token and resume secret; the server then restores parameters that the page does not send itself.
+    // Returns token and resume secret for `hello`; with the secret, the server restores parameters that the page does not send.
     proofs() {
         return { ...(this.token ? { token: this.token } : {}),
             ...(this.resume ? { resume: this.resume, idle_ms: Math.max(0, Date.now() - this.connection.activeAt) } : {}),
             ...(this.anew ? { anew: true } : {}) };
     }
 
-    // Default parameters: those of the group and the plant, which need not be sent.
+    // Default parameters of the group and the plant, which need not be sent.
     get ownParams() {
         return this.ownOf(this.group);
     }
 
-    // Returns the default parameters for another group.
+    // Returns the default parameters of another group.
     ownOf(group) {
         const own = group ? { ...pick(group, GROUPS_OWN), range: [group.min, group.max], strength: 1, decay: 1 } : {};
         return { ...this.model?.start, ...own };
     }
 
-    // Returns the parameters to request after a reconnect, without defaults, which may have changed. `baseline` can be left out because the
-    // server may have forgotten the comparison.
+    // Returns the parameters to ask for after a reconnect, without those that equal the defaults, since defaults may have changed. baseline
+    // false: without the baseline, which the server may have forgotten.
     carried({ baseline = true } = {}) {
         const { params, ownParams: own } = this;
         const may = (name) => !this.role || this.role === 'engineer' || !ENGINEERS.includes(name);
@@ -204,7 +204,7 @@ export class Session {
         return wanted;
     }
 
-    // inputTime: time of the input; start of the latency.
+    // inputTime: time of the input that moved the camera, from which latency is measured.
     setCamera(camera, inputTime = this.now()) {
         if (!valid(camera) || same(camera, this.camera))
             return;
@@ -231,7 +231,7 @@ export class Session {
         this.emit('params');
     }
 
-    // Merges factors of single sensors into the current ones; null for a sensor removes it, null for all removes all.
+    // Merges factors of single sensors into the current ones. null for a sensor removes its factors; null as a whole removes all.
     mergedSensors(change) {
         if (change === undefined)
             return {};
@@ -251,7 +251,7 @@ export class Session {
         this.post({ type: 'visible', visible });
     }
 
-    // Sends only the newest camera, once per animation frame.
+    // Sends the newest camera, at most once per animation frame.
     flush() {
         if (!this.cameraNews || !this.welcomed || this.connection.backlogBytes > MOST_BACKLOG_BYTES)
             return;
@@ -261,7 +261,7 @@ export class Session {
         this.cameraInput = null;
     }
 
-    // session: id of the session to follow; null: none, so that our own view is shown again.
+    // session: id of the session to follow; null: follow none and show our own view again.
     follow(session) {
         this.leader = session;
         if (session === null)
@@ -270,7 +270,7 @@ export class Session {
         this.emit('following');
     }
 
-    // Whether messages refer to the picture on the screen.
+    // True if the server's messages belong to the picture on the screen, not to a later connection.
     get isCurrent() {
         return this.welcomed && (!this.picture || this.picture !== this.outlived);
     }
@@ -280,7 +280,7 @@ export class Session {
             this.freshAt = this.now();
     }
 
-    // Called when the frame is on the screen.
+    // Called when a frame is on the screen.
     drawn(frame, decodeMs) {
         const now = this.now();
         this.rate.count(now);
@@ -300,7 +300,7 @@ export class Session {
             this.emit('camera');
     }
 
-    // Also acknowledges a frame that cannot be decoded, because the server would otherwise send nothing more.
+    // Acknowledges a frame that cannot be decoded, because the server would otherwise send no more.
     passedOver(frame) {
         if (!frame.more)
             this.connection.send({ type: 'ack', seq: frame.seq });
@@ -332,7 +332,7 @@ export class Session {
             this.emit('unkept', message);
     }
 
-    // Sends what changed between hello and welcome.
+    // Sends what changed between the greeting and `welcome`.
     catchUp() {
         if (!this.visible)
             this.setVisible(false);
@@ -342,7 +342,7 @@ export class Session {
             this.setParams(this.unsent);
     }
 
-    // Sends hello without a parameter that the server refused; if it named none, without a part of our view.
+    // Greets again without a parameter that the server refused or, if it named none, without one of the parts of our view.
     helloWithout(name) {
         const isParam = name !== 'baseline' && this.params[name] !== undefined;
         if (isParam)
@@ -352,8 +352,8 @@ export class Session {
         this.hello(isParam ? this.helloParts : this.helloParts.slice(0, -1));
     }
 
-    // Returns a Map from "tag/half" to { occluded, value, quality } for a picture, with its `isolines`; drops those of earlier pictures.
-    // Tags not in it have no marker: hidden, clipped or behind the camera. null: no markers known.
+    // Returns a Map from "tag/half" to { occluded, value, quality } for a picture, with its `isolines`; forgets those of earlier pictures.
+    // Tags that are not in it have no marker: hidden, clipped or behind the camera. Returns null if no markers are known.
     markersOf(seq) {
         let newest = null;
         for (const known of [...this.markers.keys()].sort((a, b) => a - b).filter((key) => key <= seq)) {
@@ -365,15 +365,15 @@ export class Session {
 
     // --- what the screen asks
 
-    // Returns the home camera for a size in CSS pixels. legendLies(): returns true if the legend lies across the top of the picture; null:
-    // no legend in the picture.
+    // Returns the home camera for a size in CSS pixels. legendLies() returns true if the legend lies across the top of the picture, null if
+    // the picture has no legend.
     homeIn(width, height) {
         const { plant, groups: [group] } = this.model, lies = this.legendLies?.() ?? null, title = `${quantityText(group)} ${group.unit}`;
         return home(plant, width, height, lies === null ? {} : besideLegend(width, height, lies, title.length));
     }
 
-    // Resets shared data, which the server sends after its greeting if there is any. views: { id, title, view, fixed } or { ..., by,
-    // time_us }; walls: what desks sent to panes, and the connected displays.
+    // Forgets the data that all sessions share; after its greeting, the server sends what there is. views: { id, title, view, fixed } or {
+    // ..., by, time_us }; walls: what desks sent to panes, and which displays are connected.
     forget() {
         Object.assign(this, { views: [], notes: [], pointed: [], walls: null });
     }
@@ -382,12 +382,12 @@ export class Session {
         return this.model?.group(this.params.group) ?? null;
     }
 
-    // The parameters of the picture on the screen; newer ones may still be on their way.
+    // Parameters of the picture on the screen; newer ones may be on their way.
     get shown() {
         return this.asked.get(this.picture?.paramsSeq) ?? this.params;
     }
 
-    // Returns [min, max] of the colours, for one half.
+    // Returns the range [min, max] of the colours for parameters, such as those of one half.
     rangeOf(params) {
         const group = this.model?.group(params.group);
         return params.range ?? (group ? [group.min, group.max] : [0, 1]);
@@ -397,7 +397,7 @@ export class Session {
         return this.rangeOf(this.params);
     }
 
-    // Returns the server's clock, extrapolated by ours; null before its first message.
+    // Returns the server's time, continued by our clock; null before its first message.
     clockUs(now = this.now()) {
         return this.serverTime && this.serverTime.us + (now - this.serverTime.at) * 1000;
     }
@@ -436,7 +436,7 @@ const HANDLERS = {
 
     params(message) {
         if (message.seq < this.paramsSeq)
-            return; // ignores the answer to an earlier change, since overridden
+            return; // this answers an earlier change, which a newer one has replaced
         this.confirmed = this.params = pick(message, SAID);
         this.emit('params');
     },
@@ -452,7 +452,7 @@ const HANDLERS = {
         this.model.notOlder(message.oldest_age_ms ?? null, this.now());
     },
 
-    // Markers. After the first message only changes are sent.
+    // Markers of a frame. The first message has all, later ones only changes.
     markers(message) {
         const newest = this.markers.get(Math.max(...this.markers.keys())) ?? new Map();
         const known = message.markers ? new Map(message.markers.map(([tag, , , occluded, half = 0, value = null, quality = null]) =>
@@ -505,7 +505,7 @@ const HANDLERS = {
         this.emit('alarms');
     },
 
-    // Draft positions of an engineer: until saved, only this session sees them.
+    // Draft positions of an engineer, which only this session sees until they are saved.
     placed(message) {
         this.model.place(message.sensors);
         this.emit('placed', message);
@@ -540,7 +540,7 @@ const HANDLERS = {
             this.helloWithout(message.text.split(':')[0]);
             return;
         }
-        if (message.about === 'follow' && this.leader !== null) { // the followed session does not exist (yet)
+        if (message.about === 'follow' && this.leader !== null) { // the session to follow does not exist, or not yet
             this.emit('following');
             return;
         }

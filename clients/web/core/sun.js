@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Converts the sun's position between azimuth and elevation in degrees (azimuth from north through east) and the server's vector. North is
-// y in a Z-up plant frame, -z in a Y-up frame.
+// Converts between the sun's azimuth (from north through east) and elevation in degrees, and the server's direction vector. North is y if
+// the plant's vertical is Z, -z if it is Y.
 import { say } from './words.js';
 
 const WINDS = ['N', 'NE', 'E', 'SE', 'S', 'SW', 'W', 'NW'];

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Latency of recent pictures, stage by stage.
+// Computes the latency of recent pictures, stage by stage.
 
 export const STAGES = ['wait', 'field', 'render', 'encode', 'network', 'decode'];
-const STATED = ['wait', 'field', 'render', 'encode']; // stages reported by the server, in microseconds
+const STATED = ['wait', 'field', 'render', 'encode']; // stages whose microseconds the server states
 
 const rank = (sorted, share) => sorted[Math.min(sorted.length - 1, Math.ceil(share * sorted.length) - 1)];
 
-// Returns milliseconds by stage; null: unknown. hereUs: the server's clock at the time of decoding, or null.
+// Returns milliseconds by stage; null: unknown. hereUs: the server's time when the picture was decoded, or null.
 function stages({ picture, decodeMs, hereUs }) {
     const network = hereUs === null ? null : Math.max(0, (hereUs - picture.sentTimeUs) / 1000 - decodeMs);
     return { network, decode: decodeMs, ...Object.fromEntries(STATED.map((name) => [name, picture[`${name}Us`] / 1000])) };
 }
 
-// recent: pictures of a session. Returns { p50, p95 } of a stage, or of `sensor`: from a changed reading to its picture; null: none.
+// recent: pictures of a session. Returns { p50, p95 } of a stage's latency, or of 'sensor': from a changed reading to its picture; null: no
+// data.
 export function timingOf(recent, name) {
     const whole = (one) => (one.picture.data ? Object.values(stages(one)).reduce((sum, ms) => sum + (ms ?? 0), 0) : null);
     const known = recent.map((one) => (name === 'sensor' ? whole(one) : stages(one)[name])).filter((ms) => ms !== null);
@@ -20,6 +21,6 @@ export function timingOf(recent, name) {
     return known.length > 0 ? { p50: rank(known, 0.5), p95: rank(known, 0.95) } : null;
 }
 
-// Returns the bit rate of pictures within that time.
+// Returns the bit rate of the pictures of the last withinMs.
 export const kbitPerS = (recent, now, withinMs = 5000) =>
     (recent.filter(({ picture }) => now - picture.at <= withinMs).reduce((sum, { picture }) => sum + picture.bytes, 0) * 8) / withinMs;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Parses bytes of plantcast.v1 (protocol/PROTOCOL.md) into validated objects; no other code reads raw bytes.
+// Parses bytes of plantcast.v1 (protocol/PROTOCOL.md) into objects with checked values. No other code reads raw bytes.
 
 export const SUBPROTOCOL = 'plantcast.v1';
 const FRAME_HEADER_BYTES = 112;
@@ -19,7 +19,7 @@ function need(condition, what) {
         throw new WireError(what);
 }
 
-// u64 microseconds since 1970 fit a double exactly until the year 2255.
+// Reads a u64 of microseconds since 1970, which a double represents exactly until the year 2255.
 function time(view, offset) {
     const us = Number(view.getBigUint64(offset, true));
     need(Number.isSafeInteger(us), `time at byte ${offset} is beyond all dates`);
@@ -28,7 +28,7 @@ function time(view, offset) {
 
 const triple = (view, offset) => [0, 4, 8].map((o) => view.getFloat32(offset + o, true));
 
-// A camera with a field of view of 0 is orthographic.
+// Reads field of view and height; a camera with a field of view of 0 is orthographic.
 function lens(view) {
     const fov = view.getFloat32(104, true), height_m = view.getFloat32(108, true);
     if (fov === 0) {
@@ -39,7 +39,7 @@ function lens(view) {
     return { fov };
 }
 
-// Throws WireError. The payload is a view into the given bytes.
+// Parses a frame. Throws WireError. The payload is a view into the given bytes.
 export function decodeFrame(bytes) {
     const data = bytes instanceof Uint8Array ? bytes : new Uint8Array(bytes);
     need(data.length >= FRAME_HEADER_BYTES, `${data.length} bytes are no frame header`);
@@ -51,9 +51,9 @@ export function decodeFrame(bytes) {
         flags, codec: CODECS[view.getUint8(1)],
         key: (flags & FLAG_KEY) !== 0, still: (flags & FLAG_STILL) !== 0, noLiveData: (flags & FLAG_NO_LIVE_DATA) !== 0,
         data: (flags & FLAG_DATA) !== 0,
-        // Flag: the frame shows the past instant dataTimeUs, not the present.
+        // flag: the frame shows the past instant dataTimeUs
         past: (flags & FLAG_PAST) !== 0,
-        // Flag: another frame with a further rectangle of the same picture follows.
+        // flag: another frame with a further rectangle of the same picture follows
         more: (flags & FLAG_MORE) !== 0,
         seq: u32(8), cameraSeq: u32(12), paramsSeq: u32(16),
         oldestAgeMs: u32(20) === NO_AGE ? null : u32(20),
@@ -76,17 +76,17 @@ export function decodeFrame(bytes) {
     return frame;
 }
 
-// Returns whether the message is shorter than its header says: the server aborted the frame.
+// Returns true if the server aborted the frame: it is shorter than its header says.
 export function isGivenUp(bytes) {
     const data = bytes instanceof Uint8Array ? bytes : new Uint8Array(bytes);
     const there = data.length - FRAME_HEADER_BYTES;
     return there >= 0 && new DataView(data.buffer, data.byteOffset, data.length).getUint32(4, true) > there;
 }
 
-// Returns whether the frame covers the whole picture, so that nothing of the previous one remains.
+// Returns true if the frame covers the whole picture, so that nothing of the previous one remains.
 export const isWhole = (frame) => frame.width === frame.fullWidth && frame.height === frame.fullHeight;
 
-// Parses a text message into an object with a type.
+// Parses a text message into an object that has a `type`.
 export function decodeMessage(text) {
     let message;
     try {
@@ -103,7 +103,7 @@ export function decodeBase64(text) {
     return Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
 }
 
-// Returns the size to request: device pixels, limited to what the server draws, with the window's aspect ratio.
+// Returns the size of picture to request: that of the window in device pixels, reduced in proportion to what the server draws at most.
 export function pictureSize(widthPx, heightPx) {
     const shrink = Math.min(1, MAX_SIDE_PX / widthPx, MAX_SIDE_PX / heightPx, Math.sqrt(MAX_PIXELS / (widthPx * heightPx)));
     const side = (px) => (px > 0 && px * shrink > MIN_SIDE_PX ? Math.floor(px * shrink) : MIN_SIDE_PX);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Looks up the page's words in the reader's language. Each language has a file for words needed at once, and one for parts that are loaded
-// later.
+// Looks up the page's words in the reader's language. Each language has a file for words that are needed immediately, and one for parts
+// that are loaded later.
 
 export const LANGUAGES = ['en', 'ko', 'de'];
 
-// Returns { language, locale } by ?lang=, else by the browser's preference, else English. The locale is the reader's own if it fits the
-// language.
+// Returns { language, locale }: from ?lang=, else from the browser's preferences, else English. The locale is the reader's own if it is of
+// that language.
 export function chooseLanguage(search = '', preferred = []) {
     const tags = [new URLSearchParams(search).get('lang'), ...preferred].filter(Boolean);
     const languageOf = (tag) => tag.toLowerCase().split('-')[0];
@@ -21,8 +21,8 @@ function known(tag) {
     }
 }
 
-// Parses a file of words into a table: key to text with {names}, or to { one, other, ... } by the plural of `count`. [section] is a prefix
-// of the keys that follow; an indented line continues the text before it.
+// Parses a file of words into a table: key to text with {names}, or to { one, other, ... } by the plural form of `count`. [section] is a
+// prefix of the keys that follow; an indented line continues the text before it.
 export function readWords(text) {
     const table = {};
     let begin = '';
@@ -54,7 +54,7 @@ const rules = new Intl.PluralRules(reader.language);
 export const { language, locale } = reader;
 export const say = (key, values) => phrase(words, rules, key, values);
 
-// Loads further words. Returns a promise, which rejects if the file cannot be fetched. name: of the file.
+// Loads a further file of words, by its name. Returns a promise, which rejects if it cannot be fetched.
 const learnt = new Map();
 let failures = 0;
 export function learnWords(name = 'lazy') {
@@ -67,5 +67,5 @@ export function learnWords(name = 'lazy') {
     return learnt.get(name);
 }
 
-// Returns the translation of a name if there is one, else `otherwise`.
+// Returns the text for a key if there is one, else `otherwise`.
 export const sayIfKnown = (key, otherwise) => (words[key] === undefined ? otherwise : say(key));

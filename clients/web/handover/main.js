@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The shift handover page: notes, alarms, acknowledgements and shelved alarms for the next shift. The browser prints it or saves it as PDF.
-// ?from and ?to: as in /api/v1/history.
+// The shift handover page: notes, alarms, acknowledgements and shelved alarms for the next shift, to be printed or saved as PDF by the
+// browser. ?from and ?to as in /api/v1/history.
 import { zoneClock } from '../core/format.js';
 import { readJournal, sortJournal } from '../core/handover.js';
 import { ask } from '../core/history.js';
@@ -13,7 +13,7 @@ const HOURS = [8, 12, 24], MOST = 200; // maximum rows of a table
 const query = new URLSearchParams(location.search), token = stored('token');
 document.documentElement.lang = language;
 await learnWords();
-new BroadcastChannel('plantcast').onmessage = ({ data }) => { // the page that opened this one was locked: clears this one too
+new BroadcastChannel('plantcast').onmessage = ({ data }) => { // clears this page when the page that opened it was locked
     if (data === 'locked') {
         store('token', '');
         location.reload();
@@ -75,13 +75,13 @@ function pageOf({ plant, assets }, notes, journal, standing, [fromUs, toUs], mis
     ];
 }
 
-// Only for operators and engineers, because the list names users.
+// Shows the list, only to operators and engineers, because it names users.
 async function show() {
     const { role } = await get('me');
     if (!['operator', 'engineer'].includes(role))
         throw new Error(say('handover.denied'));
     const span = { from: query.get('from') ?? '-8h', to: query.get('to') ?? 'now' };
-    const missing = []; // data that could not be loaded; the page lists it
+    const missing = []; // names of the data that could not be loaded, which the page lists
     const orElse = (empty) => (error) => {
         missing.push(error.message);
         return empty;

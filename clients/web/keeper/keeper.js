@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reloads a page whose main thread hangs. Runs as a frame of that page and waits for a message of its worker
-// (app/common/watchdog_worker.js), then navigates to itself in place of the page, because a navigation to the page would go to the hanging
-// process. From there it returns to the page's URL, for which Chromium starts another process.
+// Reloads a page whose main thread hangs. It runs as a frame of that page and waits for a message from the page's worker
+// (app/common/watchdog_worker.js). Then it navigates itself to the top, in place of the page; navigating to the page directly would go to
+// the hanging process. From there it goes to the page's URL, for which Chromium starts another process.
 'use strict';
 
-const RETRY_MS = 5000; // retry while the server does not answer: the browser's error page could not return
+// interval of attempts while the server does not answer; from the browser's own error page there would be no way back
+const RETRY_MS = 5000;
 const ENDED_MS = 2000;
 
 // Calls f once the server answers.
@@ -16,7 +17,7 @@ if (parent === window) {
     const page = new URL(decodeURIComponent(location.hash.slice(1)), location.href);
     const open = () => location.replace(page.href);
     if (page.origin === location.origin)
-        whenServed(() => setTimeout(() => { // waits until the hanging process has ended
+        whenServed(() => setTimeout(() => { // waits ENDED_MS, until the hanging process has ended
             open();
             setInterval(open, RETRY_MS);
         }, ENDED_MS));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One display of a wall: panes in a grid, a session for text, and a warning when the server is silent.
+// The page of one display of a wall: panes in a grid, a session for texts and alarms, and a warning when the server is silent.
 import { AlarmCall } from '../core/alarm_call.js';
 import { Connection } from '../core/connection.js';
 import { zoneClock } from '../core/format.js';
@@ -19,7 +19,7 @@ import { Pairing } from './pairing.js';
 import { tileOf } from './tile.js';
 
 const TICK_MS = 250, LOST_MS = 3000;
-// LEAST: minimum size of a display in units; LETTERS_MM: letter size of the lost-connection warning
+// LEAST: smallest size of a display in units; LETTERS_MM: height of the letters that say that the connection is lost
 const LEAST = { width: 560, height: 315 }, LETTERS_MM = 100;
 const query = new URLSearchParams(location.search), number = Math.max(1, Number(query.get('display')) || 1);
 
@@ -34,14 +34,14 @@ const pairing = new Pairing({ element: byId('denied'), place: { wall: query.get(
 } });
 const token = pairing.kept ?? stored('token');
 if (token)
-    store('token', token); // stored for the panes, which are separate pages
+    store('token', token); // the panes, which are separate pages, read it from there
 const streamUrl = new URL('stream', location.href.replace(/^http/, 'ws').replace(/[?#].*$/, '')).href;
 const connection = new Connection({ url: streamUrl, open: (url, protocol) => new WebSocket(url, protocol), clock });
 connection.onUnopened = () => import('../core/blocked.js').then(({ explain }) => explain(connection), () => {});
 connection.spreadMs = SPREAD_MS;
 const session = new Session({ connection, now: clock.now, codecs: ['jpeg'] });
 session.token = token;
-session.size = { width: 16, height: 16 }; // requests tiny pictures, because this session only needs alarms and texts
+session.size = { width: 16, height: 16 }; // requests tiny pictures, because this session needs only alarms and texts
 session.on('frame', (frame) => session.drawn(frame, 0));
 
 let wall = null, shape = '', panes = [], scale = 1;
@@ -60,7 +60,7 @@ function sayWrong(text) {
     byId('grid').replaceChildren(make('p', { class: 'wrong' }, text));
 }
 
-// Sets the size of a unit, on which all font sizes are based.
+// Sets the size of a unit, on which all font sizes depend.
 function fit() {
     if (!wall)
         return;
@@ -90,7 +90,7 @@ function build(walls) {
     return undefined;
 }
 
-// Tells the server which display this is.
+// Tells the server which display of the wall this page is.
 const sayWho = () => wall?.displays[number - 1] && !session.model?.plant.only &&
     session.post({ type: 'display', wall: wall.id, display: number });
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The panes of a wall, by kind. Each is { element, tick(now) }; views and trends are the normal page in an iframe.
+// The panes of a wall, by kind. Each is { element, tick(now) }. Panes with views and trends contain the normal page in an iframe.
 import { byEquipment } from '../core/alarm_call.js';
 import { isGone } from '../core/alarms.js';
 import { ageText, decimalsFor, numberText, qualityText, quantityText, unitText, zoneClock } from '../core/format.js';
@@ -26,12 +26,12 @@ export function paneOf(pane, context) {
     return { element, kind: pane.kind, tick };
 }
 
-// Returns an alarm's value as the alarm bar shows it; without the present value while no messages arrive from the server.
+// Returns an alarm's values as the alarm bar shows them; the present value is left out while no messages arrive from the server.
 const nowText = (session, alarm) => limitText(session, alarm, !['lost', 'silent'].includes(health(session, clock.now()).kind));
 
 const ageOf = (ms) => say('walls.age', { age: ms === null ? '–' : ageText(ms) });
 
-// Returns the quantities of tags, and the age of their oldest usable reading.
+// Returns a text with the quantities of tags, and the age of the oldest of their usable readings.
 function aboutTags({ model }, names) {
     const tags = names.map((name) => model.tag(name)).filter(Boolean);
     const groups = [...new Set(tags.map(({ group }) => model.group(group)))].filter(Boolean);
@@ -43,7 +43,7 @@ function aboutTags({ model }, names) {
 
 const timeOf = (session, us) => zoneClock(session.model.plant.time_zone)(us / 1000).time;
 
-// Returns the age of the oldest reading in a picture, for sessions that receive no readings.
+// Returns the age of the oldest reading in a picture, for sessions that receive no readings themselves.
 function pictureAgeMs(session) {
     const { picture } = session;
     if (!picture || picture.oldestAgeMs === null)
@@ -51,7 +51,7 @@ function pictureAgeMs(session) {
     return picture.oldestAgeMs + Math.max(0, session.clockUs() - picture.sentTimeUs) / 1000;
 }
 
-// The page in an iframe, without controls.
+// Adds the normal page in an iframe, without controls. Returns an object whose `page` is that page's, or null until it is loaded.
 function pageIn({ wall, theme, body }, kind, place) {
     const query = new URLSearchParams({ wall: `${wall.inches},${wall.distance_m}`, pane: kind, hangs: place, ...(theme ? { theme } : {}) });
     const frame = make('iframe', { src: `./?${query}`, tabindex: -1 });
@@ -59,25 +59,27 @@ function pageIn({ wall, theme, body }, kind, place) {
     return { get page() { return frame.contentWindow?.plantcast ?? null; } };
 }
 
-// views, and the position of an alarm
+// a pane that shows views, and during an alarm the alarm's position
 
 function ViewsPane(pane, context) {
     const { session, call, title, element, wall, display } = context, place = `${wall.id}/${display}/${pane.area}`;
     const inner = pageIn(context, 'view', place), remembered = `plantcast.at.${place}`;
     let at = (Number(sessionStorage.getItem(remembered)) || 0) % pane.items.length, changedAt = null, shown = null, shownIn = null;
-    const viewsOf = ({ model, views }) => model?.plant.only ?? views; // views that the token allows, if it is limited; else all saved views
+    // views that the token may see, if it is limited; else all saved views
+    const viewsOf = ({ model, views }) => model?.plant.only ?? views;
     const titleOf = (id) => pane.title ?? viewsOf(session).find((view) => view.id === id)?.title ?? id;
     const words = make('span', { class: 'said' }), about = make('span', { class: 'about' }), why = make('p', { class: 'why' });
     title.append(words, about);
     context.body.append(why);
 
-    // Returns who sent or holds the view, and since when.
+    // Returns a text that says who sent the view or holds it, and since when.
     function byWhom({ desk, by, held, time_us: us }) {
         const who = [desk, by].filter(Boolean).join(', '), time = timeOf(session, us);
         return make('i', {}, say(held ? 'walls.held' : 'walls.sent', { who, time }));
     }
 
-    // wrong: items that the view names but the plant lacks. They are listed in place of the picture, since another picture would mislead.
+    // Shows a view. wrong: names in the view that the plant does not have; they are listed instead of the picture, because another picture
+    // would mislead.
     function showView(page, order, wrong) {
         const id = pane.items[at];
         if (wrong)
@@ -95,7 +97,7 @@ function ViewsPane(pane, context) {
             ...(order ? [' ', byWhom(order)] : []));
     }
 
-    // Returns whether the picture still shows another group than the alarm's.
+    // Returns true if the picture still shows another group than the alarm's.
     function ofOther({ model, shown: params }, alarm) {
         const group = model.tag(alarm.tag.name)?.group;
         return Boolean(group) && params.group !== group;
@@ -103,7 +105,7 @@ function ViewsPane(pane, context) {
 
     function showAlarm(page, alarm) {
         const tag = page.session.model.tag(alarm.tag.name);
-        // A view sent from a desk may hide the location, or use another colour range.
+        // a view sent from a desk may hide the alarm's position or have another range of colours, so these are reset
         page.session.setParams({ ...(tag.group ? { group: tag.group } : {}), clip: null, split: null, range: null });
         page.flyToTag(tag);
         words.replaceChildren(badge(alarm.priority, isGone(alarm.state)), make('b', {}, ` ${say(`kind.${alarm.kind}`)} ${tag.name} `),
@@ -124,7 +126,7 @@ function ViewsPane(pane, context) {
         const rests = order || alarms.some(({ waiting }) => waiting) || (pane.on_alarm && call.isFlood(alarms, nowUs));
         if (!rests && pane.items.length > 1 && changedAt !== null && now - changedAt >= (pane.stops?.[at].dwell_s ?? pane.every_s) * 1000) {
             at = (at + 1) % pane.items.length;
-            sessionStorage.setItem(remembered, at); // a reloaded display continues with the same view
+            sessionStorage.setItem(remembered, at); // so that a reloaded display continues with the same view
             shown = null;
         }
         const { view, wrong, refusal } = viewsOf(page.session).find(({ id }) => id === pane.items[at]) ?? {};
@@ -134,7 +136,7 @@ function ViewsPane(pane, context) {
         const unshown = alarm || order?.view || !wrong ? null : { wrong, refusal };
         element.classList.toggle('unshown', Boolean(unshown));
         element.classList.toggle('called', Boolean(alarm));
-        element.classList.toggle('coming', Boolean(alarm) && ofOther(page.session, alarm)); // hide the legend of the previous quantity
+        element.classList.toggle('coming', Boolean(alarm) && ofOther(page.session, alarm)); // hides the legend of the previous quantity
         if (wanted === shown && page === shownIn) {
             if (alarm)
                 setText(words.querySelector('.raised'), `${nowText(session, alarm)} `);
@@ -154,7 +156,7 @@ function ViewsPane(pane, context) {
 function TrendPane(pane, context) {
     const { session, wall, display, title } = context, inner = pageIn(context, 'trend', `${wall.id}/${display}/${pane.area}`);
     const about = make('span', { class: 'about' });
-    let begun = null; // window of the iframe whose trend was started; a reloaded iframe has another window and needs a new start
+    let begun = null; // the iframe's page in which the trend was started; a reloaded iframe has another page and must be started again
     title.replaceChildren(pane.title ?? pane.items.join(', '), about);
     return { tick() {
         const { page } = inner;
@@ -185,7 +187,7 @@ function AlarmsPane(pane, { session, call, title, body }) {
             say('walls.many', { count, worst: `${say(`kind.${worst.kind}`)} ${worst.tag.name}` })),
         make('time', {}, timeOf(session, worst.raisedUs)));
 
-    // Shows as many rows as fit, and counts the rest.
+    // Shows as many rows as fit, and the number of the others.
     function fill(rows) {
         list.replaceChildren(...rows);
         let hidden = 0;
@@ -214,7 +216,8 @@ function AlarmsPane(pane, { session, call, title, body }) {
     } };
 }
 
-// --- numbers with limits in ISA-101 style: grey, with a band for the normal range, a mark at the value, and colour only for alarms
+// --- tiles of numbers with limits in ISA-101 style: grey, with a band for the normal range, a mark at the value, and colour only for
+// alarms
 
 function TilesPane(pane, { session, body, title }) {
     const about = make('span', { class: 'about' });
@@ -245,7 +248,7 @@ function TilesPane(pane, { session, body, title }) {
         }
     }
 
-    // Sets the alarm flag: the colour shows the priority; hollow: returned to normal but unacknowledged.
+    // Sets a tile's alarm flag: its colour shows the priority; hollow means returned to normal but unacknowledged.
     function flagOf(tile, alarm) {
         const text = alarm ? `${alarm.priority} ${alarm.state}` : '';
         if (tile.flag.dataset.shows === text)
@@ -279,7 +282,7 @@ function TilesPane(pane, { session, body, title }) {
     } };
 }
 
-// Reduces the font size until the content fits.
+// Reduces the font size of a pane until its content fits.
 function fitIn(body) {
     for (let part = 1; part > LEAST_PART; part *= 0.94) {
         setVariable(body, '--part', part);
@@ -290,7 +293,7 @@ function fitIn(body) {
 
 const shareOf = ({ min, max }, value) => Math.max(0, Math.min(1, (value - min) / (max - min)));
 
-// pane with the plant's time, and pane with a text
+// a pane with the plant's time, and below a pane with a text
 
 function ClockPane(pane, { session, body, title }) {
     const day = make('span', {}), hour = make('b', {});

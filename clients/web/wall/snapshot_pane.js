@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A pane with the picture of another plant, which this plant's server fetches; without a picture it says why.
+// A pane with the picture of another plant, which this plant's server fetches. Without a picture, the pane says why.
 import { ageText } from '../core/format.js';
 import { ask } from '../core/history.js';
 import { say } from '../core/words.js';
 import { clock } from '../app/common/clock.js';
 import { make, setText } from '../app/common/dom.js';
 
-const ASK_MS = 1000, UNHEARD_MS = 5000; // if this plant's server has been silent for that long, the other plant's state counts as unknown
+// UNHEARD_MS: if this plant's server has been silent for longer, the state of the other plant counts as unknown
+const ASK_MS = 1000, UNHEARD_MS = 5000;
 
-// Returns { tick(now) }. timeOf(us): formats the plant's time.
+// Returns { tick(now) }. timeOf(us) formats a time in the plant's time zone.
 export function SnapshotPane(pane, { session, title, body, timeOf }) {
     const [id] = pane.items, image = make('img', { alt: '', hidden: '' }), card = make('div', { class: 'gone' });
     const about = make('span', { class: 'about' }), name = make('span', { class: 'said' });
     let state = null, asks = false, askedAt = -Infinity;
-    // shown: { picture (its number), ageMs (its age at the time `at`), at }; changedAt: time at which a new number came
+    // shown: { picture (id), ageMs (the picture's age at the time `at`), at }; changedAt: time when another picture came
     let shown = null, changedAt = 0;
     title.replaceChildren(name, about);
     body.append(image, card);
@@ -29,7 +30,8 @@ export function SnapshotPane(pane, { session, title, body, timeOf }) {
     }
 
     async function look() {
-        const at = askedAt = clock.now(); // start of the request: the response time counts as age of the picture
+        // time of the request, not of the answer, so that the time in between counts as age of the picture
+        const at = askedAt = clock.now();
         asks = true;
         try {
             const { list: [said] } = await (await ask('api/v1/other_plants', { id }, session.token)).json();
@@ -39,7 +41,7 @@ export function SnapshotPane(pane, { session, title, body, timeOf }) {
             if (said.picture && said.picture !== shown?.picture)
                 await load(state);
         } catch {
-            // a failed request is reported once the silence is too long
+            // not reported here: tick() reports the silence once it is too long
         } finally {
             asks = false;
         }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A display that is one tile of a picture over many displays: picture without border, dots at readings, alarm labels, notes, and a desk's
-// pointer; title and legend appear once on the wall. The leading display chooses what all show.
+// A display that shows one tile of a picture across many displays: its part of the picture without a border, dots at readings, alarm
+// labels, notes, and a desk's pointer. Title and legend appear once on the wall. One display, the leading one, chooses what all show.
 import { isGone } from '../core/alarms.js';
 import { projector } from '../core/camera.js';
 import { Connection } from '../core/connection.js';
@@ -17,10 +17,12 @@ import { make, setText, setVariable } from '../app/common/dom.js';
 import { Legend } from '../app/viewport/legend.js';
 import { TileSession } from './tile_session.js';
 
-const UPRIGHT = { matches: false, addEventListener() {} }, SMALLEST = 0.6; // minimum font scale of a title that is too long for one line
-const OLD_MS = 3000, POINTS_MS = 4000, REACH = 0.35; // fraction of a tile's width: a label may begin on the neighbouring tile
+// SMALLEST: smallest font scale of a title that is too long for one line
+const UPRIGHT = { matches: false, addEventListener() {} }, SMALLEST = 0.6;
+// REACH: fraction of a tile's width by which a label may begin beyond the edge, on the neighbouring tile
+const OLD_MS = 3000, POINTS_MS = 4000, REACH = 0.35;
 
-// Returns { element, kind, tick(now) }. pane: from /api/v1/walls, with `tile`; context: as for other panes.
+// Returns { element, kind, tick(now) }. pane: description of the pane from /api/v1/walls, with `tile`; second argument: as for other panes.
 export function tileOf(pane, { session: words, call, wall, display, streamUrl }) {
     const { columns, rows } = pane.tile, canvases = [make('canvas', { class: 'front' }), make('canvas')];
     const marks = make('div', { class: 'marks' });
@@ -55,12 +57,12 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
     });
     requestAnimationFrame(flush);
 
-    // choice of the view by the leading display
+    // choice of the view, by the leading display
 
     let refused = '';
     session.on('error', ({ text, refusal, code }) => { refused = refusalText(text, refusal, code); });
 
-    // wrong: what the leading display could not resolve in its view
+    // wrong: names in the view that the leading display could not find in the plant; null: none
     let at = 0, changedAt = null, shown = null, called = null, wrong = null;
     const timeOf = (us) => zoneClock(words.model.plant.time_zone)(us / 1000).time;
     session.on('fitted', (camera) => session.setCamera(camera));
@@ -100,7 +102,7 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
 
     // --- texts
 
-    // Only the leading display knows what is shown: the first display, unless the picture is shown several times.
+    // Shows the title. Only the leading display (the first one, unless the picture is shown several times) knows which view is shown.
     function sayTitle() {
         const { model } = session, group = model.group(session.shown.group), { leads } = session.tiles, order = leads ? findOrder() : null;
         const alarms = words.model.alarms.list(), { active, waiting } = words.model.alarms.counts(), alarm = leads ? called : null;
@@ -130,7 +132,7 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
         setText(said, text);
     }
 
-    // The leading display lists missing displays; each display reports its own faults.
+    // Shows faults: the leading display lists the displays that are missing, and each display reports its own.
     function saySelf(now) {
         const own = session.tiles.late.find((one) => one.display === display), { picture } = session;
         const silent = session.freshAt !== null && now - session.freshAt > OLD_MS;
@@ -146,9 +148,10 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
 
     // --- marks in the picture
 
-    let frame = null, pointer = null; // frame: the one on the screen; pointer: position at which a desk points: { position, by, until }
+    let frame = null, pointer = null; // frame: the frame on the screen; pointer: where a desk points: { position, by, until }
 
-    // Returns a function to a position on this display, as fractions of its sides; null: behind the camera, or far away.
+    // Returns a function from a position in the plant to one on this display, as fractions of its sides; null: behind the camera, or far
+    // outside.
     function placer() {
         const [left, top, width, height] = session.tiles.part ?? [0, 0, 1, 1];
         const project = projector(frame.camera, frame.fullWidth / width, frame.fullHeight / height);
@@ -174,7 +177,7 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
         return mark;
     }
 
-    // Draws the mark of an alarm in any case: also if its sensor is hidden behind something, or its quantity is not shown.
+    // Draws the marks of readings. That of an alarm is drawn in any case, even if its sensor is hidden or its quantity is not shown.
     function drawMarks() {
         const { model } = words, place = placer(), known = session.markersOf(frame.seq), marked = new Set(), out = [];
         const alarms = model.alarms.list().filter(({ state, waiting }) => waiting || !isGone(state));
@@ -203,7 +206,7 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
         marks.replaceChildren(...out);
     }
 
-    // Redraws the marks when a picture arrives or a marked item changes.
+    // Draws the marks again when a picture arrives or a marked item changes.
     let marksOf = '';
     function lookAtMarks() {
         if (pointer && clock.now() > pointer.until)

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The session of a tile in a picture over many displays: frames are held until the server says when all tiles show them.
+// The session of one tile of a picture across many displays: it holds frames back until the server says when all tiles show them.
 import { DecodeQueue } from '../core/decode_queue.js';
 import { Session } from '../core/session.js';
 
-// EARLY_MS: a picture is shown up to so many milliseconds early, because the screen's next refresh is only 17 ms later
+// EARLY_MS: a picture may be shown this many milliseconds early, because the screen's next refresh is 17 ms later
 const PING_MS = 2000, CLOCK_MS = 60000, EARLY_MS = 4;
 
 export class TileSession extends Session {
-    // tile: { wall, display, columns, rows }. canvases: two, the one with the class `front` is visible. Further events: tiles (which
-    // displays are connected), presented ({ frame, number (of the picture), us (server time) }).
+    // tile: { wall, display, columns, rows }. canvases: two, of which the one with the class `front` is visible. Further events: tiles
+    // (which displays are connected), presented ({ frame, number (of the picture), us (server's time) }).
     constructor({ tile, canvases, decoding, ...rest }) {
         super(rest);
         Object.assign(this, { tile, canvases: [...canvases], decoding }); // canvases: the visible one first
         this.tiles = { leads: false, part: null, missing: [], late: [] };
         this.pongs = [];    // pongs of the last minute: { at, us (server clock minus ours), roundTripMs }
-        this.places = null; // marker positions of the shown frame: [tag, x, y, occluded, ...]
+        this.places = null; // marker positions of the frame on the screen: [tag, x, y, occluded, ...]
         this.reset();
         this.queue = new DecodeQueue({
             decode: (frame) => decoding.decode(frame),
@@ -32,13 +32,13 @@ export class TileSession extends Session {
         setInterval(() => this.post({ type: 'ping', t: this.now() }), PING_MS);
     }
 
-    // Drops the held frames of a lost connection.
+    // Drops the frames that were held back, because their connection is lost.
     reset() {
         for (const { picture } of this.kept ?? [])
             picture.close?.();
-        this.kept = [];       // held frames { frame, picture, decodeMs }, in order
-        this.order = null;    // picture to show next: { seq, picture, at_us }
-        this.drawnLast = null; // { frame, decodeMs } drawn on the hidden canvas; null: none
+        this.kept = [];       // frames held back { frame, picture, decodeMs }, in order
+        this.order = null;    // the picture to show next: { seq, picture, at_us }; null: none
+        this.drawnLast = null; // { frame, decodeMs } of the picture drawn on the hidden canvas; null: none
         this.markerRows = []; // { seq, rows }
     }
 
@@ -47,7 +47,7 @@ export class TileSession extends Session {
         return { ...(this.token ? { token: this.token } : {}), tile: { wall, display } };
     }
 
-    // Returns the home camera for the whole picture, of which this is a part.
+    // Returns the home camera for the whole picture, of which this display shows a part.
     homeIn(width, height) {
         return super.homeIn(width * this.tile.columns, height * this.tile.rows);
     }
@@ -67,7 +67,7 @@ export class TileSession extends Session {
             this.markerRows.push({ seq: message.seq, rows: message.markers });
     }
 
-    // Takes parameters from the leading display. The picture on the screen keeps its own until one drawn with the new ones arrives.
+    // Takes over parameters from the leading display. The picture on the screen keeps its own until one with the new parameters arrives.
     follow(message) {
         const { shown, picture } = this;
         super.heard(message);
@@ -87,7 +87,7 @@ export class TileSession extends Session {
         this.pongs.push({ at: now, roundTripMs, us: us - (now - roundTripMs / 2) * 1000 });
     }
 
-    // The server's time by the shortest round trip of the last minute: clocks drift, and queues only add delay.
+    // The server's time, by the shortest round trip of the last minute: clocks drift, and queues only add delay.
     get serverUs() {
         const best = this.pongs.reduce((a, b) => (!a || b.roundTripMs < a.roundTripMs ? b : a), null);
         return best ? best.us + this.now() * 1000 : this.clockUs();
@@ -95,7 +95,7 @@ export class TileSession extends Session {
 
     keep(frame, picture, decodeMs) {
         this.kept.push({ frame, picture, decodeMs });
-        if (!frame.more) // the picture is complete and can be shown at its instant
+        if (!frame.more) // the picture is complete, so it is acknowledged and can be shown at its instant
             this.connection.send({ type: 'ack', seq: frame.seq, decode_ms: Math.round(decodeMs * 100) / 100 });
     }
 
@@ -114,7 +114,7 @@ export class TileSession extends Session {
         requestAnimationFrame(look);
     }
 
-    // Draws the next picture on the hidden canvas, so that at its instant the canvases only swap.
+    // Draws the next picture on the hidden canvas, so that at its instant only the canvases are swapped.
     prepare(seq) {
         const parts = this.kept.filter(({ frame }) => frame.seq <= seq), [front, back] = this.canvases;
         this.kept = this.kept.filter(({ frame }) => frame.seq > seq);

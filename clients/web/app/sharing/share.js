@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The share dialog: links to the current view, with a QR code; the followers of this view, and handing the lead to a follower.
+// The share dialog: links to the current view, with a QR code; the list of sessions that follow this view, and handing the lead to one of
+// them.
 import { shareLinks } from '../../core/links.js';
 import { giveLead } from '../../core/requests.js';
 import { say } from '../../core/words.js';
@@ -7,7 +8,7 @@ import { byId, make, makeSvg, setText } from '../common/dom.js';
 import { fillSegments, markSegment } from '../common/choices.js';
 import { closeButton } from '../common/widgets.js';
 
-const QUIET_MODULES = 4; // white margin around the code, as scanners expect
+const QUIET_MODULES = 4; // width of the white margin around a QR code, in modules (dots), as scanners expect
 let library; // QR code library, loaded on first use
 
 export class Share {
@@ -35,7 +36,7 @@ export class Share {
         document.body.append(this.dialog);
     }
 
-    // Shows the number of followers on the button.
+    // Shows the number of followers on the button of the dialog.
     count() {
         const { count } = this.session.followers;
         byId('share-open').toggleAttribute('data-count', count > 0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Asks for a token where the server requires one, and stores it until the tab closes.
+// Asks for a token if the server requires one, and stores it until the tab closes.
 import { say } from '../../core/words.js';
 import { byId, make, setText } from '../common/dom.js';
 import { around } from '../common/widgets.js';
@@ -13,7 +13,8 @@ export class TokenDialog {
         const command = make('code', {}, 'plantcast token add');
         byId('token-note').replaceChildren(...around(say('token.note', { command: '\u0000' }), command));
         session.on('welcome', () => dialog.close());
-        dialog.addEventListener('close', () => { // closed by Escape: reopen, nothing can be shown without a token
+        // when closed by Escape, the dialog opens again, because nothing can be shown without a token
+        dialog.addEventListener('close', () => {
             if (session.connection.state === 'barred')
                 dialog.showModal();
         });
@@ -37,9 +38,9 @@ export class TokenDialog {
         setText(byId('token-why'), say({ bad_token: 'token.bad', locked: 'token.locked' }[code] ?? 'token.needed'));
         field.value = '';
         const nothing = { sign_in: null, notice: null }, late = new Promise((done) => setTimeout(done, 3000, nothing));
-        // sends the request without the stored token, because a wrong token would be rejected
+        // asks without the stored token, because the server would reject a wrong one
         const me = await Promise.race([whoAmI({ token: null }).catch(() => nothing), late]);
-        if (!document.body.classList.contains('denied')) // access was granted meanwhile, from another tab
+        if (!document.body.classList.contains('denied')) // access was granted in the meantime, from another tab
             return;
         this.showNotice(me.notice);
         if (!dialog.open)
@@ -48,14 +49,14 @@ export class TokenDialog {
         this.offerSignIn(me.sign_in);
     }
 
-    // Shows the site's notice for all users.
+    // Shows the site's notice, which all users see before they sign in.
     showNotice(text) {
         byId('token').querySelector('.notice')?.remove();
         if (text)
             byId('token-title').after(make('p', { class: 'notice' }, text));
     }
 
-    // Offers signing in as the main way if the server has an identity provider; a token is then the exception.
+    // If the server has an identity provider, offers signing in there as the main way; a token is then the exception.
     offerSignIn(label) {
         byId('token').querySelector('.sign-in')?.remove();
         if (!label)

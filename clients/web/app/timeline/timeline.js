@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The time bar: a slider over recorded history with gaps, lost sources and raised alarms, which are clickable; play, speed, a date field,
-// and the way back to live.
+// The time bar: a slider over recorded history with gaps, lost sources and raised alarms, which can be clicked; playback, speed, a date
+// field, and the way back to the present.
 import { ageText, zoneClock } from '../../core/format.js';
 import { arrowS, ask, clustered, lost, nextTo, raised, ticks, witnesses } from '../../core/history.js';
 import { fieldInstant, fieldText } from '../../core/instant.js';
@@ -13,8 +13,9 @@ const SPANS = [[900, 'min', 15], [3600, 'h', 1], [28800, 'h', 8], [86400, 'h', 2
 const SPEEDS = [1, 10, 60, 300, 600, 3600];
 // NOW_US: an instant less than this many microseconds ago counts as now
 const MARKS_MS = 15000, MARKS_MOST = 2000, HAND_MS = 400, NOW_US = 3.5e6;
-const TRACK = { top: 15, height: 10 }, LOST_POINTS = 300; // LOST_POINTS: number of history points per tag for finding lost sources
-// MARK_PX: minimum distance of marks; SEARCH_MOST: journal rows per request; PAGES: maximum number of requests
+// LOST_POINTS: number of history points per tag with which periods of lost sources are found
+const TRACK = { top: 15, height: 10 }, LOST_POINTS = 300;
+// MARK_PX: smallest distance between two alarm marks; SEARCH_MOST: journal rows per request; PAGES: maximum number of requests for a search
 const MARK_PX = 9, SEARCH_MOST = 10000, PAGES = 24, NAMED = 8;
 
 export class Timeline {
@@ -75,7 +76,7 @@ export class Timeline {
         this.show();
     }
 
-    // Sets the slider's span: the time up to now, or around an instant that lies before that.
+    // Sets the span that the slider covers: the time up to now, or around an instant before that span.
     turnTo(atUs) {
         const now = this.session.clockUs() ?? Date.now() * 1000;
         const ends = atUs !== null && atUs < now - this.spanUs ? Math.min(now, atUs + this.spanUs / 2) : now;
@@ -95,7 +96,7 @@ export class Timeline {
         this.show();
     }
 
-    // At most one update per animation frame, however often the pointer moves.
+    // Goes to the slider's instant at most once per animation frame, however often the pointer moves.
     drag() {
         const at = this.toUs - this.spanUs + Number(this.slider.value) * 1e6;
         if (this.wanted === null)
@@ -113,7 +114,7 @@ export class Timeline {
         travel(this.session, us > this.session.clockUs() - NOW_US ? null : us);
     }
 
-    // Moves by a small step or, with the Page keys, by a part of the span.
+    // Handles keys: arrows move by a small step, Page keys by a fraction of the span.
     press(event) {
         const steps = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1 }[event.key];
         const pages = { PageDown: -1, PageUp: 1 }[event.key];
@@ -147,7 +148,8 @@ export class Timeline {
             this.tell(say(backwards ? 'time.first' : 'time.last'));
     }
 
-    // Returns the next alarm. Journal rows come newest first.
+    // Returns the alarm raised next after an instant, or with `backwards` the one before it; null: none. The journal returns its newest
+    // rows first.
     async alarmFrom(us, backwards) {
         let before = null;
         for (let i = 0; backwards && i < PAGES; i++) {
@@ -164,7 +166,7 @@ export class Timeline {
             const found = next === null || length < 2e6 ? nextTo(raised(rows), us, false) : null;
             if (found)
                 return found;
-            // too many journal rows: shortens the span that is searched; few enough: searches the next, longer span
+            // with too many journal rows, searches a shorter span; otherwise searches the next, longer span
             [from, length] = next === null ? [from + length, length * 4] : [from, length / 8];
         }
         return null;
@@ -191,12 +193,12 @@ export class Timeline {
             this.journal({ ...span, limit: MARKS_MOST }).then(({ rows }) => raised(rows)),
             ask('api/v1/history/gaps', span, token).then((answer) => answer.json()).then((said) => said.gaps),
             this.askLost(span),
-        ].map((one) => one.catch(() => []))); // if a request fails or is refused, its kind of mark is not drawn
+        ].map((one) => one.catch(() => []))); // marks of a kind whose request failed or was refused are not drawn
         Object.assign(this, { marks, gaps, lost: all });
         this.draw();
     }
 
-    // Returns [{ source, spans }] of lost sources.
+    // Returns a promise of [{ source, spans }]: the periods in which sources delivered nothing.
     async askLost(span) {
         const sources = witnesses(this.session.model?.tags ?? []), tags = sources.flatMap((one) => one.tags);
         if (tags.length === 0)
@@ -235,7 +237,7 @@ export class Timeline {
         this.draw();
     }
 
-    // Draws marks, ticks, gaps and lost sources (one row each) along the slider.
+    // Draws alarm marks, ticks, gaps and periods of lost sources (one row for each source) along the slider.
     draw() {
         const track = byId('time-track'), width = track.clientWidth;
         if (!this.open || !this.clock || width === 0)
@@ -262,7 +264,7 @@ export class Timeline {
             hatch(from, begin);
         for (const [begins, ends] of this.gaps)
             hatch(begins, ends);
-        const thumb = x(from + Number(this.slider.value) * 1e6); // redraws the thumb, which the hatching would cover
+        const thumb = x(from + Number(this.slider.value) * 1e6); // draws the slider's thumb again, which the hatching would cover
         if (nodes.some((node) => node.localName === 'rect'))
             nodes.push(makeSvg('circle', { class: 'thumb', cx: thumb, cy: 20, r: 8 }));
         for (const us of ticks(from, this.toUs, Math.max(2, width / 110))) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Status bar, connection state and banner: always visible, in words, with ages by this page's own clock.
+// Status bar, connection state and banner: always visible, as text, with ages by the page's own clock.
 import { ageText, zoneClock } from '../../core/format.js';
 import { health, simulatedText } from '../../core/health.js';
 import { say } from '../../core/words.js';
@@ -7,7 +7,7 @@ import { clock } from '../common/clock.js';
 import { byId, make, setText, setVariable } from '../common/dom.js';
 
 export class Status {
-    // onFreshness(bool): whether the shown values come from a server that still sends messages.
+    // onFreshness(isFresh) is called when it changes whether the server still sends messages, so that shown values are current.
     constructor({ session, onFreshness }) {
         Object.assign(this, { session, onFreshness });
         this.fresh = true;
@@ -51,7 +51,7 @@ export class Status {
             setVariable(picture, '--below', `${strip.getBoundingClientRect().bottom - picture.getBoundingClientRect().top}px`);
     }
 
-    // Returns the explanation of the clock: whether the server's clock is synchronised, and how well.
+    // Returns a text that says whether the server's clock is synchronised, and how well.
     clockState(isSet) {
         const { model } = this.session;
         if (!isSet)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Colours of charts by theme, and patterns for missing values.
+// Colours of charts for each theme, and patterns for missing values.
 
-// The line colours are also in trends.css.
+// trends.css has the line colours, too
 export const LOOKS = {
     light: { ground: '#ffffff', ink: '#4d5964', rule: '#d8dce0', gap: '#8b949c', grave: '#a31515', limit: '#8a5a00', then: '#5b2d8e',
         lines: ['#0b5c93', '#b34a00', '#00734f', '#8a3a73', '#5b5b00', '#4b4f56'] },
@@ -9,7 +9,7 @@ export const LOOKS = {
         lines: ['#84c1f2', '#ffb27a', '#66d6a6', '#e8a5d6', '#d9d977', '#d5dbe0'] },
 };
 
-// Clips to the canvas: a gap of days in a chart of seconds would be millions of pixels wide.
+// Draws a hatched rectangle, clipped to the canvas: a gap of days in a chart of seconds would be millions of pixels wide.
 export function hatch(ctx, left, top, width, height, colour) {
     const step = 7 * devicePixelRatio, from = Math.max(left, 0) - height, to = Math.min(left + width, ctx.canvas.width);
     if (!(height <= ctx.canvas.height))

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Trend charts of tags: recorded values of the last hour, shift, day or week, with limits, gaps and units; several can be compared.
+// Trend charts of tags: recorded values of the last hour, shift, day or week, with limits, gaps and units. Several tags can be compared.
 import { decimalsFor, numberText, shortNumberText, unitText, zoneClock, zoneOf } from '../../core/format.js';
 import { ask, BAD, gaps, limitLines, line } from '../../core/history.js';
 import { travel } from '../../core/requests.js';
@@ -11,14 +11,14 @@ import { dots, hatch, LOOKS } from './chart_style.js';
 const SPANS = [['3600', 'hour'], ['28800', 'shift'], ['86400', 'day'], ['604800', 'week']];
 const DASHES = [[], [8, 4], [2, 3], [10, 3, 2, 3], [5, 5], [1, 4]];
 const MOST = DASHES.length, FRESH_MS = 5000, AXIS_PX = 58;
-const EXPAND = 2; // uPlot's mode that expands gaps (nulls) to neighbouring instants
+const EXPAND = 2; // uPlot's mode in which gaps (nulls) extend to neighbouring instants
 const LIMIT_PX = 15;
-// true: this page is a trend pane of a wall, and the chart fills the whole pane
+// true: this page is a trend pane of a wall, and the chart fills the pane
 const isPane = () => document.body.classList.contains('pane-trend');
 const highPx = () => (isPane() ? Math.max(80, byId('trend-chart').clientHeight)
-    : Math.round(Math.max(120, Math.min(210, 0.2 * innerHeight)))); // the same height as #trend-chart in the style sheet
+    : Math.round(Math.max(120, Math.min(210, 0.2 * innerHeight)))); // must equal the height of #trend-chart in the style sheet
 
-// Loads the chart library with the first trend. A failed load is not kept: the next refresh tries again.
+// Loads the chart library with the first trend. If that fails, the next refresh tries again.
 let library;
 function load() {
     library ??= new Promise((done, fail) => {
@@ -76,7 +76,7 @@ export class Trends {
         this.open();
     }
 
-    // Shows these tags, over a given span.
+    // Shows these tags, over the given span.
     compare(tags, spanS) {
         Object.assign(this, { tags: tags.slice(0, MOST), spanS });
         this.open();
@@ -89,7 +89,7 @@ export class Trends {
         this.open();
     }
 
-    // Returns whether the tag can be added to the open chart.
+    // Returns true if the tag can be added to the open chart.
     takes(tag) {
         return this.isOpen && this.tags.length < MOST && !this.tags.includes(tag);
     }
@@ -132,7 +132,7 @@ export class Trends {
         return unitText(tag.unit || this.session.model.group(tag.group)?.unit);
     }
 
-    // Time range of the chart: up to now; while the past is shown, around that instant.
+    // Time range of the chart: up to now or, while the past is shown, around that instant.
     get window() {
         const now = this.session.clockUs(), { atUs } = this.session.time, span = this.spanS * 1e6;
         const to = atUs !== null && atUs < now - span ? Math.min(now, atUs + span / 2) : now;
@@ -143,8 +143,8 @@ export class Trends {
         return { tags: this.tags.map(({ name }) => name).join(','), from: (from / 1e6).toFixed(3), to: (to / 1e6).toFixed(3) };
     }
 
-    // `pending` counts requests that were not answered yet. The timer starts no new request meanwhile: it would discard the answer to the
-    // pending one, so that on a slow link no answer would ever be drawn.
+    // Requests and draws the values. `pending` counts requests without an answer; while there are any, the timer sends no further one. It
+    // would discard the answer to the pending one, so that on a slow link no answer would ever be drawn.
     async refresh() {
         if (this.tags.length === 0 || !this.session.model)
             return;
@@ -177,7 +177,7 @@ export class Trends {
     data(uPlot) {
         const tables = this.series.map((one) => line(one, ...this.span));
         const filled = tables.map((table) => (table[0].length > 0 ? table : [[this.span[0] / 1e6], [null]]));
-        return uPlot.join(filled, filled.map(() => [EXPAND, EXPAND])); // a gap in one series extends over the instants of the others
+        return uPlot.join(filled, filled.map(() => [EXPAND, EXPAND])); // a gap in one series must extend over the instants of the others
     }
 
     draw(uPlot) {
@@ -237,7 +237,7 @@ export class Trends {
         };
     }
 
-    // Returns the range of an axis. It includes limits near the values; distant limits would only flatten the curve.
+    // Returns the range of an axis. It includes limits that are near the values; distant limits would only flatten the curve.
     range(unit, low, high) {
         if (low === null || high === null)
             return [0, 1];
@@ -252,8 +252,8 @@ export class Trends {
         return [min - margin, max + margin];
     }
 
-    // Draws periods without a value hatched, as in the plant's picture, and uncertain ones dotted along the bottom; with several tags, one
-    // row each.
+    // Draws periods without a value hatched, as in the plant's picture, and uncertain ones dotted along the bottom. With several tags, each
+    // has a row.
     drawGaps({ ctx, bbox, valToPos }) {
         const rows = this.series.length;
         ctx.save();
@@ -296,7 +296,7 @@ export class Trends {
         ctx.restore();
     }
 
-    // Writes each limit's name at its line, over everything else; where lines are close together, next to the previous name.
+    // Writes the name of each limit at its line, over everything else. If lines are close together, a name goes next to the previous one.
     nameLimits(chart) {
         const { ctx, bbox } = chart, px = devicePixelRatio, height = LIMIT_PX * px, placed = [];
         ctx.save();

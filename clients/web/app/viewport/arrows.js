@@ -1,26 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Arrows of a group with directions: the length is the field's value, a cross marks an unknown direction. Alternatively streaks with
-// running dashes, on their own canvas.
+// Arrows of a group whose sensors have directions: the length of an arrow is the field's value, a cross marks an unknown direction.
+// Alternatively streaks along which dashes run, on a canvas of their own.
 import { decimalsFor, shortNumberText, unitText } from '../../core/format.js';
 import { halves } from '../../core/split_view.js';
 import { say } from '../../core/words.js';
 import { make } from '../common/dom.js';
 import { INK } from './overlay.js';
 
-// length in pixels of the longest arrow in a picture of that width; the server's minimum distance between arrows is slightly larger
+// length in pixels of the longest arrow in a picture of that width; slightly less than the server's minimum distance between arrows
 const LONGEST_PX = (width) => 0.95 * Math.max(48, width / 24);
 const HEAD = 7, CROSS = 'M-3 -3L3 3M-3 3L3 -3', DOT = 'M-.6 0A.6 .6 0 1 0 .6 0A.6 .6 0 1 0 -.6 0';
-const UNCERTAIN = [3, 2.5], UNCERTAIN_PX = 24; // dash pattern of an uncertain arrow, and length of such an arrow in a legend
-const DASH = [5, 11], FASTEST_PX = 60; // FASTEST_PX: dashes' speed in pixels per second at the upper end of the range
+const UNCERTAIN = [3, 2.5], UNCERTAIN_PX = 24; // dash pattern of an uncertain arrow, and length of the sample of it in a legend
+const DASH = [5, 11], FASTEST_PX = 60; // FASTEST_PX: speed of the dashes in pixels per second at the upper end of the range
 const isUnknown = (dx, dy) => dx === 0 && dy === 0;
 
-// An arrow along x, centred at 0.
+// Returns the path of an arrow along x, centred at 0.
 function shape(length) {
     const head = Math.min(HEAD, length / 2), tip = length / 2;
     return new Path2D(`M${-tip} 0H${tip}M${tip - 0.85 * head} ${-head / 2}L${tip} 0L${tip - 0.85 * head} ${head / 2}`);
 }
 
-// An arrow head along x, with its tip at 0.
+// Path of an arrow head along x, with its tip at 0.
 const head = () => new Path2D(`M${-0.85 * HEAD} ${-HEAD / 2}L0 0L${-0.85 * HEAD} ${HEAD / 2}`);
 
 // Returns a canvas with an arrow for a legend.
@@ -94,7 +94,7 @@ export class Arrows {
         Object.assign(stroke, { end: at, to, uncertain: stroke.uncertain || uncertain });
     }
 
-    // Animates white dashes along dark streaks, below all labels, while there are streaks and the user has not asked for reduced motion.
+    // Animates white dashes along dark streaks, below all labels, while streaks are shown, unless the user has asked for reduced motion.
     run() {
         const { canvas } = this.overlay, moves = this.strokes.length > 0 && !this.still.matches;
         this.running.hidden = !moves;
@@ -139,7 +139,7 @@ export class Arrows {
         c.setLineDash([]);
     }
 
-    // Adds to each legend the longest arrow at its true length, and the meaning of dashes and crosses where they occur.
+    // Adds to each legend the longest arrow at its true length, and the meaning of dashes and crosses if there are any.
     explain() {
         const { shown, picture } = this.session;
         const rows = this.session.markersOf(picture.seq)?.arrows ?? [];
@@ -150,7 +150,7 @@ export class Arrows {
             if (!legend || legend.hidden || !wanted)
                 return key?.remove();
             const value = this.longestIn(params), length = LONGEST_PX(width) * this.scale[0];
-            const strokes = shown.arrows === 'strokes'; // streaks need no length in the legend, only arrows do
+            const strokes = shown.arrows === 'strokes'; // streaks have equal lengths, so only arrows need their length in the legend
             const text = strokes ? '' : `${shortNumberText(value, decimalsFor(value))}\u202f${unitText(params.unit ?? group.unit)}`;
             const own = rows.filter(([, , , , , , of]) => of === half), unknown = own.some(([, , dx, dy]) => isUnknown(dx, dy));
             const dashed = own.some(([, , , , , uncertain]) => uncertain), says = `${text}/${length}/${unknown}/${dashed}`;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Values along isolines, placed where no other label is, and arrows. Loaded where there are isolines or arrows.
+// Values along isolines, written at positions without another label, and arrows. Loaded when there are isolines or arrows.
 import { decimalsFor, shortNumberText } from '../../core/format.js';
 import { Arrows } from './arrows.js';
 import { INK } from './overlay.js';
 
-const SPACING_PX = 160; // minimum distance between two labels of the same isoline value
+const SPACING_PX = 160; // smallest distance in pixels between two labels of the same isoline value
 
 export class Isolines {
     constructor({ session, overlay, refresh }) {

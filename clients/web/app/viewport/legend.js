@@ -23,7 +23,7 @@ const solid = (colour) => (c, width, height) => {
     c.fillRect(0, 0, width, height);
 };
 
-// The marker of a tag that is not loop-checked, as the overlay draws it.
+// Draws the marker of a tag without a loop check, as the overlay does.
 const brokenMark = (c, width, height) => {
     const radius = 0.38 * height;
     c.beginPath();
@@ -36,7 +36,7 @@ const brokenMark = (c, width, height) => {
     c.stroke();
 };
 
-// The marker of a tag with an assumed location, as the overlay draws it.
+// Draws the marker of a tag with an assumed position, as the overlay does.
 const doubleMark = (c, width, height) => {
     for (const [radius, line] of [[0.26, 0.11], [0.45, 0.07]]) {
         c.beginPath();
@@ -61,17 +61,17 @@ function at(element, place) {
     return element;
 }
 
-// By value of `show`: a function of the quantity's name and the parameters that returns [title, suffix, note]. Seldom needed titles are in
+// Functions by value of `show`, from the quantity's name and the parameters to [title, suffix, note]. Rarely needed ones are in
 // coverage.js.
 export const TITLES = { distance: (name, { sensor }) => [say('legend.distance', { tag: sensor ?? '–' })] };
-// Values of `show` that do not depend on readings, so that they are never uncertain -> lowest value as a fraction of the range (blind: 5 %
-// plus rounding).
+// For the values of `show` that do not depend on readings, and thus are never uncertain: lowest value as a fraction of the range (blind: 5
+// %, plus rounding).
 const LEAST = { distance: 0, uncertainty: 0, blind: 0.05005 };
 const LIMIT_PLACES = { LL: -2, L: -1, H: 1, HH: 2 };
 
 export class Legend {
-    // paramsOf: function from the picture's parameters to those of the half that this legend explains; it returns null if the legend
-    // explains none.
+    // paramsOf returns, from the picture's parameters, those of the half of the view that this legend explains, or null if the legend stays
+    // empty.
     constructor({ session, element, paramsOf, lying = window.matchMedia('(max-width: 719px)') }) {
         Object.assign(this, { session, element, paramsOf, lying });
         this.lying.addEventListener('change', () => this.show(true));
@@ -83,7 +83,7 @@ export class Legend {
         window.matchMedia(`(resolution: ${window.devicePixelRatio}dppx)`).addEventListener('change', () => this.show(true));
     }
 
-    // Redraws for a new length of the bar, because labels keep their distance in pixels.
+    // Draws the legend again for another length of the bar, because labels keep their distance in pixels.
     fit() {
         const bar = this.element.querySelector('.bar'), long = this.lying.matches ? bar?.clientWidth : bar?.clientHeight;
         if (!long || long === this.long)
@@ -97,7 +97,7 @@ export class Legend {
         return spread(places, Math.min(gap, 1 / Math.max(1, places.length - 1)));
     }
 
-    // Returns everything that determines the legend's look, as a key.
+    // Returns a key of everything on which the legend's look depends, so that it is redrawn only if the key changes.
     contents(params) {
         const { group, show, colormap, ramp_interval, scale, breaks, isolines, look, unit } = params;
         return JSON.stringify([group, show, this.title(params), colormap, ramp_interval, this.session.rangeOf(params), scale,
@@ -136,7 +136,7 @@ export class Legend {
     notes(params, map, isOperator) {
         const { look, scale } = params, off = this.session.drawnError;
         return [
-            // The error is formatted in the unit of the legend's title.
+            // the title's unit applies to the error as well
             off && say('legend.drawn', { off }),
             this.title(params)[2],
             isOperator && say('legend.operator'),
@@ -152,7 +152,7 @@ export class Legend {
             since && make('span', { class: 'since' }, ` ${since}`));
     }
 
-    // below: true if values below the range are possible.
+    // Makes the scale of values. below: true if values below the range are possible.
     scale(rule, lines, limits, below) {
         const { map, min, max } = rule;
         const decimals = (value) => decimalsFor(rule.log ? value : max - min);
@@ -167,7 +167,7 @@ export class Legend {
             ...(below ? end('below', map.below, `< ${text(min)}`) : []));
     }
 
-    // The scale between limits, which has no values: positions from -3 to 3.
+    // Makes the scale of the operator's view, which has no values but positions between alarm limits, -3 to 3.
     limitScale() {
         const place = (value) => (value + 3) / 6, band = (p) => LIMIT_BANDS.find(({ to }) => p * 6 - 3 < to) ?? LIMIT_BANDS[4];
         const names = Object.keys(LIMIT_PLACES), places = Object.values(LIMIT_PLACES).map(place);
@@ -175,7 +175,7 @@ export class Legend {
             this.bar({ min: -3, max: 3 }, Object.values(LIMIT_PLACES), (p) => band(p).colour), this.ticksAt(places, places, names));
     }
 
-    // Draws the bar as a texture finer than screen pixels, with a line at each isoline's value.
+    // Draws the bar with more pixels than the screen has, and a line at the value of each isoline.
     bar(rule, lines, colourAt) {
         const canvas = make('canvas', { class: 'bar', role: 'img', 'aria-label': say('legend.colours', { min: rule.min, max: rule.max }) });
         const lying = this.lying.matches;
@@ -199,7 +199,7 @@ export class Legend {
         return this.ticksAt(places, this.apart(places, 15, 32), values.map(text));
     }
 
-    // Places numbers next to the bar; leader lines connect numbers that had to move apart.
+    // Writes numbers next to the bar. Numbers that had to move apart are connected to their positions by lines.
     ticksAt(from, to, texts) {
         const lying = this.lying.matches, line = (a, b) => (lying ? { x1: 100 * a, y1: 0, x2: 100 * b, y2: 1 }
             : { x1: 0, y1: 100 - 100 * a, x2: 1, y2: 100 - 100 * b });
@@ -209,7 +209,7 @@ export class Legend {
         return make('div', { class: 'ticks' }, svg, ...texts.map((text, i) => at(make('span', {}, text), to[i])));
     }
 
-    // Draws a line at each limit, with its name next to the line.
+    // Draws a line at each alarm limit, with the limit's name next to it.
     limits(rule, limits, text) {
         const { min, max } = rule;
         const inside = Object.entries(limits).filter(([, value]) => value !== null && value >= min && value <= max);
@@ -232,7 +232,7 @@ export class Legend {
         return this.session.model.tags.some((tag) => tag.group === group && tag.position && tag.place === 'equipment');
     }
 
-    // Draws small samples of the patterns, fine enough to be recognised.
+    // Draws small samples of the patterns (no data, uncertain), fine enough to be recognised.
     keys(params, colour) {
         const { show } = params;
         const period = (height) => Math.min(height / 2, patternPeriodPx(this.session.size.height));

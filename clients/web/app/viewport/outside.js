@@ -16,7 +16,7 @@ export class Outside {
         this.show();
     }
 
-    // Returns the names of assets that extend beyond the plant's bounds, which the first view frames.
+    // Returns the names of the assets that extend beyond the plant's bounds, which are the bounds that the first view shows.
     names() {
         const { assets, plant: { bounds: { min, max } } } = this.session.model;
         const rim = Math.max(...max.map((m, i) => m - min[i])) / 100;

@@ -25,7 +25,7 @@ function polygon(c, points) {
     c.closePath();
 }
 
-// Returns a smaller radius where markers are dense, so that the plant stays visible.
+// Returns the radius of markers: smaller if they are dense, so that the plant stays visible.
 function markerRadius(markers) {
     const xs = markers.map((marker) => marker.x), ys = markers.map((marker) => marker.y);
     const area = (Math.max(...xs) - Math.min(...xs)) * (Math.max(...ys) - Math.min(...ys));
@@ -37,17 +37,18 @@ export class Overlay {
         Object.assign(this, { canvas, viewport, session, selection });
         this.context = canvas.getContext('2d');
         this.font = getComputedStyle(document.body).fontFamily;
-        this.unit = 1;     // size of a unit in CSS pixels; larger on a wall
-        this.calm = document.body.classList.contains('pane'); // true in a pane of a wall, where only abnormal readings have labels
-        // markers { tag, x, y, depth, occluded, reading }, positions in units: of the shown group's tags and of tags with alarms
+        this.unit = 1;     // size of a unit in CSS pixels: 1 on a desk, more on a wall
+        this.calm = document.body.classList.contains('pane'); // true in a pane of a wall: only abnormal readings have labels
+        // markers { tag, x, y, depth, occluded, reading }, in units, of the tags of the shown group and of tags with alarms
         this.all = [];
         this.markers = []; // the drawn subset of `all`
         this.places = new Map();
         this.widths = new Map();
-        // called to load call-outs (labels shared by several alarm rings): there are several rings, or a ring without a label
+        // called when call-outs (labels shared by several alarm rings) must be loaded: there are several rings, or a ring has no room for
+        // its label
         this.onRings = () => {};
         this.dirty = true;
-        this.fresh = true; // true: values are current; false: they are the last ones from before the connection was lost
+        this.fresh = true; // true: values are current; false: values are from before the connection was lost
     }
 
     get wide() {
@@ -58,7 +59,7 @@ export class Overlay {
         return this.viewport.height / this.unit;
     }
 
-    // Projects the sensors of the shown group into the last drawn picture.
+    // Computes the positions of the shown group's sensors in the picture on the screen.
     project() {
         const { model, picture, shown } = this.session;
         if (!model || !picture)
@@ -70,7 +71,7 @@ export class Overlay {
     projectHalf({ params, left, width }, number, known) {
         const { model, picture } = this.session;
         const scale = [this.wide / picture.shownWidth, this.high / picture.fullHeight];
-        const rim = params.split ? 0 : 20; // in a split view, markers beyond the edge would appear in the other half
+        const rim = params.split ? 0 : 20; // in a split view, a marker beyond the edge would appear in the other half
         const project = projector(picture.camera, width, picture.fullHeight);
         const markers = [];
         for (const tag of model.tags) {
@@ -81,13 +82,13 @@ export class Overlay {
             if (!place || place[0] < -rim || place[1] < -rim || place[0] > width + rim || place[1] > picture.fullHeight + rim)
                 continue;
             const newest = model.readings[tag.index];
-            // prefers value and quality that came with the picture over newer ones
+            // value and quality come from the picture, if it has them, and not from newer readings
             const pictured = said.quality ? { ...newest, value: said.value, quality: said.quality } : newest;
             const difference = params.show === 'difference' && shown, away = params.show === 'distance' && shown;
             markers.push({
                 tag, x: (left + place[0]) * scale[0], y: place[1] * scale[1], depth: place[2], half: number,
                 occluded: said.occluded, reading: difference || away ? newest : pictured, alarm,
-                // change to a saved comparison; null: unknown; false: the view does not show changes
+                // change from the saved baseline; null: unknown; false: the view does not show changes
                 change: difference && (said.quality === 'bad' ? null : said.value ?? null),
                 // distance from the chosen sensor; null: there is none, for example on other equipment; false: the view does not show
                 // distances
@@ -102,10 +103,10 @@ export class Overlay {
         return this.all.find((marker) => marker.tag === tag) ?? null;
     }
 
-    // Thins out the markers of each half; returns the drawn ones, farthest first.
+    // Thins out the markers of each half where they are dense. Returns those to draw, farthest first.
     thinned() {
         const id = ({ tag, half }) => tag.index * 2 + half, { selected } = this.session.params;
-        // leaves out markers that were drawn only because they are exempt from thinning
+        // tags whose markers passed the thinning in the previous picture, without those that were exempt from it
         const before = new Set(this.markers.filter(({ kept, held }) => held || !kept).map(id));
         for (const marker of this.all) {
             const { tag, alarm, origin, reading } = marker;
@@ -149,7 +150,7 @@ export class Overlay {
         this.isolines?.draw([...this.blocked(), ...boxes, ...marks]);
     }
 
-    // Returns the boxes of elements that lie over the picture.
+    // Returns the boxes of the HTML elements that lie over the picture.
     blocked() {
         const origin = this.viewport.element.getBoundingClientRect();
         const boxes = [...this.viewport.element.querySelectorAll('.legend, .banner, .card, .simulated-note, .chip')]
@@ -159,7 +160,7 @@ export class Overlay {
             left: (box.left - origin.left) / unit, right: (box.right - origin.left) / unit,
             top: (box.top - origin.top) / unit, bottom: (box.bottom - origin.top) / unit,
         }));
-        const middle = this.wide / 2; // blocks the line between the halves, so that no label spans both
+        const middle = this.wide / 2; // also blocks the line between the halves, so that no label crosses it
         return this.session.shown.split ? [...own, { left: middle - 1, right: middle + 1, top: 0, bottom: this.high }] : own;
     }
 
@@ -167,8 +168,8 @@ export class Overlay {
         return tag.name === this.selection.tag || tag === this.selection.hover;
     }
 
-    // Places the labels of each half of a split view. Requests the code of call-outs (labels shared by several alarm rings) when rings may
-    // need them.
+    // Places the labels of each half of a split view. Requests the module for call-outs (labels shared by several alarm rings) when rings
+    // may need it.
     place(labels) {
         const { shown } = this.session, { wide: width, high: height, callouts } = this, blocked = this.blocked();
         const placed = halves(shown, width).map((half, number) => placeLabels(labels.filter((label) => label.half === number), {
@@ -181,7 +182,7 @@ export class Overlay {
         return all;
     }
 
-    // Returns labels for all visible markers and all rings, in the order of tags; the selected tag has a card instead.
+    // Returns labels for all visible markers and all alarm rings, in the order of tags; the selected tag has a card instead.
     labels() {
         const marks = this.markers.filter((marker) => !marker.occluded || marker.alarm);
         const inSight = marks.filter(({ occluded }) => !occluded);
@@ -203,7 +204,7 @@ export class Overlay {
         });
     }
 
-    // Returns the parts of a label: [text, weight, colour].
+    // Returns a label as a list of [text, font weight, colour].
     parts({ tag, reading, change, distance_m, alarm }, withName) {
         const parts = withName ? [[tag.name, 400, INK_2]] : [];
         const held = alarm && reading.quality === 'bad' && this.callouts?.held(tag, alarm);
@@ -240,8 +241,8 @@ export class Overlay {
         this.context.font = `${weight} 12.5px ${this.font}`;
     }
 
-    // Draws an alarm ring around a marker. The colour shows the priority. The form shows the state: thick and slowly blinking while
-    // unacknowledged, thin once acknowledged, hollow after return to normal.
+    // Draws an alarm ring around a marker. Its colour shows the priority. Its form shows the state: thick and slowly blinking while
+    // unacknowledged, thin once acknowledged, hollow after the return to normal.
     drawAlarm({ priority, state, waiting }) {
         const c = this.context, blinks = waiting && document.body.classList.contains('alarm-blink');
         const wide = !waiting || blinks ? 2 : 4, colour = ALARM_COLOURS[priority - 1][0], solid = [[INK, wide + 2], [colour, wide]];
@@ -275,7 +276,7 @@ export class Overlay {
         c.strokeStyle = INK;
         c.stroke();
         c.setLineDash([]);
-        if (tag.place === 'equipment') { // a second ring: the location is assumed
+        if (tag.place === 'equipment') { // a second ring shows that the position is assumed
             c.beginPath();
             c.arc(0, 0, radius + 3, 0, 2 * Math.PI);
             c.lineWidth = 1;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The picture on the screen: requests the right size, decodes, draws in step with the display, acknowledges drawn frames.
+// The picture on the screen: requests pictures of the right size, decodes them, draws them in step with the display, and acknowledges those
+// drawn.
 import { DecodeQueue } from '../../core/decode_queue.js';
 import { isWhole, pictureSize } from '../../core/wire.js';
 
 const RESIZE_WAIT_MS = 100;
-// Returns the exact size from the browser, unless it ignores page zoom, as emulated screens do.
+// Returns the number of device pixels. `exact`, the browser's own size, is used unless it ignores page zoom, as on emulated screens.
 function devicePixels(cssPx, exact) {
     const px = Math.round(cssPx * window.devicePixelRatio);
     return exact !== undefined && Math.abs(exact - px) <= 2 ? exact : px;
@@ -13,11 +14,11 @@ function devicePixels(cssPx, exact) {
 const sizeOf = (width, height) => ({ ...pictureSize(width, height), pixel_ratio: Math.min(8, Math.max(0.25, window.devicePixelRatio)) });
 
 export class Viewport {
-    // onTick(now): called once per animation frame, before drawing. onDrawn(frame): called after drawing.
+    // onTick(now) is called once per animation frame, before drawing; onDrawn(frame) after drawing.
     constructor({ element, canvas, session, decoding }) {
         Object.assign(this, { element, canvas, session });
         this.context = canvas.getContext('2d', { alpha: false });
-        this.decoded = []; // decoded pictures, and parts of an incomplete one
+        this.decoded = []; // decoded frames that are not drawn yet: whole pictures, and rectangles of an incomplete one
         this.scheduled = false;
         this.onTick = this.onDrawn = () => {};
         this.slot = new DecodeQueue({
@@ -80,7 +81,7 @@ export class Viewport {
             this.invalidate();
     }
 
-    // Drops queued frames when the connection is lost: a new connection numbers frames from the start again.
+    // Drops queued frames when the connection is lost, because a new connection numbers frames from the start again.
     forget() {
         this.slot.clear();
         for (const { picture } of this.decoded)
@@ -100,8 +101,8 @@ export class Viewport {
         });
     }
 
-    // Draws complete pictures; parts wait for the rest. A picture of another shape is scaled to the viewport's height, undistorted;
-    // picture.shownWidth: the viewport's width in pixels of the picture.
+    // Draws the pictures that are complete; rectangles wait for the rest of their picture. A picture of another shape is scaled to the
+    // viewport's height, undistorted. picture.shownWidth: the viewport's width in pixels of the picture.
     draw() {
         const complete = this.decoded.findLastIndex(({ frame }) => !frame.more) + 1, drawn = this.decoded.splice(0, complete);
         for (const { frame, picture } of drawn) {
@@ -109,7 +110,7 @@ export class Viewport {
                 this.canvas.width = frame.fullWidth;
                 this.canvas.height = frame.fullHeight;
             }
-            const { x, y, width, height } = frame; // the coded picture may be one pixel wider and higher
+            const { x, y, width, height } = frame; // the coded picture may be one pixel wider and higher than the frame
             this.context.drawImage(picture, 0, 0, width, height, x, y, width, height);
             picture.close();
         }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Paired displays, for engineers: pairing a display by its code, and revoking one.
+// Paired wall displays, for engineers: pairing a display by its code, and revoking a pairing.
 import { zoneClock } from '../../core/format.js';
 import { ask } from '../../core/history.js';
 import { refusalText } from '../../core/refusals.js';
@@ -21,7 +21,7 @@ export class Devices {
         this.learn();
     }
 
-    // Shows nothing where displays need no token, or to users without the role.
+    // Loads the list of devices. It stays empty if displays need no token, or the user is not an engineer.
     async learn() {
         const { session } = this, turn = this.turn = (this.turn ?? 0) + 1;
         const { list } = session.role === 'engineer' ? await ask('api/v1/devices', {}, session.token).then((answer) => answer.json(),
@@ -50,6 +50,6 @@ export class Devices {
     post(message) {
         const { session } = this;
         if (!session.welcomed || !session.connection.send({ seq: ++session.toldSeq, ...message }))
-            this.tell(say('reason.unreachable')); // tells the user that the display was not revoked
+            this.tell(say('reason.unreachable')); // says that the pairing was not revoked
     }
 }

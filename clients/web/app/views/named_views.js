@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The list of saved views: opening one; with the right role also saving, reordering and restoring earlier versions.
+// The list of saved views: opening a view; with the right role also saving, reordering, and restoring earlier versions.
 import { ask } from '../../core/history.js';
 import { idFor, pictureQuery, textOf, viewOf } from '../../core/named_views.js';
 import { zoneClock } from '../../core/format.js';
@@ -31,7 +31,7 @@ export class NamedViews {
 
     // --- opening
 
-    // fly: true: the camera is animated; false: it jumps.
+    // Opens a view. fly true: the camera flies there; false: it jumps.
     open(id, fly = true) {
         const view = this.session.views.find((one) => one.id === id);
         if (!view) {
@@ -52,7 +52,7 @@ export class NamedViews {
         if (fly)
             modules.use('cameraController', (cameraController) => cameraController.flyTo(camera));
         else {
-            modules.there('cameraController')?.land(); // ends a running flight, which would continue to its old destination
+            modules.there('cameraController')?.land(); // ends a running flight, which would continue to its own destination
             session.setCamera(camera);
         }
     }
@@ -140,7 +140,7 @@ export class NamedViews {
             row.querySelector('.named-open').toggleAttribute('aria-current', row.dataset.id === this.opened);
     }
 
-    // --- small pictures, one after the other
+    // --- thumbnails of views, requested one after the other
 
     async draw() {
         if (this.drawing)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Controls a wall from a desk: sends the current view to a pane, holds a pane, and points at a place of the plant.
+// Controls a wall from a desk: sends the current view to a pane, holds a pane on a view, and points at a position of the plant.
 import { quantityText, zoneClock } from '../../core/format.js';
 import { ask } from '../../core/history.js';
 import { textOf, viewOf } from '../../core/named_views.js';
@@ -40,7 +40,7 @@ export class Remote {
         this.learn();
     }
 
-    // Loads the list of walls; a reload may have changed the plant file.
+    // Loads the list of walls; a reload of the plant may have changed it.
     async learn() {
         const { walls } = await ask('api/v1/walls', {}, this.session.token).then((answer) => answer.json(), () => ({ walls: [] }));
         this.panes = walls.flatMap(({ id: wall, displays }) => displays.flatMap(({ panes }, index) =>
@@ -65,7 +65,7 @@ export class Remote {
         return { view, title };
     }
 
-    // Returns the title for the pane: the open saved view's title, else the selection's name, else the quantity's name.
+    // Title of the current view for the pane: that of the open saved view, else the name of the selection, else that of the quantity.
     get title() {
         const { session } = this, { params, model, group } = session, opened = this.page.modules.there('namedViews')?.opened;
         const named = session.views.find(({ id, view }) => id === opened && isFrom(viewOf(session, view).camera, session.camera))?.title;
@@ -100,7 +100,7 @@ export class Remote {
         byId('remote-hold').disabled = Boolean(order?.held);
     }
 
-    // --- pointing: at a position of the plant, whatever camera the wall has
+    // --- pointing at a position of the plant, which works whatever camera the wall has
 
     setPointing(on) {
         this.pointing = on;
@@ -118,8 +118,8 @@ export class Remote {
         askPick(this.session, this.viewport.pixelOf(pointed.x, pointed.y), 'point');
     }
 
-    // Returns true while the answer to the previous pick is pending, so that the next request waits: the server only answers the latest
-    // one, and a click of the user takes precedence.
+    // Returns true while the answer to the previous pick request is pending. The next one must wait, because the server answers only the
+    // latest, and a pick by the user's click takes precedence.
     waitsFor(now) {
         const { pickSeq } = this.session;
         if (pickSeq !== this.seenSeq)

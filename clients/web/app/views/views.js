@@ -83,7 +83,7 @@ export class Views {
         return [min[index], max[index]];
     }
 
-    // Bounds for a new box: the selected equipment, else the plant.
+    // Bounds in which a new clip box is made: those of the selected equipment, else of the plant.
     get boxed() {
         const { model, params } = this.session;
         return (model.asset(params.selected) ?? model.plant).bounds;
@@ -95,7 +95,7 @@ export class Views {
             return;
         }
         const [min, max] = this.range(axis);
-        // a horizontal section keeps the lower part, to look in from above
+        // a horizontal section keeps the lower part, so that one looks in from above
         this.session.setParams({ clip: cut(axis, (min + max) / 2, axis === 'z') });
     }
 
@@ -105,7 +105,7 @@ export class Views {
             this.session.setParams({ clip: cut(now.axis, now.at, !now.turned) });
     }
 
-    // At most one update per animation frame: sliders fire more often.
+    // Moves the section at most once per animation frame, because sliders fire more often.
     move() {
         if (this.moving)
             return;

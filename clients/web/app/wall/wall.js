@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The page on a control room's wall: enlarged, without controls, and the screen stays on.
+// Shows the page on a control room's wall: enlarged, without controls, and with the screen kept on.
 import { learnWords, say } from '../../core/words.js';
 import { numberText } from '../../core/format.js';
 import { legendsLie, readWall, SPREAD_MS, wallFit } from '../../core/wall.js';
 import { keepScreenOn } from '../common/clock.js';
 import { byId, make, setVariable, styled } from '../common/dom.js';
 
-const FAR_MS = 60000; // duration for which the notice on the readable distance is shown to the person who installs the wall
-const LEAST_PICTURE = 0.3; // minimum picture height, as a fraction of the window's; below this, the whole page shrinks
-const TIGHT = 620; // width in units below which the date does not fit next to the time
+const FAR_MS = 60000; // milliseconds for which the person who installs the wall sees from which distance the text is readable
+const LEAST_PICTURE = 0.3; // smallest height of the picture as a fraction of the window's; below this, the whole page shrinks
+const TIGHT = 620; // width in units below which the date has no room next to the time
 
-// Sets page.unit (size of a unit on the page) and calls page.onUnit() when it changes. page.lying: whether legends lie flat, with a media
-// query's interface. Legends and the note on simulated values get their own space, so that they cover no reading.
+// Sets page.unit (size of a unit of the page) and calls page.onUnit() when it changes. Sets page.lying, which has a media query's
+// interface: whether legends lie horizontally. Legends and the note on simulated values have their own space, so that they cover no
+// reading.
 export async function hangOnWall(search, page) {
     const pane = new URLSearchParams(search).get('pane'), wall = readWall(search);
     const hear = [], legends = make('div', { class: 'legends' }), { classList } = byId('viewport');
@@ -27,7 +28,7 @@ export async function hangOnWall(search, page) {
         if (turned)
             hear.forEach((f) => f());
     };
-    // Fits the page to the window. Returns the distance from which the text is readable.
+    // Scales the page to the window. Returns the distance from which the text is readable.
     const fit = () => {
         const { innerWidth: width, innerHeight: height } = window, { scale, metres } = wallFit(wall, window.screen, { width, height });
         hang(scale);
@@ -48,7 +49,7 @@ export async function hangOnWall(search, page) {
         const [name, display] = page.hangs?.split('/') ?? [], { session } = page;
         if (name)
             session.connection.spreadMs = SPREAD_MS;
-        if (name) // tells the server on which display of the wall this page is
+        if (name) // tells the server which pane of which display this page is
             session.greeted(() => session.model.plant.only || session.post({ type: 'display', wall: name, display: Number(display) }));
         const metres = fit();
         if (metres < wall.metres && await learnWords().then(() => true, () => false))
