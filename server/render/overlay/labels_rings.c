@@ -10,9 +10,10 @@
 /* CLOSE: alarm rings nearer to each other than this, in units, share a call-out; STILL_CLOSE: this distance for rings that shared one in
    the previous frame */
 static const double CLOSE = 26, STILL_CLOSE = 34;
-static const double GROWTH = 1.25; /* factor by which both distances grow until at most MAX_GROUPS labels remain */
+static const double GROWTH = 1.25; /* factor by which CLOSE and STILL_CLOSE grow, repeatedly, until at most MAX_GROUPS labels remain */
 enum { MAX_GROUPS = 24 };
-static const double MAX_DISTANCE = 170; /* largest distance of a label from its rings, in units; does not apply if only one label is left */
+/* largest distance of a label from its alarm rings, in units; does not apply if only one label remains */
+static const double MAX_DISTANCE = 170;
 /* Grid of further label positions, tried nearest first: STEP_X, STEP_Y: its spacing in units; STEPS: its steps to each side of the centre
    of the rings. */
 enum { STEP_X = 24, STEP_Y = 15, STEPS = 60, SIDE = 2 * STEPS + 1, OFFSETS = SIDE * SIDE, NOWHERE = -2, FORCED = 1000000 };
@@ -23,11 +24,12 @@ struct offset {
 
 struct ring_group {         /* rings that share a label */
     struct label_item item; /* x, y: centre of the rings; width, height: size of their label */
-    double across, down;    /* half the width and height of the rectangle that encloses the group's ring centres */
-    int *members;           /* indices of items, by importance; points into rings.members */
+    double across, down;    /* half the width and height of the rectangle that encloses the centres of the group's alarm rings */
+    int *members;           /* indices of the group's items (markers), most important first; points into rings.members */
     size_t count;
     struct label_box box;
-    int slot, mate; /* mate: if the group's label found no room: index of the group with which to merge; else LABEL_NONE */
+    /* mate: if the label of this group of alarm rings found no room: index of the group with which to merge; else LABEL_NONE */
+    int slot, mate;
 };
 
 struct rings {
@@ -37,7 +39,7 @@ struct rings {
     double least; /* pixels by which CLOSE and STILL_CLOSE are multiplied: one unit, or more if that leaves too many labels */
     struct ring_group *groups;
     int *group_of;          /* by index in `order` */
-    int *members;           /* members of all groups, group after group */
+    int *members;           /* indices of the items (markers) of all groups of alarm rings, group after group */
     struct offset *offsets; /* sorted by distance */
 };
 
@@ -101,7 +103,7 @@ static size_t join_close(const struct rings *rings, int *first)
     return groups;
 }
 
-/* Computes a group's centre and size, and the slot (candidate position) that its label had in the previous frame. */
+/* Computes centre and size of a group of alarm rings, and the slot (candidate position) that its label had in the previous frame. */
 static void measure(struct rings *rings, struct ring_group *group)
 {
     const struct label_area *area = rings->layout->area;
@@ -130,7 +132,7 @@ static void measure(struct rings *rings, struct ring_group *group)
     group->down = (bottom - top) / 2;
 }
 
-/* Makes the groups from the union-find forest `first`, which is indexed like `order`. */
+/* Makes the groups of alarm rings that share a label. first: union-find forest, indexed like `order`. */
 static void make_groups(struct rings *rings, int *first)
 {
     int *next = rings->members;
@@ -168,8 +170,8 @@ static struct label_box box_at(const struct rings *rings, const struct ring_grou
                                item->height };
 }
 
-/* Returns whether the group's label, with `more` pixels of free space around, fits in this slot (candidate position around the group).
-   Labels of earlier groups count as occupied. */
+/* Returns whether the label of a group of alarm rings, with `more` pixels of free space around, fits in this slot (candidate position
+   around the group). Labels of earlier groups count as occupied. */
 static bool is_free(const struct rings *rings, const struct ring_group *group, int slot, double more, enum label_over over)
 {
     struct label_box box = box_at(rings, group, slot);
@@ -234,7 +236,8 @@ static int nearest_to(const struct rings *rings, int index)
     return nearest;
 }
 
-/* Places the labels of all groups. Returns false if a label found no room; its group's `mate` is then the group to merge with. */
+/* Places one label for each group of alarm rings. Returns false if a label found no room; its group's `mate` is then the group with which
+   to merge. */
 static bool place_groups(struct rings *rings)
 {
     bool all = true;

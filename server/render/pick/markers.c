@@ -114,7 +114,7 @@ static double distance_m(const struct marker_iterator *iterator, const struct ma
         return NAN;
     if (place->tag == params->sensor)
         return 0;
-    /* heat distances are not available here, and the geodesic distances of the asset file would contradict the picture */
+    /* heat distances are not available here, and the geodesic distances of the asset file differ from them, so the distance is unknown */
     if (params->distance == DISTANCE_HEAT)
         return NAN;
     if (params->distance == DISTANCE_EUCLIDEAN) {
