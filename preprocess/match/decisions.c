@@ -10,6 +10,7 @@
 #include <unistd.h>
 #include <xxhash.h>
 
+#include "base/math/search.h"
 #include "base/mem.h"
 #include "base/text/charset.h"
 #include "preprocess/match/table.h"
@@ -168,19 +169,10 @@ bool decisions_read(struct decisions *decisions, const char *path, char why[MATC
 
 const struct decision *decisions_of(const struct decisions *decisions, const char *tag)
 {
-    size_t low = 0, high = decisions->tags;
-    while (low < high) {
-        size_t middle = (low + high) / 2;
-        const struct decision *at = &decisions->at[decisions->by_tag[middle]];
-        int order = strcasecmp(tag, at->tag);
-        if (order == 0)
-            return at;
-        if (order < 0)
-            high = middle;
-        else
-            low = middle + 1;
-    }
-    return NULL;
+    size_t at;
+    search_sorted(at, decisions->tags, strcasecmp(decisions->at[decisions->by_tag[at]].tag, tag) < 0);
+    const struct decision *found = at < decisions->tags ? &decisions->at[decisions->by_tag[at]] : NULL;
+    return found && !strcasecmp(found->tag, tag) ? found : NULL;
 }
 
 static bool is_one_of(const char *tag, const char *const *tags, size_t count)

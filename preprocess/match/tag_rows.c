@@ -9,6 +9,7 @@
 #include <strings.h>
 #include <unistd.h>
 
+#include "base/math/search.h"
 #include "base/mem.h"
 #include "plant/sources/address.h"
 #include "base/text/charset.h"
@@ -144,18 +145,9 @@ void tag_rows_finish(struct tag_rows *rows)
 static int find_row(const struct tag_rows *rows, const char *name)
 {
     int column = find_column(rows, NAME);
-    size_t low = 0, high = rows->known - 1;
-    while (low < high) {
-        size_t middle = (low + high) / 2;
-        int order = strcmp(name, table_cell(&rows->at[rows->by_name[middle]], column));
-        if (order == 0)
-            return rows->by_name[middle];
-        if (order < 0)
-            high = middle;
-        else
-            low = middle + 1;
-    }
-    return -1;
+    size_t at, count = rows->known - 1;
+    search_sorted(at, count, strcmp(table_cell(&rows->at[rows->by_name[at]], column), name) < 0);
+    return at < count && !strcmp(table_cell(&rows->at[rows->by_name[at]], column), name) ? rows->by_name[at] : -1;
 }
 
 static void put(struct tag_rows *rows, struct table_row *row, enum column column, const char *text)

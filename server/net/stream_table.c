@@ -2,21 +2,16 @@
 /* Table of all connections to /stream, searchable by session id. */
 #include <string.h>
 
+#include "base/math/search.h"
 #include "base/mem.h"
 #include "net/stream.h"
 
 /* Returns the index in server->by_client of that session, or where it would be inserted. */
 static size_t place_of(const struct server_context *server, uint64_t client)
 {
-    size_t low = 0, high = (size_t)server->stream_count;
-    while (low < high) {
-        size_t middle = (low + high) / 2;
-        if (server->by_client[middle]->session->id < client)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low;
+    size_t at;
+    search_sorted(at, server->stream_count, server->by_client[at]->session->id < client);
+    return at;
 }
 
 /* Returns the stream of that session; NULL if it is not connected. */

@@ -6,6 +6,7 @@
 #include <string.h>
 #include <xxhash.h>
 
+#include "base/math/search.h"
 #include "base/mem.h"
 #include "base/text/text.h"
 #include "plant/plant_impl.h"
@@ -207,22 +208,18 @@ void plant_destroy(struct plant **plant_ptr)
     *plant_ptr = NULL;
 }
 
+static const char *id_of(const void *things, size_t stride, int index)
+{
+    return *(char *const *)((const char *)things + (size_t)index * stride);
+}
+
 /* Finds the record with that id by binary search; records begin with `char *id`; `order` holds their indices, sorted by id. Returns an
    index or -1. */
 static int find_sorted(const int *order, size_t count, const void *things, size_t stride, const char *id)
 {
-    size_t low = 0, high = count;
-    while (low < high) {
-        size_t middle = low + (high - low) / 2;
-        int difference = strcmp(*(char *const *)((const char *)things + (size_t)order[middle] * stride), id);
-        if (difference == 0)
-            return order[middle];
-        if (difference < 0)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return -1;
+    size_t at;
+    search_sorted(at, count, strcmp(id_of(things, stride, order[at]), id) < 0);
+    return at < count && !strcmp(id_of(things, stride, order[at]), id) ? order[at] : -1;
 }
 
 int plant_find_asset(const struct plant *plant, const char *id)

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/math/search.h"
 #include "base/mem.h"
 
 /* time between key frames that are made only so that clients can join a stream; doubles for clients that often fall behind */
@@ -18,15 +19,9 @@ static const size_t KEPT_BYTES = 64 * 1024;
 
 static size_t place_of(const struct encode_streams *streams, uint64_t client)
 {
-    size_t low = 0, high = streams->link_count;
-    while (low < high) {
-        size_t middle = (low + high) / 2;
-        if (streams->links[middle].client < client)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low;
+    size_t at;
+    search_sorted(at, streams->link_count, streams->links[at].client < client);
+    return at;
 }
 
 static struct encode_stream_member *find(const struct encode_streams *streams, uint64_t client)

@@ -2,21 +2,16 @@
 /* The clients of the render service, found by their id. */
 #include <string.h>
 
+#include "base/math/search.h"
 #include "base/mem.h"
 #include "service/render_service_impl.h"
 
 /* Returns the client's index in the sorted array, or where it would be inserted. The caller holds the lock. */
 static size_t place_of(const struct render_service *service, uint64_t id)
 {
-    size_t low = 0, high = service->client_count;
-    while (low < high) {
-        size_t middle = (low + high) / 2;
-        if (service->clients[middle]->id < id)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low;
+    size_t at;
+    search_sorted(at, service->client_count, service->clients[at]->id < id);
+    return at;
 }
 
 struct render_client *render_service_find(struct render_service *service, uint64_t id)

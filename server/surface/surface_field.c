@@ -4,6 +4,7 @@
 #include <stdatomic.h>
 #include <string.h>
 
+#include "base/math/search.h"
 #include "base/math/simd.h"
 #include "base/math/vec.h"
 #include "base/mem.h"
@@ -24,15 +25,9 @@ struct solve {
 
 static const struct stray *stray_of(const struct surface *surface, uint32_t vertex)
 {
-    size_t low = 0, high = surface->stray_count;
-    while (low < high) {
-        size_t middle = (low + high) / 2;
-        if (surface->strays[middle].vertex < vertex)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low < surface->stray_count && surface->strays[low].vertex == vertex ? &surface->strays[low] : NULL;
+    size_t at;
+    search_sorted(at, surface->stray_count, surface->strays[at].vertex < vertex);
+    return at < surface->stray_count && surface->strays[at].vertex == vertex ? &surface->strays[at] : NULL;
 }
 
 /* Returns the distance at a stray vertex (its triangles have no area), from a source. distances_m: distances of the source at all points,

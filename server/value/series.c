@@ -9,6 +9,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "base/math/search.h"
 #include "base/mem.h"
 #include "base/text/text.h"
 #include "base/text/timestamp.h"
@@ -362,17 +363,11 @@ void series_finish(struct series *series)
 
 double series_at(const struct series *series, double time_s, bool loop)
 {
-    size_t low = 0, high = series->count;
+    size_t after;
     if (loop)
         time_s = fmod(time_s, series->length_s);
-    while (high - low > 1) {
-        size_t middle = low + (high - low) / 2;
-        if (series->time_s[middle] <= time_s)
-            low = middle;
-        else
-            high = middle;
-    }
-    return series->value[low];
+    search_sorted(after, series->count, series->time_s[after] <= time_s);
+    return series->value[after > 0 ? after - 1 : 0];
 }
 
 /* --- listing series ------------------------------------------------------------------------------------------------------------- */

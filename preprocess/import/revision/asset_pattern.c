@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/math/search.h"
 #include "base/mem.h"
 #include "base/text/text.h"
 
@@ -49,18 +50,12 @@ void asset_patterns_finish(struct asset_patterns *patterns)
 /* Returns the index, in the nodes sorted by name, of the first node with this name; *count receives the number of such nodes. */
 static size_t find_name(const struct model_header *header, const uint32_t *names, const char *name, size_t *count)
 {
-    size_t low = 0, high = header->count;
-    while (low < high) {
-        size_t middle = (low + high) / 2;
-        if (strcmp(header->nodes[names[middle]].name, name) < 0)
-            low = middle + 1;
-        else
-            high = middle;
-    }
+    size_t at;
+    search_sorted(at, header->count, strcmp(header->nodes[names[at]].name, name) < 0);
     *count = 0;
-    while (low + *count < header->count && !strcmp(header->nodes[names[low + *count]].name, name))
+    while (at + *count < header->count && !strcmp(header->nodes[names[at + *count]].name, name))
         ++*count;
-    return low;
+    return at;
 }
 
 /* Fills patterns->found with the nodes that match the pattern. Returns their number. */

@@ -4,6 +4,7 @@
 
 #include <string.h>
 
+#include "base/math/search.h"
 #include "base/mem.h"
 
 static const size_t NONE = SIZE_MAX;
@@ -91,15 +92,9 @@ void draw_batches_add_submesh(struct draw_batches *batches, size_t batch, const 
 
 static size_t first_cluster(const struct asset_view *file, uint32_t first_index)
 {
-    size_t low = 0, high = file->header->cluster_count;
-    while (low < high) {
-        size_t middle = (low + high) / 2;
-        if (file->clusters[middle].first_index < first_index)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low;
+    size_t at;
+    search_sorted(at, file->header->cluster_count, file->clusters[at].first_index < first_index);
+    return at;
 }
 
 int draw_batches_add_seen(struct draw_batches *batches, size_t batch, const struct model_submesh *submesh, uint32_t instance,

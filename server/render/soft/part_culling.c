@@ -3,6 +3,7 @@
 #include <float.h>
 #include <math.h>
 
+#include "base/math/search.h"
 #include "base/mem.h"
 #include "render/soft/tile.h"
 #include "render/soft/lanes.h"
@@ -267,17 +268,11 @@ bool raster_find_ghosts(struct raster *raster)
 static size_t mesh_of(const struct raster *raster, uint32_t id, size_t likely)
 {
     const struct soft_found *found = raster->found;
-    size_t low = 0, high = raster->mesh_count;
-    if (found[likely].first_id <= id && (likely + 1 == high || id < found[likely + 1].first_id))
+    size_t after;
+    if (found[likely].first_id <= id && (likely + 1 == raster->mesh_count || id < found[likely + 1].first_id))
         return likely;
-    while (high - low > 1) {
-        size_t middle = (low + high) / 2;
-        if (found[middle].first_id <= id)
-            low = middle;
-        else
-            high = middle;
-    }
-    return low;
+    search_sorted(after, raster->mesh_count, found[after].first_id <= id);
+    return after - 1;
 }
 
 void raster_find_triangle(const struct raster *raster, uint32_t id, struct soft_triangle *triangle)

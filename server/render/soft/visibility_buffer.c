@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/math/search.h"
 #include "base/mem.h"
 #include "render/soft/visibility_buffer_impl.h"
 
@@ -237,22 +238,16 @@ static void read_vertices(void *arg, size_t begin, size_t end)
     }
 }
 
-/* likely: looked at first. */
+/* likely: mesh to try first. */
 static size_t mesh_of_vertex(const struct visibility_buffer *buffer, uint32_t vertex, size_t likely)
 {
     const struct visibility_mesh *meshes = buffer->meshes;
-    size_t low = 0, high = buffer->mesh_count;
+    size_t after;
     if (vertex >= meshes[likely].first_vertex && vertex - meshes[likely].first_vertex < meshes[likely].vertex_count)
         return likely;
     /* meshes without vertices have the same first vertex as the next mesh; the search ends at the last of these, which has vertices */
-    while (high - low > 1) {
-        size_t middle = (low + high) / 2;
-        if (meshes[middle].first_vertex <= vertex)
-            low = middle;
-        else
-            high = middle;
-    }
-    return low;
+    search_sorted(after, buffer->mesh_count, meshes[after].first_vertex <= vertex);
+    return after - 1;
 }
 
 static void place_triangle(const struct visibility_buffer *buffer, const struct asset_view *file, const uint32_t vertices[3],

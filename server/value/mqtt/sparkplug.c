@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/math/search.h"
 #include "base/mem.h"
 #include "plant/sources/mqtt_address.h"
 #include "value/mqtt/sparkplug_payload.h"
@@ -186,18 +187,12 @@ static size_t tags_named(const struct sparkplug *sparkplug, size_t topic, const 
 {
     const struct mqtt_topic *of = &sparkplug->params.topics->at[topic];
     const struct plant_tag *tags = sparkplug->params.plant->tags;
-    size_t low = 0, high = of->tag_count, end;
-    while (low < high) {
-        size_t middle = (low + high) / 2;
-        if (strcmp(tags[of->tags[middle]].path, name) < 0)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    for (end = low; end < of->tag_count && !strcmp(tags[of->tags[end]].path, name);)
+    size_t at, end;
+    search_sorted(at, of->tag_count, strcmp(tags[of->tags[at]].path, name) < 0);
+    for (end = at; end < of->tag_count && !strcmp(tags[of->tags[end]].path, name);)
         end++;
-    *first = low;
-    return end - low;
+    *first = at;
+    return end - at;
 }
 
 static int by_number(const void *pa, const void *pb)
