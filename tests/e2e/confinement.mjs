@@ -3,11 +3,11 @@
 // memory are ended.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { chmodSync, copyFileSync, existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
-import { tmpdir } from 'node:os';
+import { chmodSync, copyFileSync, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 import { test } from 'node:test';
 import { deflateRawSync } from 'node:zlib';
+import { inFolder } from './support/folders.mjs';
 import { freePort } from './support/ports.mjs';
 import { BIN, missing, TinyPlant } from './support/tiny_plant.mjs';
 
@@ -21,15 +21,6 @@ const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
 const ASK = 'import ctypes; print(ctypes.CDLL(None).syscall(444, None, 0, 1))';
 const abi = Number(spawnSync('/usr/bin/python3', ['-c', ASK], { encoding: 'utf8' }).stdout);
 const unguarded = skip || (abi >= 2 ? false : `this kernel has ABI ${abi} of Landlock; 2 is needed to hold all of this back`);
-
-async function inFolder(f) {
-    const folder = mkdtempSync(join(tmpdir(), 'plantcast-confinement-'));
-    try {
-        await f(folder);
-    } finally {
-        rmSync(folder, { recursive: true });
-    }
-}
 
 // Returns a folder of the programs in which the mesh reader is replaced.
 function programs(folder, reader, ...more) {

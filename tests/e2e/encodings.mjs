@@ -7,6 +7,7 @@ import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
+import { inFolder } from './support/folders.mjs';
 import { ifc } from './support/ifc_sample.mjs';
 import { BIN, notBuilt, TinyPlant } from './support/tiny_plant.mjs';
 
@@ -115,15 +116,6 @@ const FORMATS = {
     // A blank ends a name of an STL file.
     stl: { needs: 'plantcast-import-assimp', make: (a, b, iconv) => encode(stl(a, b.replaceAll(' ', '-')), iconv) },
     fbx: { needs: 'plantcast-import-assimp', make: (a, b, iconv) => encode(fbx(a, b), iconv) },
-};
-
-const inFolder = async (f) => {
-    const folder = mkdtempSync(join(tmpdir(), 'plantcast-encodings-'));
-    try {
-        await f(folder);
-    } finally {
-        rmSync(folder, { recursive: true });
-    }
 };
 
 for (const [format, { needs, ending = format, make }] of Object.entries(FORMATS))

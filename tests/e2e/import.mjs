@@ -2,10 +2,10 @@
 // `plantcast import` of a real CAD export, compared with another program's result for the same files.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
-import { tmpdir } from 'node:os';
+import { existsSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
+import { inFolder } from './support/folders.mjs';
 import { BIN, missing } from './support/tiny_plant.mjs';
 
 const absent = missing();
@@ -13,15 +13,6 @@ const DATA = join(import.meta.dirname, '../../../shared/data');
 const notBuilt = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
 const skip = notBuilt || (existsSync(join(DATA, 'cad')) ? false : 'no ../shared/data/cad');
 const run = (program, ...args) => spawnSync(join(BIN, program), args, { encoding: 'utf8', timeout: 120000 });
-
-async function inFolder(f) {
-    const folder = mkdtempSync(join(tmpdir(), 'plantcast-import-'));
-    try {
-        await f(folder);
-    } finally {
-        rmSync(folder, { recursive: true });
-    }
-}
 
 function readGlb(path) {
     const bytes = readFileSync(path), length = bytes.readUInt32LE(12);

@@ -2,11 +2,11 @@
 // IFC files imported by `plantcast import`: the spatial tree, names, properties, openings, and broken files.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
-import { tmpdir } from 'node:os';
+import { existsSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { crc32, gzipSync } from 'node:zlib';
+import { inFolder } from './support/folders.mjs';
 import { ifcOf, KINDS } from './support/ifc_kinds.mjs';
 import { ifc } from './support/ifc_sample.mjs';
 import { volumeOf } from './support/glb_volume.mjs';
@@ -18,15 +18,6 @@ const notBuilt = existsSync(join(BIN, 'plantcast-import-ifc/ifc.mjs')) ? false :
 const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : notBuilt;
 const plantcast = (args, env = {}) =>
     spawnSync(join(BIN, 'plantcast'), args, { encoding: 'utf8', timeout: 120000, env: { ...process.env, ...env } });
-
-async function inFolder(f) {
-    const folder = mkdtempSync(join(tmpdir(), 'plantcast-ifc-'));
-    try {
-        await f(folder);
-    } finally {
-        rmSync(folder, { recursive: true });
-    }
-}
 
 const near = (a, b) => a.every((v, k) => Math.abs(v - b[k]) < 0.002);
 

@@ -3,11 +3,11 @@
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { once } from 'node:events';
-import { existsSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
-import { tmpdir } from 'node:os';
+import { existsSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { setTimeout } from 'node:timers/promises';
+import { inFolder } from './support/folders.mjs';
 import { volumeOf } from './support/glb_volume.mjs';
 import { dae, fbx, mtl, obj, ply, stl, stlBinary, threeDs } from './support/mesh_samples.mjs';
 import { secondMeshReader } from './support/second_cad_reader.mjs';
@@ -18,15 +18,10 @@ const notBuilt = existsSync(join(BIN, 'plantcast-import-assimp')) ? false : 'bui
 const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : notBuilt;
 const plantcast = (...args) => spawnSync(join(BIN, 'plantcast'), args, { encoding: 'utf8', timeout: 120000 });
 
-async function inFolder(f) {
-    const folder = mkdtempSync(join(tmpdir(), 'plantcast-meshes-'));
-    try {
-        writeFileSync(join(folder, 'wedge.mtl'), mtl);
-        await f(folder);
-    } finally {
-        rmSync(folder, { recursive: true });
-    }
-}
+const withMaterials = (f) => inFolder((folder) => {
+    writeFileSync(join(folder, 'wedge.mtl'), mtl);
+    return f(folder);
+});
 
 async function until(f) {
     for (let i = 0; i < 2000 && !f(); i++)
@@ -48,7 +43,7 @@ for (const { name, bytes, named } of [
     { name: 'inch.fbx', bytes: fbx(2.54), named: 'inch/Feed pump' }, { name: 'metres.fbx', bytes: fbx(100) },
     { name: 'a.3ds', bytes: threeDs(), named: 'a/#1/Wedge' },
 ])
-    test(`${name}: its size, its height, its names`, { skip }, () => inFolder((folder) => {
+    test(`${name}: its size, its height, its names`, { skip }, () => withMaterials((folder) => {
         const { triangles, size, centre, list } = boxed(folder, name, bytes);
         assert.equal(triangles, 8);
         assert.ok(near(size, [2, 1, 0.5]) && near(centre, [1, 0.5, 0.25]), JSON.stringify([size, centre]));
@@ -56,7 +51,7 @@ for (const { name, bytes, named } of [
             assert.equal(list.at(-1).path, named);
     }));
 
-test('units and axis are guessed and said, or given', { skip }, () => inFolder((folder) => {
+test('units and axis are guessed and said, or given', { skip }, () => withMaterials((folder) => {
     writeFileSync(join(folder, 'a.stl'), stl(1000));
     const said = plantcast('import', join(folder, 'a.stl'), '-o', join(folder, 'plant'));
     assert.match(said.stdout,
@@ -68,12 +63,12 @@ test('units and axis are guessed and said, or given', { skip }, () => inFolder((
     assert.match(plantcast('nodes', join(folder, 'a.dae'), '--units', 'mm').stderr, /COLLADA says itself what its units are/);
 }));
 
-test('STL in capitals is read', { skip }, () => inFolder((folder) => {
+test('STL in capitals is read', { skip }, () => withMaterials((folder) => {
     const { size, list } = boxed(folder, 'a.stl', stl().replace(/.*/g, (line) => line.toUpperCase()));
     assert.ok(near(size, [2, 1, 0.5]) && list.length > 0, JSON.stringify(size));
 }));
 
-test('STL: the whole line is the name of a solid; the report says which unit was guessed', { skip }, () => inFolder((folder) => {
+test('STL: the whole line is the name of a solid; the report says which unit was guessed', { skip }, () => withMaterials((folder) => {
     const bytes = stl().replaceAll('Wedge', 'P-101 A  (spare)'), report = join(folder, 'report.json');
     assert.equal(boxed(folder, 'a.stl', bytes).list.at(-1).name, 'P-101 A  (spare)');
     const models = (...args) => {
@@ -86,7 +81,7 @@ test('STL: the whole line is the name of a solid; the report says which unit was
     assert.equal(models('--mesh-units', 'mm')[0].unit, null);
 }));
 
-test('OBJ: a material file in a folder with backslashes', { skip }, () => inFolder((folder) => {
+test('OBJ: a material file in a folder with backslashes', { skip }, () => withMaterials((folder) => {
     mkdirSync(join(folder, 'looks'));
     writeFileSync(join(folder, 'looks/wedge.mtl'), mtl);
     const { triangles } = boxed(folder, 'a.obj', obj().replace(/mtllib .*/, 'mtllib .\\looks\\wedge.mtl'));
@@ -94,7 +89,7 @@ test('OBJ: a material file in a folder with backslashes', { skip }, () => inFold
 }));
 
 // 100 in = 2.54 m. The geometric transform moves the pump's own mesh by 1 in x, the child is 2 in x away; neither moves the other.
-test('FBX: a geometric transform moves its own mesh and no child', { skip }, () => inFolder((folder) => {
+test('FBX: a geometric transform moves its own mesh and no child', { skip }, () => withMaterials((folder) => {
     const whole = fbx(2.54), moved = (x, y) => `"A",${x},0,0\n            P: "GeometricTranslation", "Vector3D", "Vector", "",${y}\n`;
     const mesh = /Geometry: 100[\s\S]*?\n {4}\}\n/.exec(whole)[0], model = /Model: 200[\s\S]*?\n {4}\}\n/.exec(whole)[0];
     const child = `    ${mesh.replace('100', '101')}    ${model.replace('200', '201').replace('Feed pump', 'Child')
@@ -127,7 +122,7 @@ function glbOf(...chunks) {
     return Buffer.concat([head, ...parts]);
 }
 
-test('glTF: names of files with percent signs and accents, required looks, missing pictures', { skip }, () => inFolder((folder) => {
+test('glTF: names of files with percent signs and accents, required looks, missing pictures', { skip }, () => withMaterials((folder) => {
     const file = (name) => writeFileSync(join(folder, name), triangle);
     for (const [name, uri] of [['tank 10%.bin', 'tank 10%.bin'], ['a+b#1.bin', 'a+b%231.bin'], ['50%25.bin', '50%25.bin'],
         ['Behälter.bin'.normalize('NFD'), 'Behälter.bin'.normalize('NFC')],
@@ -159,7 +154,7 @@ const read = (folder, name, bytes) => {
         json: JSON.parse(bytesOfGlb.subarray(20, 20 + bytesOfGlb.readUInt32LE(12))) };
 };
 
-test('FBX, COLLADA and OBJ: shapes that are not read are named', { skip }, () => inFolder((folder) => {
+test('FBX, COLLADA and OBJ: shapes that are not read are named', { skip }, () => withMaterials((folder) => {
     const nurbs = fbx().replace('    Model: 200', '    Geometry: 101, "Geometry::Shell", "NurbsSurface" {\n        Form: "Open"\n    }\n' +
         '    Model: 201, "Model::Tank shell", "NurbsSurface" {\n        Version: 232\n    }\n    Model: 200')
         .replace('    C: "OO",200,0', '    C: "OO",200,0\n    C: "OO",201,0\n    C: "OO",101,201');
@@ -189,7 +184,7 @@ const SECOND = [['a.obj', obj()], ['polygons.obj', polygons], ['mm.dae', dae(0.0
         '            P: "Lcl Scaling", "Lcl Scaling", "", "A",-1,2,1'), { metres: 0.0254 }]];
 // Indented by tabs, without which the second reader does not read FBX.
 const indented = (text) => Buffer.from(text.replace(/^( {4})+/gm, (blanks) => '\t'.repeat(blanks.length / 4)));
-test('FBX, COLLADA and OBJ: area and size are those of a second reader', { skip }, (t) => inFolder(async (folder) => {
+test('FBX, COLLADA and OBJ: area and size are those of a second reader', { skip }, (t) => withMaterials(async (folder) => {
     const second = await secondMeshReader();
     if (!second)
         return t.skip('no second reader: npm ci in tests/e2e brings three and @xmldom/xmldom');
@@ -205,7 +200,7 @@ test('FBX, COLLADA and OBJ: area and size are those of a second reader', { skip 
     }
 }));
 
-test('glTF: nodes without triangles, and nodes in no scene, are named', { skip }, () => inFolder((folder) => {
+test('glTF: nodes without triangles, and nodes in no scene, are named', { skip }, () => withMaterials((folder) => {
     writeFileSync(join(folder, 'a.bin'), triangle);
     const mesh = (mode, indices = 1) => ({ primitives: [{ attributes: { POSITION: 0 }, indices, mode }] });
     const { lost, left_out, out } = read(folder, 'a.gltf', gltf('a.bin', { scenes: [{ nodes: [0, 1, 2, 3] }, { nodes: [4] }],
@@ -218,7 +213,7 @@ test('glTF: nodes without triangles, and nodes in no scene, are named', { skip }
         "not in the scene that the file shows first: 1 node with a mesh, node 4 'S-5'"]);
 }));
 
-test('glTF: the diffuse colour of the older materials, odd kinds of images, chunks of other kinds', { skip }, () => inFolder((folder) => {
+test('glTF: the diffuse colour of older materials, odd kinds of images, other chunks', { skip }, () => withMaterials((folder) => {
     const png = 'iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR4nGP4z8DwHwAFAAH/iZk9HQAAAABJRU5ErkJggg==';
     writeFileSync(join(folder, 'a.bin'), triangle);
     const old = (more) => ({ name: 'paint', extensions: { KHR_materials_pbrSpecularGlossiness: more } });
@@ -237,7 +232,7 @@ test('glTF: the diffuse colour of the older materials, odd kinds of images, chun
 
 // gltfpack writes two buffers: the compressed one, and an empty one for programs that cannot decompress.
 const noPacker = spawnSync('gltfpack', ['-v']).error ? 'no gltfpack' : false;
-test('glTF: meshopt, with a fallback buffer that has no uri', { skip: skip || noPacker }, () => inFolder((folder) => {
+test('glTF: meshopt, with a fallback buffer that has no uri', { skip: skip || noPacker }, () => withMaterials((folder) => {
     writeFileSync(join(folder, 'a.bin'), triangle);
     writeFileSync(join(folder, 'a.gltf'), gltf('a.bin'));
     assert.equal(spawnSync('gltfpack', ['-i', join(folder, 'a.gltf'), '-o', join(folder, 'b.gltf'), '-cc', '-kn', '-noq'],
@@ -254,7 +249,7 @@ test('glTF: meshopt, with a fallback buffer that has no uri', { skip: skip || no
     }
 }));
 
-test('a signal ends it, and nothing is left behind', { skip }, () => inFolder(async (folder) => {
+test('a signal ends it, and nothing is left behind', { skip }, () => withMaterials(async (folder) => {
     writeFileSync(join(folder, 'a.ply'), ply().slice(0, ply().length >> 1)); // Assimp hangs on this truncated file
     const program = spawn(join(BIN, 'plantcast'), ['import', join(folder, 'a.ply'), '-o', join(folder, 'plant')]);
     let said = '';
@@ -269,14 +264,14 @@ test('a signal ends it, and nothing is left behind', { skip }, () => inFolder(as
     assert.deepEqual(readdirSync(folder).sort(), ['a.ply', 'wedge.mtl']);
 }));
 
-test('a colour is kept', { skip }, () => inFolder((folder) => {
+test('a colour is kept', { skip }, () => withMaterials((folder) => {
     writeFileSync(join(folder, 'a.obj'), obj());
     assert.equal(plantcast('import', join(folder, 'a.obj'), '-o', join(folder, 'plant')).status, 0);
     const bytes = readFileSync(join(folder, 'plant/a.glb')), { materials } = JSON.parse(bytes.subarray(20, 20 + bytes.readUInt32LE(12)));
     assert.deepEqual(materials[0].pbrMetallicRoughness.baseColorFactor, [1, 0, 0, 1]);
 }));
 
-test('textures are left out, and that is said', { skip }, () => inFolder((folder) => {
+test('textures are left out, and that is said', { skip }, () => withMaterials((folder) => {
     writeFileSync(join(folder, 'wedge.mtl'), `${mtl}map_Kd rust.png\nmap_Bump bump.png\n`);
     writeFileSync(join(folder, 'a.obj'), obj());
     const said = plantcast('import', join(folder, 'a.obj'), '-o', join(folder, 'plant'));
@@ -320,7 +315,7 @@ for (const [ending, bytes] of [['obj', obj()], ['stl', stl()], ['b.stl', stlBina
     Object.assign(broken, { [`empty.${ending}`]: '', [`half.${ending}`]: bytes.slice(0, bytes.length >> 1),
         [`noise.${ending}`]: noise(bytes, 29), [`zeros.${ending}`]: Buffer.alloc(5000) });
 
-test('broken files are read or refused in one line, and leave nothing behind', { skip }, () => inFolder((folder) => {
+test('broken files are read or refused in one line, and leave nothing behind', { skip }, () => withMaterials((folder) => {
     let refused = 0;
     for (const [name, bytes] of Object.entries(broken)) {
         writeFileSync(join(folder, name), bytes);

@@ -2,10 +2,10 @@
 // STEP and IGES imported by `plantcast import`: assemblies, names, colours, units, and broken files.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
-import { tmpdir } from 'node:os';
+import { existsSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
+import { inFolder } from './support/folders.mjs';
 import { volumeOf } from './support/glb_volume.mjs';
 import { secondCadReader } from './support/second_cad_reader.mjs';
 import { assembly, cone, CONE, without } from './support/step_parts.mjs';
@@ -17,15 +17,10 @@ const notBuilt = existsSync(join(BIN, 'plantcast-import-occt')) && existsSync(SA
 const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : notBuilt;
 const plantcast = (...args) => spawnSync(join(BIN, 'plantcast'), args, { encoding: 'utf8', timeout: 120000 });
 
-async function withSamples(f) {
-    const folder = mkdtempSync(join(tmpdir(), 'plantcast-step-'));
-    try {
-        assert.equal(spawnSync(SAMPLES, [folder], { timeout: 60000 }).status, 0);
-        await f(folder);
-    } finally {
-        rmSync(folder, { recursive: true });
-    }
-}
+const withSamples = (f) => inFolder((folder) => {
+    assert.equal(spawnSync(SAMPLES, [folder], { timeout: 60000 }).status, 0);
+    return f(folder);
+});
 
 const readJson = (glb) => {
     const bytes = readFileSync(glb);

@@ -3,10 +3,10 @@
 // renewed certificate; a build without the page's charts fails.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
-import { cpSync, existsSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
-import { tmpdir } from 'node:os';
+import { cpSync, existsSync, mkdirSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { basename, join, resolve } from 'node:path';
 import { after, before, test } from 'node:test';
+import { folderOfTests } from './support/folders.mjs';
 import { BIN, missing, Program, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 import { freePort } from './support/ports.mjs';
 
@@ -14,17 +14,14 @@ const absent = missing();
 if (!existsSync(join(BIN, 'plantcast-init')))
     absent.push('plantcast-init');
 const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
-let plant, root;
+const root = folderOfTests();
+let plant;
 
 before(async () => {
-    root = mkdtempSync(join(tmpdir(), 'plantcast-root-'));
     if (!skip)
         plant = await TinyPlant.create();
 });
-after(async () => {
-    await plant?.destroy();
-    rmSync(root, { recursive: true });
-});
+after(() => plant?.destroy());
 const init = (...args) => runProgram('plantcast', ['init', ...args, '--root', root]);
 const etc = (...names) => join(root, 'etc/plantcast', ...names), mode = (path) => (statSync(path).mode & 0o777).toString(8);
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // `plantcast match`: tag lists made from real plants' names, matched and compared with the truth; malformed lists; manual changes and a
 // second run; and the whole way from a CAD export to a picture.
+import { inFolder } from './support/folders.mjs';
 import { seed } from './support/sweep.mjs';
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
-import { chmodSync, copyFileSync, cpSync, existsSync, lstatSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, renameSync, rmSync,
-    statSync, symlinkSync, utimesSync, watch, writeFileSync } from 'node:fs';
-import { tmpdir } from 'node:os';
+import { chmodSync, copyFileSync, cpSync, existsSync, lstatSync, mkdirSync, readdirSync, readFileSync, renameSync, rmSync, statSync,
+    symlinkSync, utimesSync, watch, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { formats, makeTagList } from './support/tag_lists.mjs';
@@ -19,15 +19,6 @@ const notBuilt = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
 const noData = notBuilt || (existsSync(join(DATA, 'cad')) ? false : 'no ../shared/data/cad');
 const run = (program, ...args) => spawnSync(join(BIN, program), args, { encoding: 'utf8', timeout: 300000 });
 const good = (said) => (assert.equal(said.status, 0, said.stderr), said);
-
-async function inFolder(f) {
-    const folder = mkdtempSync(join(tmpdir(), 'plantcast-match-'));
-    try {
-        await f(folder);
-    } finally {
-        rmSync(folder, { recursive: true });
-    }
-}
 
 const cells = (line) => [...line.matchAll(/(?:^|,)(?:"((?:[^"]|"")*)"|([^,]*))/g)].map((m) => (m[1] ?? m[2]).replaceAll('""', '"'));
 function table(path) {

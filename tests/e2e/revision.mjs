@@ -10,6 +10,7 @@ import {
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
+import { inFolder } from './support/folders.mjs';
 import { copyGroup, findGroup, readRvm, writeRvm } from './support/rvm_file.mjs';
 import { sweep } from './support/sweep.mjs';
 import { BIN, missing, TinyPlant } from './support/tiny_plant.mjs';
@@ -23,15 +24,6 @@ const run = (program, ...args) => spawnSync(join(BIN, program), args, { encoding
 const good = (said) => (assert.equal(said.status, 0, said.stderr), said);
 const KILLS = sweep(24, 6);
 const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
-
-async function inFolder(f) {
-    const folder = mkdtempSync(join(tmpdir(), 'plantcast-revision-'));
-    try {
-        await f(folder);
-    } finally {
-        rmSync(folder, { recursive: true });
-    }
-}
 
 const rowsOf = (path) => readFileSync(path, 'utf8').trim().split('\n').slice(1).map((line) => line.split(','));
 const review = (folder) => rowsOf(join(folder, 'review.csv'))

@@ -2,10 +2,10 @@
 // The field compared with simulated heat conduction in a bent pipe of coarse elements (tests/validation has the parts and all cases).
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { existsSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
-import { tmpdir } from 'node:os';
+import { existsSync, readFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
-import { after, before, test } from 'node:test';
+import { before, test } from 'node:test';
+import { folderOfTests } from './support/folders.mjs';
 import { BIN } from './support/tiny_plant.mjs';
 
 const OUT = resolve(process.env.PLANTCAST_OUT ?? 'build/release');
@@ -13,18 +13,17 @@ const absent = [['gmsh', 'gmsh'], ['ccx', 'calculix-ccx']].filter(([program]) =>
 const needed = [join(BIN, 'plantcast-prep'), join(OUT, 'tests/validation/compare')].filter((path) => !existsSync(path));
 const skip = absent.length > 0 ? `not installed: ${absent.map(([, name]) => name).join(', ')}` :
     needed.length > 0 ? `not built: ${needed}` : false;
-let folder, part;
+const folder = skip ? null : folderOfTests();
+let part;
 
 before(() => {
     if (skip)
         return;
-    folder = mkdtempSync(join(tmpdir(), 'plantcast-validation-'));
     const { status, stderr } = spawnSync('tests/validation/run', [OUT, BIN, '--folder', folder, '--parts', 'bent', '--sensors', '5,20',
         '--coarser', '2.5', '--prepare', 'harmonic, fin, gp', '--no-pictures'], { encoding: 'utf8', timeout: 240000 });
     assert.equal(status, 0, stderr);
     [part] = JSON.parse(readFileSync(join(folder, 'validation.json'), 'utf8'));
 });
-after(() => folder && rmSync(folder, { recursive: true }));
 
 const errors = (sensors, interpolation, distance = '') => part.rows.find((row) => row.sensors === sensors &&
     row.interpolation === interpolation && row.distance === distance).outside;

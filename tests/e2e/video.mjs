@@ -2,12 +2,13 @@
 // A view as video, read by other programs: constant frame rate, the clock encoded in its pixels, and a card in place of an old picture.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
-import { appendFileSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { appendFileSync, existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { connect, createServer } from 'node:net';
-import { networkInterfaces, tmpdir } from 'node:os';
+import { networkInterfaces } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { SCREENSHOTS } from './support/browser.mjs';
+import { folderOfTests } from './support/folders.mjs';
 import { freePort } from './support/ports.mjs';
 import { promise } from './support/promise.mjs';
 import { sweep } from './support/sweep.mjs';
@@ -18,7 +19,8 @@ const lacks = [...missing(), ...(existsSync(join(BIN, 'plantcast-video')) ? [] :
 const options = { skip: lacks.length > 0 ? `not here: ${lacks.join(', ')}` : false, timeout: 240000 };
 const WIDTH = 320, HEIGHT = 180, FPS = 10, RECORDED_S = Number(process.env.VIDEO_S ?? sweep(20, 10));
 const READER = 'wall:long-password';
-let plant, folder, video, ports;
+const folder = folderOfTests();
+let plant, video, ports;
 
 async function startVideo(...args) {
     const program = new Program('plantcast-video', [`http://127.0.0.1:${plant.port}/`, '--fps', String(FPS), '--time-code',
@@ -83,7 +85,6 @@ before(async () => {
     if (options.skip)
         return;
     plant = await TinyPlant.running();
-    folder = mkdtempSync(join(tmpdir(), 'plantcast-video-'));
     writeFileSync(join(folder, 'readers'), `${READER}\n`);
     ports = { rtsp: await freePort(), srt: await freePort(), http: await freePort() };
     video = await startVideo('--readers-file', join(folder, 'readers'), '--rtsp', String(ports.rtsp), '--srt', String(ports.srt),
@@ -92,7 +93,6 @@ before(async () => {
 after(async () => {
     await video?.stop();
     await plant?.destroy();
-    rmSync(folder ?? '', { recursive: true, force: true });
     assert.equal(video?.fault ?? null, null);
 });
 

@@ -2,11 +2,11 @@
 // Pairing of a display without typing a token there: its six digits, an engineer who approves it, the display's rights from then on, and
 // its removal.
 import assert from 'node:assert/strict';
-import { chmodSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
-import { tmpdir } from 'node:os';
+import { chmodSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { openPage, shoot, waitForPicture } from './support/browser.mjs';
+import { folderOfTests } from './support/folders.mjs';
 import { PlainClient } from './support/plain_client.mjs';
 import { promise } from './support/promise.mjs';
 import { notBuilt, runProgram, startTiny } from './support/tiny_plant.mjs';
@@ -26,7 +26,8 @@ walls:
 - { id: tiled, tile: { columns: 2, rows: 1, views: whole } }
 `;
 const tokens = {};
-let folder, plant, wall, desk, id;
+const folder = folderOfTests();
+let plant, wall, desk, id;
 
 const digitsOf = async (page) => {
     await page.locator('#denied .digits', { hasText: /^\d{3}.\d{3}$/ }).waitFor({ timeout: 60000 });
@@ -44,7 +45,6 @@ const audit = () => readFileSync(join(folder, 'audit'), 'utf8');
 before(async () => {
     if (why)
         return;
-    folder = mkdtempSync(join(tmpdir(), 'plantcast-pairing-'));
     const file = join(folder, 'tokens');
     for (const role of ['operator', 'engineer'])
         tokens[role] = runProgram('plantcast', ['token', 'add', file, '--role', role, '--name', `${role}-1`]).out.trim();
@@ -63,8 +63,6 @@ after(async () => {
     await wall?.close();
     await desk?.close();
     await plant?.stop();
-    if (folder)
-        rmSync(folder, { recursive: true, force: true });
 });
 
 test('a tile takes the token of its display: who only looks on can neither lead a wall nor hold it up', options, async () => {

@@ -2,10 +2,10 @@
 // For each codec, a real browser shows the same picture as `plantcast snapshot` draws; a codec that it cannot decode is not used.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
-import { tmpdir } from 'node:os';
+import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { before, test } from 'node:test';
+import { folderOfTests } from '../support/folders.mjs';
 import { demo } from './demo.mjs';
 import { grab, openPage, readPng, settle, shoot, view, waitForPicture } from '../support/browser.mjs';
 import { contrast, deltaE } from '../support/pixels.mjs';
@@ -15,18 +15,14 @@ const why = missing();
 const options = { skip: why ?? false, timeout: 200000 };
 const SCREEN = { viewport: { width: 960, height: 540 } };
 const QUIET_MS = 1500;
-let plant, folder;
+const folder = folderOfTests();
+let plant;
 const drawn = new Map(); // pictures that the command has drawn already
 
 before(async () => {
     if (why)
         return;
-    folder = mkdtempSync(join(tmpdir(), 'plantcast-codecs-'));
     plant = await demo();
-});
-after(async () => {
-    if (folder)
-        rmSync(folder, { recursive: true, force: true });
 });
 
 async function withPage(codec, init, f) {

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Temporary folders of tests.
+import { mkdtempSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+
+const make = () => mkdtempSync(join(tmpdir(), 'plantcast-test-')), remove = (folder) => rmSync(folder, { recursive: true, force: true });
+
+// Calls f with a new folder, and removes the folder afterwards. Returns what f returns.
+export async function inFolder(f) {
+    const folder = make();
+    try {
+        return await f(folder);
+    } finally {
+        remove(folder);
+    }
+}
+
+// Returns a new folder that is removed when this program ends.
+export function folderOfTests() {
+    const folder = make();
+    process.on('exit', () => remove(folder));
+    return folder;
+}
