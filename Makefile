@@ -238,8 +238,9 @@ COMMIT ?= $(or $(shell git rev-parse --short=12 HEAD 2>/dev/null),unknown)
 $(shell mkdir -p $(gen); echo '#define PLANTCAST_COMMIT "$(COMMIT)"' | cmp -s - $(gen)/commit.h || \
         echo '#define PLANTCAST_COMMIT "$(COMMIT)"' >$(gen)/commit.h)
 
-# Shaders and colour maps, as C strings found by name (server/base/text/embedded.h).
-embedded_files := $(wildcard shaders/*.vert shaders/*.frag shaders/*.comp shaders/*.glsl shaders/maps/*.csv clients/fleet/*)
+# Shaders, colour maps and the fleet page, as C strings found by name (server/base/text/embedded.h).
+embedded_files := $(wildcard shaders/*.vert shaders/*.frag shaders/*.comp shaders/*.glsl shaders/maps/*.csv clients/fleet/* \
+                             clients/web/core/phrases.js clients/web/words/fleet.*.js)
 $(gen)/embedded.c: deploy/embed $(embedded_files)
 	@mkdir -p $(@D); deploy/embed $(embedded_files) >$@.new && mv $@.new $@
 

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The fleet page: polls its own server every five seconds and shows a card for each plant.
-import { chooseLanguage, wordsOf } from './words.js';
+import { chooseLanguage, phrase, readWords } from './core/phrases.js';
 
 const EVERY_MS = 5000, DAY_S = 86400, PRIORITIES = 4;
-const language = chooseLanguage(location.search, navigator.languages), say = wordsOf(language);
+const { language } = chooseLanguage(location.search, navigator.languages);
+const words = readWords((await import(`./words/fleet.${language}.js`)).default);
+const say = (key, values) => phrase(words, null, key, values);
 const byId = (id) => document.getElementById(id);
 const cards = new Map();
 let heardMs = Date.now();

@@ -3,13 +3,12 @@
 // takes.
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
-import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { writeFileSync } from 'node:fs';
 import { createServer, get } from 'node:http';
-import { tmpdir } from 'node:os';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
-import { chooseLanguage, keys, languages } from '../../clients/fleet/words.js';
+import { test } from 'node:test';
 import { openPage, shoot } from './support/browser.mjs';
+import { folderOfTests } from './support/folders.mjs';
 import { freePort } from './support/ports.mjs';
 import { cpuMs } from './support/processes.mjs';
 import { long } from './support/promise.mjs';
@@ -18,9 +17,7 @@ import { until } from './support/until.mjs';
 
 const options = { skip: notBuilt(), timeout: 240000 };
 const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
-let folder;
-before(() => { folder = mkdtempSync(join(tmpdir(), 'plantcast-fleet-')); });
-after(() => rmSync(folder, { recursive: true, force: true }));
+const folder = folderOfTests();
 
 const write = (text) => {
     writeFileSync(join(folder, 'fleet.yaml'), text);
@@ -54,14 +51,6 @@ async function pretend(metrics = '', status = 200, headers = {}) {
     return { asked, server, url: `http://127.0.0.1:${server.address().port}/`,
         close: () => { server.closeAllConnections(); server.close(); } };
 }
-
-test('the page says the same in each language', () => {
-    assert.deepEqual(languages, ['en', 'ko', 'de']);
-    for (const language of languages)
-        assert.deepEqual(keys(language).sort(), keys('en').sort());
-    assert.equal(chooseLanguage('?lang=ko', ['de-DE']), 'ko');
-    assert.equal(chooseLanguage('', ['fr', 'de-DE', 'en']), 'de');
-});
 
 test('a fleet file is checked, and each mistake has its line', options, () => {
     const check = (text) => runProgram('plantcast', ['fleet', write(text)]);

@@ -5,7 +5,7 @@ import assert from 'node:assert/strict';
 import { readdirSync, readFileSync } from 'node:fs';
 import { test } from 'node:test';
 import { answerText, refusalText, whyNotSaved } from '../../clients/web/core/refusals.js';
-import { LANGUAGES, phrase, readWords } from '../../clients/web/core/words.js';
+import { LANGUAGES, phrase, readWords } from '../../clients/web/core/phrases.js';
 
 const ROOT = new URL('../../', import.meta.url);
 const read = (name) => readFileSync(new URL(name, ROOT), 'utf8');

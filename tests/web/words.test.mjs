@@ -3,7 +3,8 @@
 import assert from 'node:assert/strict';
 import { readdirSync, readFileSync } from 'node:fs';
 import { test } from 'node:test';
-import { chooseLanguage, LANGUAGES, phrase, readWords, say, sayIfKnown } from '../../clients/web/core/words.js';
+import { chooseLanguage, LANGUAGES, phrase, readWords } from '../../clients/web/core/phrases.js';
+import { say, sayIfKnown } from '../../clients/web/core/words.js';
 import { filesIn, graph } from './modules.mjs';
 
 const WEB = new URL('../../clients/web/', import.meta.url);
@@ -36,20 +37,23 @@ test('a file of words: sections, plurals, and lines that say nothing', () => {
         assert.throws(() => readWords(bad), /no words: /, bad);
 });
 
-test('words of the server: every language has every key with as many values, and C uses each', async () => {
-    const sources = (folder) => readdirSync(new URL(folder, WEB)).filter((name) => /\.[ch]$/.test(name))
+test('words of the server and of the fleet page: every language has every key with the same values, and each is used', async () => {
+    const sources = (folder) => readdirSync(new URL(folder, WEB)).filter((name) => /\.(c|h|js)$/.test(name))
         .map((name) => read(`${folder}${name}`));
-    const subjects = [['overlay', 'WORD_', ['../../server/render/overlay/', '../video/']], ['video', 'VIDEO_', ['../video/']]];
-    for (const [name, prefix, folders] of subjects) {
+    const inC = (prefix) => (key) => new RegExp(`\\b${prefix}${key.toUpperCase()}\\b`);
+    const subjects = [['overlay', inC('WORD_'), ['../../server/render/overlay/', '../video/']], ['video', inC('VIDEO_'), ['../video/']],
+        ['fleet', (key) => new RegExp(`'${key}'`), ['../fleet/']]];
+    for (const [name, use, folders] of subjects) {
         const texts = folders.flatMap(sources).join('\n'), [english, ...others] = await Promise.all(LANGUAGES.map((language) =>
             tableOf(`words/${name}.${language}.js`)));
+        const values = (text) => text.match(/\{\w*\}/g)?.sort() ?? [];
         for (const table of others) {
             assert.deepEqual(Object.keys(table), Object.keys(english), name);
             for (const [key, text] of Object.entries(table))
-                assert.equal(text.split('{}').length, english[key].split('{}').length, `${name}: ${key}: ${text}`);
+                assert.deepEqual(values(text), values(english[key]), `${name}: ${key}: ${text}`);
         }
-        assert.deepEqual(Object.keys(english).filter((key) => !/^(?:look|interpolation|distance)_/.test(key) &&
-            !new RegExp(`\\b${prefix}${key.toUpperCase()}\\b`).test(texts)), [], `${name}: words that nobody uses`);
+        assert.deepEqual(Object.keys(english).filter((key) => !/^(?:look|interpolation|distance)_/.test(key) && !use(key).test(texts)), [],
+            `${name}: unused words`);
     }
 });
 

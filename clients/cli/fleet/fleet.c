@@ -55,7 +55,10 @@ static const struct page_file {
 } page_files[] = {
     { "/", "clients/fleet/fleet.html", "text/html; charset=utf-8" },
     { "/fleet.js", "clients/fleet/fleet.js", "text/javascript; charset=utf-8" },
-    { "/words.js", "clients/fleet/words.js", "text/javascript; charset=utf-8" },
+    { "/core/phrases.js", "clients/web/core/phrases.js", "text/javascript; charset=utf-8" },
+    { "/words/fleet.en.js", "clients/web/words/fleet.en.js", "text/javascript; charset=utf-8" },
+    { "/words/fleet.ko.js", "clients/web/words/fleet.ko.js", "text/javascript; charset=utf-8" },
+    { "/words/fleet.de.js", "clients/web/words/fleet.de.js", "text/javascript; charset=utf-8" },
     { "/fleet.css", "clients/fleet/fleet.css", "text/css; charset=utf-8" },
 };
 

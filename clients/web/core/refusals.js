@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Refusals of the server in the reader's language, by code and arguments. Errors that only a program can cause stay in English.
-import { language, phrase, readWords } from './words.js';
+import { phrase, readWords } from './phrases.js';
+import { language } from './words.js';
 
 const words = readWords((await import(`../words/refused.${language}.js`)).default);
 export const put = (key, values) => phrase(words, null, key, values);

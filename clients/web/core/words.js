@@ -1,50 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Looks up the page's words in the reader's language. Each language has a file for words that are needed immediately, and one for parts
 // that are loaded later.
-
-export const LANGUAGES = ['en', 'ko', 'de'];
-
-// Returns { language, locale }: from ?lang=, else from the browser's preferences, else English. The locale is the reader's own if it is of
-// that language.
-export function chooseLanguage(search = '', preferred = []) {
-    const tags = [new URLSearchParams(search).get('lang'), ...preferred].filter(Boolean);
-    const languageOf = (tag) => tag.toLowerCase().split('-')[0];
-    const language = tags.map(languageOf).find((name) => LANGUAGES.includes(name)) ?? LANGUAGES[0];
-    return { language, locale: known(tags.find((tag) => languageOf(tag) === language)) ?? language };
-}
-
-function known(tag) {
-    try {
-        return Intl.getCanonicalLocales(tag ?? [])[0] ?? null;
-    } catch {
-        return null; // not a valid language tag
-    }
-}
-
-// Parses a file of words into a table: key to text with {names}, or to { one, other, ... } by the plural form of `count`. [section] is a
-// prefix of the keys that follow; an indented line continues the text before it.
-export function readWords(text) {
-    const table = {};
-    let begin = '';
-    for (const line of text.replace(/\n +/g, ' ').split('\n').filter(Boolean)) {
-        const [, section] = line.match(/^\[(\w+)\]$/) ?? [], [, key, form, said] = line.match(/^([\w. ]+)(?:\((\w+)\))?: (.+)$/) ?? [];
-        if (section)
-            begin = `${section}.`;
-        else if (!key)
-            throw new Error(`no words: ${line}`);
-        else
-            table[begin + key] = form ? { ...table[begin + key], [form]: said } : said;
-    }
-    return table;
-}
-
-export function phrase(table, plural, key, values = {}) {
-    const entry = table[key];
-    if (entry === undefined)
-        throw new Error(`no words for ${key}`);
-    const text = typeof entry === 'string' ? entry : entry[plural.select(values.count)] ?? entry.other;
-    return text.replace(/\{(\w+)\}/g, (_, name) => values[name]);
-}
+import { chooseLanguage, phrase, readWords } from './phrases.js';
 
 const reader = globalThis.document ? chooseLanguage(location.search, navigator.languages) : chooseLanguage();
 const tableOf = async (name, tries = 0) => readWords((await import(`../words/${name}.js${tries > 0 ? `?again=${tries}` : ''}`)).default);
