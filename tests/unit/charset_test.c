@@ -65,10 +65,11 @@ TEST(test_kinds)
     size_t texts = 0, right = 0, unsure = 0, wrong = 0;
     for (size_t k = 0; k < sizeof(kinds) / sizeof(*kinds); k++) {
         size_t of_kind = 0, right_of_kind = 0;
+        struct charset_encoder *encoder = charset_encoder_open(kinds[k].encoding);
         for (const char *const *text = kinds[k].texts; text < kinds[k].texts + MOST && *text; text++, of_kind++) {
             unsigned char bytes[256];
             struct charset_text found;
-            size_t count = charset_encode(*text, strlen(*text), kinds[k].encoding, bytes, sizeof(bytes));
+            size_t count = charset_encode(encoder, *text, strlen(*text), bytes, sizeof(bytes));
             assert_true(count > 0);
             charset_decode((const char *)bytes, count, NULL, &found);
             bool same = !strcmp(found.utf8, *text);
@@ -81,6 +82,7 @@ TEST(test_kinds)
             }
             mem_free(found.utf8);
         }
+        charset_encoder_close(encoder);
         print_message("# %-13s %2zu of %2zu\n", kinds[k].encoding, right_of_kind, of_kind);
         texts += of_kind;
         right += right_of_kind;

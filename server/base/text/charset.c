@@ -139,15 +139,32 @@ char *charset_convert(const char *bytes, size_t count, const char *encoding, siz
     return text.at;
 }
 
-size_t charset_encode(const char *utf8, size_t count, const char *encoding, unsigned char *out, size_t out_bytes)
+struct charset_encoder {
+    iconv_t converter;
+};
+
+struct charset_encoder *charset_encoder_open(const char *encoding)
 {
-    iconv_t converter = iconv_open(iconv_name_of(encoding), "UTF-8");
-    if (converter == (iconv_t)-1)
-        return 0;
+    struct charset_encoder *encoder = mem_new(sizeof(*encoder));
+    encoder->converter = iconv_open(iconv_name_of(encoding), "UTF-8");
+    return encoder;
+}
+
+void charset_encoder_close(struct charset_encoder *encoder)
+{
+    if (encoder->converter != (iconv_t)-1)
+        iconv_close(encoder->converter);
+    mem_free(encoder);
+}
+
+size_t charset_encode(struct charset_encoder *encoder, const char *utf8, size_t count, unsigned char *out, size_t out_bytes)
+{
     char *from = (char *)utf8, *to = (char *)out;
     size_t room = out_bytes;
-    bool good = iconv(converter, &from, &count, &to, &room) == 0 && count == 0;
-    iconv_close(converter);
+    if (encoder->converter == (iconv_t)-1)
+        return 0;
+    iconv(encoder->converter, NULL, NULL, NULL, NULL); /* forgets a shift that an earlier text left */
+    bool good = iconv(encoder->converter, &from, &count, &to, &room) == 0 && count == 0;
     return good ? out_bytes - room : 0;
 }
 

@@ -36,9 +36,11 @@ bool charset_fits(const char *bytes, size_t count, const char *encoding);
 /* Returns one line without a line end: "read as GB18030", with the alternative if the choice is uncertain; free with mem_free(). */
 char *charset_describe(const struct charset_choice *choice);
 
-/* Converts a UTF-8 text to another encoding. Returns the number of bytes written to `out`; 0: the encoding lacks a character, or `out`
-   is too small. */
-size_t charset_encode(const char *utf8, size_t count, const char *encoding, unsigned char *out, size_t out_bytes);
+/* Opens a conversion from UTF-8 to an encoding. */
+struct charset_encoder *charset_encoder_open(const char *encoding);
+void charset_encoder_close(struct charset_encoder *encoder);
+/* Converts a UTF-8 text. Returns the number of bytes written; 0: the encoding is unknown or lacks a character, or `out` is too small. */
+size_t charset_encode(struct charset_encoder *encoder, const char *utf8, size_t count, unsigned char *out, size_t out_bytes);
 
 /* For charset_find() and its tests: chooses among the encodings other than UTF-8 and UTF-16, by statistical models of each. */
 struct charset_choice charset_find_legacy(const char *bytes, size_t count);

@@ -190,16 +190,16 @@ struct narrow_table {
 
 typedef void take_encoded(void *data, const unsigned char *bytes, size_t count, int rank);
 
-/* Calls each() for every character of a UTF-8 text that the encoding has, with its bytes in the encoding and its position in the text
-   (`rank`). */
-static void each_encoded(const char *utf8, const char *encoding, take_encoded *each, void *data)
+/* Calls each() for every character of a UTF-8 text that the encoder can convert, with its bytes in the encoding and its position in the
+   text (`rank`). */
+static void each_encoded(const char *utf8, struct charset_encoder *encoder, take_encoded *each, void *data)
 {
     for (int rank = 0; *utf8; rank++) {
         unsigned char bytes[8];
         size_t length = 1;
         while (((unsigned char)utf8[length] & 0xc0) == 0x80)
             length++;
-        size_t count = charset_encode(utf8, length, encoding, bytes, sizeof(bytes));
+        size_t count = charset_encode(encoder, utf8, length, bytes, sizeof(bytes));
         if (count > 0)
             each(data, bytes, count, rank);
         utf8 += length;
@@ -228,10 +228,12 @@ static void make_table(struct narrow_table *table, const struct narrow_model *mo
         table->rate[c] = c < 0x80 ? 0 : -11;
         table->kind[c] = c >= 0x80 ? HIGH_NONE : islower(c) ? ASCII_LOWER : isupper(c) ? ASCII_UPPER : ASCII_OTHER;
     }
-    each_encoded(signs, model->name, set_rate, &(struct rates){ table, -3, 0.25, HIGH_SIGN });
-    each_encoded(model->lower, model->name, set_rate, &(struct rates){ table, model->latin ? -1.7 : -2.2, slope, HIGH_LOWER });
-    each_encoded(model->upper, model->name, set_rate, &(struct rates){ table, -4, slope, HIGH_UPPER });
-    each_encoded(model->rare, model->name, set_rate, &(struct rates){ table, -7, 0.1, HIGH_LOWER });
+    struct charset_encoder *encoder = charset_encoder_open(model->name);
+    each_encoded(signs, encoder, set_rate, &(struct rates){ table, -3, 0.25, HIGH_SIGN });
+    each_encoded(model->lower, encoder, set_rate, &(struct rates){ table, model->latin ? -1.7 : -2.2, slope, HIGH_LOWER });
+    each_encoded(model->upper, encoder, set_rate, &(struct rates){ table, -4, slope, HIGH_UPPER });
+    each_encoded(model->rare, encoder, set_rate, &(struct rates){ table, -7, 0.1, HIGH_LOWER });
+    charset_encoder_close(encoder);
 }
 
 static bool is_letter(enum byte_kind kind)
@@ -314,7 +316,9 @@ static double score_wide(const struct wide_model *model, const unsigned char *at
     unsigned before = 0; /* the ASCII byte before; 0: none */
     struct frequent *set = mem_new(sizeof(*set));
     double score = model->prior;
-    each_encoded(model->frequent, model->name, add_frequent, set);
+    struct charset_encoder *encoder = charset_encoder_open(model->name);
+    each_encoded(model->frequent, encoder, add_frequent, set);
+    charset_encoder_close(encoder);
     double frequent = of_class(0.5, set->count);
     while (at < to) {
         unsigned first = *at, second = at + 1 < to ? at[1] : 0, pair = first << 8 | second;
