@@ -12,7 +12,14 @@
 #include "base/mem.h"
 #include "base/text/text.h"
 
-enum { MAX_SHEETS = 1024, MAX_BYTES = 1 << 28 /* maximum size of all cells in bytes; a shared string counts for each cell that uses it */ };
+enum {
+    MAX_SHEETS = 1024,
+    MAX_BYTES = 1 << 28,      /* bytes of all strings and cells; a shared string counts for each cell that uses it */
+    MAX_CELL_BYTES = 1 << 20, /* bytes of one cell or shared string; programs that write spreadsheets allow 32,767 characters */
+    MAX_TAG_BYTES = 1 << 20,  /* bytes of one XML tag; expat reads an unfinished tag again with each block */
+    MAX_DEPTH = 64,           /* nested XML elements; a sheet has 8 */
+    STRING_BYTES = 40         /* memory of an empty shared string */
+};
 static const size_t max_part_bytes = (size_t)512 << 20;
 
 struct xlsx_sheet {
@@ -23,7 +30,8 @@ struct xlsx_sheet {
     struct text text; /* text of the current cell or string */
     int column, last_row;
     char type;    /* type of the current cell: 's' index of a shared string, 'i' text in the cell itself, 0 value stored in the cell */
-    size_t bytes; /* total size of all cells so far */
+    size_t bytes; /* total size of all strings and cells so far */
+    int depth;    /* nested elements that are open */
     bool in_value, in_phonetic, too_large;
     XML_Parser parser;
 };
@@ -43,10 +51,28 @@ static const char *attribute(const char **attributes, const char *name)
     return "";
 }
 
+static void refuse_large(struct xlsx_sheet *sheet)
+{
+    sheet->too_large = true;
+    XML_StopParser(sheet->parser, XML_FALSE);
+}
+
+/* Counts an element that begins, and refuses deeply nested ones. Returns its local name. */
+static const char *enter(struct xlsx_sheet *sheet, const char *name)
+{
+    if (++sheet->depth > MAX_DEPTH)
+        refuse_large(sheet);
+    return local(name);
+}
+
 static void on_text(void *data, const char *text, int length)
 {
     struct xlsx_sheet *sheet = data;
-    if (sheet->in_value && !sheet->in_phonetic)
+    if (!sheet->in_value || sheet->in_phonetic)
+        return;
+    if (sheet->text.length + (size_t)length > MAX_CELL_BYTES)
+        refuse_large(sheet);
+    else
         text_add_bytes(&sheet->text, text, (size_t)length);
 }
 
@@ -55,7 +81,7 @@ static void on_text(void *data, const char *text, int length)
 static void string_begins(void *data, const char *name, const char **attributes)
 {
     struct xlsx_sheet *sheet = data;
-    name = local(name);
+    name = enter(sheet, name);
     (void)attributes;
     if (!strcmp(name, "si"))
         sheet->text.length = 0;
@@ -66,6 +92,7 @@ static void string_begins(void *data, const char *name, const char **attributes)
 static void string_ends(void *data, const char *name)
 {
     struct xlsx_sheet *sheet = data;
+    sheet->depth--;
     name = local(name);
     if (!strcmp(name, "t"))
         sheet->in_value = false;
@@ -73,6 +100,9 @@ static void string_ends(void *data, const char *name)
         sheet->in_phonetic = false;
     else if (!strcmp(name, "si")) {
         text_add_bytes(&sheet->text, "", 0);
+        sheet->bytes += sheet->text.length + STRING_BYTES;
+        if (sheet->bytes > MAX_BYTES)
+            refuse_large(sheet);
         mem_grow(&sheet->strings, &sheet->string_room, sheet->string_count + 1, sizeof(*sheet->strings));
         sheet->strings[sheet->string_count++] = mem_strdup(sheet->text.at);
     }
@@ -91,7 +121,7 @@ static int column_of(const char *reference)
 static void cell_begins(void *data, const char *name, const char **attributes)
 {
     struct xlsx_sheet *sheet = data;
-    name = local(name);
+    name = enter(sheet, name);
     if (!strcmp(name, "row")) {
         int row = atoi(attribute(attributes, "r"));
         sheet->last_row = row > 0 ? row : sheet->last_row + 1;
@@ -117,8 +147,7 @@ static void finish_cell(struct xlsx_sheet *sheet)
     sheet->bytes += bytes + 1;
     if (sheet->column < 0 || sheet->column > TABLE_MAX_CELLS || sheet->row.count > TABLE_MAX_CELLS || sheet->bytes > MAX_BYTES ||
         sheet->table->count >= TABLE_MAX_ROWS) {
-        sheet->too_large = true;
-        XML_StopParser(sheet->parser, XML_FALSE);
+        refuse_large(sheet);
         return;
     }
     while ((int)sheet->row.count < sheet->column)
@@ -129,6 +158,7 @@ static void finish_cell(struct xlsx_sheet *sheet)
 static void cell_ends(void *data, const char *name)
 {
     struct xlsx_sheet *sheet = data;
+    sheet->depth--;
     name = local(name);
     if (!strcmp(name, "v") || !strcmp(name, "t"))
         sheet->in_value = false;
@@ -174,6 +204,7 @@ static int read_part(struct xlsx_sheet *sheet, unzFile zip, const char *part, XM
         return -1;
     }
     XML_Parser parser = sheet->parser = XML_ParserCreate(NULL);
+    sheet->depth = 0;
     XML_SetUserData(parser, sheet);
     XML_SetElementHandler(parser, begins, ends);
     XML_SetCharacterDataHandler(parser, on_text);
@@ -183,6 +214,10 @@ static int read_part(struct xlsx_sheet *sheet, unzFile zip, const char *part, XM
         total += count > 0 ? (size_t)count : 0;
         if (count < 0 || total > max_part_bytes || XML_Parse(parser, buffer, count, count == 0) != XML_STATUS_OK)
             good = -1;
+        else if (count > 0 && (XML_Index)total - XML_GetCurrentByteIndex(parser) > MAX_TAG_BYTES) {
+            sheet->too_large = true;
+            good = -1;
+        }
     } while (good == 1 && count > 0);
     if (good < 0 && (total > max_part_bytes || sheet->too_large))
         snprintf(why, why_bytes, "%s is too large", part);
@@ -214,7 +249,7 @@ struct book {
 static void sheet_begins(void *data, const char *name, const char **attributes)
 {
     struct book *book = data;
-    if (strcmp(local(name), "sheet") != 0)
+    if (strcmp(enter(&book->sheet, name), "sheet") != 0)
         return;
     if (book->count == MAX_SHEETS) {
         book->too_many = true;
@@ -231,14 +266,16 @@ static void relation_begins(void *data, const char *name, const char **attribute
 {
     struct book *book = data;
     const char *target = attribute(attributes, "Target");
-    for (int i = 0; i < book->count && !strcmp(local(name), "Relationship"); i++)
+    bool relation = !strcmp(enter(&book->sheet, name), "Relationship");
+    for (int i = 0; i < book->count && relation; i++)
         if (!strcmp(book->sheets[i].id, attribute(attributes, "Id")))
             snprintf(book->sheets[i].part, sizeof(book->sheets[i].part), "%s%s", *target == '/' ? "" : "xl/", target + (*target == '/'));
 }
 
 static void nothing_ends(void *data, const char *name)
 {
-    (void)data, (void)name;
+    ((struct book *)data)->sheet.depth--;
+    (void)name;
 }
 
 /* Finds the sheets through the workbook part; by their usual file names if that is missing. Returns false with the reason in why. */

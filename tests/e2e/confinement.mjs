@@ -6,10 +6,10 @@ import { spawnSync } from 'node:child_process';
 import { chmodSync, copyFileSync, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 import { test } from 'node:test';
-import { deflateRawSync } from 'node:zlib';
 import { inFolder } from './support/folders.mjs';
 import { freePort } from './support/ports.mjs';
 import { BIN, missing, TinyPlant } from './support/tiny_plant.mjs';
+import { zip } from './support/zip.mjs';
 
 const ESCAPE = resolve(process.env.PLANTCAST_OUT ?? 'build/release', 'tests/faults/escape');
 // each step of a reader is ended after --timeout, 10 s here: if a run takes longer than this, no limit worked, whatever the load
@@ -286,47 +286,6 @@ test('a model that crashes, hangs or swells is one line, and the other models ar
 
 // --- tag lists -----------------------------------------------------------------------------------------------------------------
 
-function zip(files) {
-    const parts = [], central = [];
-    let at = 0;
-    for (const [name, bytes] of Object.entries(files)) {
-        const packed = deflateRawSync(bytes, { level: 9 }), head = Buffer.alloc(30), entry = Buffer.alloc(46);
-        head.writeUInt32LE(0x04034b50, 0);
-        entry.writeUInt32LE(0x02014b50, 0);
-        for (const [buffer, from] of [[head, 4], [entry, 6]]) {
-            buffer.writeUInt16LE(20, from);
-            buffer.writeUInt16LE(8, from + 4);
-            buffer.writeUInt32LE(crc32(bytes), from + 10);
-            buffer.writeUInt32LE(packed.length, from + 14);
-            buffer.writeUInt32LE(bytes.length, from + 18);
-            buffer.writeUInt16LE(name.length, from + 22);
-        }
-        entry.writeUInt32LE(at, 42);
-        parts.push(head, Buffer.from(name), packed);
-        central.push(entry, Buffer.from(name));
-        at += head.length + name.length + packed.length;
-    }
-    const list = Buffer.concat(central), end = Buffer.alloc(22), count = Object.keys(files).length;
-    end.writeUInt32LE(0x06054b50, 0);
-    end.writeUInt16LE(count, 8);
-    end.writeUInt16LE(count, 10);
-    end.writeUInt32LE(list.length, 12);
-    end.writeUInt32LE(at, 16);
-    return Buffer.concat([...parts, list, end]);
-}
-
-function crc32(bytes) {
-    let crc = -1;
-    for (const byte of bytes)
-        crc = (crc >>> 8) ^ CRC[(crc ^ byte) & 255];
-    return ~crc >>> 0;
-}
-const CRC = Array.from({ length: 256 }, (_, n) => {
-    for (let k = 0; k < 8; k++)
-        n = n & 1 ? (n >>> 1) ^ 0xedb88320 : n >>> 1;
-    return n;
-});
-
 const workbook = (sheet, strings = '<sst/>', sheets = 1) => zip({
     '[Content_Types].xml': '<Types/>',
     'xl/workbook.xml': `<workbook xmlns:r="r"><sheets>${'<sheet name="s" sheetId="1" r:id="r1"/>'.repeat(sheets)}</sheets></workbook>`,
@@ -349,6 +308,10 @@ const LISTS = {
         '<row r="4294967295"><c r="ZZZZZZ1"><v>1</v></c></row>')),
     'strings.xlsx': () => workbook(sheet(HEAD),
         `<sst count="4294967295" uniqueCount="4294967295">${'<si><t>a</t></si>'.repeat(4000000)}</sst>`),
+    'nested.xlsx': () => workbook(`<worksheet>${'<a>'.repeat(20000000)}`),
+    'tag.xlsx': () => workbook(`<worksheet a="${'x'.repeat(1 << 27)}"/>`),
+    'empty_strings.xlsx': () => workbook(sheet(HEAD), `<sst>${'<si/>'.repeat(20000000)}`),
+    'one_string.xlsx': () => workbook(sheet(HEAD), `<sst><si>${`<t>${'y'.repeat(1 << 20)}</t>`.repeat(300)}</si></sst>`),
     'sheets.xlsx': () => workbook(sheet(HEAD), '<sst/>', 500000),
     'cut.xlsx': () => workbook(sheet(HEAD)).subarray(0, 200),
     'wide.csv': () => `Tag Name,Address${','.repeat(20000000)}\nA,400001\n`,
