@@ -8,6 +8,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -216,28 +217,28 @@ static int unpack_model(void *arg)
 {
     const struct model_reading *reading = arg;
     char why[CONVERSION_WHY_BYTES] = "";
-    bool good = unpack(reading->path, reading->output, why, sizeof(why));
+    struct text said = { 0 };
+    bool good = unpack(reading->path, reading->output, &said, why, sizeof(why));
+    fputs(said.at ? said.at : "", stdout);
     if (!good)
         fprintf(stderr, "%s\n", why);
     return good ? 0 : 1;
 }
 
-/* Unpacks a compressed model into the folder of this conversion. Returns the path, which the caller frees with mem_free, or NULL with the
- * reason in why. */
-static char *unpacked(const struct model_reading *packed, char why[CONVERSION_WHY_BYTES])
+/* Unpacks a compressed model into the reading's folder, where its name ends in `ending`. Returns the path, which the caller frees with
+ * mem_free, or NULL with the reason in why. */
+static char *unpacked(const struct model_reading *packed, const char *ending, struct text *said, char why[CONVERSION_WHY_BYTES])
 {
     struct child_paths paths = { 0 };
-    struct text said = { 0 };
-    char *stem = file_name_stem(packed->path), *path = mem_printf("%s/%s%s", packed->folder, stem, unpack_ending(packed->path));
+    char *stem = file_name_stem(packed->path), *path = mem_printf("%s/%s%s", packed->folder, stem, ending);
     struct model_reading unpacking = *packed;
     unpacking.output = path;
     child_paths_add(&paths, packed->path, CONFINE_READ);
     child_paths_add(&paths, packed->folder, CONFINE_WRITE);
-    if (!run(packed, &(struct child_params){ .call = unpack_model, .arg = &unpacking }, &paths, &said, why)) {
+    if (!run(packed, &(struct child_params){ .call = unpack_model, .arg = &unpacking }, &paths, said, why)) {
         mem_free(path);
         path = NULL;
     }
-    text_finish(&said);
     mem_free(stem);
     return path;
 }
@@ -413,11 +414,11 @@ static bool read_model(const struct import_format *format, const char *path, con
     };
     struct child_params ourselves = { .call = read_ourselves, .arg = &reading };
     struct child_paths paths = { 0 };
-    bool packed = input && unpack_ending(input), good = made && input;
-    char *inner = good && packed ? unpacked(&reading, why) : NULL;
+    bool good = made && input;
     if (!good)
         fail(why, "%s", strerror(errno));
-    good = good && (inner || !packed);
+    char *ending = good ? unpack_ending(input) : NULL, *inner = ending ? unpacked(&reading, ending, said, why) : NULL;
+    good = good && (inner || !ending);
     if (inner)
         reading.path = inner;
     child_paths_add(&paths, inner ? inner : input, CONFINE_READ);
@@ -433,6 +434,7 @@ static bool read_model(const struct import_format *format, const char *path, con
     free(input);
     mem_free(own);
     mem_free(inner);
+    mem_free(ending);
     mem_free(output);
     mem_free(attributes);
     return good;
@@ -447,6 +449,9 @@ bool conversion_run(const char *path, const char *glb, const char *folder, const
         return fail(why, "%s", strerror(errno));
     if (!S_ISREG(st.st_mode))
         return fail(why, "it is not a regular file");
+    const char *dot = strrchr(path, '.');
+    if (!format && dot && !strcasecmp(dot, ".ifcxml"))
+        return fail(why, FORMAT_IFC_XML);
     if (!format)
         return fail(why, "its ending is none that import reads (plantcast import --formats); `convert` in the plant file (PLANT.md) runs a "
                          "program of yours");

@@ -3,9 +3,11 @@
 #ifndef PREPROCESS_IMPORT_FILE_NAME_H
 #define PREPROCESS_IMPORT_FILE_NAME_H
 
-/* Returns the path with its ending replaced: "a/b.rvm" with ".att" gives "a/b.att". */
+/* Returns the path without the ending ".gz" (in any case) of a compressed file. */
+char *file_name_without_gz(const char *path);
+/* Returns the path with its ending replaced: "a/b.rvm" with ".att" gives "a/b.att", and so does "a/b.rvm.gz". */
 char *file_name_with_ending(const char *path, const char *ending);
-/* Returns the file name without folder and ending: "a/b.rvm" gives "b". */
+/* Returns the file name without folder and ending: "a/b.rvm" and "a/b.rvm.gz" give "b". */
 char *file_name_stem(const char *path);
 
 #endif

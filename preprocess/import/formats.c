@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "base/mem.h"
+#include "preprocess/import/file_name.h"
 
 #define BY_OCCT "plantcast-import-occt", NULL, "this Plantcast was built without OCCT: install libocct-data-exchange-dev and build again"
 #define BY_ASSIMP "plantcast-import-assimp", NULL, "this Plantcast was built without Assimp: install libassimp-dev and build again"
@@ -45,11 +46,16 @@ static bool has_ending(const char *endings, const char *ending)
 
 const struct import_format *import_format_of(const char *path)
 {
-    const char *dot = strrchr(path, '.');
-    for (int i = 0; dot && dot[1] && !strchr(dot, '/') && i < FORMATS; i++)
+    const struct import_format *found = NULL;
+    char *plain = file_name_without_gz(path);
+    const char *dot = strrchr(plain, '.');
+    for (int i = 0; dot && dot[1] && !strchr(dot, '/') && i < FORMATS && !found; i++)
         if (has_ending(formats[i].endings, dot))
-            return &formats[i];
-    return NULL;
+            found = &formats[i];
+    if (found && found->reader == FORMAT_GLTF && strcmp(plain, path) != 0)
+        found = NULL; /* buffers lie next to the compressed file, but the model would be read where it is unpacked */
+    mem_free(plain);
+    return found;
 }
 
 char *import_format_runtime(const struct import_format *format)
@@ -93,4 +99,5 @@ void import_formats_print(FILE *out)
         fprintf(out, "%-8s %-16s %s%s\n", formats[i].name, formats[i].endings, there ? "yes" : "no: ", there ? "" : formats[i].missing);
         mem_free(program);
     }
+    fputs("All but glTF may be compressed with gzip, such as .stp.gz.\n", out);
 }

@@ -10,11 +10,16 @@
 #include <sys/stat.h>
 #include <zlib.h>
 
+#include "base/mem.h"
+#include "preprocess/import/file_name.h"
+#include "preprocess/import/formats.h"
+
 enum {
     BLOCK_BYTES = 1 << 16,
     /* largest accepted ratio of unpacked to packed size; models shrink to about a tenth, so a file with a larger ratio is rejected as a
      * decompression bomb */
-    MAX_RATIO = 200
+    MAX_RATIO = 200,
+    NAME_BYTES = 512
 };
 static const size_t free_bytes = (size_t)64 << 20; /* bytes that may be unpacked regardless of the ratio */
 
@@ -24,16 +29,32 @@ static const struct {
 
 static const char *ending_of(const char *path)
 {
-    const char *dot = strrchr(path, '.');
-    return dot ? dot : "";
+    const char *slash = strrchr(path, '/'), *dot = strrchr(path, '.');
+    return dot && (!slash || dot > slash) ? dot : "";
 }
 
-const char *unpack_ending(const char *path)
+/* Returns whether a file begins as ZIP and gzip files do. */
+static bool begins_packed(const char *path)
 {
-    for (size_t i = 0; i < sizeof(endings) / sizeof(endings[0]); i++)
-        if (!strcasecmp(ending_of(path), endings[i].packed))
-            return endings[i].ending;
-    return NULL;
+    unsigned char head[4] = { 0 };
+    FILE *file = fopen(path, "rb");
+    bool packed = file && fread(head, 1, sizeof(head), file) == sizeof(head) &&
+                  (!memcmp(head, "PK\3\4", 4) || (head[0] == 0x1f && head[1] == 0x8b));
+    if (file)
+        fclose(file);
+    return packed;
+}
+
+char *unpack_ending(const char *path)
+{
+    char *inner = file_name_without_gz(path), *ending = NULL;
+    for (size_t i = 0; i < sizeof(endings) / sizeof(endings[0]) && !ending; i++)
+        if (!strcasecmp(ending_of(inner), endings[i].packed))
+            ending = mem_strdup(endings[i].ending);
+    if (!ending && (strcmp(inner, path) != 0 || begins_packed(path)))
+        ending = mem_strdup(ending_of(inner));
+    mem_free(inner);
+    return ending;
 }
 
 struct archive_reading {
@@ -72,19 +93,65 @@ static bool finish(const struct archive_reading *from)
     return (!from->gzip || gzclose(from->gzip) == Z_OK) && good;
 }
 
-/* Opens the first file of the archive with this ending. Returns false if there is none. */
-static bool find_file(unzFile zip, const char *ending)
+/* Copies the name that the manifest.xml of a COLLADA archive gives its first document, or "". */
+static void read_root(unzFile zip, char root[NAME_BYTES])
 {
-    char name[512];
-    unz_file_info info; /* required by minizip, unused */
-    for (int status = unzGoToFirstFile(zip); status == UNZ_OK; status = unzGoToNextFile(zip))
-        if (unzGetCurrentFileInfo(zip, &info, name, sizeof(name), NULL, 0, NULL, 0) == UNZ_OK &&
-            (!strcasecmp(ending_of(name), ending) || (!strcmp(ending, ".stp") && !strcasecmp(ending_of(name), ".step"))))
-            return unzOpenCurrentFile(zip) == UNZ_OK;
-    return false;
+    char text[4096];
+    int count = unzLocateFile(zip, "manifest.xml", 2) == UNZ_OK && unzOpenCurrentFile(zip) == UNZ_OK
+                    ? unzReadCurrentFile(zip, text, sizeof(text) - 1)
+                    : 0;
+    text[count > 0 ? count : 0] = 0;
+    const char *tag = strstr(text, "<dae_root"), *at = tag ? strchr(tag, '>') : NULL;
+    size_t length = at ? strcspn(at + 1, "<#\r\n") : 0;
+    snprintf(root, NAME_BYTES, "%.*s", (int)length, at ? at + 1 : "");
+    unzCloseCurrentFile(zip);
 }
 
-bool unpack(const char *path, const char *output, char *why, size_t why_bytes)
+static bool is_step(const char *ending)
+{
+    return !strcasecmp(ending, ".stp") || !strcasecmp(ending, ".step");
+}
+
+static bool has_ending(const char *name, const char *ending)
+{
+    return !strcasecmp(ending_of(name), ending) || (is_step(ending) && is_step(ending_of(name)));
+}
+
+static bool is_named(const char *name, const char *root)
+{
+    const char *base = text_base_name(root);
+    return *base && !strcmp(text_base_name(name), base);
+}
+
+/* Opens the file of the archive with this ending: the one that its manifest names, else the first. Returns the reason if there is none. */
+static const char *open_file(unzFile zip, const char *ending, struct text *said)
+{
+    char name[NAME_BYTES], root[NAME_BYTES], taken[NAME_BYTES] = "";
+    size_t count = 0;
+    bool locked = false, xml = false;
+    read_root(zip, root);
+    for (int status = unzGoToFirstFile(zip); status == UNZ_OK; status = unzGoToNextFile(zip)) {
+        unz_file_info info;
+        if (unzGetCurrentFileInfo(zip, &info, name, sizeof(name), NULL, 0, NULL, 0) != UNZ_OK)
+            continue;
+        xml |= has_ending(name, ".ifcxml");
+        if (!has_ending(name, ending) || !strncmp(name, "__MACOSX/", 9))
+            continue;
+        if (count++ == 0 || is_named(name, root)) {
+            memcpy(taken, name, sizeof(taken));
+            locked = info.flag & 1;
+        }
+    }
+    if (count == 0)
+        return xml ? FORMAT_IFC_XML : "its archive holds no model";
+    if (locked)
+        return "its archive needs a password: pack it without one";
+    if (count > 1)
+        text_add(said, "left out: %zu other models of its archive; read is %s\n", count - 1, taken);
+    return unzLocateFile(zip, taken, 1) == UNZ_OK && unzOpenCurrentFile(zip) == UNZ_OK ? NULL : "its archive is broken";
+}
+
+bool unpack(const char *path, const char *output, struct text *said, char *why, size_t why_bytes)
 {
     struct stat st;
     size_t most = free_bytes + (stat(path, &st) == 0 ? (size_t)st.st_size * MAX_RATIO : 0);
@@ -92,9 +159,9 @@ bool unpack(const char *path, const char *output, char *why, size_t why_bytes)
     const char *reason = NULL;
     if (!from.zip)
         from.gzip = gzopen(path, "rb");
-    if (from.zip && !find_file(from.zip, unpack_ending(path)))
-        reason = "its archive holds no model";
-    else if (!from.zip && (!from.gzip || gzdirect(from.gzip)))
+    if (from.zip)
+        reason = open_file(from.zip, ending_of(output), said);
+    else if (!from.gzip || gzdirect(from.gzip))
         reason = "it is neither a ZIP nor a gzip file";
     FILE *to = reason ? NULL : fopen(output, "wb");
     if (!reason)

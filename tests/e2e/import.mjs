@@ -2,11 +2,16 @@
 // `plantcast import` of a real CAD export, compared with another program's result for the same files.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { existsSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { existsSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
+import { gzipSync } from 'node:zlib';
 import { inFolder } from './support/folders.mjs';
+import { ifc } from './support/ifc_sample.mjs';
+import { dae, stl } from './support/mesh_samples.mjs';
+import { cone } from './support/step_parts.mjs';
 import { BIN, missing } from './support/tiny_plant.mjs';
+import { zip } from './support/zip.mjs';
 
 const absent = missing();
 const DATA = join(import.meta.dirname, '../../../shared/data');
@@ -141,6 +146,49 @@ test('a real export with broken attributes or numbers is one line, and leaves no
         assert.equal(said.stderr.trim().split('\n').length, 1);
         assert.deepEqual(readdirSync(folder).sort(), ['a.att', 'a.rvm']);
     }
+}));
+
+const IFC_XML = '<?xml version="1.0"?><ifc:ifcXML xmlns:ifc="http://www.buildingsmart-tech.org/ifcXML/IFC4/final"/>';
+const UNREAD = /is IFC in XML \(ifcXML\), which is not read: export it as IFC in STEP text \(\.ifc\)/;
+const scenes = { 'manifest.xml': '<dae_root>models/pump.dae#s</dae_root>', 'models/base.dae': dae(1), 'models/pump.dae': dae(2) };
+const stored = zip({ 'a.ifc': ifc() }, { packed: false }).toString('latin1');
+const spaces = Buffer.alloc(200 << 20, ' ');
+const PACKED = [ // file name, bytes, what is printed
+    ['zip.ifczip', zip({ 'inner/house.ifc': ifc() }), /3 elements with a shape, 0 lost/],
+    ['gzip.ifczip', gzipSync(ifc()), /3 elements with a shape, 0 lost/], ['a.ifc.gz', gzipSync(ifc()), /3 elements with a shape, 0 lost/],
+    ['zip_inside.ifc', zip({ 'house.IFC': ifc() }), /3 elements with a shape, 0 lost/],
+    ['xml.ifczip', zip({ 'house.ifcXML': IFC_XML }), UNREAD],
+    ['a.ifcxml', IFC_XML, UNREAD], ['b.ifcXML', gzipSync(IFC_XML), UNREAD], ['xml.ifc', IFC_XML, UNREAD],
+    ['text.ifczip', zip({ 'a.txt': 'hello' }), /its archive holds no model/], ['not.ifczip', ifc(), /it is neither a ZIP nor a gzip file/],
+    ['changed.ifczip', Buffer.from(stored.replace('2000.0', '3000.0'), 'latin1'),
+        /its checksum is wrong/],
+    ['cut.ifczip', gzipSync(ifc()).subarray(0, -20), /it is cut off/],
+    ['locked.ifczip', zip({ 'a.ifc': ifc() }, { flags: 1 }), /its archive needs a password/],
+    ['gzip.stpz', gzipSync(cone()), /1 parts in 1 places/], ['zip.stpz', zip({ 'a/cone.step': cone() }), /1 parts in 1 places/],
+    ['a.stp.gz', gzipSync(cone()), /1 parts in 1 places/], ['B.STEP.GZ', gzipSync(cone()), /1 parts in 1 places/],
+    ['gzip_inside.stp', gzipSync(cone()), /1 parts in 1 places/],
+    ['a.zae', zip({ 'scene.dae': dae(1) }), /2\.0 x 1\.0 x 0\.5 m/],
+    ['two.zae', zip(scenes), /left out: 1 other models of its archive; read is models\/pump\.dae/],
+    ['a.stl.gz', gzipSync(stl()), /2\.0 x 1\.0 x 0\.5 m/], ['a.gltf.gz', gzipSync('{}'), /its ending is none that import reads/],
+    ...[['ifczip', 'a.ifc'], ['stpz', 'a.stp'], ['zae', 'a.dae']].map(([ending, inner]) =>
+        [`bomb.${ending}`, zip({ [inner]: spaces }), /grows to more than 200 times its size/]),
+    ['bomb.stp.gz', gzipSync(spaces), /grows to more than 200 times its size/],
+];
+const readers = ['plantcast-import-ifc/ifc.mjs', 'plantcast-import-occt', 'plantcast-import-assimp']
+    .filter((name) => !existsSync(join(BIN, name)));
+const unpackable = { skip: notBuilt || readers.join(', ') || false };
+test('compressed models are unpacked, or refused in one line', unpackable, () => inFolder((folder) => {
+    for (const [name, bytes, wanted] of PACKED) {
+        const model = join(folder, name), plant = join(folder, 'plant');
+        writeFileSync(model, bytes);
+        const { status, stdout, stderr } = run('plantcast', 'import', model, '-o', plant);
+        assert.match(`${stdout}${stderr}`, wanted, name);
+        const written = existsSync(join(plant, `${name.replace(/\..*/, '')}.glb`));
+        assert.ok(status === 0 ? written : stderr.trim().split('\n').length === 1, stderr);
+        rmSync(plant, { recursive: true, force: true });
+        rmSync(model);
+    }
+    console.log(`# ${PACKED.length} kinds of compressed models`);
 }));
 
 test('what cannot be read is one line, and leaves nothing behind', { skip: notBuilt }, () => inFolder((folder) => {

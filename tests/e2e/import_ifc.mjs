@@ -5,7 +5,6 @@ import { spawnSync } from 'node:child_process';
 import { existsSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
-import { crc32, gzipSync } from 'node:zlib';
 import { inFolder } from './support/folders.mjs';
 import { ifcOf, KINDS } from './support/ifc_kinds.mjs';
 import { ifc } from './support/ifc_sample.mjs';
@@ -127,39 +126,6 @@ test('an element whose shape is not built is named, with its class and the reaso
     assert.match(stdout, /IFC4: 1 elements with a shape, 2 lost,/);
     assert.match(stdout, /lost: #903 LINE-1001 \(IfcPipeSegment, 0\$PlantcastKinds0000009\): IfcSectionedSolidHorizontal/);
     assert.match(stdout, /lost: #904 LINE-1002 \(IfcPipeSegment, 0\$PlantcastKinds000000A\): its representation is empty/);
-}));
-
-// Returns a ZIP file with one stored file.
-function zip(name, text) {
-    const bytes = Buffer.from(text), title = Buffer.from(name), fields = Buffer.alloc(26), end = Buffer.alloc(22);
-    fields.writeUInt16LE(20, 0);
-    fields.writeUInt32LE(crc32(bytes), 10);
-    fields.writeUInt32LE(bytes.length, 14);
-    fields.writeUInt32LE(bytes.length, 18);
-    fields.writeUInt16LE(title.length, 22);
-    const local = Buffer.concat([Buffer.from('PK\x03\x04'), fields, title, bytes]);
-    const entry = Buffer.concat([Buffer.from('PK\x01\x02\x14\0'), fields, Buffer.alloc(14), title]);
-    end.write('PK\x05\x06', 'latin1');
-    end.writeUInt16LE(1, 8);
-    end.writeUInt16LE(1, 10);
-    end.writeUInt32LE(entry.length, 12);
-    end.writeUInt32LE(local.length, 16);
-    return Buffer.concat([local, entry, end]);
-}
-
-test('.ifczip is unpacked; an archive without a model, or with a damaged one, is refused', { skip }, () => inFolder((folder) => {
-    writeFileSync(join(folder, 'house.ifczip'), zip('inner/house.ifc', ifc()));
-    const good = plantcast(['import', join(folder, 'house.ifczip'), '-o', join(folder, 'plant')]);
-    assert.equal(good.status, 0, good.stderr);
-    assert.match(good.stdout, /3 elements with a shape, 0 lost/);
-    const changed = Buffer.from(zip('a.ifc', ifc()).toString('latin1').replace('2000.0', '3000.0'), 'latin1');
-    for (const [name, bytes, why] of [['a', zip('a.txt', 'hello'), 'its archive holds no model'],
-        ['b', ifc(), 'it is neither a ZIP nor a gzip file'], ['c', changed, 'its checksum is wrong'],
-        ['d', gzipSync(ifc()).subarray(0, -20), 'it is cut off']]) {
-        writeFileSync(join(folder, `${name}.ifczip`), bytes);
-        const { status, stderr } = plantcast(['import', join(folder, `${name}.ifczip`), '-o', join(folder, name)]);
-        assert.ok(status === 1 && stderr.includes(why), stderr);
-    }
 }));
 
 test('broken files are read or refused in one line, and leave nothing behind', { skip }, () => inFolder((folder) => {

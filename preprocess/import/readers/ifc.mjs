@@ -208,7 +208,10 @@ function askForSolids(list, elements) {
 
 async function main([input, output, , , , encoding]) {
     const bytes = inUtf8(readFileSync(input), encoding), folder = dirname(fileURLToPath(import.meta.url));
-    if (!bytes.subarray(0, 4096).toString('latin1').includes('ISO-10303-21'))
+    const head = bytes.subarray(0, 4096).toString('latin1');
+    if (/^\W*</.test(head) && /ifcxml/i.test(head))
+        throw new Error('it is IFC in XML (ifcXML), which is not read: export it as IFC in STEP text (.ifc)');
+    if (!head.includes('ISO-10303-21'))
         throw new Error('it is no IFC file: it does not begin with ISO-10303-21');
     if (!bytes.subarray(-4096).toString('latin1').includes('END-ISO-10303-21'))
         throw new Error('it is cut off: it does not end with END-ISO-10303-21');
