@@ -265,7 +265,7 @@ char *import_job_run(struct import_job *job, const struct import_order *order, c
     struct export_list exports = { 0 };
     export_folder_list(plant_import_exports(job->params.import), &exports);
     char *why = NULL, *unread = NULL;
-    /* not possible: the data source is written into a new plant file by plantcast match alone, which needs a tag list */
+    /* an error: only plantcast match, which needs a tag list, writes the data source into a new plant file */
     if (order->anew && *order->source.host && !find_tags(&exports))
         why = mem_printf("the plant's source %s would be lost: there is no tag list among the exports; add it first", order->source.host);
     else if (order->models)

@@ -9,7 +9,7 @@ struct import_job_params {
     struct plant_import *import;
     const char *plant_path, *tags_path;
     const char *prepared;        /* folder of prepared assets */
-    int lock;                    /* descriptor of the lock on the plant's folder; it is lent to the programs */
+    int lock;                    /* descriptor of the lock on the plant's folder, which is lent to the programs */
     const struct quotas *quotas; /* resource limits of the programs */
     bool (*stop)(void *arg);     /* callback; true: the import must end */
     void *arg;

@@ -148,7 +148,7 @@ static void loop_help(void *arg)
     loop_unref(arg);
 }
 
-/* Starts a parallel loop: queues one helper job for each thread that shall help the caller. */
+/* Starts a parallel loop: queues one helper job for each worker thread that shall help the caller. */
 static struct loop *loop_begin(struct workers *workers, const struct loop *like)
 {
     struct loop *loop = mem_new(sizeof(*loop));

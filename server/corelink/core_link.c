@@ -744,8 +744,8 @@ struct core_link *core_link_start(const struct core_link_params *params)
         counters_add(c, "plantcast_core_refused_total", "counter", "Connections refused: the core does not belong to this renderer.");
     link->behind = counters_add_seconds(c, "plantcast_core_clock_ahead_seconds", "gauge",
                                         "Seconds by which the core's clock is ahead of this machine's.");
-    lws_set_log_level(LLL_ERR | LLL_WARN, NULL); /* silences libwebsockets except for errors and warnings; the thread's loop logs to
-                                                    where it connects */
+    lws_set_log_level(LLL_ERR | LLL_WARN, NULL); /* libwebsockets logs only errors and warnings, because the link's own loop logs its
+                                                    connections */
     thread_init(&link->thread);
     link->stop_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
     if (link->stop_fd < 0)

@@ -19,7 +19,8 @@ struct core_link_params {
     struct counters *counters;
     const struct plant *plant;
     struct store *store;
-    struct alarm_service *alarm_service; /* must mirror; plant, store and alarm service must outlive the link */
+    struct alarm_service *alarm_service; /* alarm service in mirror mode (it takes states from the core); plant, store and alarm service
+                                            must outlive the link */
     const char *urls[CORE_URLS];         /* ws://HOST:PORT or wss://HOST:PORT of each core that may be the leader; tried one after the
                                             other */
     int url_count;
@@ -49,7 +50,7 @@ bool core_link_is_up(struct core_link *link); /* Returns true while a core sends
 /* HTTP address of the core. */
 struct core_peer {
     char url[320]; /* http or https URL of the core, without a path */
-    /* value of the authorization header, "": none; ca_path as in params. Both live as long as the link */
+    /* authorization: value of the HTTP header, empty: none; ca_path: as in params. Both are valid as long as the link */
     const char *authorization, *ca_path;
 };
 /* *out receives the core that sends readings now. Returns false if no core does. Thread: any. */

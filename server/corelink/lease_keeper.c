@@ -18,7 +18,7 @@
 
 enum { ASKED = 32, NUMBER_BYTES = 24 };
 static const int64_t MAX_TIMEOUT_NS = NS_PER_S, MIN_TIMEOUT_NS = 50 * NS_PER_MS;
-/* after its connection ends, for example during a reload, a standby stays named in the row for this long */
+/* a standby stays named in the lease's row for this long after its connection ends, as during a reload */
 static const int64_t STANDBY_GRACE_NS = 10 * NS_PER_S;
 static const int64_t SHUTDOWN_NS = 300 * NS_PER_MS; /* time before the kernel ends the process in which it can log the reason and shut
                                                        down in order */
@@ -337,7 +337,7 @@ static int64_t take_turn(struct lease_keeper *keeper)
     pthread_mutex_lock(&keeper->thread.lock);
     int64_t next_ns = began_ns + (leads ? LEASE_RENEW_NS : LEASE_LOOK_NS), last_ns = keeper->lease.until_ns - SHUTDOWN_NS + 1;
     pthread_mutex_unlock(&keeper->thread.lock);
-    /* a leader wakes at the latest when its lease ends, to report that */
+    /* a leader wakes at the latest when its lease ends, because it must report that */
     return leads && !keeper->told_lost && last_ns > began_ns && last_ns < next_ns ? last_ns : next_ns;
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes JPEG with libjpeg, whose errors are caught by longjmp. */
+/* Writes JPEG with libjpeg. Its errors end the call by longjmp. */
 #include "encode/jpeg_write.h"
 
 #include <setjmp.h>

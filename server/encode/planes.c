@@ -54,7 +54,8 @@ SIMD_BODY void weigh_row(const uint32_t *pixels, float u[2 * TILE_W], float v[2 
     }
 }
 
-/* Computes the weighted mean chroma of a tile's row. pixels: two rows of 2 * TILE_W pixels, contiguous; out: u, v. */
+/* Computes the weighted mean chroma for one row of a tile. pixels: two contiguous rows of 2 * TILE_W pixels; out: TILE_W samples of u
+   and of v. */
 SIMD_BODY void weigh_pair(const uint32_t *pixels, uint8_t out[2][TILE_W])
 {
     float u[2][2 * TILE_W], v[2][2 * TILE_W], weight[2][2 * TILE_W];

@@ -24,7 +24,7 @@ enum { GROUP = 64, GRAIN = 1024, MAX_PIECES = 96 };
                                  sensor and of the radius R */
 #define STEP_OF_COLOR (1 / 255.0f)
 #define BORDER_SLACK 4  /* tolerated displacement of the border between data and no data, in units of struct scalar's `lacking` */
-#define MIN_ERROR 1e-4f /* smaller errors are stored as 0 */
+#define MIN_ERROR 1e-4f /* interpolation errors smaller than this are stored as 0 */
 
 struct triangle_piece {  /* part of a triangle; the error is sampled at the middle of the piece's longest side */
     uint32_t tri;        /* index of the triangle in the group of triangles evaluated together */
@@ -39,7 +39,7 @@ struct sampler { /* state of the sampling in one thread */
     struct weights *weights; /* weights at the sample points */
     struct weights_terms terms;
     double values[KERNEL_BLOCK], total[KERNEL_BLOCK];
-    float *corners;        /* [member][3 GROUP]: by sensor (member of the sum): weights at the corners of the group's triangles */
+    float *corners;        /* weights at the corners of the triangles: [member of the sum (sensor)][3 corners of each of GROUP triangles] */
     uint32_t *tris[GROUP]; /* vertex numbers of each triangle */
     float *errors[GROUP];  /* where to store each triangle's error */
     int pieces[GROUP];
@@ -248,7 +248,7 @@ static void measure_some(void *arg, size_t begin, size_t end)
     uint32_t *indices = (uint32_t *)job->weights->layout->file->view.indices;
     bool good = sampler_init(sampler, job);
     float step = STEP * fminf(1, MAX_POWER / job->weights->power);
-    /* out of memory: all errors are unknown and set to the maximum */
+    /* memory is short: the errors are unknown, so all are set to the maximum */
     for (size_t t = job->first + begin; t < job->first + end && !good; t++)
         job->errors[t] = 1;
     for (size_t t = job->first + begin; t < job->first + end && good; t++) {
@@ -350,7 +350,7 @@ static bool is_as_prepared(const struct weights *weights, const struct field_par
     const struct plant_group *group = layout->group;
     if (layout->trial || params->override_count > 0 || params->distance == DISTANCE_HEAT || params->reach_m != group->reach_m)
         return false;
-    if (plant_group_is_exact(group, layout->sensor_count)) /* pixels evaluate this field themselves, so preparation subdivided no
+    if (plant_group_is_exact(group, layout->sensor_count)) /* renderers evaluate this field at each pixel, so preparation subdivided no
                                                               triangle for the group */
         return false;
     for (size_t i = 0; i < layout->sensor_count; i++)

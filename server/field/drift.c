@@ -102,7 +102,7 @@ static int reduce(struct drift_rows *rows, double largest)
             continue;
         for (int i = 0; i < n; i++)
             rows->at[kept][i] = column[i] / length;
-        for (int k = 0; k < kept; k++) /* done twice, so that the columns are orthogonal to within rounding */
+        for (int k = 0; k < kept; k++) /* orthogonalises twice, so that the columns are orthogonal to within rounding */
             take_out(rows->at[kept], rows->at[k], n);
         kept++;
     }
@@ -142,7 +142,7 @@ static int find_jump(const struct drift_rows *rows, double noise)
         change[k] = fabs(sum) / BESIDE;
         largest = change[k] > change[largest] ? k : largest;
     }
-    /* 0.6745: median absolute deviation of a normal distribution with standard deviation 1 */
+    /* 0.6745: median absolute deviation divided by standard deviation, for a normal distribution */
     if (change[largest] < MIN_JUMP_FACTOR * fmax(median(change, count) / 0.6745, noise * sqrt(2. / BESIDE)))
         return 0;
     int at = largest + BESIDE;
@@ -340,7 +340,7 @@ static size_t judge(const struct drift_search *search, const double *noise, stru
         drift_fit(own, search->said + i * (size_t)search->hours, nearest, (int)count, search->hours, noise[i], &out[i]);
         if (out[i].verdict != DRIFT_FOUND)
             continue;
-        out[i].verdict = DRIFT_NONE; /* only the sensor that drifts most clearly is set to DRIFT_FOUND later */
+        out[i].verdict = DRIFT_NONE; /* DRIFT_FOUND is set later, and only for the sensor that drifts most clearly */
         if (clearest == search->count || fabs(out[i].change) / out[i].error > fabs(out[clearest].change) / out[clearest].error)
             clearest = i;
     }

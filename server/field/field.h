@@ -47,9 +47,9 @@ struct field;
 struct field *field_create(struct workers *workers, const struct scene *scene);
 /* Frees the field and its cache. &NULL is fine; sets it to NULL. */
 void field_destroy(struct field **field);
-/* Returns the scene it was created with. */
+/* Returns the scene with which the field was created. */
 const struct scene *field_scene(const struct field *field);
-/* Returns the workers it was created with. */
+/* Returns the workers with which the field was created. */
 struct workers *field_workers(const struct field *field);
 /* Sets the registry in which differences look up their baselines; it must outlive the field. Without it, or for a forgotten baseline, a
    difference has no data. */
@@ -70,7 +70,7 @@ bool field_baseline(const struct field *field, const struct field_params *params
 /* Sets the limit of the cache in bytes; initially FIELD_DEFAULT_BYTES. The field of the parameters requested last is kept even if it
    alone exceeds the limit. */
 void field_set_cache_limit(struct field *field, size_t bytes);
-/* Returns the bytes that the cache takes now. */
+/* Returns the bytes that the field's cache takes now. */
 size_t field_bytes(const struct field *field);
 /* Drops everything that is cached. */
 void field_clear_cache(struct field *field);

@@ -15,7 +15,7 @@ struct weights **field_cache_bucket(struct field *field, uint64_t hash)
     return &field->weights[hash % FIELD_BUCKETS];
 }
 
-/* Unlinks *link from its list and destroys it. */
+/* Unlinks the weights at *link from their list and destroys them. */
 static void weights_remove(struct field *field, struct weights **link)
 {
     struct weights *weights = *link;
@@ -107,9 +107,10 @@ bool field_cache_make_room(struct field *field, size_t need, const struct field_
     return true;
 }
 
-/* Caches columns when the weights are summed for the second time, because while a user drags a parameter each set of weights is summed
-   only once. Caching columns evicts only entries last used before the previous use of these weights, or two busy fields would evict each
-   other forever. If not all columns fit, those of the first vertices are cached, which all levels of detail use. */
+/* Caches columns of G (a sensor's weights at all vertices) when they are summed for the second time, because while a user drags a
+   parameter each set of weights is summed only once. This evicts only entries last used before the previous use of these weights, or two
+   busy fields would evict each other forever. If not all columns fit, the parts for the first vertices are cached, which all levels of
+   detail use. */
 void field_cache_keep_columns(struct field *field, struct weights *weights, const struct field_params *params, uint64_t previous)
 {
     size_t bytes = weights_column_bytes(weights), had = weights_kept_bytes(weights);
@@ -117,8 +118,8 @@ void field_cache_keep_columns(struct field *field, struct weights *weights, cons
         return;
     if (had == 0)
         field_cache_make_room(field, bytes < field->bound ? bytes : field->bound, params, previous);
-    else if (field->bytes - had + bytes > field->bound) /* some columns are cached and there is still no room for all columns: keeps
-                                                           those and does not retry */
+    else if (field->bytes - had + bytes > field->bound) /* part of the columns is cached and there is still no room for all: keeps that
+                                                           part and does not retry */
         return;
     else
         columns_drop(field, weights);

@@ -47,13 +47,14 @@ bool field_begin_update(struct field *field, struct field_state *state, const st
 struct weights **field_cache_bucket(struct field *field, uint64_t hash);
 /* Releases the state's reference to its weights. */
 void field_cache_release_weights(struct field_state *state);
-/* Unlinks *link from its list and destroys it. */
+/* Unlinks the state at *link from its list and destroys it. */
 void field_cache_remove_state(struct field *field, struct field_state **link);
 /* Evicts entries last used before tick `before`, except states of the parameters `keep`, until `need` more bytes fit the limit. Evicts
    the oldest entries first, an eighth of the time span of last uses in one search, so that searches are rare. Returns false if the bytes
    do not fit. */
 bool field_cache_make_room(struct field *field, size_t need, const struct field_params *keep, uint64_t before);
-/* Starts caching the columns of weights if they are summed for at least the second time. previous: tick of their previous use. */
+/* Starts caching the columns of these weights (each sensor's weights at all vertices) if they are summed for at least the second time.
+   previous: tick of their previous use. */
 void field_cache_keep_columns(struct field *field, struct weights *weights, const struct field_params *params, uint64_t previous);
 /* Drops every state and weights object made from this trial's layout. */
 void field_forget_trial_layout(struct field *field, const struct trial_layout *tried);

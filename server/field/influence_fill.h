@@ -15,8 +15,8 @@ void influence_fill_destroy(struct influence_fill **fill);
 /* Replaces the values of lost sensors. Takes (lost * sensors) steps. */
 void influence_fill_values(const struct influence_fill *fill, double *values);
 
-/* Writes each sensor's precision given the used sensors: P_ii - P_iL (P_LL)^-1 P_Li; for a lost sensor, as if that one were used again.
-   Takes (lost * lost * sensors) steps. */
+/* Writes for each sensor its precision given the used sensors: P_ii - P_iL (P_LL)^-1 P_Li, with L the lost sensors; for a lost sensor i,
+   as if i were used again. Takes (lost * lost * sensors) steps. */
 void influence_fill_own(const struct influence_fill *fill, double *own);
 
 /* Adds to out[v], for `count` vertices, the variance that lost sensors add: H_L (P_LL)^-1 H_L', with H_L the lost sensors' weights at

@@ -14,7 +14,7 @@
 
 struct scalar;
 
-/* Decodes distances of an asset file (protocol/asset_distance.h). */
+/* Decodes distance codes of an asset file (protocol/asset_distance.h) to metres. */
 void kernel_distances(const uint16_t *restrict codes, size_t count, float *restrict out_m);
 /* Writes the straight-line distance of each position from the point. */
 void kernel_euclidean(const float (*positions_m)[3], size_t count, const float point_m[3], float *restrict out_m);
@@ -36,7 +36,7 @@ void kernel_top_paper(const float *restrict distance_m, const float *restrict ne
 /* Writes log2 of x, or of 1e-37 if x is less. */
 void kernel_log2(const float *restrict x, size_t count, float *restrict out);
 
-/* One sensor's inputs for a block of vertices. */
+/* Inputs of one sensor for computing its weights at a block of vertices. */
 struct kernel_column {
     const float *distance_m, *near_m, *top;
     size_t count;
@@ -54,12 +54,12 @@ void kernel_shepard(const struct kernel_column *column, float *restrict weight);
    its term, the weight times d^decay. A reach fades both as in kernel_shepard(). */
 void kernel_paper(const struct kernel_column *column, float *restrict weight, float *restrict term);
 
-/* Adds columns[c] * factors[c] to sum, for column_count <= KERNEL_COLUMNS. next: the same number of columns to be read afterwards, which
-   are prefetched; NULL: unknown. */
+/* Adds columns[c] * factors[c] to sum for column_count <= KERNEL_COLUMNS columns (a column has one sensor's weights at a block of
+   vertices). next: as many columns that will be read afterwards, which are prefetched; NULL: unknown. */
 void kernel_add(double *restrict sum, const float *const *columns, const double *factors, size_t column_count, size_t count,
                 const float *const *next);
 
-/* Adds KERNEL_COLUMNS columns times their factors to sum, as kernel_add() does, and adds the columns without factors to total. */
+/* Like kernel_add() for exactly KERNEL_COLUMNS columns, but also adds the columns without their factors to total. */
 void kernel_add_both(double *restrict sum, double *restrict total, const float *const columns[KERNEL_COLUMNS],
                      const double factors[KERNEL_COLUMNS], size_t count);
 
@@ -67,13 +67,13 @@ void kernel_add_both(double *restrict sum, double *restrict total, const float *
 struct kernel_value {
     float scale, offset, low, high, empty;
 };
-/* Applies struct kernel_value's rule to each vertex's sum and weight. */
+/* Applies the rule of struct kernel_value to the sum and the weight of each vertex. */
 void kernel_value(const struct kernel_value *rule, const double *restrict sum, const float *restrict weight, size_t count,
                   float *restrict value);
 /* Stores values into scalars. Returns the largest change, and sets *changed if any differs. */
 float kernel_store(const float *restrict value, size_t count, struct scalar *restrict at, bool *changed);
-/* Computes kernel_add() to a sum of zeros, kernel_value() and kernel_store() in one pass, with identical bits, for fewer than
-   KERNEL_COLUMNS columns. Returns the largest change, and sets *changed if any value differs. */
+/* Computes kernel_add() to a sum of zeros, kernel_value() and kernel_store() in one pass with identical bits, for fewer than
+   KERNEL_COLUMNS sensors. Returns the largest change, and sets *changed if any value differs. */
 float kernel_few(const struct kernel_value *rule, const float *const *columns, const double *factors, size_t column_count,
                  const float *restrict weight, size_t count, struct scalar *restrict at, bool *changed);
 

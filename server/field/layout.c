@@ -58,7 +58,7 @@ static void add_sensor(struct field_layout *layout, struct layout_sensor sensor)
     layout->sensors[layout->sensor_count++] = sensor;
 }
 
-/* `number`: index among the group's sensors with a known position. */
+/* Adds a sensor of the asset file. number: index of the sensor among the group's sensors with a known position. */
 static void add_prepared(struct field_layout *layout, const struct scene_sensor *sensor, size_t number)
 {
     const struct asset_view *view = &layout->file->view;

@@ -26,7 +26,7 @@ struct layout_points {
     float (*away_m)[3];     /* straight distances from the corners */
 };
 
-/* Sets all members of `points` for a point in a triangle of the file. */
+/* Sets all members of `points` for one point in a triangle of the asset file. */
 void layout_set_point(const struct asset_view *file, const struct layout_points *points, size_t point, const uint32_t corners[3],
                       const float parts[3]);
 
@@ -37,14 +37,14 @@ struct field_layout {
     const struct plant_tag *tags; /* the plant's tags */
     struct layout_sensor *sensors;
     size_t sensor_count, vertex_count;
-    const struct layout_points *points; /* points at which distances are requested; NULL: at the asset file's vertices */
+    const struct layout_points *points; /* points whose distances are requested; NULL: the asset file's vertices */
     bool assumed; /* true: the positions of all sensors are assumed, so one sensor gives the value of the whole asset (field.h) */
     float largest_m[DISTANCES]; /* largest distance of a vertex from a sensor, by distance_mode; 0: not computed yet */
     uint32_t trial;             /* id of the trial that moved some of these sensors (field/trials.h); 0: none */
 };
 
-/* Builds the layout of a group's sensors on an asset. trial: sensors at trial positions (NULL: none). Scene and trial must outlive the
-   layout. Returns NULL if no sensor of the group is there. */
+/* Builds the layout of a group's sensors on an asset. trial: moved sensors (NULL: none). Scene and trial must outlive the layout.
+   Returns NULL if no sensor of the group is on the asset. */
 struct field_layout *layout_create(const struct scene *scene, int asset, int group, const struct trial *trial);
 /* Returns whether the trial adds, removes or moves sensors of the group on the asset. */
 bool layout_is_touched(const struct scene *scene, int asset, int group, const struct trial *trial);

@@ -15,8 +15,8 @@ struct neighbour {
     int tag;
     enum interpolation by;
     double value;     /* reading of the sensor; NaN: not usable now */
-    double predicted; /* NaN: no other good sensor determines a value at its position */
-    double deviation; /* gp: standard deviation of the difference between reading and prediction; else NaN */
+    double predicted; /* what the other sensors predict; NaN: no other good sensor determines a value at this position */
+    double deviation; /* for interpolation gp: standard deviation of the difference between reading and prediction; else NaN */
 };
 
 /* The sensors of one group on one asset, for repeated predictions with different readings. */
@@ -42,7 +42,7 @@ size_t neighbours_nearest(const struct neighbours *neighbours, size_t sensor, co
 struct neighbours_cache {
     struct neighbours_kept {
         struct neighbours *of;  /* sensors of the group; NULL: the group has no sensor with a known position on the asset */
-        struct neighbour *list; /* predictions by sensor, in the order of `of` */
+        struct neighbour *list; /* predictions by sensor, in the order of `of` (struct neighbours) */
         size_t count;
         int64_t taken_mono_ns, taken_utc_ns; /* time of the snapshot; 0: none yet */
     } * kept;                                /* [asset][group]; NULL: nothing cached yet */

@@ -96,7 +96,8 @@ static float largest_distance(const struct asset_view *view, size_t column, enum
     float most_m = 0, scratch[KERNEL_BLOCK];
     for (size_t at = 0; at < count; at += KERNEL_BLOCK) {
         size_t number = count - at < KERNEL_BLOCK ? count - at : KERNEL_BLOCK;
-        if (mode != DISTANCE_EUCLIDEAN) /* geodesic and heat distances get one colour range, so that their pictures can be compared */
+        if (mode != DISTANCE_EUCLIDEAN) /* distances along triangles and by the heat method get the same colour range, so that pictures
+                                           of both can be compared */
             kernel_distances(asset_distance_codes(view, column, at), number, scratch);
         else
             kernel_euclidean(view->positions_m + at, number, view->sensors[column].surface_m, scratch);
@@ -125,7 +126,7 @@ static double distance_range(const struct scene *scene, const struct field_param
     return 1;
 }
 
-/* Returns the largest standard deviation of the prior among all assets: if preparation fitted it, each asset has its own. */
+/* Returns the largest standard deviation of gp's prior among all assets: if preparation fitted it, each asset has its own. */
 static double deviation_range(const struct scene *scene, int group)
 {
     const double stated = scene->plant->groups[group].gp.deviation;

@@ -23,9 +23,9 @@ enum { FIELD_OVERRIDES = 256 };
 struct field_params {
     int group;
     enum field_show show;
-    int sensor;        /* tag whose distance is shown; -1: none */
+    int sensor;        /* index of the tag whose distance is shown; -1: none */
     uint32_t baseline; /* id of the baseline that a difference is taken from; 0: none */
-    uint32_t trial;    /* trial sensor positions (field/trials.h); 0: none */
+    uint32_t trial;    /* id of the trial that moves sensors (field/trials.h); 0: none */
     /* index of the slot of value/snapshot_cache.h that holds the past readings to show; 0: present readings. Fields of different
        instants are thus cached separately */
     int slot;
@@ -52,7 +52,7 @@ bool field_params_placed(const struct plant *plant, const struct field_params *p
 /* Checks the parameters: 0 <= strength, decay <= 100; 0.5 <= power <= 16; radius 0 or 1e-3..1e6 m; reach > 0. Returns NULL if they are
    valid, else a static text that says what is wrong. */
 const char *field_params_wrong(const struct plant *plant, const struct field_params *params);
-/* Sets one sensor's override; removes it if both values are FIELD_AS_CONFIGURED. Returns false if there is no room for another. */
+/* Sets one sensor's override; removes it if both values are FIELD_AS_CONFIGURED. Returns false if there is no room for another override. */
 bool field_params_override(struct field_params *params, struct field_override override);
 /* Returns the tag's override; NULL: there is none. Owned by params. */
 const struct field_override *field_params_override_of(const struct field_params *params, int tag);

@@ -82,8 +82,8 @@ void pixel_field_at(const struct pixel_field *field, const float point_m[3], str
     out->uncertain |= reached && lost && field->fill && field->show != PIXEL_BLIND;
 }
 
-/* The largest change of a reading bounds the change of any value: shepard's values are weighted means of readings, and paper's values
-   change by no more than the readings. */
+/* Returns the largest change of a reading, which bounds the change of any value: shepard's values are weighted means of readings, and
+   paper's values change by no more than the readings. */
 float pixel_field_change(const struct pixel_field *field, const struct pixel_field *before)
 {
     struct pixel_field same = *before;

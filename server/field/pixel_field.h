@@ -34,7 +34,7 @@ struct pixel_value {
 };
 /* Evaluates the field at a point in coordinates of the asset file. */
 void pixel_field_at(const struct pixel_field *field, const float point_m[3], struct pixel_value *out);
-/* Returns the largest change of any value of the field since `before`; INFINITY if more than readings changed. */
+/* Returns the largest change of any value of the field since `before`; INFINITY if anything but readings changed. */
 float pixel_field_change(const struct pixel_field *field, const struct pixel_field *before);
 
 #endif

@@ -21,7 +21,8 @@ struct scalar {
 
 struct scalars {
     int asset;
-    /* grows with every real change; from one counter for all assets of the field, so equal versions mean equal contents */
+    /* version of the content, from one counter for all assets of the field; grows with every real change, so equal versions mean equal
+       contents */
     uint64_t version;
     uint64_t flags_version; /* version of the last change of a flag */
     /* sum, over all versions so far, of the largest change of a value: scalars uploaded at travel t err by at most travel - t */

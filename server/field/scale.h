@@ -16,7 +16,7 @@
 enum { SCALE_BREAKS = PLANT_BREAKS, SCALE_EDGES = 64 };
 struct scale {
     const struct colormap *map;
-    double min, max; /* min < max; both above 0 if log */
+    double min, max; /* MIN and MAX of the scale: min < max; both above 0 if `log` */
     bool log;
     double interval;             /* width of bands; 0: none */
     double breaks[SCALE_BREAKS]; /* ascending values that separate bands of colour; they replace `interval` */

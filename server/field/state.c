@@ -11,8 +11,9 @@
 #include "value/quality.h"
 
 #define FLAG 255
-#define FILLED_DOUBT 0.1   /* if more than this share of a lost sensor's filled-in value rests on Uncertain sensors, the value is flagged */
-#define READING_LIMIT 1e30 /* values are limited to this, since larger ones would overflow sums of floats */
+#define FILLED_DOUBT 0.1   /* if more than this fraction of the value computed for a lost sensor rests on Uncertain sensors, the value is
+                              flagged as uncertain */
+#define READING_LIMIT 1e30 /* readings are limited to this magnitude, since larger ones would overflow sums of floats */
 
 struct field_state *state_create(int asset, struct field_layout *layout, const struct field_params *params)
 {
@@ -50,7 +51,8 @@ void state_destroy(struct field_state **state_ptr)
     *state_ptr = NULL;
 }
 
-/* Returns whether sums are stored: recomputing few columns takes no longer than reading and writing sums. */
+/* Returns true if sums are stored between updates. With few sensors they are not, because summing again takes no longer than reading and
+   writing them. */
 static bool keeps_sums(const struct field_state *state)
 {
     return state->layout->sensor_count > KERNEL_COLUMNS;

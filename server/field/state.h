@@ -23,7 +23,7 @@ struct field_state {
     double *sums;            /* by vertex: numerator of the value; NULL: not stored, because few sensors are summed again as quickly */
     size_t room;             /* number of vertices that `at` and `sums` have room for */
     double error_limit;      /* vertices with a larger weights->errors are marked uncertain; initially 0 */
-    unsigned errors_version; /* version of weights->errors from which the flags were set */
+    unsigned errors_version; /* value of weights->errors_version for which the flags were set */
     double error_scale;      /* factor from weights->errors to the largest error drawn */
     unsigned added;          /* number of updates since the sums were last recomputed in full */
     struct state_input *now, *shown; /* by sensor of the layout: inputs that are requested now, and inputs that the scalars contain */
@@ -46,7 +46,7 @@ struct field_state *state_create(int asset, struct field_layout *layout, const s
 void state_destroy(struct field_state **state);
 /* Returns the bytes that the state takes. */
 size_t state_bytes(const struct field_state *state);
-/* Returns by how many bytes state_bytes() would grow with room for the first `count` vertices. */
+/* Returns by how many bytes the state would grow with room for the first `count` vertices. */
 size_t state_more_bytes(const struct field_state *state, size_t count);
 /* Makes room for the first `count` vertices; distant assets need few. Returns false when out of memory, with nothing changed. */
 bool state_grow(struct field_state *state, size_t count);
@@ -58,7 +58,7 @@ void state_read(struct field_state *state, const struct snapshot *snapshot, cons
 void state_fill(struct field_state *state);
 /* Returns whether the state's weights are for a set of usable sensors that differs from that of state->now. */
 bool state_needs_weights(const struct field_state *state);
-/* Returns true if the scalars show other inputs than state->now. */
+/* Returns true if the scalars show other inputs than state->now has. */
 bool state_is_behind(const struct field_state *state);
 /* For SHOW_DISTANCE, instead of the functions above: fills the scalars once with the distances from one sensor of the layout. */
 void state_measure(struct field_state *state, size_t sensor, uint64_t *versions);

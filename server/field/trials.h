@@ -11,18 +11,19 @@ enum { TRIAL_SENSORS = 64 };
 
 /* Geodesic distances of every vertex from a trial position; reference-counted. */
 struct trial_reach;
-/* Wraps distance_m, of which it takes ownership (mem_free). Returns one reference. */
+/* Makes a reference-counted object of distance_m and takes ownership of the array (mem_free). Returns one reference. */
 struct trial_reach *trial_reach_create(float *distance_m);
 /* Drops a reference. &NULL is fine; sets it to NULL. */
 void trial_reach_unref(struct trial_reach **reach);
 
 struct trial_sensor {
-    int tag, asset;            /* tag of the sensor, and the only asset it is on */
+    int tag, asset;            /* tag of the sensor, and the only asset on which it is */
     float surface_m[3];        /* position in the coordinates of the asset file */
     double place_m[3];         /* position of the sensor in plant coordinates */
     uint32_t vertex;           /* vertex nearest to the position */
     struct trial_reach *reach; /* geodesic distances; NULL: not known yet, straight-line distances are used meanwhile */
-    uint32_t number;           /* unique number of this position with these distances, set by trials_put() */
+    uint32_t number;           /* unique number of this position with its distances, set by trials_put(), by which cached weights for
+                                  different positions are told apart */
 };
 
 struct trial {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Updates scalars block by block: from all columns, or only from the columns of changed readings. */
+/* Updates scalars block by block (KERNEL_BLOCK vertices): sums the weights of all sensors, or adds only the changes of those whose
+   reading changed. */
 #include "field/update.h"
 
 #include <float.h>
@@ -17,26 +18,28 @@
 #define ERROR_MARGIN 1.1        /* factor by which a newly chosen error limit is stricter than necessary, so that it survives small
                                    changes of readings */
 #define ERROR_SLACK 1.5         /* an error limit that is stricter than necessary by more than this factor is replaced */
-#define MAX_BLIND 1000.0        /* largest undetectable hot spot shown, in multiples of the group's range; larger ones are shown as this */
-/* largest change of a reading, in multiples of the range, that is added to existing sums; its rounding errors stay in them. After a
-   larger change all columns are summed again */
+#define MAX_BLIND 1000.0        /* the largest "smallest detectable hot spot" that is shown, in multiples of the group's range; larger
+                                   ones are shown as this */
+/* largest change of a reading, in multiples of the range, that is added to existing sums, where its rounding errors stay. After a larger
+   change, everything is summed again */
 #define STEP_LIMIT 1e6
-/* number of updates after which all columns are summed again, so that the accumulated rounding stays below 1e-9 of the range */
+/* number of updates after which everything is summed again, so that the accumulated rounding stays below 1e-9 of the range */
 #define MAX_ADDED 4096
 #define JOB_WORK 30000.0 /* nanoseconds of work that justify waking another thread */
 #define SMALL_WORK 1e6   /* nanoseconds; if many assets are updated, an update with less work than this runs on one thread */
-#define MAKE_WORK 1.0    /* nanoseconds to compute and add one column at one vertex */
+#define MAKE_WORK 1.0    /* estimated nanoseconds to compute one sensor's weight at one vertex and add it */
 #define ADD_WORK 0.15    /* nanoseconds to add it only */
 
 struct update {
     struct field_state *state;
     struct weights_terms all, changed;
     struct kernel_value rule;
-    /* indices of blocks: next: to update next; old: end of the blocks shown before; end: end of the blocks to be shown */
+    /* indices of blocks of vertices. next: to update next; old: end of the blocks that were shown before; end: end of the blocks to be
+       shown */
     size_t next, old, end;
-    bool anew;  /* true: sums all columns; false: in blocks below `old`, adds only changed columns */
+    bool anew;  /* true: sums the weights of all sensors; false: in blocks below `old`, adds only the changes of changed readings */
     bool flags; /* true: qualities changed, so flags of all blocks are set; false: flags in blocks below `old` stay */
-    bool marks; /* true: at least one sensor is Uncertain */
+    bool marks; /* true: at least one sensor in the sum is Uncertain */
     pthread_mutex_t lock;
     /* --- below: under lock */
     bool value_changed, flag_changed;
@@ -50,7 +53,7 @@ static size_t blocks_of(size_t vertex_count)
 
 /* --- choosing the work ------------------------------------------------------------------------------------------------------ */
 
-/* Lists the sensors (members of the sum) whose columns are added: all, or only those whose input changed. */
+/* Lists the sensors to sum: all members of the sum, or only those whose input changed. */
 static struct weights_terms choose_terms(struct field_state *state, bool all)
 {
     const struct weights *weights = state->weights;
@@ -68,8 +71,8 @@ static struct weights_terms choose_terms(struct field_state *state, bool all)
     return (struct weights_terms){ .members = list->members, .factors = list->factors, .marked = list->marked, .count = count };
 }
 
-/* Returns whether changes may be added to the existing sums. They must be few, which makes adding cheaper than summing all columns, and
-   small, so that their rounding errors do not matter. */
+/* Returns true if changes may be added to the existing sums. They must be few, which makes adding cheaper than summing again, and small,
+   so that their rounding errors do not matter. */
 static bool steps_are_small(const struct update *update)
 {
     const struct field_state *state = update->state;
@@ -231,7 +234,7 @@ static bool set_flags(const struct update *update, size_t begin, size_t count, c
     return changed;
 }
 
-/* Sums a block's columns into `values`. Returns true if a flag changed. */
+/* Sums the weighted readings of all sensors at a block of vertices into `values`. Returns true if a flag changed. */
 static bool sum_block(const struct update *update, size_t block, size_t begin, size_t count, double *values)
 {
     struct weights *weights = update->state->weights;
@@ -251,7 +254,7 @@ static bool sum_block(const struct update *update, size_t block, size_t begin, s
     weights_add(weights, begin, count, &update->all, &sums);
     for (size_t j = 0; total_wanted && j < count; j++)
         weights->total[begin + j] = (float)total[j];
-    if (total_wanted) /* a complete array of totals is not written again, because other threads may be reading it */
+    if (total_wanted) /* totals (sums of weights) that are complete are not written again, because other threads may be reading them */
         weights->known[block] |= KNOWN_TOTAL;
     return flags && set_flags(update, begin, count, total, marked);
 }
@@ -277,7 +280,7 @@ static bool map_block(const struct update *update, size_t begin, size_t count, f
     return set_flags(update, begin, count, nothing, nothing);
 }
 
-/* Returns whether kernel_few() suffices for a block: few columns, all cached, and no flags to set. */
+/* Returns true if kernel_few() suffices for a block: few sensors, all of their weights cached, and no flags to set. */
 static bool is_simple(const struct update *update, size_t block, size_t begin)
 {
     return !field_params_cover(&update->state->params) && !update->state->sums && !update->flags && block < update->old &&

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes G, the weight of each sensor at each vertex, block by block: from distances to columns of G to their sums. */
+/* Computes G, the weight of each sensor at each vertex, block by block. One sensor's weights are a column of G: distances give columns,
+   and these are summed. */
 #include "field/weights.h"
 
 #include <math.h>
@@ -11,19 +12,21 @@
 #include "base/system/huge_pages.h"
 #include "plant/influence.h"
 
-/* gp: smallest fraction of the prior's variance that readings must remove at a vertex. Vertices below it have no data */
+/* for interpolation gp: smallest fraction of the prior's variance that readings must remove at a vertex. Vertices below it have no data */
 #define MIN_KNOWN_PART 0.1
-/* fin: smallest fraction of a value that must come from sensors rather than from ambient. Vertices below it have no data */
+/* for interpolation fin: smallest fraction of a value that must come from sensors rather than from ambient. Vertices below it have no
+   data */
 #define MIN_SENSOR_SHARE 0.1
 
-/* largest standard deviation shown, as a multiple of the prior's; it would have no bound on a body whose sensors are all lost */
+/* largest standard deviation of gp that is shown, as a multiple of the prior's; without it, there is no bound on a body whose sensors
+   are all lost */
 #define MAX_DEVIATIONS 4.0
 
-struct key_head { /* must have no padding, because keys are compared as bytes */
+struct key_head { /* bytes of the key that are the same for all sensors. Must have no padding, because keys are compared as bytes */
     const struct asset *file;
     uint32_t interpolation, distance;
     float power, reach_m, radius_m;
-    uint32_t trial; /* trial of the layout. The number of sensors is not stored: the key's length gives it */
+    uint32_t trial; /* id of the layout's trial. The number of sensors is not stored, because the key's length gives it */
 };
 struct key_sensor {
     uint32_t column, usable;
@@ -287,7 +290,7 @@ size_t weights_bytes(const struct field_layout *layout)
            layout->sensor_count * each_sensor;
 }
 
-/* Returns the number of bytes of one block's columns. */
+/* Returns how many bytes the columns of one block take (the weights of all sensors at KERNEL_BLOCK vertices). */
 static size_t block_bytes(const struct weights *weights)
 {
     return weights->member_count * (KERNEL_BLOCK * sizeof(float) + 1);
@@ -469,7 +472,7 @@ void weights_prepare(struct weights *weights, size_t begin, size_t count)
     }
 }
 
-/* Scratch memory for the columns computed in one step of a sum. */
+/* Scratch memory for the columns (sensors' weights) computed in one step of a sum. */
 struct workroom {
     float near_log2[KERNEL_BLOCK], distance_m[KERNEL_BLOCK], weights[KERNEL_COLUMNS][KERNEL_BLOCK], terms[KERNEL_COLUMNS][KERNEL_BLOCK];
 };
@@ -499,8 +502,8 @@ static void make_column(const struct weights *weights, uint32_t member, size_t b
         kernel_shepard(&column, term);
 }
 
-/* Returns the columns to prefetch while the first `done` terms are added: the next cached columns of this block, or the first ones of
-   the next block. They may not be filled yet. NULL: there are fewer than KERNEL_COLUMNS, or they are not cached. */
+/* Returns the cached columns (sensors' weights) to prefetch while the first `done` terms are added: the next ones of this block, or the
+   first ones of the next block. They may not be filled yet. NULL: there are fewer than KERNEL_COLUMNS, or they are not cached. */
 static const float *const *columns_after(const struct weights *weights, size_t begin, const struct weights_terms *terms, size_t done,
                                          const float **room)
 {
@@ -519,7 +522,7 @@ void weights_add(struct weights *weights, size_t begin, size_t count, const stru
 {
     static const double ones[KERNEL_COLUMNS] = { 1, 1, 1, 1, 1, 1, 1, 1 };
     bool paper = weights->interpolation == INTERPOLATION_PAPER, keeps = begin / KERNEL_BLOCK < weights->kept_blocks;
-    size_t before = begin / KERNEL_BLOCK * weights->member_count; /* number of columns in all previous blocks */
+    size_t before = begin / KERNEL_BLOCK * weights->member_count; /* number of columns (one for each sensor) in all previous blocks */
     struct workroom room;
     if (!paper && !weights->prepared && weights->power != 2.0f)
         kernel_log2(weights->near_m + begin, count, room.near_log2);

@@ -14,10 +14,10 @@ enum sensor_use {
     SENSOR_LOST, /* the sensor is configured but not usable; there is no data around it */
     SENSOR_USED,
     SENSOR_NO_LIMITS, /* the sensor is good, but its tag has no limits: the area around it counts as measured but shows no value */
-    SENSOR_ASIDE      /* ignored: another sensor gives the asset's value */
+    SENSOR_ASIDE      /* the sensor is ignored, because another one gives the asset's value */
 };
 
-/* Relation of a vertex to its nearest sensors. */
+/* Which kind of sensor is nearest to a vertex. */
 enum place {
     PLACE_GOOD,     /* the nearest configured sensor is usable and within reach */
     PLACE_LOST,     /* the nearest sensor is not usable; another one is within reach */
@@ -34,8 +34,8 @@ struct weights_key { /* bytes of everything that G depends on */
     uint64_t hash;
 };
 
-enum { WEIGHTS_ERRING = 9 }; /* number of error thresholds by which vertices are counted: 1, 1/2, 1/4 ... 1/256 of the range; the last is
-                                about one step of colour */
+enum { WEIGHTS_ERRING = 9 }; /* number of thresholds of the interpolation error by which vertices are counted: 1, 1/2, 1/4 ... 1/256 of
+                                the range; the last is about one step of colour */
 
 struct weights {
     struct weights_key key;
@@ -55,27 +55,30 @@ struct weights {
     float *near_m, *top;
     float *total;                /* sum of the weights of each vertex */
     uint8_t *place;              /* by vertex: enum place */
-    uint8_t *lost;               /* for each vertex: how much nearer the nearest lost sensor is than near_m, encoded by weights_lacking() */
+    uint8_t *lost;               /* for each vertex: how much nearer the nearest lost sensor is than the nearest usable one, encoded by
+                                    weights_lacking() */
     uint8_t *known;              /* for each block: bits of enum weights_known for the arrays above */
-    const float *prepared;       /* [member][vertex]: columns from the asset's influence file; NULL: columns are computed from distances */
+    const float *prepared;       /* [member][vertex]: prepared weights from the asset's influence file; NULL: weights are computed from
+                                    distances */
     struct influence_fill *fill; /* factor that gives lost sensors a value, for prepared interpolations; NULL: no sensor is lost */
     double *ones;  /* by sensor, for prepared interpolations with lost sensors: the value that the sensor gets if all used sensors read
                       1; else NULL */
-    float decay_m; /* metres. fin: decay length; gp: 1/k, with k as in preprocess/influence/gaussian.h */
-    const float *deviations; /* gp: standard deviation of the field at each vertex while all sensors are used; else NULL */
-    const float *priors;     /* gp: standard deviation of the field at each vertex without any sensor */
-    float deviation;         /* gp: standard deviation of the prior */
+    float decay_m; /* metres. For interpolation fin the decay length; for gp 1/k, with k as in preprocess/influence/gaussian.h */
+    const float *deviations; /* for interpolation gp: standard deviation of the field at each vertex while all sensors are used; else
+                                NULL */
+    const float *priors;     /* for interpolation gp: standard deviation of the field at each vertex without any sensor */
+    float deviation;         /* for interpolation gp: standard deviation of the prior */
     float *errors;           /* for each vertex: linear interpolation error of the adjacent triangles (drawn_error.h); NULL: not measured */
     float largest_error;     /* largest element of `errors` */
-    /* [b]: fraction of the surface whose error is at least 2^-b, the largest of all measured levels of detail. For prepared
-       interpolations the fraction of the vertices */
+    /* [b]: fraction of the surface whose interpolation error is at least 2^-b, the largest of all measured levels of detail. For
+       prepared interpolations the fraction of the vertices */
     float erring[WEIGHTS_ERRING];
     uint64_t measured_levels; /* bits of the levels of detail whose triangles `errors` covers */
     unsigned errors_version;  /* counts changes of `errors` */
-    float *beyond_m;          /* fin, gp: by vertex, distance beyond the border of the known area; else NULL */
-    float *columns; /* [block][member][KERNEL_BLOCK] of the first kept_blocks blocks, or NULL; columns of other blocks are recomputed for
-                       each sum */
-    uint8_t *kept;  /* [block][member]: 1 if its column is filled */
+    float *beyond_m;          /* for interpolations fin and gp, by vertex: metres beyond the border of the area with data; else NULL */
+    float *columns; /* cached weights, [block][member][KERNEL_BLOCK], of the first kept_blocks blocks, or NULL; those of other blocks are
+                       computed for each sum */
+    uint8_t *kept;  /* [block][member]: 1 if the member's cached weights in that block are filled */
     size_t kept_blocks;
     int users;           /* number of states that use these weights */
     uint64_t used, sums; /* used: tick of the last use; sums: how often the weights were summed */
@@ -100,9 +103,9 @@ struct weights *weights_create(const struct field_layout *layout, const struct f
 void weights_copy_known(struct weights *weights, const struct weights *from);
 /* Frees the weights. &NULL is fine; sets it to NULL. */
 void weights_destroy(struct weights **weights);
-/* Returns the bytes that weights for this layout take, without columns. */
+/* Returns the bytes that weights for this layout take, without cached columns (each sensor's weights at all vertices). */
 size_t weights_bytes(const struct field_layout *layout);
-/* Returns the bytes that all columns would take, cached or not. */
+/* Returns the bytes that the columns (each sensor's weights) of all vertices would take, cached or not. */
 size_t weights_column_bytes(const struct weights *weights);
 /* Returns the bytes of the columns that are cached. */
 size_t weights_kept_bytes(const struct weights *weights);
@@ -120,11 +123,11 @@ uint8_t weights_lacking_at(const struct weights *weights, size_t vertex, bool fi
    KERNEL_BLOCK). Thread: any, on different blocks. */
 void weights_prepare(struct weights *weights, size_t begin, size_t count);
 
-/* gp: writes the standard deviation at vertices of one block, exact for the used sensors apart from the sampling done by preparation. Takes
-   (lost * lost) steps per vertex. Thread: any. */
+/* For interpolation gp: writes the standard deviation at vertices of one block, exact for the used sensors apart from the sampling done
+   by preparation. Takes (lost * lost) steps per vertex. Thread: any. */
 void weights_deviations(const struct weights *weights, size_t begin, size_t count, float *out);
 
-/* Columns of G to add, each with a factor. */
+/* Columns of G (sensors' weights at a block of vertices) to add, each with a factor. */
 struct weights_terms {
     const uint32_t *members;
     const double *factors;
@@ -138,12 +141,12 @@ struct weights_sums {
        total) */
     double *total, *marked;
 };
-/* Adds the terms' columns to the sums of a prepared block; computes columns that are not cached, and caches them if caching is on. Thread:
-   any, on different blocks. */
+/* Adds columns of G with their factors to the sums of a prepared block. Computes columns that are not cached, and caches them if caching
+   is on. Thread: any, on different blocks. */
 void weights_add(struct weights *weights, size_t begin, size_t count, const struct weights_terms *terms, const struct weights_sums *sums);
-/* Returns a column of a block, which must be cached. */
+/* Returns one sensor's weights in a block, which must be cached. */
 const float *weights_column(const struct weights *weights, size_t begin, uint32_t member);
-/* Returns whether all columns of a block are cached. */
+/* Returns true if the weights of all sensors in a block are cached. */
 bool weights_has_columns(const struct weights *weights, size_t begin);
 /* Returns true if all arrays and columns of a block are filled, so that summing only reads them (except for Algorithm 1 with Uncertain
    sensors, whose weights are computed for each sum). */

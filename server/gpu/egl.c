@@ -57,7 +57,7 @@ static void egl_destroy(struct gl *gl)
         egl_lose(gl);
     if (egl->display && !used && !gl_others())
         eglTerminate(egl->display);
-    if (egl->display && eglReleaseThread) /* function of EGL 1.2; NULL if the display could not be initialised */
+    if (egl->display && eglReleaseThread) /* not loaded if the display could not be initialised: a function of EGL 1.2 */
         eglReleaseThread();
     if (!used && !gl_others())
         gladLoaderUnloadEGL();

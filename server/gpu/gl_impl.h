@@ -14,7 +14,7 @@ struct gl_impl {
     struct gl *(*create)(const struct gl_device *device, bool software, struct text *why);
     void (*destroy)(struct gl *gl);
     bool (*current)(const struct gl *gl); /* returns true if the context exists and is current */
-    void (*lose)(struct gl *gl);          /* for gl_lose(): destroys the context but keeps the struct */
+    void (*lose)(struct gl *gl);          /* destroys the context but keeps the struct (for gl_lose()) */
 };
 
 /* Returns true if other contexts of this kind exist, which may be in use. Only `create` and `destroy` may call this; gl.c calls them one

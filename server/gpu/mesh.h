@@ -20,7 +20,7 @@ enum mesh_attribute {
     MESH_SECOND_TEXCOORD = 7,
     MESH_INSTANCE_PLACES
 };
-/* number of 4-float vectors that each instance has: 3 for the normals' transform (MESH_INSTANCE_NORMALS), 7 from the placement on
+/* number of 4-float vectors per instance: 3 for the transform of normals (MESH_INSTANCE_NORMALS), 7 from the placement on
    (MESH_INSTANCE_PLACES) */
 enum { MESH_INSTANCE_VECTORS = 10 };
 

@@ -23,7 +23,8 @@ bool readback_start(struct readback *readback, struct log *log, const struct tar
 bool readback_is_done(const struct readback *readback);         /* never waits */
 bool readback_wait(struct readback *readback, struct log *log); /* waits for the copy to end. Returns false if the GL context is lost,
                                                                    logged */
-/* Copies the pixels to `bgrx` after readback_wait(): 4 bytes each (B, G, R, X), rows from the top, stride_bytes apart. */
+/* Copies the pixels of the frame to `bgrx`; call it after readback_wait(). 4 bytes each (B, G, R, X), rows from the top, stride_bytes
+   apart. */
 void readback_get(const struct readback *readback, struct workers *workers, uint8_t *bgrx, size_t stride_bytes);
 void readback_drop(struct readback *readback); /* ends the readback, whether readback_wait() was called or not */
 void readback_finish(struct readback *readback);

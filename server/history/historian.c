@@ -62,7 +62,7 @@ struct historian {
     struct month_file *file;
     struct historian_queue taken;
     bool recovered, failing, stands_by, fills;
-    int64_t fill_us;     /* if `fills` (points are to be read from PostgreSQL): UTC time from which they are missing here */
+    int64_t fill_us;     /* with `fills`: UTC time from which points are missing here and must be read from PostgreSQL */
     int64_t mirrored_us; /* UTC time of the newest sample mirrored from the leading daemon; 0: none */
     int64_t retry_ns, retry_after_ns, tidied_ns, kept_ns, utc_ahead_ns;
     struct thread thread;
@@ -555,7 +555,7 @@ static void end_spooled_lines(struct spool_rows *rows)
 static void spool(struct historian *historian)
 {
     char **places = spool_places(historian->folder);
-    struct spool_rows *rows = &historian->spooled; /* the earlier run's rows come first, if they could not be written either */
+    struct spool_rows *rows = &historian->spooled; /* the earlier run's rows come first, if they could not be written to history either */
     end_spooled_lines(rows);
     size_t before = rows->kept.count;
     mem_grow(&rows->kept.at, &rows->kept.capacity, before + historian->waiting.count + 1, sizeof(*rows->kept.at));
@@ -576,7 +576,7 @@ static void spool(struct historian *historian)
                   "history: %zu points could not be written; they wait in %s for the next start", rows->kept.count + rows->held.count,
                   *place);
     if (!error && historian->spool_path && strcmp(historian->spool_path, *place) != 0)
-        unlink(historian->spool_path); /* deletes the old spool file, whose rows are in the new one too */
+        unlink(historian->spool_path); /* the rows of the old spool file are in the new one, too */
     spool_places_free(places);
 }
 

@@ -29,8 +29,7 @@ struct historian *historian_start(const struct historian_params *params);
 /* Announces a new connection to the leading daemon. The points that the leader recorded before it and that are missing here are read
    from PostgreSQL. */
 void historian_follow(struct historian *historian);
-/* Records samples that another daemon recorded, in the order in which it recorded them. Call it only while this daemon is a standby.
-   Thread: one. */
+/* Records samples that another daemon recorded, in that daemon's order. Call it only while this daemon is a standby. Thread: one. */
 void historian_mirror(struct historian *historian, const struct sample_event *samples, size_t count);
 /* Makes this daemon record its own store's samples from now on. Values between the last mirrored sample and now are recorded as unknown. */
 void historian_lead(struct historian *historian);

@@ -15,17 +15,17 @@ struct history_tag *history_tags(const struct plant *plant);
 struct history_reader;
 /* Creates a reader, never NULL; the folder need not exist yet. */
 struct history_reader *history_reader_create(struct log *log, const char *folder);
-/* Makes the reader convert all series to the units in which this plant shows its tags; without this call they have the units at the time of
-   recording. (history_at() converts by its own `tags`.) `plant` must outlive the reader. */
+/* Makes the reader convert all series to the units in which this plant shows its tags; without this call, values have the units of the
+   time of recording. (history_at() converts by its own `tags`.) `plant` must outlive the reader. */
 void history_reader_show_by(struct history_reader *reader, const struct plant *plant);
 void history_reader_destroy(struct history_reader **reader); /* Frees the reader. &NULL is fine; leaves NULL. */
 
 /* A series of one tag: its points or, if there are more points than requested, buckets of equal length. Both show spikes in full. */
 struct history_series {
     bool step;
-    struct history_points points; /* ascending; including the last point before and the first point after the requested time */
+    struct history_points points; /* points, ascending; including the last one before and the first one after the requested time span */
     int64_t bucket_us;            /* length of a bucket; 0: the series consists of points, not buckets */
-    /* buckets, ascending; between two buckets that do not adjoin, the line is straight (for a step tag, the value holds) */
+    /* buckets, ascending. Between two buckets that do not adjoin, the line is straight (of a step tag, the value holds) */
     struct history_buckets buckets;
 };
 /* Reads the series of a tag between two times: its points if they are at most max_points, else buckets. */
@@ -39,7 +39,7 @@ int history_hourly(struct history_reader *reader, const char *tag, int64_t to_us
 
 /* Finds the times of the first and the last recorded point. Returns false if there is none, or history cannot be read (logged). */
 bool history_span(struct history_reader *reader, int64_t *first_us, int64_t *last_us);
-/* Lists the gaps between from and to in which nothing at all was recorded, although there are points before and after; ascending, without
+/* Lists the gaps between two times in which nothing at all was recorded, although there are points before and after; ascending, without
    overlaps. Free with mem_free(out->at). */
 int history_gaps(struct history_reader *reader, int64_t from_us, int64_t to_us, struct history_gaps *out);
 /* Reads the readings of all tags at time t into a snapshot of the plant of `tags`. A tag that was never recorded is

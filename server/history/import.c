@@ -26,7 +26,7 @@
 enum {
     FLUSH_ROWS = 500000,
     MAX_ERRORS = 50,
-    MEDIANS = 10 /* a time between two samples is a gap if it is longer than this many median spacings of the series */
+    MEDIANS = 10 /* number of median spacings of a series beyond which the time between two samples is a gap */
 };
 
 /* The samples of one tag. */
@@ -37,7 +37,7 @@ struct import_series {
     int64_t first_us, last_us;
     struct spacing spacing;
     int64_t longest_us; /* longest time between two samples that does not count as a gap in the data */
-    bool has_pending;   /* second pass: the tag's newest sample waits; it is recorded once the next one has a later time */
+    bool has_pending;   /* in the second pass: true: the tag's newest sample waits, and is recorded once the next one has a later time */
     struct history_point pending;
     struct history_points before; /* points that the history had in the time span of the series before the import */
     size_t next;                  /* index in `before` of the next point to compare with */
@@ -64,7 +64,7 @@ static int find_time(struct history_import *import)
     for (size_t i = 0; i < sizeof(names) / sizeof(names[0]); i++)
         if (csv_find(&import->csv, names[i]) >= 0)
             return csv_find(&import->csv, names[i]);
-    /* without a known name, the first column is the time unless it is named like a tag */
+    /* if no column has a known name, the first column is the time, unless it is named like a tag */
     return plant_find_tag(import->params->plant, import->csv.header.cells[0].text) < 0 ? 0 : -1;
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A month's file: its tables and statements, and opening it. */
+/* Opens a month's file, with its tables and statements. */
 #include <stdio.h>
 #include <sys/stat.h>
 

@@ -18,7 +18,7 @@ struct history_tag {
     const char *name, *unit;
     bool step;        /* true: the tag is a switch, whose values hold until the next point */
     double within;    /* maximum deviation of the recorded line from any reading, in the tag's unit */
-    int64_t stale_us; /* how long a reading may be used after it arrived; INT64_MAX: always */
+    int64_t stale_us; /* microseconds for which a reading may be used after it arrived; INT64_MAX: always */
 };
 
 struct history_row {
@@ -117,7 +117,7 @@ int month_file_span(struct month_file *file, int64_t *first_us, int64_t *last_us
 struct history_pair {
     struct history_point before, after;
     bool step;
-    struct unit_change change; /* conversion from the unit in the file that was read last */
+    struct unit_change change; /* conversion of values from the unit in the file that was read last */
 };
 /* Finds for all tags the points around t_us, but searches only for points that earlier calls have not found. So pass the file of t_us's
    month first, then those of the months before and after. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Deletes the oldest part of a month's file. */
+/* Deletes the oldest points of a month's file. */
 #include "history/month.h"
 #include "history/month_file_impl.h"
 

@@ -31,7 +31,8 @@ static const char *unit_shown(const struct month_file *file, const char *name)
     return tag >= 0 ? file->shown_by->tags[tag].unit : NULL;
 }
 
-/* Returns the id of a tag; 0: the file does not have it. *change: conversion from the file's unit to `wanted` (NULL: none). */
+/* Returns the id of a tag in the file; 0: the file does not have the tag. *change receives the conversion from the file's unit to
+   `wanted` (NULL: none). */
 static int64_t find_tag(struct month_file *file, const char *name, const char *wanted, bool *step, struct unit_change *change)
 {
     *change = (struct unit_change){ 0 };

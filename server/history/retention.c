@@ -85,8 +85,8 @@ static bool cut_month(struct log *log, const char *folder, int month, bool newes
     return good;
 }
 
-/* Returns the number of points that wait in a month's outbox to be sent; 1 if it cannot be read, so that the month is not deleted for
-   its age. */
+/* Returns the number of points that wait in a month's outbox to be sent; 1 if the outbox cannot be read, so that the month is not
+   deleted for its age. */
 static int64_t waiting_in(struct log *log, const char *folder, int month)
 {
     int error;

@@ -100,7 +100,7 @@ bool rollup_rest(const struct rollup *rollup, struct history_bucket *out)
     return rollup->open;
 }
 
-/* Adds good_us microseconds with this mean value to the bucket. */
+/* Adds good_us microseconds with this mean value to the bucket's mean. */
 static void add_time(struct history_bucket *bucket, double mean, int64_t good_us)
 {
     if (good_us <= 0)

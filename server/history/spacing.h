@@ -21,7 +21,7 @@ static inline bool spacing_has_rhythm(const struct spacing *spacing)
 {
     return spacing->passed > 0 && spacing->between > 1;
 }
-/* Returns the median spacing in microseconds (the lower one of the two middle ones); 0 if there is no spacing. Sorts the spacings. */
+/* Returns the median spacing in microseconds (of two middle ones the lower); 0 if there is no spacing. Sorts the stored spacings. */
 int64_t spacing_median(struct spacing *spacing);
 void spacing_finish(struct spacing *spacing);
 

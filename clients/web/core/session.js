@@ -26,7 +26,7 @@ const MOST_BACKLOG_BYTES = 64 * 1024, RECENT_MS = 5000;
 
 const pick = (from, names) => Object.fromEntries(names.filter((name) => from[name] !== undefined).map((name) => [name, from[name]]));
 
-// Returns a frame's camera as it was requested: frames of orthographic cameras have a field of view of 0.
+// Returns a frame's camera in the form in which the page requests cameras: frames of orthographic cameras have a field of view of 0.
 export const asAsked = (camera) => (camera.height_m === undefined ? camera : cameraOfMessage({ ...camera, fov: undefined }));
 
 export class Session {

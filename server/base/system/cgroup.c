@@ -94,7 +94,7 @@ char *cgroup_create(const char *name, size_t memory_bytes, int max_tasks)
     bool good = (mkdir(path, 0755) == 0 || errno == EEXIST) && write_file(path, "pids.max", number);
     snprintf(number, sizeof(number), "%zu", memory_bytes);
     good = good && write_file(path, "memory.max", memory_bytes ? number : "max");
-    write_file(path, "memory.swap.max", "0"); /* absent if the kernel does not count swap */
+    write_file(path, "memory.swap.max", "0"); /* the file memory.swap.max is absent if the kernel does not count swap */
     if (!good)
         cgroup_destroy(&path);
     return path;

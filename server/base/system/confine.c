@@ -129,12 +129,13 @@ static int restrict_paths(const struct confine_params *params, int abi)
 {
     const struct confine_ruleset attributes = confine_ruleset_of(abi);
     uint64_t known = attributes.files;
-    /* larger than any older kernel's structure: kernels accept that if the excess is zero */
+    /* the structure may be larger than an older kernel's: the kernel accepts that if the excess is zero */
     int ruleset = (int)syscall(SYS_landlock_create_ruleset, &attributes, sizeof(attributes), 0);
     int status = ruleset < 0 ? -errno : permit(ruleset, "/dev/null", (READ_FILE | WRITE_FILE | TRUNCATE) & known);
     for (size_t i = 0; i < sizeof(system_paths) / sizeof(system_paths[0]) && status == 0; i++)
         status = permit(ruleset, system_paths[i].path, rights_of(system_paths[i].access, params->role) & known);
-    if (status == 0) /* all of /proc: programs that a command starts have entries of their own, whose names are unknown in advance */
+    if (status == 0) /* a command may read all of /proc, because the programs that it starts have entries there whose names are unknown
+                        in advance */
         status = permit(ruleset, params->role == CONFINE_READER ? "/proc/self" : "/proc", READ_FILE | READ_FOLDER);
     for (size_t i = 0; i < params->path_count && status == 0; i++)
         status = permit(ruleset, params->paths[i].path, rights_of(params->paths[i].access, params->role) & known);
@@ -179,8 +180,8 @@ int confine(const struct confine_params *params)
     drop_capabilities(params->role);
     if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0)
         return -errno;
-    bool moves_files = params->role != CONFINE_READER; /* programs that may write also move files between folders, which Landlock ABI 1
-                                                          forbids every confined process */
+    bool moves_files = params->role != CONFINE_READER; /* commands also move files between folders, which Landlock ABI 1 forbids every
+                                                          confined process: under ABI 1 their paths are not restricted */
     int status = abi < 1 || (abi < ABI_RENAME && moves_files) ? 0 : restrict_paths(params, abi);
     if (status != 0)
         return status;

@@ -134,9 +134,9 @@ static void refuse_emptying(struct filter_program *program, int call, int flags_
 
 static void decide_by_arguments(struct filter_program *program, enum confine_role role, bool notifies)
 {
-    /* the allowed requests can neither inject terminal input (TIOCSTI) nor control devices */
+    /* allowed requests of ioctl(): they can neither inject terminal input (TIOCSTI) nor control devices */
     static const struct values ioctls = { { TCGETS, TIOCGWINSZ, TIOCGPGRP, FIONREAD, FIONBIO, FIOCLEX, FIONCLEX }, 7 };
-    /* refused, because they send signals through a descriptor's owner */
+    /* refused commands of fcntl(): they can send signals to a descriptor's owner */
     static const struct values owners = { { F_SETOWN, F_SETOWN_EX, F_SETSIG, F_SETLEASE, F_NOTIFY }, 5 };
     static const struct values names = { { PR_SET_NAME, PR_GET_NAME, PR_SET_VMA, PR_GET_DUMPABLE, PR_CAPBSET_READ, PR_GET_TIMERSLACK }, 6 };
     static const struct values itself = { { 0 }, 1 }, unix_sockets = { { AF_UNIX }, 1 }, thread = { { CLONE_THREAD }, 1 };
@@ -171,7 +171,7 @@ int confine_calls(enum confine_role role, bool notifies)
     add(&program, BPF_LD | BPF_W | BPF_ABS, offsetof(struct seccomp_data, nr), 0, 0);
     add(&program, BPF_JMP | BPF_JGE | BPF_K, FIRST_NEWER_CALL, 0, 1);
     answer(&program, SECCOMP_RET_ERRNO | ENOSYS);
-    /* refused, because a filter cannot see their flags, which are in memory */
+    /* clone3() and openat2() are refused, because a filter cannot see their flags, which are in memory */
     add(&program, BPF_JMP | BPF_JEQ | BPF_K, SYS_clone3, 1, 0);
     add(&program, BPF_JMP | BPF_JEQ | BPF_K, SYS_openat2, 0, 1);
     answer(&program, SECCOMP_RET_ERRNO | ENOSYS);

@@ -33,7 +33,7 @@ static void *load(const char *name, char *why, size_t why_bytes)
     char *path = path_of(name, why, why_bytes);
     void *library = path ? dlopen(path, RTLD_NOW | RTLD_LOCAL) : NULL;
     if (path && !library) {
-        const char *reason = dlerror(); /* begins with the name of the file that failed, possibly a dependency */
+        const char *reason = dlerror(); /* the text of dlerror() begins with the name of the file that failed, possibly a dependency */
         snprintf(why, why_bytes, "%s cannot be loaded: %s", path, reason ? reason : "no reason is given");
     }
     mem_free(path);

@@ -24,7 +24,8 @@ enum {
     FIRST_SOCKET = 3 /* number of the first descriptor that systemd passes: sd_listen_fds(3) */,
     EXTENSION_S = 60,
     EXTENSION_INTERVAL_S = 10,
-    MIN_EXTENSIONS = 60 /* minimum number of requests for more time that fit into the limit (limit_s) */
+    MIN_EXTENSIONS = 60 /* minimum number of requests for more time within limit_s seconds; with a short limit, the requests come more
+                           often */
 };
 static const int64_t AT_WORK_NS = 20 * NS_PER_MS; /* processes that used less CPU time than this between two checks count as idle */
 
@@ -82,7 +83,8 @@ int service_take_socket(void)
     if (!pid || !count || strtol(pid, NULL, 10) != (long)getpid() || strtol(count, NULL, 10) < 1)
         return -1;
     bool one = strtol(count, NULL, 10) == 1;
-    unsetenv("LISTEN_PID"); /* plantcast-prep, which a reload starts, must not take the socket for its own */
+    unsetenv("LISTEN_PID"); /* removed, because plantcast-prep, which a reload starts with this environment, must not take the socket for
+                               its own */
     unsetenv("LISTEN_FDS");
     fcntl(FIRST_SOCKET, F_SETFD, FD_CLOEXEC);
     return one ? FIRST_SOCKET : -EINVAL;
@@ -128,7 +130,7 @@ static bool is_at_work(struct service_patience *patience)
             used_ns += used_by(entry->d_name);
     if (folder)
         closedir(folder);
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &own); /* subtracts the CPU time of this check itself */
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &own); /* subtracts the CPU time that this check itself takes */
     used_ns -= own.tv_sec * NS_PER_S + own.tv_nsec;
     bool works = !folder || used_ns - patience->used_ns >= AT_WORK_NS;
     patience->used_ns = used_ns;
@@ -140,7 +142,7 @@ static bool is_at_work(struct service_patience *patience)
 static void *extend_start(void *arg)
 {
     struct service_patience *patience = arg;
-    bool works = true; /* asks at least once, so that a quick start shows its status too */
+    bool works = true; /* true at first, so that more time is requested at least once and a quick start shows its status, too */
     pthread_mutex_lock(&patience->lock);
     do {
         if (works && clock_mono_ns() - patience->since_ns < patience->limit_ns)

@@ -236,7 +236,7 @@ struct charset_choice charset_find(const char *bytes, size_t count)
         choice.ascii = characters == 0 && invalid == 0;
         if (choice.ascii && has_escape(bytes, count))
             name = "ISO-2022-JP";
-        else if (invalid * 4 > characters) /* tolerates a few invalid bytes, since a UTF-8 text may be damaged or truncated */
+        else if (invalid * 4 > characters) /* a text that is mostly valid counts as UTF-8, since it may be damaged or truncated */
             return charset_find_legacy(bytes, count);
     }
     if (name) {

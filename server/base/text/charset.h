@@ -10,7 +10,7 @@ enum { CHARSET_NAME_BYTES = 32 };
 struct charset_choice {
     char name[CHARSET_NAME_BYTES];  /* name such as "UTF-8", "GB18030" or "Windows-1251" */
     char other[CHARSET_NAME_BYTES]; /* another encoding that is nearly as likely but gives other letters; empty: none is nearly as likely */
-    bool ascii;                     /* all bytes are ASCII: every encoding gives the same text */
+    bool ascii;                     /* true: all bytes are ASCII, so that every encoding gives the same text */
 };
 
 struct charset_text {

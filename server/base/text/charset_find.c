@@ -313,7 +313,7 @@ static double score_wide(const struct wide_model *model, const unsigned char *at
 {
     enum { DAMAGED = -18 };
     const unsigned char *to = at + count;
-    unsigned before = 0; /* the ASCII byte before; 0: none */
+    unsigned before = 0; /* the ASCII byte before the high bytes; 0: none */
     struct frequent *set = mem_new(sizeof(*set));
     double score = model->prior;
     struct charset_encoder *encoder = charset_encoder_open(model->name);
@@ -331,7 +331,7 @@ static double score_wide(const struct wide_model *model, const unsigned char *at
         if (length == 2 && set->pairs[pair / 64] >> pair % 64 & 1)
             rate = frequent;
         if (length == 2 && second < 0x80)
-            rate += 3; /* makes up for the second byte, which is ASCII and therefore not scored by the one-byte models */
+            rate += 3; /* makes up for an ASCII second byte, which the one-byte models do not score */
         if (length == 1 && rate >= 0 && model->rate == rate_gb && in(second, 0x30, 0x39) && at + 3 < to && in(at[3], 0x30, 0x39)) {
             length = 4; /* a four-byte character of GB 18030 that GBK lacks */
             rate = -14;

@@ -20,10 +20,11 @@
 
 enum { BATCH_ROWS = 20000, ROUND_MS = 1000 };
 enum { NOTES = 128, SPANS = POSTGRES_SPANS };
-/* lines of tags end at different times, so a read that knows no last sample starts this long before the newest end of a line */
+/* if the last mirrored sample is unknown, points are read from the database from this long before the newest end of a recorded line on,
+   because the lines of tags end at different times */
 static const int64_t LINE_END_SPREAD_US = 60 * INT64_C(1000000);
-/* longer than a sample takes until its point is in the file of leader or standby; waited before points are deleted as sent, or missing
-   ones are read from the database */
+/* longer than a sample takes until its point is in the file of leader or standby. Waited before points are deleted as sent, and before
+   missing points are read from the database */
 static const int64_t OVERLAP_NS = 10 * NS_PER_S;
 static const int64_t LOOK_NS = 30 * NS_PER_S, NEWEST_NS = 5 * NS_PER_S, SAY_LOST_NS = 60 * NS_PER_S;
 
@@ -42,7 +43,7 @@ struct outbox_note {
 struct postgres {
     struct postgres_params params;
     char *folder;
-    int64_t ended_us; /* time of the last point in the files when this thread started */
+    int64_t ended_us; /* time of the last point in the files when the sending thread started */
     struct history_tag *tags;
     struct {
         counter *up, *points, *waiting, *lost, *restored;
@@ -53,7 +54,7 @@ struct postgres {
     pthread_mutex_t lock;
     /* --- below: under `lock` */
     bool leads, ends_lines;
-    int64_t sent_ns; /* monotonic time; all points recorded before it are in the database; INT64_MIN: unknown */
+    int64_t sent_ns; /* monotonic time T: all points recorded before T are in the database; INT64_MIN: unknown */
     struct postgres_owed owed;
     /* --- below: used by the sending thread only */
     struct postgres_link *link; /* connection; NULL: none */
@@ -363,7 +364,7 @@ static void send_all(struct postgres *postgres)
     postgres->flushed = true;
     if (postgres->alone) {
         pthread_mutex_lock(&postgres->lock);
-        /* the historian may have added points while this round sent the others, so one round is subtracted */
+        /* one round is subtracted, because the historian may have added points while this round sent the others */
         postgres->sent_ns = now_ns - ROUND_MS * NS_PER_MS;
         pthread_mutex_unlock(&postgres->lock);
     }

@@ -16,7 +16,7 @@
 
 static const int64_t CONNECT_NS = 10 * NS_PER_S, ANSWER_NS = 60 * NS_PER_S, STOP_NS = 2 * NS_PER_S;
 static const int64_t EPOCH_US = 946684800000000; /* PostgreSQL's time counts from 2000 */
-/* Keepalive settings: if this machine disappears, the server closes the connection and so releases our lock within half a minute. */
+/* keepalive settings: if this machine disappears, the server closes the connection and thereby releases our lock within half a minute */
 static const char set_up[] = "SET client_min_messages = warning; SET synchronous_commit = on; SET tcp_keepalives_idle = 10;"
                              "SET tcp_keepalives_interval = 5; SET tcp_keepalives_count = 3";
 
@@ -73,7 +73,7 @@ static bool flush(struct postgres_link *link)
     return true;
 }
 
-/* Returns the next result of a query. NULL with *good true: no more results; NULL with *good false: the connection failed. */
+/* Returns the next result of a query. NULL with *good true: there are no more; NULL with *good false: the connection failed. */
 static PGresult *next_result(struct postgres_link *link, bool *good)
 {
     const int64_t until_ns = clock_mono_ns() + link->answer_ns;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The share dialog: links to the current view, with a QR code; the list of sessions that follow this view, and handing the lead to one of
-// them.
+// The share dialog: links to the current view, with a QR code; the list of sessions that follow this view, and handing the lead to a
+// follower.
 import { shareLinks } from '../../core/links.js';
 import { giveLead } from '../../core/requests.js';
 import { say } from '../../core/words.js';

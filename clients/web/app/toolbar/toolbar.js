@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The toolbar: shows the parameters of the view, and requests changes of them.
+// The toolbar: shows the parameters of the view, and requests changed ones.
 import { numberText, quantityText, title, unitText } from '../../core/format.js';
 import { multiples, rampChoices } from '../../core/legend.js';
 import { say } from '../../core/words.js';
