@@ -28,7 +28,7 @@ void distance_cache_open(struct distance_cache *cache, const char *folder, uint6
 /* Closes the file and frees the cache's arrays. A zeroed cache is allowed. */
 void distance_cache_close(struct distance_cache *cache);
 /* Returns the cache as callbacks for surface_field_init(), which fetches the columns that the cache contains and stores those it computes.
- * Valid until distance_cache_close(). Thread: the callbacks may run on any thread, each on a source of its own. */
+ * Valid until distance_cache_close(). Thread: the callbacks may run on any thread, each call for a different source (sensor). */
 struct surface_columns distance_cache_for_surface(struct distance_cache *cache);
 
 #endif

@@ -18,7 +18,7 @@ struct diff_side_asset {
     const char *id;
     double placement[16]; /* transform from the asset frame to the plant frame */
     uint64_t work;        /* identifies the asset's model; assets with equal values use the same model */
-    /* Set only for a plant file: */
+    /* members that are set only if the plant was read from a plant file: */
     const struct plant_asset *plant;
     size_t model;
     /* set only for a folder */
@@ -42,7 +42,7 @@ struct diff_side {
 bool diff_side_open(struct diff_side *side, const char *path, struct diag *diag);
 /* Frees the lists and the model in memory. */
 void diff_side_finish(struct diff_side *side);
-/* Returns the tag with this name, or NULL. The tag belongs to the side. */
+/* Returns the tag with this name, or NULL. The tag belongs to `side`. */
 const struct diff_side_tag *diff_side_find_tag(const struct diff_side *side, const char *name);
 
 struct diff_side_shape { /* triangles and sensor positions of an asset, relative to origin_m in the asset frame */

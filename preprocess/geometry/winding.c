@@ -19,7 +19,7 @@ struct winding {
     uint32_t *joined;
 };
 
-/* Adds up the areas of the triangles of orientation -1 and of orientation 1 in one group: sums for -1 first. */
+/* Writes the total area of the group's triangles with orientation -1 to area_m2[0], and of those with orientation 1 to area_m2[1]. */
 static void sum_area(const struct winding *w, const uint32_t *indices, size_t count, double area_m2[2])
 {
     area_m2[0] = area_m2[1] = 0;

@@ -12,11 +12,13 @@
 #include "surface/mesh/point_cloud.h"
 #include "surface/mesh/trimesh.h"
 
-#define PACKING 0.7    /* number of Poisson-disc points per square of the spacing */
-#define HEAT_TIME 2.25 /* diffusion time t, in squares of the spacing */
-/* largest extent of a connected component in units of sqrt(t): heat falls by the factor e per unit and underflows (DBL_MIN) at 708 units */
+#define PACKING 0.7    /* expected number of sample points (Poisson disc) in a square whose side is the spacing */
+#define HEAT_TIME 2.25 /* diffusion time t, in multiples of the squared spacing of the sample points */
+/* maximum length of a connected component, in multiples of sqrt(t); a longer component gets a larger t. Heat falls by the factor e per
+ * sqrt(t), and underflows (DBL_MIN) at 708. */
 #define LONGEST 400.0
-#define REGULARISATION 1e-9 /* added to the matrix's diagonal, relative to the diagonal entry */
+/* added to the diagonal of the Laplacian, relative to the diagonal element, so that rounding does not make the matrix singular */
+#define REGULARISATION 1e-9
 /* PITCHES: candidate points per spacing, in each direction of the lattice on a triangle; PLACES: number of sample points that the value at
  * a position is interpolated from */
 enum { PITCHES = 3, PLACES = 4 };

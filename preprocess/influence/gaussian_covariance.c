@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes the derivative with respect to k^2 as a central difference, from values at log k^2 - STEP and log k^2 + STEP. */
+/* Computes the prior covariance as a derivative with respect to k^2 (gaussian_covariance.h), by a central difference of values at log k^2 -
+ * STEP and log k^2 + STEP. */
 #include "preprocess/influence/gaussian_covariance.h"
 
 #include <math.h>

@@ -29,7 +29,7 @@ struct finding {
     double in_plane_m, near_m;
     const struct trimesh *visible, *hidden;
     struct bvh *visible_bvh, *hidden_bvh;
-    /* State of the current drawn triangle: */
+    /* state for the triangle of the asset file ("drawn triangle") that is being processed: */
     uint32_t tri;
     double origin[3], axes[3][3]; /* origin of the plane's coordinates; axes: two in the drawn triangle's plane, and its normal */
     double corners[3][2], size_m;

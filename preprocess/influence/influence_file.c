@@ -21,8 +21,8 @@
 #define EDGES 5.0     /* requested number of mesh edges along one correlation range; more make no visible difference */
 /* minimum number of mesh edges along one correlation range; fewer would make the field seem more certain than it is */
 #define MIN_EDGES 2.0
-#define LONGEST 10.0  /* maximum correlation range, in sizes of the surface; longer ranges look the same */
-#define FIT_MIN 0.05  /* smallest fitted range, in sizes of the surface */
+#define LONGEST 10.0  /* maximum correlation range, in multiples of the surface's size; longer ranges look the same */
+#define FIT_MIN 0.05  /* smallest correlation range that is fitted, in multiples of the surface's size */
 #define FIT_MAX 3.0
 /* maximum number of places where the bend is measured (influence_bend.h); with more, it is not measured, because it would take too long */
 enum { BEND_PLACES = 8000000 };
@@ -32,7 +32,7 @@ struct influence_making {
     struct workers *workers;
     const struct influence_input *input;
     struct vertex_embedding *embedding;
-    struct cloud_heat *cloud; /* created for the first group that requests distances by heat; NULL: not created yet */
+    struct cloud_heat *cloud; /* point cloud for distances by heat, created for the first group that requests them; NULL: not created yet */
     struct influence_header header;
     struct influence_entry *entries;
     struct influence *found; /* result of each entry */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes the interpolations that the groups request and writes the influence file. Returns false with the reason in why. */
+/* Splits edges near sensors in halves until they are short enough, and finds the mesh points that each sensor's disc covers. */
 #include "preprocess/influence/influence_mesh.h"
 
 #include <math.h>

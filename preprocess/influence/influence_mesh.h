@@ -20,7 +20,7 @@ struct influence_mesh {
     double (*sources_m)[3]; /* positions of the sensors on the surface */
     uint32_t *source_tris;
     size_t source_count;
-    double size_m;                  /* length of the diagonal of the surface's main part (gap_split.h), metres */
+    double size_m;                  /* length of the diagonal of the surface's main part (base/math/gap_split.h), metres */
     double longest_m;               /* metres; longest edge */
     uint32_t *piece_first, *pieces; /* mesh triangles grouped by tri_source */
     uint32_t *fan_first, *fans;     /* mesh triangles grouped by point */
@@ -40,7 +40,7 @@ struct influence_anchor {
     uint32_t points[3];
     float weights[3];
 };
-/* Writes the anchor of a position on the surface. */
+/* Writes the anchor (three mesh points and their weights) of a position on the surface. */
 void influence_mesh_anchor(const struct influence_mesh *mesh, const struct surface_point *place, struct influence_anchor *out);
 /* Writes the anchors of `count` vertices. embedding: positions of the vertices on the surface that the mesh was made from. */
 void influence_mesh_anchors(const struct influence_mesh *mesh, const struct vertex_embedding *embedding, size_t count,

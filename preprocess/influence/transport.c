@@ -12,8 +12,8 @@
 #include "surface/geodesic/solver.h"
 
 #define LENGTHS 150.0 /* the diffusion length sqrt(t) is at least the surface's size divided by this, because heat underflows at e^-709 */
-/* the diffusion length sqrt(t) is at least the longest path along the surface divided by this; on folded parts, paths are much longer than
- * the size */
+/* the diffusion length sqrt(t) is at least the longest path along the surface divided by this, because heat underflows; paths on folded
+ * parts are much longer than the surface's size */
 #define LONGEST 400.0
 #define LEAST 1e-280 /* minimum length of a solved vector; a shorter one has lost its direction to rounding */
 

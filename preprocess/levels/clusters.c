@@ -9,7 +9,7 @@
 #include "base/mem.h"
 
 #define MAX_VERTICES 255 /* meshoptimizer's limit of vertices per meshlet */
-#define CONE_WEIGHT 0.5f /* meshoptimizer's preference for flat clusters over compact ones */
+#define CONE_WEIGHT 0.5f /* weight by which meshoptimizer prefers flat clusters to compact ones */
 
 struct clusters_making {
     struct workers_task *task;

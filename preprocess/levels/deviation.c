@@ -327,8 +327,8 @@ static double probe_inside(const struct probing *probing, size_t t, int cuts, st
     return most_m;
 }
 
-/* Probes points inside a triangle; its corners are probed separately. A triangle no larger than the expected distance is probed at one
- * point, because no inner point can be much farther away than the corners. */
+/* Probes points inside a triangle; its corners are probed separately. A triangle whose longest edge is at most the expected distance is not
+ * probed, because no inner point can be much farther away than the corners. A triangle that both surfaces contain is not probed either. */
 static void probe_triangle(const struct probing *probing, size_t t, struct near *near)
 {
     const struct deviation *from = probing->from;

@@ -91,7 +91,7 @@ struct ring_wedge {               /* one triangle around a point */
 struct point_ring {
     uint32_t point;
     struct ring_wedge wedges[RING];
-    int count; /* number of wedges; RING + 1: the point has too many triangles */
+    int count; /* number of wedges (triangles around the point); RING + 1: there are too many to store */
     /* by edge from the point: the point at the edge's other end, and, in one of the edge's triangles, the welds at this end (here) and the
      * other end (there) */
     uint32_t ends[2 * RING], weld_here[2 * RING], weld_there[2 * RING];

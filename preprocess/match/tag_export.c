@@ -279,7 +279,7 @@ static bool begin_section(struct tag_export *list, const struct table_row *row, 
     for (size_t i = 0; i < sizeof(kinds) / sizeof(*kinds); i++)
         if (!strcasecmp(cell, kinds[i].section)) {
             header->data_type = kinds[i].type;
-            /* in these sections the first column is the tag's name, and the column ItemName is its address */
+            /* in a section with tags, the first column is the tag's name, and the column ItemName is its address */
             header->columns[EXPORT_NAME] = 0;
             for (size_t c = 0; c < row->count; c++)
                 if (!strcasecmp(row->cells[c], "ItemName"))

@@ -332,7 +332,7 @@ static void add_tag(const struct scope *scope, const struct layered_node *node)
     mem_free(name);
     for (size_t i = 0; i < sizeof(properties) / sizeof(*properties); i++)
         set_field(scope, tag, properties[i].field, property_of(node, properties[i].name));
-    if (tag->fields[EXPORT_SCALED_HIGH]) /* use Ignition's defaults, 0 and 100, which an export omits */
+    if (tag->fields[EXPORT_SCALED_HIGH]) /* use Ignition's defaults for the scaled limits, 0 and 100, which an export omits */
         export_tag_set(tag, EXPORT_SCALED_LOW, "0");
     if (tag->fields[EXPORT_SCALED_LOW])
         export_tag_set(tag, EXPORT_SCALED_HIGH, "100");

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Prepares all assets of a plant: keeps files that are up to date and builds the others. Each finished asset is written to disk before the
- * next one, so that after an interruption the next run continues there. Thread: one. */
+/* Prepares all assets of a plant: keeps files that are up to date and builds the others. Each asset is written to disk as soon as it is
+ * finished, so that after an interruption the next run continues there. Thread: one. */
 #ifndef PREPROCESS_PIPELINE_PREPARE_H
 #define PREPROCESS_PIPELINE_PREPARE_H
 #include <stdatomic.h>

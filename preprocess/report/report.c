@@ -12,7 +12,7 @@
 #define ROWS_MAX 40 /* maximum number of rows per table, unless the caller requests all rows */
 #define CONCERNS_MAX 20
 
-struct order { /* an asset in the order of the tables: assets with problems first, then the slowest to build */
+struct order { /* an asset's place in the order of the tables: assets with problems first, then the slowest to build */
     const struct prepare_asset *asset;
     double weight;
 };

@@ -28,7 +28,7 @@ SIMD_BODY void store(const lanes *from, float *to)
     memcpy(to, from, sizeof(*from));
 }
 
-SIMD_BODY void keep(const mask *which, lanes *x) /* keeps the lanes in the mask and sets the others to 0 */
+SIMD_BODY void keep(const mask *which, lanes *x) /* keeps the lanes whose mask is set, and sets the others to 0 */
 {
     *x = (lanes)(*which & (mask)*x);
 }

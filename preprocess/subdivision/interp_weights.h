@@ -28,7 +28,7 @@ struct interp_group {
     float power, reach_m;
     size_t count;
 };
-/* Converts Shepard weights relative to the nearest sensor into weights that sum to 1. */
+/* factors that turn Shepard weights, computed relative to the nearest sensor's, into weights that sum to 1 */
 struct interp_norm {
     /* near_m: distance to the nearest sensor, metres; per: 1 / sum of the relative weights, which is INFINITY if no sensor is within
      * reach */

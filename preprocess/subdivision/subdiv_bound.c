@@ -77,7 +77,7 @@ size_t subdiv_take_sample(struct level *sample, const struct level *level)
         to->first_index = sample->index_count;
         for (uint32_t i = 0; i + 3 * BLOCK <= level->primitives[p].index_count; i += 3 * BLOCK) {
             uint32_t at = level->primitives[p].first_index + i;
-            /* choose blocks by a hash: every eighth block could always hit the same part of a repeated shape */
+            /* choose blocks by a hash, because every eighth block could be the same part of a repeated shape */
             if (at / (3 * BLOCK) * 0x9e3779b9u >> 16 & (SAMPLE_OF - 1))
                 continue;
             memcpy(sample->indices + sample->index_count, level->indices + at, 3 * BLOCK * sizeof(*sample->indices));

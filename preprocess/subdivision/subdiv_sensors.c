@@ -70,7 +70,7 @@ static void know_place(struct subdiv *subdiv, uint32_t place, uint32_t part, con
     subdiv_measure_places(subdiv, place, edge, 1);
 }
 
-/* Splits the edge of the triangle that the point lies on. Returns false if the point lies on none. */
+/* Splits that edge of the triangle on which the point lies. Returns false if the point is on none of its edges. */
 static bool cut_edge_at(struct subdiv *subdiv, const struct sensor_hit *hit, const float point[3])
 {
     struct subdiv_mesh *mesh = &subdiv->mesh;

@@ -11,7 +11,7 @@
 #include "preprocess/subdivision/subdivide_impl.h"
 
 #define MAX_ROUNDS 16
-#define GRAIN 2048 /* triangles per unit of work: a few tenths of a millisecond */
+#define GRAIN 2048 /* triangles per unit of work of a thread: takes a few tenths of a millisecond */
 /* maximum count of numbers in a sample for which the samples at all positions are stored; larger samples are computed again */
 #define MAX_STORED 512
 #define LARGE 0.25 /* share of the distance to the nearest sensor; a triangle is large if it has a longer edge */
@@ -447,7 +447,7 @@ static void tell_left(struct subdiv *subdiv, struct level *level)
     mem_free(told);
 }
 
-/* Splits edges until no error exceeds the limit. */
+/* Splits edges in rounds until no error exceeds the limit, or the level has reached its triangle limit. */
 static void cut_to(struct subdiv *subdiv, double limit)
 {
     int rounds = subdiv->sample_blocks ? SAMPLE_ROUNDS : MAX_ROUNDS;
@@ -521,8 +521,8 @@ static void subdivide_level(struct subdiv *subdiv, struct level *level, size_t f
     subdiv_mesh_store(&subdiv->mesh, level);
 }
 
-/* Subdivides all levels. A coarser level that reaches its triangle limit is dropped: the next finer level takes its place at little
- * cost. */
+/* Subdivides all levels. A coarser level that reaches its triangle limit is dropped: the next finer level, which costs no more, takes its
+ * place. */
 static void subdivide_all(struct subdiv *subdiv, struct levels *levels)
 {
     size_t kept = 0, finer_tris = 0;

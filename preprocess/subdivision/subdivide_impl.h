@@ -89,7 +89,7 @@ void subdiv_add_place(struct subdiv *subdiv, uint32_t place, uint32_t part);
 /* Computes the samples (linear_error.h) at the positions from index `first` on. edges: for each of these positions, the edge it is on, from
  * which its distances are computed first; NULL: the distances are known. */
 void subdiv_measure_places(struct subdiv *subdiv, uint32_t first, const uint32_t *edges, size_t count);
-/* Measures edges and stores the results at the edges themselves. */
+/* Measures the error of edges and stores the results in mesh.cuts (struct subdiv_edge). */
 void subdiv_measure_new_edges(struct subdiv *subdiv, struct subdiv_finding *findings, size_t count);
 /* Measures the interpolation error inside triangles. */
 void subdiv_measure_insides(struct subdiv *subdiv, struct subdiv_finding *findings, size_t count);

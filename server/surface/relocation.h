@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Live sensor relocation: distances of a sensor that is added to a loaded asset, or moved on it, while the plant is running. Straight-line
-   distances are computed at once, geodesic ones in the background. */
+ * distances are computed immediately, geodesic ones in the background. */
 #ifndef SURFACE_RELOCATION_H
 #define SURFACE_RELOCATION_H
 #include <stdbool.h>

@@ -18,7 +18,7 @@ struct lookup {
     char *host, port[12];
     int done_fd; /* descriptor that becomes readable once the lookup has finished */
     struct addrinfo *found;
-    _Atomic int failed; /* result code of getaddrinfo; written before `found` becomes readable */
+    _Atomic int failed; /* result code of getaddrinfo(); written before done_fd becomes readable */
     _Atomic int users;
 };
 

@@ -9,7 +9,8 @@
 #include "plant/walls/wall.h"
 
 struct other_plants;
-/* Starts the thread. plant: has `other_plants`; must outlive the result. Returns NULL if it cannot be started (logged). */
+/* Starts the thread. plant: has the section `other_plants`, and must outlive the result. Returns NULL if the thread cannot be started
+ * (logged). */
 struct other_plants *other_plants_start(struct log *log, const struct plant *plant);
 /* Ends the thread, aborts requests in progress and sets *others to NULL. *others may be NULL. */
 void other_plants_stop(struct other_plants **others);

@@ -437,7 +437,7 @@ bool is_step(const aiNode *node)
 void add(assimp_reader *r, const aiNode *node, const transform &steps, int parent, int depth)
 {
     double matrix[16];
-    /* true: the root node that Assimp adds to every model */
+    /* this is the root node that Assimp adds to every model */
     bool made_up = depth == 0 && node->mNumMeshes == 0 && node->mTransformation.IsIdentity();
     bool step = is_step(node) && node->mNumMeshes == 0;
     transform place = steps * transform_of(node);

@@ -191,7 +191,7 @@ step_files step_files_prepare(const std::string &path, const std::string &folder
 {
     preparing p = { path.substr(0, path.rfind('/') + 1), folder, asked, {}, {}, {} };
     const std::string text = read_whole(path.c_str());
-    p.names[path] = "external_0.stp"; /* the main file may refer to itself */
+    p.names[path] = "external_0.stp"; /* the main file's copy gets this name, by which files that refer to the main file will name it */
     const std::string converted = converted_text(&p, utf8_of(path, asked, true));
     p.out.main = path;
     if (converted != text) {

@@ -7,7 +7,7 @@
 #include "preprocess/import/revision/node_pairs.h"
 
 struct asset_patterns {
-    const struct model_header *before, *after; /* headers of the old and the new model; must outlive this struct */
+    const struct model_header *before, *after; /* trees of nodes of the old and the new model; must outlive this struct */
     const struct node_pairs *pairs;
     uint32_t *old_names, *new_names; /* nodes of the old and of the new model, sorted by name */
     uint32_t *found;                 /* nodes found by the last search; has room for all nodes of the larger model */

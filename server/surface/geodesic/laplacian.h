@@ -20,7 +20,7 @@ struct laplacian {
     double *mass_m2;                /* by row: a third of the area of all triangles at the row's point */
 };
 
-/* Assigns matrix rows to the points of `in`, and measures its triangles. `in`, which must outlive it. Returns false if out of memory; call
+/* Assigns matrix rows to the points of `in`, and measures its triangles. `in` must outlive *laplacian. Returns false if out of memory; call
  * laplacian_finish() in both cases. */
 bool laplacian_init(struct laplacian *laplacian, const struct intrinsic *in);
 /* Frees the arrays. */

@@ -14,8 +14,8 @@
  * adjacent, the row ends */
 #define MAX_TRIED 64
 
-/* Returns the corners of triangle t: a triangle of the intrinsic triangulation, or behind these an interior triangle. tri_sides() writes
- * its side lengths, from corner i to corner i + 1. */
+/* Returns the corners of triangle t: a triangle of the intrinsic triangulation, or, for indices after those, an interior (hidden) triangle.
+ * tri_sides() writes its side lengths, from corner i to corner i + 1. */
 static const uint32_t *tri_points(const struct propagation *propagation, const struct intrinsic *in, size_t t)
 {
     return t < in->tri_count ? in->points[t] : propagation->mesh->tris[t];

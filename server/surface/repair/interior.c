@@ -347,7 +347,7 @@ static void ask(struct interior_search *search, struct workers *workers, const s
 }
 
 /* Corrects regions in which only a sample of the triangles was tested and a few of the others differ. Where hidden and visible triangles of
- * a region meet at a point, tests all triangles at that point, and repeats until no triangle changes. */
+ * a region meet at a point, tests all triangles at that point, and repeats this until no untested triangle is left there. */
 static void ask_beside(struct interior_search *search, struct workers *workers, const char *mixed, size_t *asked, char *was_asked)
 {
     const struct trimesh *mesh = search->mesh;

@@ -91,7 +91,7 @@ static void join_near(void *arg, size_t i, size_t j, double distance_m)
         mesh_edit_merge_points(s->edit, b->points[i], b->points[j], distance_m);
 }
 
-/* Returns the other end of the border edge at[n], of which p is an end. */
+/* Returns the end other than p of the border edge whose index is at[n]. */
 static uint32_t beyond(const struct seams *s, uint32_t n, uint32_t p)
 {
     const uint32_t *edge = s->borders->edges[s->borders->at[n]];

@@ -107,7 +107,7 @@ static bool take_json(struct mqtt_source *mqtt, const struct mqtt_topic *topic, 
     return all_good;
 }
 
-/* Returns false if the message is refused. */
+/* Writes the values of a message to the tags of its topic. Returns false if the message is refused. */
 static bool take(struct mqtt_source *mqtt, const struct mqtt_topic *topic, const struct mqtt_message *message, char why[200])
 {
     snprintf(why, 200, "too long");
