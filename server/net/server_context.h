@@ -143,7 +143,7 @@ bool net_write(struct server_context *server, struct lws *wsi, const void *bytes
 /* Takes a new snapshot if the last one is older than 100 ms. Call it before ages of readings are sent, or a message is acted on. */
 void net_refresh_readings(struct server_context *server);
 
-/* --- stream.c, stream_table.c: connections to /stream --- */
+/* --- stream.c, stream_table.c, stream_upgrade.c: connections to /stream --- */
 
 /* Handles the events of a connection to /stream for libwebsockets. */
 int stream_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t len);

@@ -35,8 +35,8 @@ void camera_basis(const struct camera *camera, double right[3], double up[3], do
 /* Returns the distance from which a camera with the default angle sees as much as an orthographic picture shows. 0: the camera is
    perspective. */
 double camera_parallel_m(const struct camera *camera);
-/* Computes view_from_plant and clip_from_view, 16 doubles each. Near and far planes enclose the box; in an orthographic picture also the
- * part of the box behind the eye. */
+/* Computes two column-major matrices: view, from plant to eye space, and projection, from eye to clip space. Near and far planes enclose
+   the box; in an orthographic picture also the part of the box behind the eye. */
 void camera_matrices(const struct camera *camera, double aspect, const double min_m[3], const double max_m[3], double view[16],
                      double projection[16]);
 

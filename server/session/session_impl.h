@@ -5,7 +5,7 @@
 #include "base/files/settling.h"
 #include "session/session.h"
 
-/* --- session_state.c -------------------------------------------------------------------------------------------------- */
+/* --- session_answers.c ------------------------------------------------------------------------------------------------ */
 
 /* Queues a text for the client; takes ownership of the text (mem_free). */
 void session_reply(struct session *session, char *text);

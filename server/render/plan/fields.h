@@ -30,7 +30,7 @@ struct fields_entry {
     bool uploaded;  /* true if `slice` (range of a GPU buffer) holds the shown values */
     GLuint sensors; /* buffer of sensors for shaders that compute the field at each fragment (render/reference/reference.h); 0: none */
     int64_t oldest_age_ns;
-    double drawn_error; /* error bound of the scalars (field/scalars.h) */
+    double drawn_error; /* largest error of the shown values (field/scalars.h) */
     uint64_t used;
     struct sensor_direction *directions; /* sensor directions of the group, NULL if it has none (field/directions.h) */
     size_t direction_count;

@@ -97,9 +97,8 @@ SOFT_INLINE void carry_nothing(const struct raster *raster, const struct soft_me
     corners->all_flags = SOFT_NO_DATA;
 }
 
-/* Sets a and b of vertices whose field is evaluated at pixels. A pixel drawn from them gets a mark as of a vertex without a field, in which
-   MARK_PIXELS (soft_impl.h) is the kind, `a` holds bits 0 to 7 of the index in raster->pixels and `b` holds the row of the colour
-   map. */
+/* Sets a and b of vertices whose field is evaluated at pixels, so that pixels of their triangles get a MARK_PIXELS mark (soft_impl.h).
+   a: bits 0 to 7 of the field's index in raster->pixels; b: row of the colour map, plus raster->row_bias. */
 SOFT_INLINE void carry_pixels(const struct raster *raster, const struct soft_mesh *mesh, const uint32_t *vertices, const uint8_t *numbers,
                               int count, struct soft_corners *corners)
 {

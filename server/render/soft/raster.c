@@ -212,8 +212,8 @@ SOFT_INLINE void draw_by_one(const struct soft_tile *tile, const struct soft_sam
     draw_stamp(tile, sample, face, small, l, left, top < last_top ? top : last_top, mark, ink, true, true);
 }
 
-/* Draws the faces grouped by size, so that branches are well predicted. The order must be the same on every machine, because of faces at
-   equal depth the last one is visible. */
+/* Draws the faces grouped by size, so that branches are well predicted. The order must be the same on every machine, because of two
+   faces at equal depth the one drawn last is visible. */
 SOFT_INLINE void draw_kinds(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *const faces[LANES],
                             const struct small *small, const struct kinds *kinds, uint32_t rows, uint32_t mark, const struct mark_ink *ink)
 {

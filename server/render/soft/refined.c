@@ -112,7 +112,7 @@ static bool take_up(struct refined *refined, const struct frame_context *context
     raster_aim_cuts(raster);
     raster->out = frame->bgrx;
     raster->out_stride_bytes = (size_t)frame->stride_bytes;
-    /* sets the light of each mesh again: this step works on other meshes than the step for section caps did */
+    /* raster->light may be another copy than in the last step, so the pointers of the meshes into it are set again */
     if (refined->step > REFINED_FIND && refined->step < REFINED_INK)
         for (size_t m = 0; m < raster->mesh_count; m++)
             raster->meshes[m].baked = (const uint8_t(*)[4])raster->light->baked[raster->meshes[m].asset];

@@ -146,8 +146,8 @@ struct raster { /* source and target of one frame's rasterization; its memory is
     size_t pixel_capacity;
     uint8_t *out;
     size_t out_stride_bytes;
-    /* section planes: a plane's factors of (x w, y w, z, w), with x and y in pixels. The planes through which rays enter the space that is
-       left come first: `entry_count` of `cut_count` planes */
+    /* section planes as coefficients of (x w, y w, z, w), with x and y in pixels: the dot product is a point's signed distance from the
+       plane, up to a factor; >= 0: kept. The planes through which rays enter the kept space come first: `entry_count` of `cut_count` */
     float cuts[CLIP_MAX_PLANES][4];
     int cut_count, entry_count;
     float shift_px[2];  /* offset of the samples from pixel centres */

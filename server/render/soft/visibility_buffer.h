@@ -59,13 +59,13 @@ struct visibility_band { /* a band: group of pixel rows; written by one worker *
     /* present field values of each triangle: value at the first corner, difference of the second corner's from it, difference of the
        third's; fourth: 0, or 1 + index of the mesh if its field is evaluated at pixels */
     float (*corners)[4];
-    struct visibility_place *places; /* by triangle; only filled in where some field is evaluated at pixels */
+    struct visibility_place *places; /* corner position and edges of each triangle; only filled in if a field is evaluated at pixels */
     struct visibility_slopes *slopes; /* slopes of each triangle's corner weights; only filled in where there are isolines */
     struct visibility_part *parts;
     struct visibility_gloss *gloss; /* per part, for glossy frames */
     struct visibility_mixed *mixed;
     size_t triangle_count, part_count, mixed_count;
-    size_t place_count; /* triangles that have their place */
+    size_t place_count; /* number of elements of `places` */
     size_t triangle_capacity, corner_capacity, place_capacity, slope_capacity, part_capacity, gloss_capacity, mixed_capacity;
 };
 

@@ -24,9 +24,9 @@ struct visibility_store { /* zero-initialise, then set bound_bytes */
     uint64_t uses;
 };
 
-/* Returns the buffer with that hash, valid until the next visibility_store_give() or _drop(). NULL: none. */
+/* Returns the buffer with that hash, valid until the next visibility_store_give() or visibility_store_drop(). NULL: none. */
 void *visibility_store_find(struct visibility_store *store, uint64_t shape);
-/* Takes ownership of a buffer and replaces any other of that shape. Destroys the buffer immediately if it exceeds the bound and
+/* Takes ownership of a buffer and replaces any other buffer with that hash. Destroys the buffer immediately if it exceeds the bound and
    keeps_newest is false. */
 void visibility_store_give(struct visibility_store *store, uint64_t shape, void *at, size_t bytes, void (*destroy)(void *at));
 void visibility_store_bound(struct visibility_store *store, size_t bytes); /* sets the bound and evicts */
