@@ -27,15 +27,15 @@ struct influence_entry {
                                       asset file */
     uint32_t zero;
     uint64_t precision, shares; /* offsets of double[sensor][sensor] and float[sensor][vertex] */
-    uint64_t deviations;        /* gp: offset of float[2][vertex], the field's standard deviations with all sensors and without any;
-                                   others: 0 */
+    uint64_t deviations;        /* for interpolation gp: offset of float[2][vertex], the field's standard deviations with all sensors and
+                                   without any; other interpolations: 0 */
     /* offset of float[vertex]: largest interpolation error in the triangles at the vertex, as a fraction of the spread of readings;
        offset 0: unknown */
     uint64_t errors;
     double disc_m, decay_m;           /* disc_m: radius in metres of the disc at a sensor to which the sensor's reading applies; decay_m:
-                                         decay length of fin in metres, others 0 */
-    double range_m, noise, deviation; /* parameters of gp (range, noise, standard deviation), stated in the plant file or fitted; others:
-                                         0 */
+                                         decay length in metres for interpolation fin, other interpolations 0 */
+    double range_m, noise, deviation; /* parameters of interpolation gp (range, noise, standard deviation), stated in the plant file or
+                                         fitted; other interpolations: 0 */
 };
 
 /* A checked influence file in memory. The bytes must outlive the view. */

@@ -16,8 +16,8 @@
 #include "plant/plant_folder.h"
 #include "sibling.h"
 
-enum { FILES = 3, MAX_ARGUMENTS = 300, OWN_MB = 512 /* memory limit in MB of plantcast-import itself, without the processes that read
-                                                       files for it */ };
+/* OWN_MB: memory limit in MB of plantcast-import itself, without the processes that read files for it */
+enum { FILES = 3, MAX_ARGUMENTS = 300, OWN_MB = 512 };
 static const size_t max_bytes = (size_t)256 << 20;
 
 struct texts {

@@ -169,7 +169,8 @@ bool plant_runtime_start_recording(struct plant_runtime *runtime, struct plant_r
 {
     if (before)
         store_adopt(runtime->store, before->store);
-    if (!before) /* after a reload, sessions change these files until the switch, so the event loop opens them at the switch */
+    if (!before) /* after a reload, sessions of the old runtime change the users' files until the switch, so the event loop opens them at
+                    the switch */
         plant_runtime_open_lists(runtime);
     if (runtime->history)
         runtime->loop_checks = loop_checks_open(runtime->context->log, runtime->plant, runtime->history);

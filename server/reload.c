@@ -32,10 +32,10 @@ struct reload {
     char by[TOKEN_NAME_BYTES];     /* user who asked for the running reload */
     const struct tag_save *saving; /* tag list that the running reload saves; NULL: none */
     const char *kept;              /* path under which the previous version of the tag list is kept */
-    struct refusal refusal;        /* reason why the tag list was not saved; REFUSAL_NONE: it was */
+    struct refusal refusal;        /* reason why the tag list was not saved; REFUSAL_NONE: it was saved */
     /* held while the runtime is replaced, or takes the lead (becomes the core that polls devices): the two must not overlap */
     pthread_mutex_t put_lock;
-    struct thread leader; /* thread that makes this core the leader without waiting for a running reload. Protected by its lock: */
+    struct thread leader; /* thread that makes this core the leader without waiting for a running reload; its lock protects `leads` */
     bool leads;
     struct thread thread;
     /* --- below: protected by thread.lock */
@@ -549,7 +549,7 @@ void reload_lead(struct reload *reload)
 void reload_save(struct reload *reload, struct tag_save *save)
 {
     pthread_mutex_lock(&reload->thread.lock);
-    tag_save_free(reload->save); /* always NULL here in practice, because the event loop accepts only one save at a time */
+    tag_save_free(reload->save); /* normally NULL here, because the event loop accepts only one save at a time */
     reload->save = save;
     pthread_cond_signal(&reload->thread.wake);
     pthread_mutex_unlock(&reload->thread.lock);

@@ -45,7 +45,7 @@ struct server {
     struct plant_runtime_context context;
     struct plant_runtime *runtime;
     struct reload *reload;
-    struct seat seat;            /* unique identity of this core, among cores of the same name too (corelink/seat.h) */
+    struct seat seat;            /* unique identity of this core, even among cores of the same name (corelink/seat.h) */
     struct lease_keeper *keeper; /* keeps the lease that decides which of two cores leads; NULL: this core is alone */
     bool follows, lost;          /* follows: another core polls the devices; lost: this core had the lease to lead and lost it */
     bool divided;                /* true: child processes that read files get cgroups of their own */
@@ -543,7 +543,7 @@ int server_run(const struct server_params *params)
     server.divided = cgroup_divide();
     confine_hide_memory();
     signal(SIGPIPE, SIG_IGN);
-    signal(SIGXFSZ, SIG_IGN); /* without SIGXFSZ, a file that reached its size limit gives a write error like a full disk */
+    signal(SIGXFSZ, SIG_IGN); /* ignores SIGXFSZ, so that a file that reached its size limit gives a write error like a full disk */
     handle_early_signals();
     bool good = server_start(&server);
     if (good) {

@@ -47,7 +47,7 @@ static void limit(struct sibling *sibling)
 {
     size_t bytes = sibling->params->memory_bytes;
     setpriority(PRIO_PROCESS, (id_t)sibling->child, 10);
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) /* not under sanitizers, whose shadow memory would count as data */
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) /* not set under sanitizers, whose shadow memory would count as data */
     if (bytes > 0)
         prlimit(sibling->child, RLIMIT_DATA, &(struct rlimit){ bytes, bytes }, NULL);
 #endif
@@ -129,7 +129,8 @@ static int attend(struct sibling *sibling)
     sibling->until_ns = clock_mono_ns() + sibling->params->timeout_s * NS_PER_S;
     for (bool ended = false; !ended;) {
         struct pollfd polled[PIPES] = { { sibling->ends[STDOUT][0], POLLIN, 0 }, { sibling->ends[STDERR][0], POLLIN, 0 } };
-        ended = waitpid(sibling->child, &status, WNOHANG) != 0; /* true once the program has ended; its last output is then still read */
+        ended = waitpid(sibling->child, &status, WNOHANG) != 0; /* true once the program has ended; its last output is still read after
+                                                                   that */
         int ready = poll(polled, PIPES, ended ? 0 : POLL_MS);
         for (int i = 0; i < PIPES && ready > 0; i++)
             if (polled[i].revents)

@@ -117,7 +117,7 @@ static bool turn(struct film *film, const json_t *stop)
            (film->offline.plant ? offline_renderer_take_view(&film->offline, options, &film->view) : snapshot_query(options, &film->query));
     while (options->arg_count > own)
         mem_free(options->args[--options->arg_count]);
-    film->said = options->is_signed ? "" : tour_text(stop); /* no text in a signed film, because drawing a text would invalidate the
+    film->said = options->is_signed ? "" : tour_text(stop); /* a signed film gets no text, because drawing a text would invalidate the
                                                                signature */
     return good;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Checks films. An MP4 box is its length, its type and its content, with big-endian numbers. A table lists the boxes that are allowed,
-   and their content. */
+/* Checks films. An MP4 box is its length, its type and its content, with big-endian numbers. A table lists the allowed boxes and their
+   content. */
 #include "film_boxes.h"
 
 #include <ctype.h>

@@ -10,7 +10,7 @@
 static const int64_t WINDOW_NS = 60 * NS_PER_S, WAIT_NS = LOGIN_WAIT_S * NS_PER_S, LOG_INTERVAL_NS = 600 * NS_PER_S;
 enum { MAX_KNOWN_TOKENS = 8 };
 
-struct known_token { /* hash of a token that was accepted from that address before */
+struct known_token { /* hash of a token that was accepted from this address before */
     uint8_t hash[TOKEN_HASH_BYTES];
     int64_t said_ns;
 };

@@ -30,7 +30,7 @@ struct tokens {
     struct token_holder *holders;
     size_t count, capacity;
     struct file_watch watch;
-    tokens_find_device *find_device; /* finds paired devices; NULL: there are none */
+    tokens_find_device *find_device; /* callback that finds paired devices; NULL: there are none */
     const void *pairings;
 };
 
@@ -42,7 +42,7 @@ void tokens_hash(const char *token, uint8_t hash[TOKEN_HASH_BYTES])
         memset(hash, 0, TOKEN_HASH_BYTES);
 }
 
-/* The prefix distinguishes a token from its hash, for people and for tools that search for secrets. */
+/* Makes a random token. Its prefix distinguishes it from its hash, for people and for tools that search for secrets. */
 bool tokens_make(char token[TOKEN_MAX_CHARS + 1])
 {
     uint8_t bytes[RANDOM_BYTES];

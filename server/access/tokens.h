@@ -19,10 +19,10 @@ struct token_holder {
     char plant[TOKEN_PLANT_BYTES];  /* name of the only plant for which the token is valid; empty: any plant */
     /* comma-separated ids of views: the token is only for pictures of these; empty: not restricted */
     char views[TOKEN_VIEWS_BYTES];
-    bool unattended;                /* token of a wall or a program: not locked when there is no user activity */
+    bool unattended;                /* true: token of a wall or a program, which is not locked when there is no user activity */
     bool signed_in;                 /* true: a person signed in at the identity provider; `hash` is that of the session cookie */
     char wall[NAMED_VIEW_ID_BYTES]; /* id of the wall whose display is the only one for which the token is valid; empty: not restricted */
-    int display;                    /* number of that display, from 1; 0: not restricted */
+    int display;                    /* number of the display of `wall`, from 1; 0: not restricted */
 };
 
 struct tokens;

@@ -360,7 +360,8 @@ void alarm_service_end(struct alarm_service *service, struct settling_ticket *ti
     pthread_mutex_lock(&service->thread.lock);
     if (service->journal)
         journal_end(service->journal, ticket);
-    /* without a journal after alarm_service_begin(), the service was halted: the result for the ticket's rows is unknown or bad */
+    /* without a journal, the service was halted after alarm_service_begin(): whether the ticket's rows were written is unknown, so they
+       must not count as saved */
     else if (service->ending || service->lost)
         ticket->last = UINT64_MAX;
     pthread_mutex_unlock(&service->thread.lock);

@@ -27,7 +27,7 @@ enum { ALARM_ASIDE_SHELVED = 1, ALARM_ASIDE_SUPPRESSED = 2, ALARM_ASIDE_OUT = 4,
 
 struct alarm_state {     /* zero-initialised: normal */
     bool active;         /* the alarm's cause is present */
-    bool unacknowledged; /* the alarm is not acknowledged yet; never true while `aside` is not 0 */
+    bool unacknowledged; /* true: the alarm's cause is present */
     bool latched;
     uint8_t aside; /* bit mask of ALARM_ASIDE_...: reasons why the alarm is not annunciated; 0: the alarm is annunciated */
 };

@@ -37,7 +37,7 @@ struct journal {
     /* --- below: protected by thread.lock */
     struct entries waiting;
     bool asks;
-    bool urgent; /* a caller of journal_end() waits for rows to be on disk */
+    bool urgent; /* true: a caller of journal_end() waits for rows to be on disk */
     struct settling settling;
 };
 

@@ -25,7 +25,7 @@ struct audit_syslog {
     char *url, host[256];
     pthread_t thread;
     counter *good, *lost;
-    CURL *connection; /* used only by the thread; NULL: not connected */
+    CURL *connection; /* libcurl handle, used only by the thread; NULL: not connected */
     bool failing;     /* used only by the thread: true while the newest line could not be sent */
     pthread_mutex_t lock;
     pthread_cond_t wake;
@@ -161,7 +161,7 @@ static void *run(void *arg)
             pthread_cond_wait(&syslog->wake, &syslog->lock);
         if (syslog->stop_ns && (!syslog->first || clock_mono_ns() >= syslog->stop_ns))
             break;
-        struct framed *first = syslog->first; /* valid without the lock, because only this thread removes lines */
+        struct framed *first = syslog->first; /* `first` stays valid without the lock, because only this thread removes lines */
         pthread_mutex_unlock(&syslog->lock);
         bool sent = deliver(syslog, &first->text);
         pthread_mutex_lock(&syslog->lock);

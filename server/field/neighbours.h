@@ -15,7 +15,7 @@ struct neighbour {
     int tag;
     enum interpolation by;
     double value;     /* reading of the sensor; NaN: not usable now */
-    double predicted; /* what the other sensors predict; NaN: no other good sensor determines a value at this position */
+    double predicted; /* prediction by the other sensors; NaN: no other good sensor determines a value at this position */
     double deviation; /* for interpolation gp: standard deviation of the difference between reading and prediction; else NaN */
 };
 

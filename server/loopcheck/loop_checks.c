@@ -117,8 +117,8 @@ static void read_row(struct loop_checks *loop_checks, const struct csv *csv)
     const char *fingerprint = csv_text(csv, FINGERPRINT), *result = csv_text(csv, RESULT);
     bool passed = !strcmp(result, loop_check_state_names[LOOP_CHECK_PASSED]);
     if (strlen(fingerprint) != 16 ||
-        (!passed && strcmp(result, loop_check_state_names[LOOP_CHECK_FAILED]) != 0)) /* the row is incomplete, because it was cut off
-                                                                                        while it was written */
+        (!passed && strcmp(result, loop_check_state_names[LOOP_CHECK_FAILED]) != 0)) /* the row is incomplete: it was cut off while it
+                                                                                        was written */
         return;
     loop_checks->begun = true;
     if (tag < 0)

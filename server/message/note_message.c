@@ -6,8 +6,8 @@
 #include "base/text/json_text.h"
 #include "message/json_fields.h"
 
-/* Looks up the index of the tag or asset that the member names; *out is -1 if the member is absent. Returns false with *error if the name
-   is unknown. */
+/* Looks up the index of the tag or asset that a member of the message names; *out is -1 if the member is absent. Returns false with
+   *error if the name is unknown. */
 static bool find_named(const json_t *o, const struct plant *plant, const char *member,
                        int (*find)(const struct plant *plant, const char *name), enum refusal_code missing, int *out,
                        struct message_error *error)

@@ -8,7 +8,7 @@
 
 #include "base/mem.h"
 
-/* number of a camera's numbers in the address: 3 each for eye, target and up, the angle, and the height of a parallel projection */
+/* how many numbers an address has for a camera: 3 each for eye, target and up, the angle, and the height of a parallel projection */
 enum { CAMERA_NUMBERS = 11 };
 
 static const struct {

@@ -120,7 +120,7 @@ static void set_common(struct delivery *delivery, struct transfer *transfer, con
     curl_easy_setopt(handle, CURLOPT_CONNECTTIMEOUT, (long)CONNECT_S);
     curl_easy_setopt(handle, CURLOPT_TIMEOUT_MS, (long)(delivery->notify->timeout_s * 1000));
     curl_easy_setopt(handle, CURLOPT_SSLVERSION, (long)CURL_SSLVERSION_TLSv1_2);
-    curl_easy_setopt(handle, CURLOPT_QUICK_EXIT, 1L); /* so that a hanging name server does not delay the end of the daemon */
+    curl_easy_setopt(handle, CURLOPT_QUICK_EXIT, 1L); /* makes libcurl not wait for a hanging name server when the daemon ends */
     if (ca_file)
         curl_easy_setopt(handle, CURLOPT_CAINFO, ca_file);
 }
@@ -145,7 +145,7 @@ static char *set_mail(struct delivery *delivery, struct transfer *transfer, cons
     for (size_t i = 0; i < recipient->addresses.count; i++)
         transfer->list = curl_slist_append(transfer->list, recipient->addresses.at[i]);
     curl_easy_setopt(handle, CURLOPT_MAIL_RCPT, transfer->list);
-    /* so that the mail is still sent to the other mailboxes if the server refuses one */
+    /* makes libcurl send the mail to the other mailboxes if the server refuses one */
     curl_easy_setopt(handle, CURLOPT_MAIL_RCPT_ALLLOWFAILS, 1L);
     curl_easy_setopt(handle, CURLOPT_DEBUGFUNCTION, hear_refusals);
     curl_easy_setopt(handle, CURLOPT_DEBUGDATA, transfer);

@@ -39,7 +39,7 @@ struct notifier {
     bool *failing;   /* by index of the recipient; true: the last delivery failed */
     uint64_t number; /* change number of the newest alarm change that was processed */
     bool looked, unsaved;
-    int64_t lost_before; /* number of alarms that the outboxes before a reload lost */
+    int64_t lost_before; /* number of alarms that were lost by the outboxes of the time before a reload */
 };
 
 static int64_t now_us(void)

@@ -218,7 +218,7 @@ struct fleet_poll *fleet_poll_start(const struct fleet_file *file)
         struct fleet_request *request = &poll->requests[i];
         request->plant = (int)(i / KINDS);
         request->kind = (enum fleet_question)(i % KINDS);
-        /* spreads the first requests over 5 s; otherwise all requests would always be sent at the same time */
+        /* spreads the first requests over 5 s; without this, all requests would always be sent at the same time */
         request->due_ns = now_ns + (int64_t)(i / KINDS) * 5 * NS_PER_S / (int64_t)file->count;
     }
     curl_global_init(CURL_GLOBAL_DEFAULT);

@@ -7,7 +7,7 @@
 #include "render/split_view.h"
 #include "snapshot.h"
 
-struct offline_renderer { /* the members are freed in reverse order */
+struct offline_renderer { /* the members are freed in reverse order of their declaration */
     struct log *log;
     struct plant *plant;
     struct scene *scene;

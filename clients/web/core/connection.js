@@ -110,7 +110,7 @@ export class Connection {
             if (back)
                 this.leastWait = back[1] * 1000;
             const known = CLOSE_REASONS[event.code];
-            // not after the first failure: a server that restarts is back by the second attempt
+            // onUnopened() is not called after the first failure, because a server that restarts is back by the second attempt
             const again = this.state === 'connecting' && !known && this.unopened++;
             this.lose(known ? say(known) : event.reason || this.blocked || say('reason.unreachable'));
             if (again)
@@ -129,7 +129,7 @@ export class Connection {
         this.nextPing = this.lastHeard + PING_MS;
         this.watch();
         this.state = 'open';
-        // before onState reports `open`, because onOpen discards the state of the previous connection
+        // onOpen() discards the state of the previous connection, which must happen before onState reports `open`
         this.onOpen();
         this.become('open');
     }

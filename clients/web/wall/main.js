@@ -34,7 +34,7 @@ const pairing = new Pairing({ element: byId('denied'), place: { wall: query.get(
 } });
 const token = pairing.kept ?? stored('token');
 if (token)
-    store('token', token); // the panes, which are separate pages, read it from there
+    store('token', token); // stores the token for the panes, which are separate pages
 const streamUrl = new URL('stream', location.href.replace(/^http/, 'ws').replace(/[?#].*$/, '')).href;
 const connection = new Connection({ url: streamUrl, open: (url, protocol) => new WebSocket(url, protocol), clock });
 connection.onUnopened = () => import('../core/blocked.js').then(({ explain }) => explain(connection), () => {});

@@ -126,7 +126,7 @@ function ViewsPane(pane, context) {
         const rests = order || alarms.some(({ waiting }) => waiting) || (pane.on_alarm && call.isFlood(alarms, nowUs));
         if (!rests && pane.items.length > 1 && changedAt !== null && now - changedAt >= (pane.stops?.[at].dwell_s ?? pane.every_s) * 1000) {
             at = (at + 1) % pane.items.length;
-            sessionStorage.setItem(remembered, at); // so that a reloaded display continues with the same view
+            sessionStorage.setItem(remembered, at); // remembers the view, so that a reloaded display continues with it
             shown = null;
         }
         const { view, wrong, refusal } = viewsOf(page.session).find(({ id }) => id === pane.items[at]) ?? {};

@@ -57,7 +57,7 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
     });
     requestAnimationFrame(flush);
 
-    // choice of the view, by the leading display
+    // the leading display chooses the view
 
     let refused = '';
     session.on('error', ({ text, refusal, code }) => { refused = refusalText(text, refusal, code); });

@@ -37,8 +37,8 @@ struct openid_return { /* the parameters with which a browser returns from the p
 };
 enum openid_finish {
     OPENID_WAITS,   /* the result is not known yet; openid_collect() returns it later */
-    OPENID_FOREIGN, /* no log-in of that browser is in progress with this state, so the request is a replay or a forgery; it is only
-                       counted */
+    OPENID_FOREIGN, /* no log-in of that browser with this state is in progress, so the request is a replay or a forgery; it is only
+                       counted, not recorded */
     OPENID_FULL,    /* too many log-ins are being answered; the user must begin this one again */
 };
 /* Takes the parameters with which a browser returned from the provider. OPENID_WAITS means that the log-in is being verified. */

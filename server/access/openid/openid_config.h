@@ -21,7 +21,7 @@ struct openid_config {
     struct openid_group *groups;
     size_t group_count;
     double check_s, hours;
-    bool secure;     /* url is https: cookies are sent over TLS only */
+    bool secure;     /* true: the cookies are sent over TLS only, because `url` is https */
     char cookie[40]; /* name of the session cookie; differs per plant, so that two plants on one host do not share a login */
 };
 

@@ -56,7 +56,7 @@ struct openid {
 /* Main function of the thread that starts tasks; its argument is the struct openid. Returns once openid->stopping is set and no task
    runs. */
 void *openid_run(void *arg);
-/* Queues a job; takes its texts. The caller holds the lock. */
+/* Queues a job; takes ownership of its texts. The caller holds the lock. */
 void openid_add_job(struct openid *openid, struct openid_jobs *jobs, const struct openid_job *job);
 void openid_free_jobs(struct openid_jobs *jobs);
 /* Queues the revocation of a refresh token, which is copied, if the provider supports revocation. NULL is a no-op. The caller holds the

@@ -39,8 +39,8 @@ bool sign_ins_take(struct sign_ins *table, const char *state, const char *bindin
 /* Adds a signed-in person; takes ownership of its texts. cookie: receives the new session's secret. *left receives the refresh token of
    a session that was removed to make room (mem_free); NULL: none was. Returns false if the system has no randomness. */
 bool sign_ins_add_person(struct sign_ins *table, struct person *person, char cookie[SIGN_IN_SECRET_CHARS + 1], char **left);
-/* Each of these functions returns the person with a cookie, a cookie's hash or a person number; NULL: nobody. The result is valid until
-   the next call that adds or removes a person. */
+/* sign_ins_find(), sign_ins_find_hash() and sign_ins_numbered() return the person with a cookie, a cookie's hash or a person number;
+   NULL: nobody. The result is valid until the next call that adds or removes a person. */
 struct person *sign_ins_find(struct sign_ins *table, const char *cookie);
 struct person *sign_ins_find_hash(struct sign_ins *table, const uint8_t hash[TOKEN_HASH_BYTES]);
 struct person *sign_ins_numbered(struct sign_ins *table, uint64_t number);

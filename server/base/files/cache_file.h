@@ -17,8 +17,8 @@ struct cache_file { /* a mapped cache file */
     size_t count;
 };
 
-/* Maps the file into memory. `magic`: 8 bytes that name its kind. Returns false if there is no valid file; then cache_file_close() is not
-   needed. */
+/* Maps the file into memory. `magic`: 8 bytes that identify the kind of file. Returns false if there is no valid file; then
+   cache_file_close() is not needed. */
 bool cache_file_open(struct cache_file *file, const char *path, const char *magic, uint64_t key);
 void cache_file_close(struct cache_file *file); /* Unmaps the file; a zeroed struct is fine. */
 /* Writes a file from parts, one after the other. Returns 0 or -errno. */

@@ -184,7 +184,7 @@ static int open_handle(struct database *database, const char *name, int flags)
 
 static int open_to_write(struct database *database, int *version)
 {
-    /* FULL: a committed transaction survives a loss of power. */
+    /* synchronous = FULL: a committed transaction survives a loss of power. */
     static const char set_up[] = "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL";
     int code = open_handle(database, database->path, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
     if (code == SQLITE_OK) /* must run the format's pragmas first: some apply only to a file without pages */

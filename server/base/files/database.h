@@ -11,7 +11,7 @@
 
 #include "base/log/log.h"
 
-struct database_format { /* static description of a file format */
+struct database_format { /* array of `version` SQL scripts; each converts a file from the previous version */
     int application_id, version;
     const char *set_up;            /* pragmas for connections that write */
     const char *const *schemas;    /* array of `version` SQL scripts; each converts a file from the version before */

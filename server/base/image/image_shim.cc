@@ -96,8 +96,8 @@ void read_pixels(OIIO::ImageInput *in, const OIIO::ImageSpec &spec, uint32_t max
         throw std::bad_alloc();
     bool read = in->read_image(0, 0, 0, channels, kind<T>::type, raw.data());
     std::string error = in->geterror();
-    if (!read || error.find("Premature end") != std::string::npos) /* the JPEG reader only reports this error and fills the missing rows
-                                                                      with grey */
+    if (!read || error.find("Premature end") != std::string::npos) /* the JPEG reader reports a truncated file only in its error text,
+                                                                      and fills the missing rows with grey */
         throw std::runtime_error(error.empty() ? "broken" : error);
     spread(raw.data(), channels, pixels, kind<T>::opaque, *rgba);
     *width_px = static_cast<uint32_t>(spec.width);

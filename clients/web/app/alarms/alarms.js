@@ -225,7 +225,7 @@ export class AlarmList {
         const { tag, kind, state, priority } = alarm, { mode } = this.alarms, actions = rowActions(alarm, mode, this.role);
         const reading = make('span', { class: 'raised' }, this.readingText(alarm));
         const asset = this.session.model.asset(tag.asset), age = make('span', { class: 'since' }, this.since(alarm));
-        // `nowhere`: a device has no position in the model
+        // `nowhere`: true for a device, which has no position in the model
         const title = say('alarms.fly', { tag: tag.name }), nowhere = tag.index === null;
         const how = nowhere ? { class: 'alarm-go' } : { type: 'button', class: 'alarm-go', title, onclick: () => this.flyTo(tag) };
         const note = [this.note(alarm), this.also(alarm)].filter(Boolean).join('; ');

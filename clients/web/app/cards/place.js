@@ -55,7 +55,7 @@ export class Place {
     hear(picked) {
         if (this.asked === null)
             return; // the card was closed meanwhile
-        if (picked.purpose !== 'place') { // that answer belongs to another module's pick request
+        if (picked.purpose !== 'place') { // ignores the answer to another module's pick request, which has replaced this one
             this.asked = null;
             return;
         }

@@ -17,7 +17,7 @@ onmessage = ({ data }) => {
         ({ scale } = data);
         [band.width, band.height] = [data.width, data.height];
     }
-    // only 'beat' and 'rest' change this: a hidden page may send messages with a new size, but it still rests
+    // only 'beat' and 'rest' set `rests`: a hidden page may send messages with a new size, but it still rests
     if (typeof data === 'string')
         rests = data === 'rest';
     silent = 0;

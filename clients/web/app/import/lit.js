@@ -80,7 +80,7 @@ export class Lit {
     write(text, x, y) {
         const c = this.overlay.context;
         if (x < 0 || x > this.overlay.wide || y > this.overlay.high)
-            return; // the text would be outside the picture
+            return; // writes no text outside the picture
         c.font = `600 13px ${this.overlay.font}`;
         const width = c.measureText(text).width + 10;
         const left = Math.min(Math.max(4, x - width / 2), this.overlay.wide - width - 4), bottom = Math.max(24, y);
@@ -107,7 +107,7 @@ export class Lit {
             c.stroke();
             c.fill();
         }
-        if (feet[1] - top[1] < LEAST_PERSON_PX) { // the person would be too small to see, so the position gets a mark
+        if (feet[1] - top[1] < LEAST_PERSON_PX) { // marks the position with a circle where the person would be too small to see
             c.beginPath();
             c.arc(feet[0], feet[1], LEAST_PERSON_PX, 0, 2 * Math.PI);
             Object.assign(c, { strokeStyle: LIT, lineWidth: 2 });

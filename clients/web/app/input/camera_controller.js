@@ -45,7 +45,8 @@ export class CameraController {
         });
         window.addEventListener('blur', () => this.keys.clear());
         new ResizeObserver(() => this.stayHome()).observe(viewport.element);
-        session.on('params', () => this.stayHome()); // the picture's shape changes when a view is split or unsplit
+        // stays in the home view, because the picture's shape changes when a view is split or unsplit
+        session.on('params', () => this.stayHome());
         probeCodecs(); // motion is about to begin
     }
 
@@ -143,9 +144,9 @@ export class CameraController {
             return;
         const meaning = keyMeaning(event);
         if (!meaning || (meaning.motion?.startsWith('Arrow') && event.target.closest('fieldset')))
-            return; // the browser uses arrow keys within a group of radio buttons
+            return; // leaves arrow keys to the browser within a group of radio buttons
         if (event.key === ' ' && event.target.closest('button, input, a'))
-            return; // the focused button uses Enter and Space
+            return; // leaves the space bar to the button or link that has the focus
         event.preventDefault();
         if (meaning.motion) {
             this.land();

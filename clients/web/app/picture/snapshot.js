@@ -26,7 +26,7 @@ export class Snapshot {
     }
 
     async choose() {
-        await styled('help/help').catch(() => {}); // without styles if the server is unreachable
+        await styled('help/help').catch(() => {}); // loads the dialog's styles; if the server is unreachable, the dialog opens without them
         this.dialog ??= this.makeDialog();
         this.dialog.showModal();
     }

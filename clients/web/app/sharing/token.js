@@ -40,7 +40,7 @@ export class TokenDialog {
         const nothing = { sign_in: null, notice: null }, late = new Promise((done) => setTimeout(done, 3000, nothing));
         // asks without the stored token, because the server would reject a wrong one
         const me = await Promise.race([whoAmI({ token: null }).catch(() => nothing), late]);
-        if (!document.body.classList.contains('denied')) // access was granted in the meantime, from another tab
+        if (!document.body.classList.contains('denied')) // does not ask if access was granted in the meantime, from another tab
             return;
         this.showNotice(me.notice);
         if (!dialog.open)

@@ -136,7 +136,7 @@ export class Legend {
     notes(params, map, isOperator) {
         const { look, scale } = params, off = this.session.drawnError;
         return [
-            // the title's unit applies to the error as well
+            // this line gives the error in the unit of the title
             off && say('legend.drawn', { off }),
             this.title(params)[2],
             isOperator && say('legend.operator'),

@@ -50,6 +50,6 @@ export class Devices {
     post(message) {
         const { session } = this;
         if (!session.welcomed || !session.connection.send({ seq: ++session.toldSeq, ...message }))
-            this.tell(say('reason.unreachable')); // says that the pairing was not revoked
+            this.tell(say('reason.unreachable')); // tells the user that the pairing was not revoked
     }
 }
