@@ -251,7 +251,8 @@ static void turn_to_shares(const struct solving *solving, size_t first, size_t w
             solving->influence->shares[i * vertices + first + v] = strip[v * n + i];
 }
 
-/* Writes the kernels at vertices [begin * STRIP, end * STRIP) to `shares`, where weigh_strips() replaces them by H. */
+/* Writes the kernels (covariances with each sensor's reading) at vertices [begin * STRIP, end * STRIP) to `shares`, where weigh_strips()
+ * replaces them by H. */
 static void keep_kernels(void *arg, size_t begin, size_t end)
 {
     struct solving *solving = arg;
@@ -281,7 +282,7 @@ static void weigh_strips(void *arg, size_t begin, size_t end)
         double taken[STRIP] = { 0 };
         for (size_t v = 0; v < width; v++)
             at_vertex(solving, first + v, strip_h + v * n);
-        for (size_t i = 0; i < n; i++) /* the influence H is 0 for sensors of other bodies */
+        for (size_t i = 0; i < n; i++) /* the influence H (weights of the sensors) is 0 for sensors of other bodies */
             for (size_t v = 0; v < width; v++)
                 if (body_of_vertex(solving, first + v) == solving->bodies.of_sensor[i])
                     taken[v] += variance_of(solving, i) * (double)solving->influence->shares[i * vertices + first + v] *

@@ -11,7 +11,7 @@
 void dpotrf_(const char *uplo, const int *n, double *a, const int *lda, int *info, size_t uplo_length);
 void dpotri_(const char *uplo, const int *n, double *a, const int *lda, int *info, size_t uplo_length);
 
-/* Factors a = L L' in place; L overwrites the lower triangle. */
+/* Computes the Cholesky factor L with a = L L', which overwrites the lower triangle of a. */
 static bool factor(size_t count, double *a, double *log_det)
 {
     const int n = (int)count, pitch = n > 1 ? n : 1;

@@ -167,7 +167,8 @@ void gaussian_covariance_finish(struct gaussian_covariance *covariance)
 struct slope {
     const struct gaussian_covariance *covariance;
     double k2[2];
-    /* [sensor][sensor], lower triangle: D' A^-1 D minus its constant part, for the lower and the upper k2 of the central difference */
+    /* [sensor][sensor], lower triangle: D' A^-1 D (letters: gaussian_covariance.h) minus its constant part, for the lower and the upper k^2
+     * of the central difference */
     double *between[2];
     atomic_int status; /* first status other than CHOLMOD_OK that any thread got */
 };
@@ -208,7 +209,8 @@ static void fill_diagonal(const struct gaussian_covariance *covariance, double k
             values[first[c]] = border;
 }
 
-/* Computes D' A^-1 D = border - F F', where `border` is the border's diagonal and F the sensors' block of the factor. */
+/* Computes D' A^-1 D (letters: gaussian_covariance.h) as border - F F', where `border` is the border's diagonal and F the sensors' block of
+ * the factor. */
 static void find_side(const struct gaussian_covariance *covariance, double k2, double *between, cholmod_common *common)
 {
     const size_t count = covariance->count;

@@ -18,9 +18,11 @@ struct gaussian_covariance {
     double *values; /* covariance [sensor][sensor] for deviation 1 and no noise */
     size_t row_count;
     double *mass_m2, *scale; /* mass_m2: area of each row's mesh point; scale: scratch array, one element per component */
-    double bound;            /* upper bound of k^2 D' A^-1 D; the border's diagonal must exceed it for the matrix to be positive definite */
+    /* upper bound of k^2 D' A^-1 D (letters above); the border's diagonal must exceed it for the matrix to be positive definite */
+    double bound;
     cholmod_common common;
-    /* matrix to factor: lower triangle of G, the rows D' below it, and the border's diagonal, which is filled in for each range */
+    /* matrix to factor: lower triangle of the stiffness matrix G, below it the sensors' weights D', and the border's diagonal, filled in
+     * for each range */
     cholmod_sparse *bordered;
     cholmod_factor *symbolic; /* symbolic factor: elimination order and sparsity */
 };

@@ -73,7 +73,7 @@ static bool factor(struct conduct *conduct, double decay_m, cholmod_common *comm
     return good;
 }
 
-/* Stores one sensor's solution u: a column of H and a row of the precision matrix. */
+/* Stores a sensor's solution u: a column of H (weights of sensors at vertices) and a row of the precision matrix. */
 static void take(const struct conduct *conduct, size_t sensor, const double *u)
 {
     struct influence *influence = conduct->influence;
@@ -95,7 +95,7 @@ static void take(const struct conduct *conduct, size_t sensor, const double *u)
     }
 }
 
-/* Passes a block of solutions (one column per sensor) at the mesh points to the bend measurement. */
+/* Passes a block of solutions (one column per sensor) at the mesh points to the measurement of interpolation errors (influence_bend.h). */
 static void add_bend(const struct conduct *conduct, const double *u, size_t count, float *at_points)
 {
     const uint32_t *row_of = conduct->laplacian.row_of;

@@ -16,12 +16,14 @@
 
 struct influence {
     size_t count, vertex_count;
-    float *shares;     /* H: weight of each sensor at each vertex, [sensor][vertex] */
+    float *shares;     /* H: weight of each sensor at each vertex, stored as [sensor][vertex] */
     double *precision; /* P: precision matrix, [sensor][sensor] */
     /* by vertex: standard error while all sensors are good (gaussian.h), then by vertex: standard error without any sensor; NULL: not
      * computed. The array has one more element, 0, so that the file can be padded to 8 bytes */
     float *deviations;
-    float *errors; /* by vertex: largest error of linear interpolation in drawn triangles (influence_bend_measure()); NULL: not requested */
+    /* by vertex: largest error of linear interpolation in the asset's triangles around it (influence_bend_measure()); NULL: not
+     * requested */
+    float *errors;
 };
 
 /* Computes the influence by conduction. decay_m: decay length, INFINITY for harmonic. anchors: for each of the vertex_count vertices, its

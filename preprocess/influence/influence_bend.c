@@ -12,15 +12,18 @@
 #include "preprocess/influence/polygons.h"
 #include "surface/mesh/bvh.h"
 
-/* tolerance of the distance from a drawn triangle's plane, relative to the surface's size: drawn corners are stored in single precision */
+/* tolerance of the distance from the plane of a drawn triangle (triangle of the asset file), relative to the surface's size: drawn corners
+ * are stored in single precision */
 #define OFF_PLANE 1e-5
-#define LEAST 1e-7 /* overlaps with an area of at most this share of the drawn triangle's squared size are ignored */
-/* share of a drawn triangle's area that may stay uncovered without counting as unknown, because small overlaps are ignored */
+/* overlaps of a drawn and a mesh triangle with at most this area, as a share of the drawn triangle's squared size, are ignored */
+#define LEAST 1e-7
+/* share of the area of a drawn triangle (triangle of the asset file) that may stay uncovered without counting as unknown, because small
+ * overlaps are ignored */
 #define COVERED 1e-3
 #define SAME 1e-7 /* places (corners of overlaps) closer than this share of a triangle's size count as equal */
 #define LEAST_FACING 0.5
-/* number of recent places that a new place is compared with to find duplicates, which come from mesh triangles visited shortly after each
- * other */
+/* number of recent places (corners of overlaps) that a new place is compared with to find duplicates, which come from mesh triangles
+ * visited shortly after each other */
 enum { LOOK_BACK = 64 };
 
 struct finding {
@@ -31,11 +34,13 @@ struct finding {
     struct bvh *visible_bvh, *hidden_bvh;
     /* state for the triangle of the asset file ("drawn triangle") that is being processed: */
     uint32_t tri;
-    double origin[3], axes[3][3]; /* origin of the plane's coordinates; axes: two in the drawn triangle's plane, and its normal */
+    /* origin: of the plane's coordinates; axes: two vectors in the plane of the drawn triangle, and its normal */
+    double origin[3], axes[3][3];
     double corners[3][2], size_m;
     struct extent extent;
-    size_t first;       /* index of its first place */
-    uint32_t *taken_by; /* by mesh point: 1 + index of the last drawn triangle for which a place at this point was added; 0: none */
+    size_t first; /* index of its first place */
+    /* by mesh point: 1 + index of the last drawn triangle for which a place (corner of an overlap) was added at this point; 0: none */
+    uint32_t *taken_by;
     /* polygons; left: area not yet covered before the current pass; cut: the part of `left` that the current pass has not covered */
     struct polygons left, cut;
     /* State of the current pass: */
@@ -162,7 +167,8 @@ static void visit(void *arg, uint32_t tri)
     double piece[3][2], normal[3], off_m;
     vec_normal(at[points[0]], at[points[1]], at[points[2]], normal);
     double facing = vec_dot(normal, finding->axes[2]), least = LEAST_FACING * vec_length(normal);
-    /* triangles of the solved mesh must face the same way as the drawn triangle; hidden triangles may face either way */
+    /* triangles of the solved mesh must face the same way as the drawn triangle (of the asset file); hidden triangles may face either
+     * way */
     if (finding->full || !((solved ? facing : fabs(facing)) > least))
         return;
     uint32_t order[3] = { points[0], points[facing > 0 ? 1 : 2], points[facing > 0 ? 2 : 1] };
@@ -194,8 +200,8 @@ static void visit(void *arg, uint32_t tri)
     memmove(finding->cut.of, finding->cut.of + before, finding->cut.count * sizeof(*finding->cut.of));
 }
 
-/* Makes one pass: clips finding->left by all mesh triangles within off_m of the drawn triangle's plane. Returns the area that they
- * cover. */
+/* Makes one pass over the current drawn triangle: clips its uncovered area finding->left by all mesh triangles within off_m of the drawn
+ * triangle's plane. Returns the area that they cover. */
 static double cover(struct finding *finding, const struct trimesh *mesh, const struct bvh *bvh, double off_m)
 {
     double before_m2 = polygons_area(&finding->left);
@@ -218,7 +224,7 @@ static size_t finest_count(const struct bend_drawn *drawn)
     return drawn->level_count > 0 ? drawn->levels[0].triangle_count : drawn->triangle_count;
 }
 
-/* Sets up a drawn triangle as the current one. Returns its area; 0: degenerate. */
+/* Makes a triangle of the asset file the current drawn triangle. Returns its area; 0: degenerate. */
 static double take_triangle(struct finding *finding, const double p[3][3])
 {
     double along[3], off_m;
@@ -277,8 +283,8 @@ static void find_places(struct finding *finding)
 enum { SAMPLES = 7 };
 static const double samples[SAMPLES][3] = { { 2, 1, 0 }, { 1, 2, 0 }, { 0, 2, 1 }, { 0, 1, 2 }, { 1, 0, 2 }, { 2, 0, 1 }, { 1, 1, 1 } };
 
-/* Adds the samples of a triangle of a coarse level as places. The counts of samples replace the areas that are recorded in the finest
- * level. */
+/* Adds the samples of a triangle of a coarse level as places (points at which the error is measured). Counts of samples replace the areas
+ * that are recorded for the finest level. */
 static void sample_triangle(struct finding *finding, const struct influence_mesh *mesh, const struct surface *surface, size_t tri,
                             double within_m)
 {

@@ -24,7 +24,8 @@ struct bend_level { /* one level of detail */
 
 struct bend_drawn { /* the drawn triangles */
     const float (*positions_m)[3];
-    const uint32_t *triangles; /* indices of the drawn triangles, 3 each, level by level, finest first */
+    /* vertex indices of the drawn triangles (triangles of the asset file), 3 each, level by level, finest first */
+    const uint32_t *triangles;
     size_t vertex_count, triangle_count;
     const struct influence_anchor *anchors; /* by vertex: its position on the mesh */
     /* All overlap corners are found for the finest level. Triangles of coarser levels do not lie on the surface: the bend is measured at a
@@ -40,7 +41,7 @@ struct influence_bend {
     /* by drawn triangle: its area; the area hidden inside other parts; the area where the bend is unknown. For coarse levels: counts of
      * samples instead of areas */
     double *area_m2, *hidden_m2, *unknown_m2;
-    /* by place: sums over sensors of the positive and of the negative errors of their weights, in fixed point */
+    /* by place (corner of an overlap): sums over sensors of the positive and of the negative errors of their weights, in fixed point */
     _Atomic int64_t *plus, *minus;
     struct mesh_error *mesh_error; /* sums from which the discretisation error of the finite-element solution is computed (mesh_error.h) */
     size_t point_count;            /* number of points of the mesh */
@@ -57,12 +58,12 @@ void influence_bend_finish(struct influence_bend *bend);
  * calls. */
 void influence_bend_add(struct influence_bend *bend, const float *at_points, size_t stride, size_t width);
 
-struct bend_report { /* all zero: no bend was measured */
-    /* measured: count of (group, interpolation) pairs whose bend was measured; unmeasured: count of pairs with too many places to
-     * measure */
+struct bend_report { /* results of the measurement of the bend (interpolation error in drawn triangles); all zero: no bend was measured */
+    /* number of pairs (group, interpolation): measured: those whose bend was measured; unmeasured: those with too many places (corners of
+     * overlaps) */
     size_t measured, unmeasured;
     double steps;        /* bound of the deviation from linear interpolation, in steps of (MAX - MIN) / 255, for any good readings */
-    double over_share;   /* share of the area covered by triangles in which the bend may exceed one step */
+    double over_share;   /* share of the area covered by triangles in which the bend (interpolation error) may exceed one step */
     double hidden_share; /* share of the area inside or against another part, where nothing is solved */
     /* share of the area that is not on the solved surface; this area and the hidden area are excluded from `steps` and `over_share` */
     double unknown_share;

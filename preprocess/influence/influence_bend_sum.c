@@ -70,7 +70,7 @@ static double worst_of(double plus, double minus, double around)
 
 /* --- vertex errors ----------------------------------------------------------------------------------------------------------- */
 
-/* States of the error of a drawn triangle: bounded, hidden (does not count), unknown. */
+/* states of the error of a drawn triangle (of the asset file): bounded, hidden (does not count), unknown */
 enum triangle_state { TRIANGLE_BOUNDED, TRIANGLE_HIDDEN, TRIANGLE_UNKNOWN };
 /* a triangle with more than this share of its area hidden counts as wholly hidden; below 1 because of rounding */
 #define ALL_OF_IT 0.999

@@ -24,7 +24,8 @@
 #define LONGEST 10.0  /* maximum correlation range, in multiples of the surface's size; longer ranges look the same */
 #define FIT_MIN 0.05  /* smallest correlation range that is fitted, in multiples of the surface's size */
 #define FIT_MAX 3.0
-/* maximum number of places where the bend is measured (influence_bend.h); with more, it is not measured, because it would take too long */
+/* maximum number of points at which the bend (interpolation error, influence_bend.h) is measured; with more, it is not measured, because it
+ * would take too long */
 enum { BEND_PLACES = 8000000 };
 
 struct influence_making {
@@ -142,7 +143,8 @@ static bool solve(struct influence_making *making, struct influence *found, enum
                : influence_conduct(found, making->log, making->workers, mesh, decay_m, anchors, count, bend);
 }
 
-/* Computes found->errors. If the bend was not measured, writes 1 (unknown) for all vertices. Returns false if out of memory. */
+/* Computes found->errors (interpolation errors by vertex). Writes 1 (unknown) for all vertices if they were not measured. Returns false if
+ * out of memory. */
 static bool bound_errors(const struct influence_making *making, const struct plant_group *group, enum interpolation interpolation,
                          struct influence_bend *bend, struct influence *found)
 {
@@ -160,7 +162,8 @@ static bool bound_errors(const struct influence_making *making, const struct pla
     return true;
 }
 
-/* Computes one interpolation of a group and adds it to the file's entries. bend: NULL if it has too many places to measure. */
+/* Computes one interpolation of a group and adds it to the file's entries. bend: measures interpolation errors; NULL: not measured, because
+ * there are too many points. */
 static bool add_entry(struct influence_making *making, int group, enum interpolation interpolation, const struct influence_mesh *mesh,
                       const struct gaussian_params *gp, const struct influence_anchor *anchors, struct influence_bend *bend)
 {

@@ -59,10 +59,10 @@ struct deviation_part {
     /* triangles of one part (connected component), in the arrays of the whole surface; tri_count 0: this surface has no triangle of the
      * part */
     struct trimesh mesh;
-    struct bvh *bvh; /* bounding volume hierarchy of the part's triangles; NULL: the part is not measured */
+    struct bvh *bvh; /* bounding volume hierarchy of the triangles of the part (connected component); NULL: the part is not measured */
 };
 
-/* Returns the triangle indices grouped by part. The caller frees them with mem_free. */
+/* Returns the triangle indices grouped by part (connected component). The caller frees them with mem_free. */
 static size_t *sort_by_part(const struct deviation_params *params, const uint32_t *triangles, size_t count)
 {
     size_t *first = mem_array(params->part_count + 1, sizeof(*first)), *order = mem_array(count, sizeof(*order));
@@ -167,10 +167,11 @@ static bool shares_triangle(const struct deviation *surface, const uint32_t indi
 
 struct probing {
     const struct deviation *from, *to;
-    const char *only; /* by part: nonzero if it is probed; NULL: all parts are */
-    bool anywhere;    /* true: measure the distance to any part of `to`; false: to the same part of `to` */
+    /* by part (connected component): nonzero if it is probed (distances of its points are measured); NULL: all parts are */
+    const char *only;
+    bool anywhere; /* true: measure the distance from any part of `to`; false: from the same part (connected component) of `to` */
     double expected_m;
-    const float *known_m; /* by part: largest distance found before this pass; smaller distances need not be exact */
+    const float *known_m; /* by part (connected component): largest distance found before this pass; smaller distances need not be exact */
     float *found_m;       /* by point, or by triangle in the second pass: its measured distance */
 };
 
@@ -179,7 +180,7 @@ struct near { /* cache of one thread */
     /* indices of the triangles of part `part` of surface `to` that were nearest to recent points, latest first; TRIMESH_NONE: empty
      * entry */
     uint32_t part, tris[RECENT];
-    double known_m; /* largest distance of the part found so far */
+    double known_m; /* largest distance of the part (connected component) that this thread has found so far */
 };
 
 struct deviation_probe {   /* state of one probe: a point, and the surface from which its distance is measured */

@@ -37,8 +37,10 @@ struct levels_making {
     char *used;     /* by vertex: nonzero if the previous level uses the vertex */
     char *contrary; /* by part: see levels_find_contrary() */
     /* Current state: */
-    uint32_t *version; /* by part: index of its version in the level being chosen; ABSENT: the part is omitted */
-    uint32_t *shown;   /* by part: index of its version in the last level added; ABSENT: the part is omitted */
+    /* by part (connected component): index of its version (simplification step) in the level being chosen; ABSENT: the part is omitted */
+    uint32_t *version;
+    /* by part (connected component): index of its version (simplification step) in the last level added; ABSENT: the part is omitted */
+    uint32_t *shown;
     size_t tri_count;
 };
 
@@ -47,7 +49,7 @@ struct levels_making {
 /* --- events, sorted by error: one part changes to a coarser version or is omitted --------------------------------------- */
 
 struct event {
-    float error_m; /* smallest error of a level in which this event may have happened, metres */
+    float error_m; /* smallest error in metres of a level for which the part may change */
     uint32_t part, version;
 };
 
@@ -88,7 +90,8 @@ static void let_happen(struct levels_making *making, const struct event *event)
     making->tri_count += tris_of(making, event->part);
 }
 
-/* Applies events[i] and later events while their error is at most error_m. Returns the index of the first event not applied. */
+/* Applies events[i] (changes of parts) and later events while their error is at most error_m. Returns the index of the first event not
+ * applied. */
 static size_t let_all_happen(struct levels_making *making, const struct event *events, size_t i, size_t count, float error_m)
 {
     for (; i < count && events[i].error_m <= error_m; i++)
@@ -207,8 +210,8 @@ static void face_parts(const struct levels_making *making, uint32_t *welds, size
     mem_free(before);
 }
 
-/* Returns the triangles of all parts, each in its current version: three welds per triangle, *count in total. The caller frees the
- * array. */
+/* Returns the triangles of all parts, each in its current version: three welds (groups of equal vertices) per triangle, *count in total.
+ * The caller frees the array. */
 static uint32_t *list_welds(const struct levels_making *making, size_t *count)
 {
     uint32_t *welds = mem_array(3 * making->tri_count, sizeof(*welds));

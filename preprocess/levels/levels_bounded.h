@@ -20,7 +20,7 @@ void bounded_destroy(struct bounded **bounded);
 void bounded_simplify(struct bounded *bounded, double error_m);
 /* Returns the current number of triangles. */
 size_t bounded_count(const struct bounded *bounded);
-/* Writes the welds at the corners of the current triangles, three per triangle. */
+/* Writes the welds (groups of equal vertices) at the corners of the current triangles, three per triangle. */
 void bounded_read(const struct bounded *bounded, uint32_t *corners);
 
 #endif

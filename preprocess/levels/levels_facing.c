@@ -21,7 +21,7 @@ struct corner_need { /* a face corner to repair: it needs a vertex whose normal 
     float normal[3]; /* normal of the corner's face */
     float score;     /* score of the best candidate so far: 2 - distance / maximum distance */
     uint32_t weld;   /* weld (group of equal vertices) of the best candidate; NONE: none yet */
-    size_t next;     /* index in `needs` of the next corner with the same weld; SIZE_MAX: none */
+    size_t next;     /* index in `needs` of the next corner with the same weld (group of equal vertices); SIZE_MAX: none */
 };
 
 struct facing_pass {
@@ -30,7 +30,7 @@ struct facing_pass {
     const float *most_m;
     struct corner_need *needs;
     size_t count, capacity;
-    size_t *first; /* by weld: index in `needs` of its first corner; SIZE_MAX: none */
+    size_t *first; /* by weld (group of equal vertices): index in `needs` of its first corner; SIZE_MAX: none */
 };
 
 void levels_normal(const struct welds *welds, const uint32_t corners[3], float n[3])

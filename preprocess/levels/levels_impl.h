@@ -23,7 +23,7 @@ struct welds {
     uint32_t *primitive;                      /* primitive of each weld */
     uint32_t *first, *vertices;               /* vertices grouped by weld */
     uint32_t *part;                           /* part of each weld */
-    uint32_t *first_there;                    /* by weld: lowest index of a weld at the same position */
+    uint32_t *first_there;                    /* by weld (group of equal vertices): lowest index of a weld at the same position */
     float (*low_m)[3], (*high_m)[3], *size_m; /* by part: its bounding box, and the length of the box's diagonal */
     double whole_m;                           /* size of the asset's main part (base/math/gap_split.h), metres */
 };
@@ -38,7 +38,7 @@ void welds_finish(struct welds *welds);
 /* The asset's triangles after some simplification; each version is made from the version before. */
 struct version {
     uint32_t *welds; /* three weld indices per triangle */
-    size_t count;    /* number of weld indices, three per triangle */
+    size_t count;    /* number of weld indices; three per triangle */
     /* by part: largest distance between this version and the first one, in either direction, metres; INFINITY: the part has no triangle
      * left */
     float *error_m;

@@ -17,7 +17,7 @@
 #define OVER 1.1f
 #define SMALL 0.1   /* maximum size of a part that is omitted because it lies on others, relative to the whole asset */
 #define AROUND 4.0f /* small parts whose distance is less than this many times their size form a group, whose parts are omitted together */
-#define PROBES 4    /* number of probed points on each edge of a part's triangles */
+#define PROBES 4    /* number of points on each edge of a part's triangles whose distance from larger parts is measured */
 
 #define CLASSES_MAX 20
 #define FEWER 0.75 /* a class of parts by size is made only if it has at most this share of the triangles of the class before */

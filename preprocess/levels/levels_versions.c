@@ -9,19 +9,20 @@
 #include "preprocess/levels/levels_bounded.h"
 #include "preprocess/levels/levels_impl.h"
 
-#define SHRINK 0.55 /* requested share of the previous version's triangles */
+#define SHRINK 0.55 /* share of the previous version's triangles that each version (simplification step) should keep */
 #define STUCK 0.9   /* simplification of the whole asset stops at a version with more than this share of the previous version's triangles */
 /* number of triangles above which the asset is simplified as a whole, which is fast; with fewer, part by part (levels_bounded.c) */
 #define HALVE_ABOVE 40000
 /* maximum number of triangles for simplification part by part, also if simplification of the whole makes no more progress */
 #define MAX_COLLAPSED 100000
-#define LEAST 0.00025 /* allowed error of the first version made by edge collapses, relative to the asset's size */
+#define LEAST 0.00025 /* allowed error of the first version that is made by edge collapses, relative to the asset's size */
 #define STEP 1.3      /* factor from the allowed error of one version to that of the next, in the range of far levels (levels.c) */
 /* the same factor in the range of near levels; larger, because each version must be measured and near levels need fewer versions */
 #define STEP_ELSE 1.7
-#define ALIKE 0.85       /* a version with more than this share of the previous version's triangles is dropped */
+#define ALIKE 0.85       /* a version (simplification step) with more than this share of the previous version's triangles is dropped */
 #define MIN_TRIANGLES 60 /* smaller assets are not simplified */
-/* versions with a smaller error, relative to the asset's size, keep open borders, so that no hair gaps open between patches */
+/* versions (simplification steps) with a smaller error, relative to the asset's size, keep open borders, so that no hair gaps open between
+ * patches */
 #define NEAR 0.01
 #define BEYOND 3.0 /* factor from meshoptimizer's error estimate, a mean over planes, to the largest distance that is probably measured */
 
@@ -104,8 +105,8 @@ struct collapsing {
     const struct welds *welds;
     const struct deviation *first;
     const struct version *from;
-    struct bounded **parts; /* by part: its edge collapser (levels_bounded.h); NULL: the part has no triangle left */
-    size_t *first_corner;   /* by part: index in `corners` of its first triangle of the version `from` */
+    struct bounded **parts; /* by part (connected component): its edge collapser (levels_bounded.h); NULL: the part has no triangle left */
+    size_t *first_corner;   /* by part: index in `corners` of its first triangle in the version `from` */
     uint32_t *corners;
     size_t *first_place; /* by part: index in `places` of its first vertex of the original model */
     uint32_t *places;

@@ -122,13 +122,14 @@ bool method_rules(const struct matcher *matcher, const struct match_subject *sub
 static bool is_apart(const struct name_tokens *tokens, int from, int to)
 {
     bool before = tokens->at[from].apart, behind = to == tokens->count || tokens->at[to].apart;
-    /* whether a single letter that distinguishes equipment follows the tokens: E-101-A is not E-101 */
+    /* whether a single letter that distinguishes equipment follows the tokens (runs of letters or digits): E-101-A is not E-101 */
     bool letter = to < tokens->count && !tokens->at[to].digits && strlen(tokens->at[to].text) == 1 && tokens->at[to].text[0] <= 'F' &&
                   tokens->at[to - 1].digits;
     return before && behind && !letter;
 }
 
-/* Finds the longest range of tokens that names equipment. The range must begin and end at a separator or at an end of the name. */
+/* Finds the longest range of tokens (runs of letters or digits) that names equipment. The range must begin and end at a separator or at an
+ * end of the name. */
 static bool find_within(const struct matcher *matcher, const struct name_tokens *tokens, struct proposal *out)
 {
     for (int length = tokens->count; length >= 1; length--)
@@ -216,7 +217,8 @@ static bool find_ending(const struct matcher *matcher, const struct name_tokens 
             if (!is_apart(tokens, from, from + length) || !candidates_find(&out->candidates, &matcher->site->endings, key))
                 continue;
             const struct name_tokens *of = &matcher->site->assets[out->candidates.assets[0]].tokens;
-            int dropped = of->count - length - 1; /* index of the asset's token before the ending that both names share */
+            /* index of the asset's token (run of letters or digits) before the ending that both names share */
+            int dropped = of->count - length - 1;
             const struct name_token *before = from > 0 ? &tokens->at[from - 1] : NULL;
             bool contradicts = before && dropped >= 0 && before->digits == of->at[dropped].digits &&
                                strcmp(before->text, of->at[dropped].text) != 0 && !isa_are_letters(before->text);

@@ -99,7 +99,7 @@ static bool fits_class(const struct matcher *matcher, const struct match_subject
 
 enum number_filter { PREFIX_FITS, SAME_SUFFIX, NO_SUFFIX, FITS_CLASS };
 
-/* Keeps the candidates that pass the filter, or all candidates if none does. */
+/* Keeps the candidates (assets that may be meant) that pass the filter, or all candidates if none does. */
 static void keep(const struct matcher *matcher, const struct match_subject *subject, struct match_candidates *list,
                  enum number_filter filter)
 {
@@ -117,7 +117,7 @@ static void keep(const struct matcher *matcher, const struct match_subject *subj
         *list = kept;
 }
 
-/* Removes candidates whose suffix letter (A, B, ...) differs from the tag's suffix letter. */
+/* Removes candidates (assets) whose suffix letter (A, B, ...) differs from the tag's suffix letter. */
 static void drop_other_suffix(const struct matcher *matcher, const struct match_subject *subject, struct match_candidates *list)
 {
     struct match_candidates kept = { .more = list->more };
@@ -179,7 +179,7 @@ bool method_number(const struct matcher *matcher, const struct match_subject *su
 static bool is_part(const struct isa_name *name, const struct name_tokens *of)
 {
     int at = 0;
-    bool letters = false; /* at least one of the matching tokens consists of letters */
+    bool letters = false; /* at least one of the matching tokens (runs of letters or digits) consists of letters */
     for (int i = 0; i < name->tokens.count; i++) {
         const struct name_token *token = &name->tokens.at[i];
         int next = at;

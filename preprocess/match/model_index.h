@@ -10,7 +10,7 @@
 
 struct indexed_asset {
     struct name_tokens tokens; /* tokens of the asset's id */
-    int number;                /* index of the token with the equipment's number; -1: none */
+    int number;                /* index of the token (run of letters or digits) with the equipment's number; -1: none */
     int model;                 /* index of the asset's model in model_index.models */
     /* index of the node that is the common ancestor of all the asset's nodes; if there is none, of the first node; -1: the asset is the
      * whole model */

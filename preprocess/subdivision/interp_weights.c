@@ -223,7 +223,8 @@ SIMD_BODY void exponential(lanes *x)
 struct softmax {
     /* per_m: 1 / radius; largest: largest exponent of any sensor, which is subtracted from all exponents so that exp() cannot overflow */
     float per_m, largest;
-    float near_m; /* distance to the nearest sensor, metres; used only with a reach */
+    /* distance to the nearest sensor, metres; used only if the group has a reach (largest distance at which a sensor has weight) */
+    float near_m;
 };
 
 /* Computes the nearness of sensors: 1 at a sensor, falling to 0 at the radius of Algorithm 1 and beyond. */

@@ -41,7 +41,8 @@ float interp_shepard(const struct interp_group *group, const float *distance_m, 
  * largest change per metre. */
 float interp_paper(const struct interp_group *group, float radius_m, const float *distance_m, float *interp);
 
-/* Computes only the normalisation of Shepard weights, for interp_shepard_again(). distance_m: group->count values including padding. */
+/* Computes only the normalisation of Shepard weights (1 / sum of the weights), for interp_shepard_again(). distance_m: group->count values
+ * including padding. */
 void interp_shepard_norm(const struct interp_group *group, const float *distance_m, struct interp_norm *norm);
 /* Writes the same weights as interp_shepard() from the normalisation that interp_shepard_norm() or interp_shepard() computed, in less than
  * half the time. */

@@ -136,8 +136,8 @@ static void distances_finish(struct distances *distances)
     room_finish(&distances->picked_m);
 }
 
-/* Returns the distances of the group's sensors, valid until the next call. Not copied if the group's columns are consecutive and need no
- * padding. */
+/* Returns the distances of the group's sensors, valid until the next call. They are not copied if the sensors are consecutive on the asset
+ * and need no padding. */
 static const float *pick(const struct linear_error_group *group, struct distances *distances, int mode)
 {
     const float *from = distances->of[mode];

@@ -14,7 +14,7 @@
 #include "preprocess/subdivision/subdivide_impl.h"
 
 #define MAX_CHANGES 16 /* limit of sensor changes */
-#define FEW 16         /* findings of the last run are used only if fewer than one sensor in FEW has changed */
+#define FEW 16         /* findings (measured errors) of the last run are used only if fewer than one sensor in FEW has changed */
 /* largest doubt (subdiv_cache.h: weight of the sensors that changed since the measurement) of a finding that is used. Measured: with this
  * doubt, one in a thousand edges with an error of about one colour step is wrong by a tenth of a colour step or more. */
 #define MAX_DOUBT 0.05f
@@ -43,7 +43,9 @@ struct subdiv_head {
  * error. */
 #define SHARE_FOLLOWS 1
 #define BARRED_FOLLOWS 2
-#define DOUBT_FOLLOWS 4 /* two numbers follow: the finding's doubt (subdiv_cache.h), and the amount by which its error may be wrong */
+/* two numbers follow: the doubt of the finding (weight of the sensors that changed since, subdiv_cache.h), and the amount by which its
+ * error may be wrong */
+#define DOUBT_FOLLOWS 4
 #define SHARE_IS_HALF 8 /* the split fraction is 0.5; without this flag and SHARE_FOLLOWS it is 0 */
 #define JUMPS 16
 
@@ -198,7 +200,7 @@ void subdiv_cache_close(struct subdiv_cache *cache)
     *cache = (struct subdiv_cache){ 0 };
 }
 
-/* The findings of this run, in the layout of the file. */
+/* the findings (measured errors) of this run, in the layout of the file */
 struct packed_findings {
     uint64_t *keys;
     float *errors, *rest;

@@ -17,16 +17,17 @@
 struct subdiv_cache {
     bool applies; /* the cache is usable for this asset; false: nothing is read or written */
     struct cache_file file;
-    const uint64_t *keys; /* keys of the last run's findings, in the mapped file */
+    const uint64_t *keys; /* cache keys of the last run's findings (measured errors), in the mapped file */
     const float *errors, *rest;
     const unsigned char *kinds;
-    uint32_t *rest_at; /* by finding: index in `rest` of its first optional number */
-    uint32_t *slots;   /* hash table by key: finding index + 1; 0: empty slot. NULL: no usable findings */
+    uint32_t *rest_at; /* by finding (measured error): index in `rest` of its first optional number */
+    /* hash table by key: index of the finding (measured error) + 1; 0: empty slot. NULL: the cache has no usable findings */
+    uint32_t *slots;
     size_t mask, finding_count;
     struct subdiv_sensor_change { /* a sensor that was added or removed */
         float place_m[3], power;
         uint32_t group;  /* index of the group in struct linear_error */
-        uint32_t column; /* column of an added sensor; UINT32_MAX: the sensor was removed */
+        uint32_t column; /* index of the added sensor on the asset; UINT32_MAX: the sensor was removed */
     } * changes;
     size_t change_count;
     /* bit masks by level index; hopeless: levels skipped in this run because an earlier run dropped them; given_up: levels dropped in this
@@ -42,8 +43,8 @@ struct subdiv_cache {
 void subdiv_cache_open(struct subdiv_cache *cache, const char *folder, uint64_t key, const struct linear_error *linear);
 /* Unmaps the file and frees the arrays. A zeroed cache is allowed. */
 void subdiv_cache_close(struct subdiv_cache *cache);
-/* Writes this run's findings to the file, when subdivision has ended. Write errors are ignored: then the next run measures everything
- * again. */
+/* Writes this run's findings (measured errors) to the file, when subdivision has ended. Write errors are ignored: then the next run
+ * measures everything again. */
 void subdiv_cache_write(const struct subdiv_cache *cache, const char *folder, uint64_t key);
 
 #endif

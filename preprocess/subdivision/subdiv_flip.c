@@ -17,7 +17,7 @@
 
 struct edge_flip {
     uint32_t edge, tris[2], across;
-    bool may; /* the flip is allowed: old and new diagonal cross, and the surface moves by less than the limit */
+    bool may; /* the flip is allowed: old and new diagonal cross, and the surface moves by less than FLAT_OF_ERROR permits */
 };
 
 /* Lists the edges with an error above the limit of triangles made since the last call: mesh->made.at[first] and later. */

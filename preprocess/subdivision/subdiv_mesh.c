@@ -182,7 +182,7 @@ void subdiv_mesh_load(struct subdiv_mesh *mesh, const struct level *level)
     mesh->tri_count = 0;
     mesh->loads++;
     mesh->made.count = mesh->open.count = 0;
-    /* edges that were not proven to need no split must be measured again, because the error limit depends on the level */
+    /* edges that were not proven to need no split must be measured again for this level, because the error limit depends on the level */
     for (size_t e = 0; e < mesh->edges.count; e++) {
         mesh->cuts[e].error = mesh->cuts[e].proven ? mesh->cuts[e].error : -1;
         mesh->cuts[e].corner = TRIMESH_NONE;

@@ -15,8 +15,8 @@
 /* maximum count of numbers in a sample for which the samples at all positions are stored; larger samples are computed again */
 #define MAX_STORED 512
 #define LARGE 0.25 /* share of the distance to the nearest sensor; a triangle is large if it has a longer edge */
-/* sum of a triangle's edge errors, in multiples of the limit; below this sum, only one of 500 large triangles has an error inside above the
- * limit */
+/* sum of a triangle's edge errors, in multiples of the error limit; below this sum, only one of 500 large triangles has an error inside
+ * above the limit */
 #define LIKELY 1.0
 /* in multiples of the minimum length shortest_m; a triangle whose longest edge is at most this long is not measured inside */
 #define MIN_INSIDE 2.0

@@ -77,7 +77,7 @@ struct subdiv_finding {
     float error, share; /* share: fraction at which a split of the edge leaves the smallest error */
     float barred;       /* error, as a share of the range, that no split may fix */
     bool jumps;
-    bool is_cached;   /* the last run's cache contained the finding, so it was not measured */
+    bool is_cached;   /* the cache contained this measurement from the last run, so it was not measured again */
     float doubt, off; /* see subdiv_cache.h */
     uint64_t key;     /* cache key */
 };
@@ -105,13 +105,13 @@ size_t subdiv_take_sample(struct level *sample, const struct level *level);
 
 /* --- cache (subdiv_cache.c) --- */
 
-/* Returns the cache key of a finding about the edge or triangle with these corners, or 0 if it is not cached. Thread: any. */
+/* Returns the cache key of the measured error of the edge or triangle with these corners, or 0 if it is not cached. Thread: any. */
 uint64_t subdiv_cache_key(const struct subdiv *subdiv, const uint32_t *corners, size_t count);
 /* Looks up the last run's finding with this key, if it is still valid despite the sensors that changed. *next: guess of its index,
  * initially 0; updated for the next call. Returns false if the key is unknown or the finding may be out of date. Thread: any. */
 bool subdiv_cache_find(const struct subdiv *subdiv, uint64_t key, const uint32_t *corners, size_t count, uint32_t *next,
                        struct subdiv_finding *finding);
-/* Records a finding for the next run, under finding->key. */
+/* Records a finding (measured error) for the next run, under finding->key. */
 void subdiv_cache_add(struct subdiv *subdiv, const struct subdiv_finding *finding);
 
 /* --- edge flips (subdiv_flip.c) --- */

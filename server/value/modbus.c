@@ -33,7 +33,7 @@ static void read_block(struct modbus_source *modbus, size_t index)
     int64_t now_ns = clock_mono_ns(), next_ns = block->due_ns + block->scan_ms * NS_PER_MS;
     modbus->asked_ns = now_ns;
     if (status < 0 && modbus_manners_excuse_read(modbus, status, unit->state == UNIT_UP))
-        return; /* the block's due time does not change, so that the next connection reads the block first */
+        return; /* the due time of the block (tags read by one request) does not change, so that the next connection reads it first */
     /* a late reader skips missed reads and does not make them up in a burst */
     block->due_ns = next_ns > now_ns ? next_ns : now_ns + block->scan_ms * NS_PER_MS;
     counter_inc(status == 0 ? modbus->reads_ok : modbus->reads_failed, 1);
@@ -53,8 +53,8 @@ static void read_block(struct modbus_source *modbus, size_t index)
     modbus_manners_after(modbus);
 }
 
-/* Returns the time from which a block may be read: the latest of the block's due time, its unit's retry time and the connection's retry
- * time. */
+/* Returns the time from which a block (tags read by one request) may be read: the latest of its due time, its unit's retry time and the
+ * connection's retry time. */
 static int64_t ready_ns(const struct modbus_source *modbus, const struct read_plan_block *block)
 {
     const struct modbus_unit *unit = modbus_unit_of(modbus, block);

@@ -41,7 +41,7 @@ void modbus_take_values(struct modbus_source *modbus, struct read_plan_block *bl
     block->answered = true;
     store_write(modbus->base.store, modbus->samples, block->tag_count, clock_mono_ns(), clock_utc_ns());
     bool repaired = modbus_note_refused(modbus, block, false, "read again");
-    /* this call may rebuild the read plan, which makes the pointer `block` invalid */
+    /* this call may rebuild the read plan, after which the pointer `block` is invalid */
     modbus_unit_is_up(modbus, modbus_unit_of(modbus, block));
     if (repaired)
         modbus_replan(modbus);
@@ -104,7 +104,8 @@ void modbus_take_exception(struct modbus_source *modbus, size_t index, int code,
         note_busy(modbus, block, code, now_ns);
         return;
     }
-    if (block->answered) { /* the device answered this block before, so the block is read once more before it is split */
+    /* the device answered this block (tags read by one request) before, so it is read once more before it is split into two blocks */
+    if (block->answered) {
         block->answered = false;
         block->due_ns = now_ns;
         return;

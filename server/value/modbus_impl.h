@@ -50,7 +50,7 @@ struct modbus_source {
     struct modbus_link *link;
     /* --- below: used by the source's thread only */
     struct read_plan plan;
-    bool plan_cut; /* the read plan has blocks that were split around addresses that the device refused or did not answer */
+    bool plan_cut; /* the read plan has blocks (requests) that were split around addresses that the device refused or did not answer */
     struct modbus_unit *units;
     struct backoff backoff; /* backoff of connection attempts */
     int64_t connect_ns;     /* monotonic time before which the source makes no connection */
@@ -66,7 +66,7 @@ struct modbus_source {
     int *lost;                 /* buffer for tag indices, with room for all tags */
 };
 
-/* Returns the unit (slave address) of a block. */
+/* Returns the Modbus unit (slave address) from which a block of the read plan is read. */
 struct modbus_unit *modbus_unit_of(const struct modbus_source *modbus, const struct read_plan_block *block);
 /* Records that a unit answered. Logs this if the log says that the unit does not answer. */
 void modbus_unit_is_up(struct modbus_source *modbus, struct modbus_unit *unit);
@@ -98,7 +98,7 @@ bool modbus_unit_doubt(struct modbus_source *modbus, struct modbus_unit *unit, s
  * blame: its tags lose their link. */
 void modbus_unit_settle(struct modbus_source *modbus, struct modbus_unit *unit, const struct read_plan_block *answered);
 
-/* Decodes the response to a block and writes its tags to the store. */
+/* Decodes the response to a block (tags read by one request) and writes its tags to the store. */
 void modbus_take_values(struct modbus_source *modbus, struct read_plan_block *block, const uint16_t *words);
 /* Handles a Modbus exception (error response): retries a busy device, splits a refused block, and marks refused tags as Bad. */
 void modbus_take_exception(struct modbus_source *modbus, size_t block, int code, int64_t now_ns);

@@ -15,7 +15,7 @@ static const int64_t TOLERANCE_NS = 2 * NS_PER_S; /* time since the last answer 
 static const int64_t FIRST_ANSWER_TIMEOUT_NS = 3 * NS_PER_S;
 /* first delay that is tried between connecting and the first request, for RTU over TCP, whose requests have no transaction numbers */
 static const int64_t RTU_DELAY_NS = 500 * NS_PER_MS;
-/* time limit for the answer of a unit that is up, if another unit behind the same gateway has just timed out */
+/* time limit for the answer of a unit (slave address) that is up, if another unit behind the same gateway has just timed out */
 static const int64_t GATEWAY_TIMEOUT_NS = 5 * NS_PER_S;
 static const int64_t MAX_CONNECT_DELAY_NS = 8 * NS_PER_S;
 

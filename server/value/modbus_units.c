@@ -124,7 +124,8 @@ bool modbus_unit_doubt(struct modbus_source *modbus, struct modbus_unit *unit, s
     unit->doubted = true;
     unit->doubted_table = failed->table;
     unit->doubted_first = failed->first;
-    other->due_ns = failed->due_ns - failed->scan_ms * NS_PER_MS; /* makes block `other` the next block that is read */
+    /* makes block `other` (another request to the same unit) the next one that is read */
+    other->due_ns = failed->due_ns - failed->scan_ms * NS_PER_MS;
     return true;
 }
 

@@ -98,7 +98,7 @@ void read_plan_finish(struct read_plan *plan)
     *plan = (struct read_plan){ 0 };
 }
 
-/* Sets the register range of a block to the range that its tags occupy. */
+/* Sets the register range of a block (tags read by one request) to the range that its tags occupy. */
 static void fit_to_tags(struct read_plan_block *block, const struct read_plan *plan, const struct plant *plant)
 {
     block->first = plant->tags[plan->tags[block->first_tag]].register_index;

@@ -24,7 +24,7 @@ static bool of_bits(const struct read_plan_block *block)
     return block->table == TABLE_COIL || block->table == TABLE_DISCRETE;
 }
 
-/* Returns the number of bytes of a block's request and response on the wire. */
+/* Returns the number of bytes on the wire of the request for a block, and of its response. */
 static double bytes_of(const struct plant_source *source, const struct read_plan_block *block)
 {
     int values = of_bits(block) ? (block->count + 7) / 8 : 2 * block->count;

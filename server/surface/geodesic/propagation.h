@@ -11,7 +11,8 @@
 struct propagation {
     const struct trimesh *mesh;
     const struct intrinsic *in;
-    uint32_t *first; /* by point: index in `fans` of its first fan; one additional element at the end */
+    /* by point: index in `fans` of its first fan (neighbours of the point in angular order); one additional element at the end */
+    uint32_t *first;
     /* up to PROPAGATION_FAN neighbours of a point in angular order, and the triangles between consecutive neighbours */
     struct propagation_fan {
         uint32_t to[PROPAGATION_FAN]; /* by lane: point index of the neighbour; index of the fan's own point in unused lanes */

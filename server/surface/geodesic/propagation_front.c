@@ -52,7 +52,7 @@ static bool clear(const struct propagation *propagation, struct propagation_fron
     return true;
 }
 
-/* Prefetches the fans of a point that will be processed soon. */
+/* Prefetches the fans (neighbours and triangles) of a point that will be processed soon. */
 static inline void fetch_fans(const struct propagation *propagation, uint32_t point)
 {
     const char *from = (const char *)&propagation->fans[propagation->first[point]],
@@ -152,7 +152,8 @@ SIMD_BODY void offers_of(const lanes *d_of_p, const lanes *reached, const lanes 
 /* Progress of a front. */
 struct front_turn {
     struct propagation_front *front;
-    const struct propagation_fan *fan, *end; /* fan: fan being processed; end: end of the current point's fans */
+    /* fan (up to PROPAGATION_FAN neighbours of the current point) that is being processed, and end of the point's fans */
+    const struct propagation_fan *fan, *end;
     /* d: distance of the current point, in all lanes; reached: distance up to which distances are final */
     lanes d, reached;
     uint32_t empty;                   /* number of consecutive empty buckets */
@@ -248,7 +249,8 @@ static void look_through(const struct propagation *propagation, struct propagati
     lay_out_apex(window, in->lengths[t][(side + 1) % 3], in->lengths[t][(side + 2) % 3], apex);
     double distance_m = hypot(apex[0], apex[1]);
     bool after_low = cross(window->low, apex) >= 0, before_high = cross(apex, window->high) >= 0;
-    /* the corner is outside of the window on both sides only if its position is NAN; the windows would then not become narrower */
+    /* the corner is outside of the window (visible part of an edge) on both sides only if its position is NAN; the windows would then not
+     * become narrower */
     if (!after_low && !before_high)
         return;
     if (after_low && before_high && distance_m < propagation->near_m)

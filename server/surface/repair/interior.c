@@ -14,12 +14,16 @@
 /* one in VOTE_EVERY triangles of a region (points connected without passing another part) is tested; if these agree, their result holds for
  * the region */
 #define VOTE_EVERY 16
-/* in multiples of the reach (parts.h): distance of the test points on both sides of a triangle that lies on another part's surface */
+/* in multiples of the reach (distance up to which a part counts as touching, parts.h): distance of the test points on both sides of a
+ * triangle that lies on another part's surface */
 #define BESIDE 1.5
-/* in multiples of the reach (parts.h): distance of the test points on both sides of a triangle that may be inside its own part */
+/* in multiples of the reach (distance up to which a part counts as touching, parts.h): distance of the test points on both sides of a
+ * triangle that may be inside its own part */
 #define BARELY 0.05
-#define FLUSH 0.9  /* minimum cosine between the normals of two faces that lie on each other */
-#define SLIVER 2.0 /* in multiples of the reach (parts.h): minimum height of a triangle whose normal is reliable */
+#define FLUSH 0.9 /* minimum cosine between the normals of two faces that lie on each other */
+/* in multiples of the reach (distance up to which a part counts as touching, parts.h): minimum height of a triangle whose normal is
+ * reliable */
+#define SLIVER 2.0
 
 struct solid { /* a closed part, in its state before surface sampling */
     uint32_t part;

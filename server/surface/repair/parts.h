@@ -18,9 +18,10 @@ struct body_parts {
     char *closed;                /* by part: 1 if it is closed, which means that its open edges are short compared with its size */
     char *tangled;               /* by part: 1 if it has edges with three faces or more, or intersects itself */
     char *crossed;               /* by part: 1 if it intersects itself; set by repair_contacts() */
-    char *thin;                  /* by part: 1 if it is closed and so thin that its reach is below the tolerance */
-    double *reach_m;             /* by part: distance up to which another surface counts as touching it */
-    double tolerance_m;          /* largest reach of a part */
+    /* by part: 1 if it is closed and so thin that its reach (distance up to which it counts as touching) is below the tolerance */
+    char *thin;
+    double *reach_m;    /* by part: distance up to which another surface counts as touching it */
+    double tolerance_m; /* largest reach of a part */
     /* length of the diagonal of the surface's main part (base/math/gap_split.h); 0: of `solid`. May be set after parts_init() */
     double size_m;
     size_t count, source_count; /* count: parts; source_count: model triangles */

@@ -40,7 +40,8 @@ static void find_patches(struct parts_finding *f)
 struct branches {
     struct open_branch {
         uint32_t edge, patch, faces;
-        bool runs_through; /* some patch has two faces at this edge and so continues through it */
+        /* one of the patches (triangles connected by edges with two faces) has two faces at this edge and so continues through it */
+        bool runs_through;
         double length_m;
     } * at;
     size_t count;
@@ -122,7 +123,7 @@ static void join_patches(struct parts_finding *f, const struct branches *b, uint
 {
     size_t tri_count = f->parts->solid.tri_count;
     struct core *cores = mem_array(tri_count, sizeof(*cores));
-    char *holds = mem_array(tri_count, 1); /* by lowest triangle of a part: 1 if the part contains a closed set of patches */
+    char *holds = mem_array(tri_count, 1); /* by lowest triangle of a part: 1 if the part contains patches that are closed together */
     for (size_t i = 1; i < b->count; i++)
         if (b->at[i].edge == b->at[i - 1].edge && !b->at[i].runs_through)
             trimesh_join(of, b->at[i - 1].patch, b->at[i].patch);
