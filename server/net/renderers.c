@@ -233,7 +233,7 @@ static void begin(struct renderer_peer *renderer)
     text_add_bytes(&renderer->out, room, sizeof(room));
 }
 
-/* libwebsockets buffers what the socket does not accept, and calls back only once that is sent. */
+/* libwebsockets buffers what the socket does not accept, and calls back only once that is sent. Returns false if the connection is gone. */
 static bool send_out(struct renderer_peer *renderer, enum lws_write_protocol how)
 {
     size_t count = renderer->out.length - LWS_PRE;
@@ -243,7 +243,7 @@ static bool send_out(struct renderer_peer *renderer, enum lws_write_protocol how
     return good;
 }
 
-/* Sends a JSON message; takes ownership of `message`. */
+/* Sends a JSON message; takes ownership of `message`. Returns false if the connection is gone. */
 static bool send_message(struct renderer_peer *renderer, json_t *message)
 {
     char *text = json_text(message, 0);
@@ -253,7 +253,7 @@ static bool send_message(struct renderer_peer *renderer, json_t *message)
     return send_out(renderer, LWS_WRITE_TEXT);
 }
 
-/* Tells the renderer that this core is only a standby, so that it looks for the leading core. */
+/* Tells the renderer that this core is only a standby, so that it looks for the leading core. Returns false if the connection is gone. */
 static bool send_standby(struct renderer_peer *renderer)
 {
     renderer->close_text = "it stands by";
@@ -279,7 +279,7 @@ static bool send_refusal(struct renderer_peer *renderer)
     return send_message(renderer, json_pack("{s:s,s:s,s:b}", "type", "refused", "why", renderer->refusal, "votes", votes));
 }
 
-/* A voting core is sent only its refusal and the questions about its lease promise. */
+/* A voting core is sent only its refusal and the questions about its lease promise. Returns false if the connection is gone. */
 static bool send_to_voter(const struct server_context *server, struct renderer_peer *renderer)
 {
     return !renderer->refusal_sent ? send_refusal(renderer) : !renderer->asks || send_question(server, renderer);
@@ -355,7 +355,7 @@ static bool send_answer(struct renderer_peer *renderer)
 }
 
 /* Sends samples to a standby. After a message of samples that is not full, readings are sent next even if new samples have arrived; on a
-   slow network there would always be new samples. */
+   slow network there would always be new samples. Returns false if the standby must be disconnected. */
 static bool send_samples(const struct server_context *server, struct renderer_peer *renderer)
 {
     begin(renderer);
@@ -404,7 +404,8 @@ static bool send_hello(struct renderer_peer *renderer)
 }
 
 /* Sends one message. Alarms and other rarely changing content go first and readings last, so that readings are never newer than the alarms
-   sent with them. But readings that have waited too long go first: without them the renderer takes the core for lost. */
+   sent with them. But readings that have waited too long go first: without them the renderer takes the core for lost. Returns false if the
+   renderer must be disconnected. */
 static bool send_next(struct server_context *server, struct renderer_peer *renderer)
 {
     struct lists_seen lists = lists_now(server);
@@ -635,7 +636,8 @@ static int on_receive(struct server_context *server, struct renderer_peer *rende
 
 /* --- libwebsockets events ------------------------------------------------------------------------------------------------------------- */
 
-/* Sends readings regularly even if nothing changes: their age grows, and silence would mean that the core is lost. */
+/* Sends readings regularly even if nothing changes: their age grows, and silence would mean that the core is lost. Returns -1 if the
+   renderer must be disconnected, else 0. */
 static int on_beat(struct server_context *server, struct renderer_peer *renderer)
 {
     int64_t now_ns = clock_mono_ns();

@@ -186,7 +186,7 @@ void stream_give_up(struct server_context *server, struct stream *stream, int64_
     encoded_frame_destroy(&stream->sending);
 }
 
-/* Ends the frame's message early, with fewer bytes than the frame's header announces. */
+/* Ends the frame's message early, with fewer bytes than the frame's header announces. Returns false if the connection is gone. */
 static bool write_end(struct server_context *server, struct stream *stream)
 {
     stream->cut = false;

@@ -94,7 +94,7 @@ void revision_record_finish(struct revision_record *record)
 
 /* --- continuing a revision ------------------------------------------------------------------------------------------------------ */
 
-/* Replaces a file of another folder, perhaps on another file system, by a copy with the same owner and permissions. */
+/* Replaces a file of another folder, perhaps on another file system, by a copy with the same owner and permissions. Returns 0 or -errno. */
 static int put_elsewhere(const char *from, const char *to)
 {
     struct atomic_file file = { .fd = -1 };
@@ -229,7 +229,8 @@ static char *say_holder(int fd)
                    : mem_strdup("another program is at work in it");
 }
 
-/* Opens the folder, or duplicates the descriptor of the parent process, which must refer to the same folder and hold its lock. */
+/* Opens the folder, or duplicates the descriptor of the parent process, which must refer to the same folder and hold its lock. Returns the
+   descriptor; -1 with errno on failure. */
 static int open_folder(const struct plant_folder_params *params)
 {
     struct stat lent, folder;

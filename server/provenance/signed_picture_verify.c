@@ -119,7 +119,8 @@ json_t *signed_picture_verify(const struct signing_key *key, const uint8_t *png,
 
 /* --- contents of a statement --------------------------------------------------------------------------------------------------- */
 
-/* Reads the readings of all tags of the plant, each exactly once. unproven: receives a flag by tag; NULL: not wanted. */
+/* Reads the readings of all tags of the plant, each exactly once. unproven: receives a flag by tag; NULL: not wanted. Returns false with
+   the reason if they are not valid. */
 static bool read_readings(const json_t *told, const struct plant *plant, struct snapshot *out, bool *unproven,
                           char why[SIGNED_PICTURE_WHY_BYTES])
 {

@@ -89,7 +89,8 @@ static struct strip_row strip_in_row(const struct strip_picture *picture, int y)
     return (struct strip_row){ 0, 0 };
 }
 
-/* Finds the longest run of rows that agree on the strip's position; up to two unreadable rows in between are tolerated. */
+/* Finds the longest run of rows that agree on the strip's position; up to two unreadable rows in between are tolerated. Returns false if
+   there is no such run, or its rows and cells do not fit each other in size. */
 static bool find_place(const struct strip_picture *picture, struct strip_found *found)
 {
     double best = 0, left_px = 0, cell_px = 0, first = 0, rows = 0;

@@ -20,10 +20,10 @@
 
 #define SAME_PLACE_M 1e-4
 
-/* --- checks that a file belongs to the plant
- * ----------------------------------------------------------------------------------------------------- */
+/* --- checks that a file belongs to the plant ---------------------------------------------------------------------------------------- */
 
-/* Compares positions. Positions in the file are floats relative to its origin, so a position far from the origin is less exact. */
+/* Returns whether the prepared file and the plant have a sensor at the same position, or on the same model node. Positions in the file are
+   floats relative to its origin, so a position far from the origin is less exact. */
 static bool same_place(const struct asset_header *header, const struct asset_sensor *in_file, const struct plant_sensor *in_plant)
 {
     if (in_file->node_hash || in_plant->node)
@@ -112,7 +112,7 @@ static bool influence_fits(struct log *log, const struct plant *plant, const str
     return true;
 }
 
-/* Hashes the model of an asset; a model used by an earlier asset is not read again. */
+/* Hashes the model of an asset; a model used by an earlier asset is not read again. Returns false with errno if it cannot be read. */
 static bool model_hash(const struct plant *plant, uint64_t *hashes, int index)
 {
     for (int i = 0; i < index; i++)

@@ -79,7 +79,8 @@ static void print_json(const struct pending_query *question, const struct plant_
         text_add(out, "]}\n");
 }
 
-/* Appends the text of the query's next tag, requested from the core: the same bytes as this daemon would write. */
+/* Appends the text of the query's next tag, requested from the core: the same bytes as this daemon would write. Returns false if the core
+   did not answer. */
 static bool fetch_tag(const struct history_queries *queries, struct core_history *core, struct pending_query *question, struct text *out)
 {
     const struct history_query *query = &question->query;
@@ -112,7 +113,7 @@ static bool read_tag(struct history_queries *queries, struct history_reader *rea
     return good;
 }
 
-/* Appends the drifting sensors of the query's next asset. */
+/* Appends the drifting sensors of the query's next asset. Returns false if history could not be read. */
 static bool read_asset(struct history_queries *queries, struct history_reader *reader, struct pending_query *question, struct text *out)
 {
     const struct history_query *query = &question->query;

@@ -413,7 +413,7 @@ static bool draw(struct render_thread *thread, struct request_group *group)
 /* --- start, main loop and end of the render thread -------------------------------------------------------------------- */
 
 /* Creates GL and everything that depends on it. kind: GL_AUTO, or the kind of the lost context; hardware true: a software renderer is not
-   accepted. */
+   accepted. Returns false on failure, logged. */
 static bool gl_begin(struct render_thread *thread, enum gl_kind kind, bool hardware)
 {
     const struct render_service_params *params = &thread->service->params;

@@ -297,7 +297,8 @@ bool session_may_be(struct session *session, const struct wall_place *place, str
     return false;
 }
 
-/* Makes the session a wall display. From now on it is also sent the mouse pointers that users at desks show on the wall. */
+/* Makes the session a wall display. From now on it is also sent the mouse pointers that users at desks show on the wall. Returns false with
+   *error if the client may not be that display. */
 static bool on_display(struct session *session, const struct message *message, struct message_error *error)
 {
     if (!session_may_be(session, &message->wall.place, error))

@@ -33,7 +33,8 @@ static bool judge_token(struct session *session, const char *token, int64_t now_
     return true;
 }
 
-/* Checks the token and the role. If a token is given, its role counts, even if the server requires no token. */
+/* Checks the token and the role. If a token is given, its role counts, even if the server requires no token. Returns false with *error if
+   the client is refused. */
 static bool identify(struct session *session, const struct message *message, int64_t now_ns, int64_t now_utc_ns,
                      struct message_error *error)
 {
@@ -49,7 +50,7 @@ static bool identify(struct session *session, const struct message *message, int
 }
 
 /* Reserves pixels for the session. A tile (one display's part of a wall's picture) counts only its own display, because all tiles share one
-   picture. */
+   picture. Returns false with *error if there is no capacity for them. */
 static bool admit(struct session *session, const struct message *message, const struct view *view, struct message_error *error)
 {
     const struct session_context *context = session->context;
@@ -65,7 +66,8 @@ static bool admit(struct session *session, const struct message *message, const 
 }
 
 /* Starts the session as a tile (one display's part of a wall's picture). A tile may lead its wall and can delay it, so this requires the
-   token of that display or the role engineer. */
+   token of that display or the role engineer. Returns false with *error if the client has neither, or
+   if the wall has no such tile. */
 static bool begin_tile(struct session *session, const struct message *message, struct view *view, struct message_error *error)
 {
     const struct wall_place *place = &message->tile;
@@ -85,7 +87,8 @@ static bool begin_tile(struct session *session, const struct message *message, s
     return true;
 }
 
-/* Sets the first view: the resumed one, or the plant's default. */
+/* Sets the first view: the resumed one, or the plant's default. Returns false with *error if the message asks for a view that cannot be
+   set. */
 static bool begin_view(struct session *session, const struct message *message, const struct resumed *resumed, struct view *view,
                        struct message_error *error)
 {
@@ -144,7 +147,7 @@ static void take_over(struct session *session, const struct resumed *resumed, co
 }
 
 /* Finds the view to resume: by the secret if this daemon kept the view; otherwise from the signed view token, which any daemon may have
-   made. */
+   made. Returns false if there is none. */
 static bool find_resumed(const struct session *session, const char *token, int64_t now_ns, int64_t now_utc_ns,
                          char secret[RESUME_CHARS + 1], struct resumed *out)
 {

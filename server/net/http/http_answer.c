@@ -23,7 +23,7 @@ static bool add_header(struct lws *wsi, const char *name, const char *value, uns
     return lws_add_http_header_by_name(wsi, (const unsigned char *)name, (const unsigned char *)value, (int)strlen(value), p, end) == 0;
 }
 
-/* Adds the status line and the body's headers. An answer in pieces has no Content-Length. */
+/* Adds the status line and the body's headers. An answer in pieces has no Content-Length. Returns false if the headers do not fit. */
 static bool add_first(struct http_exchange *request, int status, const char *type, unsigned char **p, unsigned char *end)
 {
     struct lws *wsi = request->wsi;
@@ -34,7 +34,8 @@ static bool add_first(struct http_exchange *request, int status, const char *typ
     return lws_add_http_common_headers(wsi, (unsigned)status, type, status == HTTP_STATUS_NOT_MODIFIED ? 0 : count, p, end) == 0;
 }
 
-/* Adds the security policies. A sandboxed document has an opaque origin, so even its own script counts as cross-origin. */
+/* Adds the security policies. A sandboxed document has an opaque origin, so even its own script counts as cross-origin. Returns false if
+   the headers do not fit. */
 static bool add_policies(struct http_exchange *request, const char *content_policy, unsigned char **p, unsigned char *end)
 {
     const char *resource_policy = request->sandboxed ? "cross-origin" : "same-origin";
@@ -45,7 +46,7 @@ static bool add_policies(struct http_exchange *request, const char *content_poli
     return added;
 }
 
-/* Adds the refusal's code as a header, in ASCII because headers allow nothing else. */
+/* Adds the refusal's code as a header, in ASCII because headers allow nothing else. Returns false if that fails. */
 static bool add_refusal(const struct refusal *refusal, struct lws *wsi, unsigned char **p, unsigned char *end)
 {
     json_t *object = refusal_json(refusal);

@@ -266,8 +266,9 @@ int api_walls(struct server_context *server, struct http_exchange *request)
     return request_answer_json(request, walls_text(server->params.plant.scene->plant, &reader));
 }
 
-/* Forwards a pairing request to the core, which chooses the digits and sends them to its renderers. The core is asked every time,
-   because the digits expire unless the request is repeated. */
+/* Forwards a pairing request to the core, which chooses the digits and sends them to its renderers. The core is asked every time, because
+   the digits expire unless the request is repeated. Returns what this renderer
+   knows of the request so far. */
 static enum pairing ask_core(struct server_context *server, const struct pairing_request *asked, char digits[PAIRING_DIGITS + 1],
                              int *left_s)
 {

@@ -39,7 +39,8 @@ static const struct named_view *find_view(const struct server_context *server, c
     return named;
 }
 
-/* Reads the address of a view of the plant file, with the author's rights; the client may set size and language. */
+/* Reads the address of a view of the plant file, with the author's rights; the client may set size and language. Returns false with *error
+   if the address is not valid. */
 static bool expand(const struct named_view *named, const struct args *args, struct view_address *out, struct message_error *error)
 {
     static const char *const mine[] = { "width", "height", "language" };
@@ -61,8 +62,8 @@ static bool expand(const struct named_view *named, const struct args *args, stru
     return good;
 }
 
-/* Reads the requested picture into *view. If a view is named, *address receives its full parameters, for view_address_finish();
-   otherwise they are in *args. */
+/* Reads the requested picture into *view. If a view is named, *address receives its full parameters, for view_address_finish(); otherwise
+   they are in *args. Returns false with *error if the request is not valid. */
 static bool read_picture(struct server_context *server, struct lws *wsi, struct args *args, struct view_address *address, struct view *view,
                          struct message_error *error)
 {

@@ -196,7 +196,8 @@ static bool mark(const struct pattern *pattern, const struct node_list *model, b
     return any;
 }
 
-/* Applies to `taken` either the patterns that include nodes, or those that exclude nodes (with !). */
+/* Applies to `taken` either the patterns that include nodes, or those that exclude nodes (with !). Returns false with the reason in `why`
+   if a pattern matches no node. *done grows by the number of patterns applied. */
 static bool mark_all(const char *patterns, bool excludes, const struct node_list *model, bool *taken, size_t *done, char *why, size_t bytes)
 {
     bool good = true;

@@ -101,7 +101,8 @@ static int read_digits(const char **p, long *value)
     return count;
 }
 
-/* Parses addresses such as hr:0, whose register numbers count from 0, as on the wire. */
+/* Parses addresses such as hr:0, whose register numbers count from 0, as on the wire. Returns false with the reason in `why` if the text is
+   no such address. */
 static bool read_named_table(const char **p, struct modbus_address *out, char why[200])
 {
     static const struct {
@@ -127,7 +128,8 @@ static bool read_named_table(const char **p, struct modbus_address *out, char wh
     return true;
 }
 
-/* Parses 40001 and 400001: the first digit selects the table, the other digits are the register number, counted from address_base. */
+/* Parses 40001 and 400001: the first digit selects the table, the other digits are the register number, counted from address_base. Returns
+   false with the reason in `why` if the text is no such address. */
 static bool read_digit_table(const char **p, int address_base, struct modbus_address *out, char why[200])
 {
     static const enum register_table tables[] = { TABLE_COIL, TABLE_DISCRETE, 0, TABLE_INPUT, TABLE_HOLDING }; /* by first digit */

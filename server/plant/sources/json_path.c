@@ -63,7 +63,7 @@ static bool add_escape(char out[JSON_PATH_TEXT_BYTES], size_t *count, const char
     return name && add_byte(out, count, (unsigned char)bytes[name - names]);
 }
 
-/* Reads a string in single or double quotes. */
+/* Reads a string in single or double quotes. Returns false with the reason in `why` if there is none. */
 static bool read_string(const char **at, char out[JSON_PATH_TEXT_BYTES], char why[200])
 {
     const char *begin = *at, *p = begin + 1;
@@ -115,7 +115,8 @@ static bool read_literal(const char **at, struct json_path_test *out, char why[2
     return true;
 }
 
-/* Reads the left side of a comparison: `@.a.b`, `@['a']`, `@`, or the name of a member alone. */
+/* Reads the left side of a comparison: `@.a.b`, `@['a']`, `@`, or the name of a member alone. Returns false with the reason in `why` if
+   that fails. */
 static bool read_operand(const char **at, struct json_path_test *out, char why[200])
 {
     struct json_path_step step;
@@ -158,7 +159,7 @@ static bool read_test(const char **at, struct json_path_test *out, char why[200]
     return read_literal(at, out, why) || (!*why && wrong(why, "expected a string, a number, true, false or null behind ==", begin));
 }
 
-/* Reads comparisons joined by &&, optionally in parentheses. */
+/* Reads comparisons joined by &&, optionally in parentheses. Returns false with the reason in `why` if that fails. */
 static bool read_tests(const char **at, struct json_path_step *out, int depth, char why[200])
 {
     for (;;) {
@@ -208,7 +209,8 @@ static const char *refusal_in_bracket(const char *at)
     }
 }
 
-/* Reads one step of a path in brackets: [0], [-1], ["name"], ['name'] or [?@.name=='text']. */
+/* Reads one step of a path in brackets: [0], [-1], ["name"], ['name'] or [?@.name=='text']. Returns false with the reason in `why` if that
+   fails. */
 static bool read_bracket(const char **at, struct json_path_step *out, char why[200])
 {
     const char *begin = *at, *p = begin + 1;

@@ -65,7 +65,7 @@ static bool fill_template(const struct plant *plant, const struct plant_tag *tag
     return true;
 }
 
-/* Checks the form GROUP/NODE or GROUP/NODE/DEVICE. */
+/* Returns whether a topic has the form GROUP/NODE or GROUP/NODE/DEVICE. */
 static bool is_sparkplug(const char *topic)
 {
     int parts = 1;

@@ -218,7 +218,7 @@ static void read_ne43(struct tag_wire *wire)
         cell_error(wire->columns, COL_NE43, "NE 43: expected Scaling Linear or Square Root, whose Raw Low is 4 mA and Raw High 20 mA");
 }
 
-/* Parses a sentinel: 0x8000 is compared bit by bit, -32768 or 1.5e3 as a number. */
+/* Parses a sentinel: 0x8000 is compared bit by bit, -32768 or 1.5e3 as a number. Returns false if the text is neither. */
 static bool read_sentinel(const char *text, struct plant_sentinel *out)
 {
     char *end;

@@ -323,7 +323,7 @@ static bool take_end(char *name, const char *end)
     return true;
 }
 
-/* Finds a pressure unit with a suffix for absolute or gauge: psia, bar(g), kPa abs. */
+/* Finds a pressure unit with a suffix for absolute or gauge: psia, bar(g), kPa abs. Returns false if the name is no such unit. */
 static bool find_pressure(const char *name, struct unit_entry *out)
 {
     static const char *const absolute[] = { "absolute", "abs", "a" }, *const gauge[] = { "gauge", "gage", "g" };
@@ -343,7 +343,7 @@ static bool find_pressure(const char *name, struct unit_entry *out)
     return false;
 }
 
-/* Finds a temperature difference, such as deltaK: the zero point of the scale does not matter. */
+/* Finds a temperature difference, such as deltaK: the zero point of the scale does not matter. Returns false if there is no such unit. */
 static bool find_difference(const char *name, struct unit_entry *out)
 {
     const struct unit_entry *unit = strncasecmp(name, "delta", 5) == 0 ? look_up(name + 5) : NULL;
@@ -365,7 +365,8 @@ static bool find(const char *name, struct unit_entry *out)
 
 /* --- interface -------------------------------------------------------------------------------------------------------------- */
 
-/* Compares unknown units: case-insensitive except for the first letter, since prefixes such as M and m, P and p differ. */
+/* Returns whether two unknown units are equal: case-insensitive except for the first letter, since prefixes such as M and m, P and p
+   differ. */
 static bool written_alike(const char *a, const char *b)
 {
     return *a == *b && !strcasecmp(a, b);

@@ -102,7 +102,7 @@ bool gl_backend_take_up(struct renderer *renderer, struct frame_context *context
 }
 
 /* Prepares to continue a job after the renderer drew other frames. The job then holds a reference to its light set, so that the set is not
-   evicted. */
+   evicted. Returns false on failure, logged. */
 static bool take_up(struct renderer *renderer, struct render_job *job)
 {
     return renderer_light_job(renderer, job) && gl_backend_take_up(renderer, &job->context);

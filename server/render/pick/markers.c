@@ -37,7 +37,7 @@ static struct marker_iterator iterator_of(const struct frame_context *context, c
     return (struct marker_iterator){ .scene = context->gpu_scene->scene, .trial = *trial };
 }
 
-/* Advances the iterator to the next sensor whose marker is shown. */
+/* Advances the iterator to the next sensor whose marker is shown. Returns false at the end. */
 static bool next_shown(struct marker_iterator *iterator, const struct frame_context *context, struct marker_place *place)
 {
     while (marker_next(iterator, place))

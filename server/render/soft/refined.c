@@ -236,7 +236,7 @@ static bool advance(struct refined *refined, size_t all, size_t some, size_t *be
     return *end == all;
 }
 
-/* Draws the rim of the selected asset into the visibility buffer's ink (lines drawn over pixels). */
+/* Draws the rim of the selected asset into the visibility buffer's ink (lines drawn over pixels). Returns false when out of memory. */
 static bool mark(struct refined *refined, const struct frame *frame)
 {
     struct raster *raster = &refined->raster;

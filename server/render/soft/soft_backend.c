@@ -55,7 +55,7 @@ static void abandon(struct renderer *renderer, struct render_job *job)
     job->of.soft = NULL;
 }
 
-/* Continues a job after other frames were drawn meanwhile. */
+/* Continues a job after other frames were drawn meanwhile. Returns false on failure, logged. */
 static bool take_up(struct renderer *renderer, struct render_job *job)
 {
     if (!renderer_light_job(renderer, job))
@@ -65,7 +65,7 @@ static bool take_up(struct renderer *renderer, struct render_job *job)
 }
 
 /* Draws steps until the budget is spent. Starts another step only if twice the duration of the last step fits in the rest of the budget: a
-   step takes a few milliseconds on all cores, and the next may take twice as long. */
+   step takes a few milliseconds on all cores, and the next may take twice as long. Returns true when no step is left. */
 static bool step(struct renderer *renderer, struct render_job *job, int64_t budget_ns)
 {
     struct refined *refined = job->of.soft->refined;

@@ -31,7 +31,8 @@ static const struct named_view *find_view(const struct session *session, const c
     return named;
 }
 
-/* Reads a view as its author wrote it, with the author's rights; keeps the size of `view`. */
+/* Reads a view as its author wrote it, with the author's rights; keeps the size of `view`. Returns false with *error if the view cannot be
+   shown in a stream. */
 static bool read_view(const struct session *session, const struct named_view *named, struct view *view, struct message_error *error)
 {
     const struct session_context *context = session->context;
