@@ -36,8 +36,8 @@ static void list_sensors(const struct influence_mesh *mesh, const struct laplaci
     mem_free(at);
 }
 
-/* Returns an upper bound of the norm k^2 |D' A^-1 D| (letters: gaussian_covariance.h): |D' C^-1 D|, estimated from the weights of sensors
- * that share a mesh point. */
+/* Returns an upper bound of the norm k^2 |D' A^-1 D| (D: sensor weights, A = k^2 C + G, C: areas, G: stiffness): |D' C^-1 D|, estimated
+ * from the weights of sensors that share a mesh point. */
 static double find_bound(size_t rows, const size_t *first, const uint32_t *sensors, const double *shares, const double *mass_m2,
                          size_t count)
 {

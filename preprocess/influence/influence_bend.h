@@ -13,7 +13,7 @@
 
 struct bend_place {
     uint32_t tri;                   /* index of the drawn triangle */
-    float weights[3];               /* barycentric weights of the triangle's corners */
+    float weights[3];               /* barycentric weights of the place in the drawn triangle */
     struct influence_anchor anchor; /* position on the mesh */
 };
 
@@ -22,7 +22,7 @@ struct bend_level { /* one level of detail */
     double error_m; /* largest distance in metres of the level's triangles from the surface */
 };
 
-struct bend_drawn { /* the drawn triangles */
+struct bend_drawn { /* the drawn triangles: those of the asset file */
     const float (*positions_m)[3];
     /* vertex indices of the drawn triangles (triangles of the asset file), 3 each, level by level, finest first */
     const uint32_t *triangles;

@@ -10,7 +10,7 @@
 
 struct sample_cache {
     struct cache_file file;
-    const uint64_t *known; /* hash table in the mapped file; NULL: none */
+    const uint64_t *known; /* hash table of the mapped file: triangle indices by key; NULL: there is no file */
     size_t slot_count;
     pthread_mutex_t lock;
     /* --- members protected by `lock` */

@@ -139,7 +139,7 @@ static void pair_run(struct node_pairing *p, const int *olds, size_t old_count, 
 }
 
 /* Goes through the sorted candidates of the old and the new model in parallel, and pairs nodes within each run of nodes that compare equal,
- * by the rule. */
+ * as `rule` says (enum run_rule). */
 static void pair_runs(struct node_pairing *p, int (*compare)(const struct node_pairing *p, int old_node, int new_node), enum run_rule rule)
 {
     for (size_t i = 0, k = 0; i < p->old_count && k < p->new_count;) {

@@ -10,7 +10,7 @@
 #include "surface/mesh/bvh.h"
 
 #define RAYS 5
-#define RAYS_INSIDE 4 /* minimum number of the RAYS rays that must agree */
+#define RAYS_INSIDE 4 /* minimum number of the RAYS rays that must agree that a point is inside a part */
 /* one in VOTE_EVERY triangles of a region (points connected without passing another part) is tested; if these agree, their result holds for
  * the region */
 #define VOTE_EVERY 16

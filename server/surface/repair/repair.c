@@ -235,9 +235,9 @@ void repair_seams(struct trimesh *mesh, double tolerance_m, uint32_t *target, st
     size_t target_count = mesh->point_count;
     for (uint32_t i = 0; i < target_count; i++)
         target[i] = i;
-    /* Rounds 0 and 1 close exact fits only, so that their edges are no borders any more when rounds 2 and 3 close gaps, and are not pulled
-     * to a neighbour. In round 1, a point that is on an edge by chance is not inserted, because it would split the edge into pieces too
-     * short to be closed. */
+    /* Rounds 0 and 1 close exact fits only (points within a hundredth of the tolerance), so that their edges are no borders any more when
+     * rounds 2 and 3 close gaps, and are not pulled to a neighbour. In round 1, a point that is on an edge by chance is not inserted,
+     * because it would split the edge into pieces too short to be closed. */
     for (int round = 0; round < 4; round++) {
         struct borders borders;
         borders_init(&borders, mesh);
