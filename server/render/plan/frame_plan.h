@@ -9,7 +9,7 @@
 
 struct frame_plan {
     const struct gpu_scene *gpu_scene;
-    struct view view; /* never a split one */
+    struct view view; /* never split: a split view has one plan per half */
     struct view_constants constants;
     struct light_key lit_by; /* key of the light used: the one that the view asks for, or the most similar light that is ready */
     double error_px; /* largest error of a level of detail's surface, in pixels of the frame (lod_selection.h); 0: finest levels only */
@@ -20,7 +20,7 @@ struct frame_plan {
     /* --- set by frame_plan_complete() --- */
     /* field of each asset; NULL: the asset shows no field. Valid until a plan with newer readings is completed */
     const struct fields_entry **fields;
-    int64_t data_utc_ns;     /* of the snapshot */
+    int64_t data_utc_ns;     /* time of the snapshot */
     uint64_t content, shape; /* hashes of the frame and of its geometry and light (content_hash.h) */
     int64_t field_ns;        /* time spent on computing the fields, ns */
 };

@@ -31,7 +31,8 @@ static uint32_t mix(uint32_t a, uint32_t b, float part)
     return out;
 }
 
-/* Coverage by the dark stripes (hatch) and dots (stipple) of shaders/field.glsl; exceeds 0.5 inside. */
+/* hatch(), stipple() and rule() return a pixel's coverage by dark stripes, by dots, and by horizontal lines, as in shaders/field.glsl; it
+   exceeds 0.5 inside the pattern. */
 static float hatch(float x, float y, float pattern_px)
 {
     float phase = (x + y) / (pattern_px * (float)HATCH_SLANT);
@@ -44,7 +45,6 @@ static float stipple(float x, float y, float pattern_px)
     return ((float)STIPPLE_RADIUS - hypotf(column - floorf(column) - 0.5f, row - floorf(row) - 0.5f)) * pattern_px + 0.5f;
 }
 
-/* Exceeds 0.5 on the lines. */
 static float rule(float y, float pattern_px)
 {
     float at = y / pattern_px;
@@ -190,7 +190,7 @@ SOFT_INLINE void transpose(const quad rows[4], quad columns[3])
     columns[2] = __builtin_shufflevector(low, high, 0, 1, 4, 5);
 }
 
-struct eight_shown { /* of pixels of the field */
+struct eight_shown { /* eight pixels of the field: corner weights, and carried values */
     lanes w1, w2, carried;
     lanes_int known; /* -1: the fast path may colour the pixel; 0: a corner or the pixel has a flag */
     struct eight_places places; /* points at which fields are evaluated from sensors */

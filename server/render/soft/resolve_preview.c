@@ -192,7 +192,7 @@ SOFT_INLINE void values_at(const struct pixel_row *row, lanes x, lanes y, lanes 
     pixel_lanes_at(&row->pixels->field, at, out);
 }
 
-/* As carry_field in faces.c. */
+/* Converts field values to carried values (colour map columns; on a logarithmic scale unchanged), as carry_field() in faces.c. */
 SOFT_INLINE lanes carried_of(const struct pixel_row *row, lanes value)
 {
     const float slack = 1e-5f, columns = COLORMAP_PLACES / (1 + 2 * slack), farthest = 1e6f, *scale = row->raster->block.scale;
@@ -272,7 +272,7 @@ SOFT_INLINE void evaluate_fields(const struct raster *raster, const struct soft_
             evaluate_eight(raster, rect, &ink, column, row);
 }
 
-/* out: beginning of the row. */
+/* Colours the pixels left..right of a row. out: pixel at column 0 of the row. */
 SOFT_INLINE void color_row(const struct raster *raster, int left, int right, int row, uint8_t *out)
 {
     struct heights heights = { 0 };

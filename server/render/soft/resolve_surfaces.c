@@ -32,7 +32,8 @@ static float dot_of(const float a[3], const float b[3])
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* As mapped_normal() in shaders/refined.frag. */
+/* Turns the unit normal n by a texel of a normal map, as mapped_normal() in shaders/refined.frag. dx, dy: change of the surface point per
+   pixel, metres; uv: from soft_spread_coordinates(). */
 static void map_normal(const float dx[3], const float dy[3], float uv[3][2], const float texel[4], float scale, float n[3])
 {
     float cross_y[3], cross_x[3], t[3], b[3], m[3];
@@ -121,7 +122,7 @@ struct lit { /* eight surfaces */
     vec v, l, glow; /* v, l: unit vectors towards the eye and the sun; glow: light that the surface emits */
 };
 
-/* alphas may be NULL. */
+/* Computes the surface points, their material, and how much of the sun reaches them. alphas: receives their opacity, 0..1; NULL: not needed. */
 SOFT_INLINE void see(const struct refined *refined, const struct refined_item *items, size_t count, struct lit *lit, float *alphas)
 {
     struct eight_points *spot = &lit->spot;

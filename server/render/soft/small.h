@@ -42,7 +42,7 @@ struct small { /* eight faces, as structure of arrays: lane i belongs to face i 
 
 struct eight_faces { /* indices of the corners, and sizes, of eight faces, one lane each */
     lanes_int corners[3];
-    lanes_int width, height; /* in pixels, less one */
+    lanes_int width, height; /* size in pixels, minus 1 */
 };
 
 SOFT_INLINE struct eight_faces read_faces(const struct soft_face *const faces[LANES])
