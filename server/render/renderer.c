@@ -90,7 +90,8 @@ static int64_t oldest_age_of(const struct frame_context *context)
     return oldest_ns;
 }
 
-/* Largest field error of the visible assets, rounded up to 1, 2 or 5 times a power of ten so that it seldom changes while readings do. */
+/* Returns the largest field error of the visible assets, rounded up to 1, 2 or 5 times a power of ten so that it seldom changes while
+   readings do. */
 static double drawn_error_of(const struct frame_context *context)
 {
     double most = 0;
