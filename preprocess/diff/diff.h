@@ -13,7 +13,7 @@ extern const char *const diff_changes[DIFF_CHANGES];
 struct diff_asset {
     const char *id;
     enum diff_change change;
-    /* why a removed asset whose id the new plant still has counts as removed, such as a missing node; else NULL */
+    /* reason why a removed asset counts as removed although the new plant still has its id, such as a missing node; else NULL */
     char *why;
     double move_m[3]; /* movement of the centre of the asset's bounding box, metres, plant frame */
     double moved_m;   /* largest movement of a corner of the asset's bounding box, metres */

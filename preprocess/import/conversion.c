@@ -153,7 +153,7 @@ static int read_ourselves(void *arg)
     return good ? 0 : 1;
 }
 
-/* Prints a line of findings.h that counts the nodes of a glTF model whose mesh has no triangles. */
+/* Prints a report line (format: findings.h) that counts the nodes of a glTF model whose mesh has no triangles. */
 static void say_empty_nodes(const struct gltf_model *model)
 {
     struct text names = { 0 };

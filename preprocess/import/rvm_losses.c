@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sorts the lost primitives by group and prints one line of findings.h per group. */
+/* Sorts the lost primitives by group and prints one report line (format: findings.h) per group. */
 #include "preprocess/import/rvm_losses.h"
 
 #include <stdlib.h>

@@ -19,7 +19,7 @@
 #define FAR_TRIANGLES 16000
 #define FAR_WORTH 0.9  /* a far level is made only if it has at most this share of the previous level's triangles */
 #define STEP 1.4       /* minimum factor by which the error grows from one level to the next coarser one */
-#define STEP_SMALL 1.7 /* the same minimum factor after a level whose error is above LEVELS_SMALL */
+#define STEP_SMALL 1.7 /* minimum factor by which the error grows from a level whose error is above LEVELS_SMALL to the next coarser one */
 /* factor on a level's error. A near level also includes events (changes of parts) with errors up to this product, so that the next level
  * differs more. After a rejected level, the next attempt has at least this error. */
 #define WAIT 1.1

@@ -17,7 +17,8 @@
 #define MAX_COLLAPSED 100000
 #define LEAST 0.00025 /* allowed error of the first version that is made by edge collapses, relative to the asset's size */
 #define STEP 1.3      /* factor from the allowed error of one version to that of the next, in the range of far levels (levels.c) */
-/* the same factor in the range of near levels; larger, because each version must be measured and near levels need fewer versions */
+/* factor from the allowed error of one version to that of the next, in the range of near levels; larger, because each version must be
+ * measured and near levels need fewer versions */
 #define STEP_ELSE 1.7
 #define ALIKE 0.85       /* a version (simplification step) with more than this share of the previous version's triangles is dropped */
 #define MIN_TRIANGLES 60 /* smaller assets are not simplified */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds equipment by the tag's name: a model node with that name; the site's rules; equipment whose name is part of the tag's name; such
- * equipment if one of the names has a spelling slip. */
+/* Finds equipment by the tag's name: a model node with that name; the site's rules; equipment whose name is part of the tag's name; the
+ * same with a spelling slip in one of the names. */
 #include <stdio.h>
 #include <string.h>
 

@@ -22,8 +22,9 @@
 #include "preprocess/pipeline/sensor_distances.h"
 #include "preprocess/pipeline/build_report_json.h"
 
-#define FAR_M 0.25       /* distance in metres between a sensor and the surface, above which a warning is printed */
-#define FAR_OF_SIZE 0.05 /* the same limit as a share of the asset's size; the smaller limit applies */
+#define FAR_M 0.25 /* distance in metres between a sensor and the surface, above which a warning is printed */
+/* distance above which a warning is printed, as a share of the asset's size; the smaller one of both limits applies */
+#define FAR_OF_SIZE 0.05
 
 /* number of triangles in a batch: models are parsed until their assets have this many triangles, then these assets are built */
 #define BATCH_TRIANGLES 4e6

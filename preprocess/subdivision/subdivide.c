@@ -63,8 +63,8 @@ static uint32_t bin_of(float error)
     return bits >> 16;
 }
 
-/* Keeps the `most` findings with the largest errors, in their order. The threshold comes from a histogram of errors; of findings in the
- * threshold's bin, the first ones are kept. Returns the number of findings kept. */
+/* Keeps the `most` findings (measured errors) with the largest errors, in their order. The threshold comes from a histogram of errors; of
+ * findings in the threshold's bin, the first ones are kept. Returns the number of findings kept. */
 static size_t keep_worst(struct subdiv_finding *findings, size_t count, size_t most)
 {
     if (count <= most)

@@ -59,7 +59,7 @@ static struct snapshot_entry *find(const struct snapshot_cache *snapshot_cache, 
     return NULL;
 }
 
-/* Returns the lowest slot number that no snapshot with a user has. Call with the lock held. */
+/* Returns the lowest slot number that no snapshot in use has. Call with the lock held. */
 static int free_slot(const struct snapshot_cache *snapshot_cache)
 {
     for (int slot = 1;; slot++) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Prints shapes that Assimp leaves out of a model, as lines of findings.h. Thread: one. */
+/* Prints shapes that Assimp leaves out of a model, as report lines (format: findings.h). Thread: one. */
 #ifndef PREPROCESS_IMPORT_READERS_ASSIMP_LOSSES_HH
 #define PREPROCESS_IMPORT_READERS_ASSIMP_LOSSES_HH
 #include <assimp/LogStream.hpp>

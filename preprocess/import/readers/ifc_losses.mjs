@@ -2,7 +2,7 @@
 // Reports losses of an IFC file: elements that have a shape but no triangles, and errors that web-ifc prints.
 const LINES = /Curve|Polyline|IfcLine|Circle|Ellipse|Point|Text|Annotation|GeometricSet|BoundingBox|Vertex|Edge|Alignment/;
 const REFERENCE = 5; // web-ifc's type code of values that refer to a statement
-// Formats a record of findings.h.
+// Formats a record in the format of findings.h.
 const fields = (...values) => values.map((value) => String(value).replace(/\s+/g, ' ').trim()).join('\t');
 const MAX_IDS = 20; // maximum number of statement ids listed per kind of error
 
@@ -77,8 +77,8 @@ export function findDamaged(model, product, errors) {
     });
 }
 
-// Returns { lost, lines, ids }: `lost`: a findings.h line for each element that has a shape but no triangles; `lines`: names of elements
-// that consist only of lines and points; `ids`: statement ids of the lost elements.
+// Returns { lost, lines, ids }: `lost`: a report line (format: findings.h) for each element that has a shape but no triangles; `lines`:
+// names of elements that consist only of lines and points; `ids`: statement ids of the lost elements.
 export function findLosses(model, product, isShown, failed) {
     const lost = [], lines = [], ids = [];
     for (const id of model.ofType(product)) {

@@ -61,7 +61,7 @@ function styles(model, type) {
 }
 
 // Replaces web-ifc's geometry of an item by the solid that Open CASCADE built. An element with openings keeps web-ifc's geometry, if it has
-// any, because only web-ifc cuts the openings out. Sets solids.said to lines of findings.h about problems.
+// any, because only web-ifc cuts the openings out. Sets solids.said to report lines (format: findings.h) about problems.
 export function takeSolids(model, solids, { shown, known }, { styledItem, voids }) {
     const colorOf = styles(model, styledItem), cut = new Set();
     model.relate(voids, 'RelatingBuildingElement', 'RelatedOpeningElement', (element) => cut.add(element));

@@ -180,7 +180,7 @@ void describe_layer(const iges_tree &t, const TDF_Label &label, const std::strin
         t.layers->SetLayer(label, TCollection_ExtendedString(t.encoding->utf8(layer).c_str(), Standard_True));
 }
 
-/* Copies the name, colour and layer of an entity to a label. What the entity does not have stays unchanged at the label. */
+/* Copies the name, colour and layer of an entity to a label. Attributes that the entity lacks stay unchanged at the label. */
 void describe(const iges_tree &t, const TDF_Label &label, const entity &from)
 {
     Quantity_Color color;

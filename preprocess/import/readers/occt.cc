@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* `plantcast-import-occt INPUT OUTPUT.glb CHORD_MM UNITS UP ENCODING`: reads STEP and IGES with Open CASCADE, in its own process. The
  * assembly tree becomes nodes; each part is tessellated once and shared by its placements. For IFC files, this program builds some solids
- * only (ifc_shapes.hh), and UNITS is the path of a list of elements. Prints lines of findings.h. On failure the last line on stderr is the
- * reason. */
+ * only (ifc_shapes.hh), and UNITS is the path of a list of elements. Prints report lines (format: findings.h). On failure the last line on
+ * stderr is the reason. */
 #include <IGESControl_Reader.hxx>
 #include <Interface_Static.hxx>
 #include <Message.hxx>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Prints the parts of a STEP or IGES file that Open CASCADE could not read, as lines of findings.h on stdout. Thread: one. */
+/* Prints the parts of a STEP or IGES file that Open CASCADE could not read, as report lines (format: findings.h) on stdout. Thread: one. */
 #ifndef PREPROCESS_IMPORT_READERS_OCCT_LOSSES_HH
 #define PREPROCESS_IMPORT_READERS_OCCT_LOSSES_HH
 #include <XSControl_WorkSession.hxx>

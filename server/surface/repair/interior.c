@@ -227,7 +227,7 @@ static char is_hidden_by(const struct interior_face *face, const struct solid *s
     double length = vec_length(n);
     for (int axis = 0; axis < 3; axis++)
         n[axis] /= length;
-    /* lies: the faces lie on each other; flush: they probably do, because the normal of a sliver is arbitrary */
+    /* lies: the faces lie on each other; flush: they may lie on each other, because the normal of a sliver is arbitrary */
     bool lies = fabs(vec_dot(n, face->normal)) > FLUSH, flush = lies || face->height_m < SLIVER * reach_m;
     if (face->own && flush && is_between(face, n, solid, face->own, BESIDE * reach_m, BARELY * reach_m))
         return INTERIOR_INSIDE;

@@ -10,7 +10,8 @@
 struct body_parts {
     struct trimesh solid;
     uint32_t *of_tri; /* part of each triangle of `solid` */
-    /* by triangle of `solid`: 1 if its winding faces outwards, -1 if reversed; 0: the triangle bounds nothing (a wall or fin) */
+    /* by triangle of `solid`: 1 if its winding faces outwards, -1 if reversed; 0: the triangle bounds nothing (a wall between two bodies,
+     * or a fin: a sheet that stands on a body) */
     signed char *side;
     /* by model triangle: its part, and its body; these differ only where a few edges join two bodies to one part by mistake */
     uint32_t *of_source, *body_of_source;

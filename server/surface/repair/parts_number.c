@@ -12,7 +12,7 @@
 /* maximum total length of open edges of a closed part, relative to the root of its area: more than remnants of a hair gap, less than the
  * end of a pipe */
 #define MAX_OPEN_OF_SIZE 0.05
-/* the same limit for a patch that counts as a body of its own; here all edges at which the patch ends are added */
+/* maximum total length of all edges at which a patch ends, relative to the root of its area, for the patch to count as a body of its own */
 #define MAX_BODY_OPEN_OF_SIZE 0.5
 
 static double edge_length(const struct trimesh *mesh, size_t t, int i)

@@ -28,7 +28,7 @@ struct seams {
     struct mesh_edit *edit;
     /* end_m: a point nearer than this to an end of an edge is not inserted into the edge; another round merges it with the end */
     double tolerance_m, end_m;
-    bool fits;            /* only exact fits */
+    bool fits;            /* the current round closes exact fits only */
     struct nearest_edge { /* by border point: the nearest position on a border edge of which it is not an end */
         double distance_m, t;
         uint32_t edge;

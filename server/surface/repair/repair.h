@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Mesh repair: bridges cracks and joins parts in contact, up to a tolerance, in three steps: seams, contacts between parts, rims. */
+/* Mesh repair: bridges cracks and joins parts in contact, up to a tolerance, in three steps: seams, contacts between parts, rims (edges
+ * that are open because the triangles beyond them are hidden). */
 #ifndef SURFACE_REPAIR_H
 #define SURFACE_REPAIR_H
 #include "surface/repair/parts.h"

@@ -20,7 +20,7 @@ static const char PREFIX[] = "spBv1.0/";
 struct alias {
     uint64_t number;
     size_t topic;           /* index of the topic, of a node or device, whose birth certificate defined the alias */
-    size_t first_tag, tags; /* the tags of the topic whose value is this metric: index of the first, and number of tags */
+    size_t first_tag, tags; /* the tags of the topic that take their values from this metric: index of the first, and number of tags */
 };
 
 struct sparkplug_node {
