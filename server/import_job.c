@@ -30,7 +30,7 @@ struct import_job {
     struct texts first, read, last; /* contents of the files at three times: at the beginning, after the models were read, and after the
                                        tags were matched */
     ino_t revision;                 /* inode of the newest revision folder before the import (find_revision()); 0: there was none */
-    bool prepares;                  /* preparing the models was begun */
+    bool prepares;                  /* true: preparing the models was begun */
     bool undoes;                    /* true: an undo is running, which params.stop does not end */
 };
 

@@ -40,7 +40,7 @@ struct reload {
     struct thread thread;
     /* --- below: protected by thread.lock */
     bool asked, imports;
-    char who[TOKEN_NAME_BYTES]; /* user who asked last */
+    char who[TOKEN_NAME_BYTES]; /* user who asked for the next reload */
     struct tag_save *save;      /* tag list to be saved; NULL: none */
 };
 

@@ -578,7 +578,7 @@ static int check_prepared(const struct server_params *params, const struct plant
     struct scene *scene = plant_runtime_open_scene(log, params, plant);
     int status = scene ? 0 : 1;
     for (size_t i = 0; scene && i < scene->asset_count; i++)
-        status |= scene->assets[i].missing != NULL; /* the reason was logged */
+        status |= scene->assets[i].missing != NULL; /* the reason why it is missing was logged */
     if (scene) {
         size_t count;
         struct far_sensor *far = far_sensors_find(scene, &count);

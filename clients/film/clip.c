@@ -19,7 +19,7 @@ enum { MAX_PICTURES = 1000000, SAY_EACH = 250 };
 struct film {
     struct snapshot_options *options;
     struct video *video;
-    struct offline_renderer offline; /* used without a daemon */
+    struct offline_renderer offline; /* renderer of a film that is made without a daemon */
     struct view view;
     struct daemon_url url;
     struct text query;

@@ -9,7 +9,7 @@
 
 enum { FILM_BOXES_WHY_BYTES = 160 };
 
-struct film_size { /* from the sample entry */
+struct film_size { /* display size of a film, from its sample entry */
     int width_px, height_px;
 };
 

@@ -3,7 +3,7 @@
 #include "base/system/module.h"
 #include "h264_decoder.h"
 
-static struct module h264 = MODULE("plantcast-h264.so"); /* h264_decoder.c */
+static struct module h264 = MODULE("plantcast-h264.so"); /* implemented by h264_decoder.c */
 
 const struct h264_decoder_functions *h264_decoder_functions(char why[H264_DECODER_WHY_BYTES])
 {

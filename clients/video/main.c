@@ -23,7 +23,7 @@ struct video_program {
     struct video_encoder *encoder;
     struct rtsp *rtsp;
     struct video_branch srt;
-    struct metrics *metrics; /* NULL: off */
+    struct metrics *metrics; /* NULL: metrics are off */
     bool card;               /* true: the newest frame shows a text card instead of the picture */
     GSource *ticks;
     gint64 begin_us, alive_us;
@@ -93,7 +93,7 @@ static gboolean on_tick(gpointer data)
     struct video_program *program = data;
     gint64 now_us = g_get_monotonic_time();
     guint64 index = (guint64)(now_us - program->begin_us) * (guint64)program->options.fps / G_USEC_PER_SEC;
-    if (index < program->next) /* woken a little early */
+    if (index < program->next) /* the timer fired a little early */
         index = program->next;
     program->late += index - program->next;
     draw(program, index);

@@ -15,7 +15,7 @@ struct video_options {
     char *token, *ca_path, *token_path; /* NULL: not given */
     char *listen;                       /* listening address of all outputs */
     int width_px, height_px, fps, kbps, every_ms;
-    int rtsp_port, http_port, srt_port; /* 0: off */
+    int rtsp_port, http_port, srt_port; /* port of each output; 0: the output is off */
     char *user, *password;              /* name and password that viewers of the RTSP stream must give; NULL: no login */
     int most_readers;                   /* limit per output */
     bool time_code;

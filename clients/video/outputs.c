@@ -92,7 +92,7 @@ static bool push(struct output *output, GstBuffer *unit)
     if (!output->timed || off > SLACK || off < -SLACK)
         output->offset = (GstClockTimeDiff)now - pts;
     output->timed = true;
-    GstBuffer *copy = gst_buffer_copy(unit); /* shares the payload */
+    GstBuffer *copy = gst_buffer_copy(unit); /* the copy shares the payload */
     GST_BUFFER_PTS(copy) = GST_BUFFER_DTS(copy) = (GstClockTime)MAX(pts + output->offset, 0);
     gst_app_src_push_buffer(output->src, copy);
     return true;

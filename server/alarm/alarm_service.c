@@ -402,7 +402,7 @@ uint64_t alarm_service_rows(struct alarm_service *service, uint64_t since, int64
     pthread_mutex_lock(&service->thread.lock);
     uint64_t last = service->row_count, first = last > MAX_ROWS && since < last - MAX_ROWS ? last - MAX_ROWS : since;
     for (uint64_t i = first + 1; i <= last; i++)
-        if (service->rows[i % MAX_ROWS].utc_ns / 1000 > after_utc_ns / 1000) /* the journal stores microseconds */
+        if (service->rows[i % MAX_ROWS].utc_ns / 1000 > after_utc_ns / 1000) /* compares microseconds, because the journal stores these */
             each(arg, &service->rows[i % MAX_ROWS]);
     pthread_mutex_unlock(&service->thread.lock);
     return last;

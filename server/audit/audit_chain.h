@@ -21,7 +21,7 @@ struct audit_entry {
     const char *result; /* done, refused or failed */
     const char *who, *role;
     const char *from;    /* the client's address */
-    const char *how;     /* by which way or means */
+    const char *how;     /* means of the action, such as HTTP or OpenID Connect */
     const char *through; /* name of the renderer (a daemon that draws for clients) that forwarded the action, as its token names it;
                             NULL: none */
     const char *what;    /* what was changed or requested */

@@ -27,7 +27,8 @@
 
 enum { CORE_ACT_BYTES = 200 * 1024 /* maximum length in bytes of an act (a user's action that a renderer forwards to the core); below the
                                       core's own limit */ };
-enum { MAX_MESSAGE_BYTES = 64 << 20 /* of one message */, TOKEN_BYTES = 256, WHY_BYTES = 300, LOOK_US = 200000, ADDRESSES = 8 };
+/* MAX_MESSAGE_BYTES: limit of one message */
+enum { MAX_MESSAGE_BYTES = 64 << 20, TOKEN_BYTES = 256, WHY_BYTES = 300, LOOK_US = 200000, ADDRESSES = 8 };
 static const int64_t CONNECT_NS = 4 * NS_PER_S, CLOCKS_NS = 2 * NS_PER_S /* CLOCKS_NS: clock difference between core and renderer above
                                                                             which a warning is logged */;
 /* clock differences below this are not corrected, so that the clock that pages show does not jump */

@@ -12,7 +12,7 @@
 #include "value/store.h"
 
 #define CORE_SILENT_NS (2 * INT64_C(1000000000))
-enum { CORE_URLS = 4, CORE_ACTS = 256 /* acts waiting for their answers */ };
+enum { CORE_URLS = 4, CORE_ACTS = 256 /* CORE_ACTS: maximum number of acts that wait for answers */ };
 
 struct core_link_params {
     struct log *log;
@@ -70,7 +70,7 @@ bool core_link_act(struct core_link *link, const struct core_act *act);
 /* Sends a JSON message that gets no answer. Returns false if there is no core now. Thread: any. */
 bool core_link_tell(struct core_link *link, const char *text);
 
-/* A message for the loop. */
+/* A message from the core for the event loop. */
 struct core_arrival {
     struct core_arrival *next;
     uint64_t client; /* id of the client that gets this answer; 0: no answer, but the core's own message `core` or `lists` */

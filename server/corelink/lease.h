@@ -14,7 +14,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#define LEASE_NS (3 * INT64_C(1000000000))      /* time that a follower waits */
+#define LEASE_NS (3 * INT64_C(1000000000))      /* time without a renewal after which a follower may bid for the row */
 #define LEASE_HOLD_NS (2 * INT64_C(1000000000)) /* time for which a leader may act after a confirmed request was sent */
 #define LEASE_RENEW_NS (500 * INT64_C(1000000)) /* interval between renewals */
 #define LEASE_LOOK_NS (250 * INT64_C(1000000))  /* interval at which a follower reads the row */

@@ -45,7 +45,7 @@ struct lease_keeper {
     /* --- below: under thread.lock */
     struct lease lease;
     char standby[LEASE_NODE_BYTES]; /* name of the standby that is connected, or was connected until gone_ns */
-    int64_t gone_ns;                /* 0: connected */
+    int64_t gone_ns;                /* time when the standby disconnected; 0: it is connected */
     bool follows;                   /* true: the standby has our version and configuration */
     uint64_t asked;
     struct {

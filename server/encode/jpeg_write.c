@@ -27,7 +27,7 @@ static void fail(j_common_ptr codec)
     longjmp(writer->failed, 1);
 }
 
-static void start(j_compress_ptr codec) /* `to` is set before */
+static void start(j_compress_ptr codec) /* requires that `to` is set */
 {
     (void)codec;
 }

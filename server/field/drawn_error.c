@@ -371,7 +371,8 @@ void drawn_error_measure(struct weights *weights, const struct field_params *par
     while (number + 1 < file->header->level_count && file->levels[number + 1].vertex_count >= vertices)
         number++;
     uint64_t bit = (uint64_t)1 << (number < 63 ? number : 63);
-    if (layout_is_exact(layout, weights->interpolation, weights->distance)) /* pictures do not interpolate it */
+    if (layout_is_exact(layout, weights->interpolation, weights->distance)) /* pictures do not interpolate these weights, so they have no
+                                                                               error */
         return;
     if (weights->measured_levels & bit || weights->prepared || layout->assumed || weights->member_count == 0 ||
         (weights->member_count == 1 && weights->interpolation == INTERPOLATION_SHEPARD))

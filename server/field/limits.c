@@ -8,7 +8,7 @@
 
 /* The limits of one side (high or low), with the low side mirrored, so that larger values are always closer to an alarm. */
 struct limit_side {
-    double inner, outer; /* NaN: none */
+    double inner, outer; /* inner: H or L; outer: HH or LL; NaN: the tag has no such limit */
 };
 
 static double middle_of(const struct plant_group *group, const struct limit_side *low, const struct limit_side *high)

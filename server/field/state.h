@@ -7,7 +7,7 @@
 #include "field/weights.h"
 #include "value/snapshot.h"
 
-struct update; /* update.h */
+struct update; /* defined in update.h */
 
 struct state_input {           /* one sensor's inputs to the sums */
     double value;              /* engineering units; for `paper` 0..1 */

@@ -28,7 +28,7 @@
 #define JOB_WORK 30000.0 /* nanoseconds of work that justify waking another thread */
 #define SMALL_WORK 1e6   /* nanoseconds; if many assets are updated, an update with less work than this runs on one thread */
 #define MAKE_WORK 1.0    /* estimated nanoseconds to compute one sensor's weight at one vertex and add it */
-#define ADD_WORK 0.15    /* nanoseconds to add it only */
+#define ADD_WORK 0.15    /* estimated nanoseconds to add a weight that was computed before */
 
 struct update {
     struct field_state *state;
@@ -100,7 +100,7 @@ void update_rule(const struct field_state *state, const struct state_input *inpu
         bool around = state->params.interpolation == INTERPOLATION_FIN;
         float offset = around && !difference && !places ? (float)group->ambient : 0;
         *rule = (struct kernel_value){ .scale = 1, .offset = offset, .low = around ? offset : FLT_MAX, .high = around ? offset : -FLT_MAX };
-        if (state->params.interpolation == INTERPOLATION_GP) /* values may exceed the readings */
+        if (state->params.interpolation == INTERPOLATION_GP) /* values of gp may exceed the readings */
             rule->low = -FLT_MAX, rule->high = FLT_MAX;
         for (size_t m = 0; m < state->weights->member_count; m++) {
             float value = (float)inputs[state->weights->members[m]].value;
@@ -185,7 +185,7 @@ void update_begin(struct field_state *state, size_t count)
     update->anew = !state->sums || update->flags || state->added >= MAX_ADDED || !steps_are_small(update);
     for (size_t i = 0; i < update->all.count; i++)
         update->marks |= update->all.marked[i];
-    if (!update->anew && update->changed.count == 0) /* only more vertices than before */
+    if (!update->anew && update->changed.count == 0) /* the update only computes more vertices than before */
         update->next = update->old;
     update_rule(state, state->now, &update->rule);
     pthread_mutex_init(&update->lock, NULL);

@@ -9,7 +9,7 @@ struct pool {
     struct log *log;
     const char *name;
     GLenum format;
-    size_t texel_bytes, max_texels; /* most_texels: of a page */
+    size_t texel_bytes, max_texels; /* max_texels: capacity of a page */
     GLbitfield flags;
     size_t expected, texels; /* expected: number of texels announced for the next page; texels: sum of the sizes of all pages */
     struct pool_page **pages;

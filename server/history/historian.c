@@ -521,7 +521,8 @@ static void tick(struct historian *historian, bool last)
 {
     const struct now now = look_at_clocks();
     int64_t mono_ns = now.mono_ns, utc_ns = now.utc_ns, step_ns = watch_clock(historian, &now);
-    step_ns = historian->stands_by ? 0 : step_ns; /* times are the leading daemon's */
+    step_ns = historian->stands_by ? 0 : step_ns; /* a standby's samples have the times of the leading daemon, so its own clock's steps
+                                                     do not matter */
     take_events(historian, &now, step_ns);
     if (!historian->stands_by)
         take_qualities(historian, mono_ns, utc_ns);

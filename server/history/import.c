@@ -99,7 +99,7 @@ static bool find_columns(struct history_import *import)
     if (import->tag >= 0 && import->value >= 0) {
         import->unit = csv_find(&import->csv, "Unit");
         import->counts->exported = import->csv.header.count == 5 && import->tag == 0 && import->time == 1 && import->value == 2 &&
-                                   import->quality == 3 && import->unit == 4; /* the columns that series_text_csv_head() writes */
+                                   import->quality == 3 && import->unit == 4; /* the same columns as series_text_csv_head() writes */
         return true;
     }
     import->tag = -1;

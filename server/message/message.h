@@ -245,7 +245,7 @@ struct params_context {
     const struct scene *scene;
     struct baselines *baselines;     /* NULL: no baselines here */
     const struct snapshot *snapshot; /* readings that the change may store as a baseline; NULL: none */
-    int64_t now_us;                  /* UTC; for queries */
+    int64_t now_us;                  /* UTC time, for arguments of queries */
     bool bare;                       /* for queries: true: the picture has no legend and no clock */
 };
 /* Applies a change to a view. If part of the change is wrong, returns false with *error and leaves the view unchanged. If the group

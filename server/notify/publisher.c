@@ -24,7 +24,7 @@
 static const int64_t CONNECT_NS = 10 * NS_PER_S;
 
 struct topic {
-    char *name, *unit;       /* unit: a JSON object */
+    char *name, *unit;       /* unit: JSON object that has only the unit */
     int64_t received_utc_ns; /* UTC time of the reading that was published last */
     uint32_t quality;
     bool is_published; /* published on the current connection */

@@ -16,7 +16,7 @@
 #include "value/modbus_link.h"
 #include "value/quality.h"
 
-enum { MAX_REGISTERS = 4 }; /* registers of a 64-bit value */
+enum { MAX_REGISTERS = 4 }; /* number of registers that a 64-bit value takes */
 
 static const enum byte_order orders[] = { BYTE_ORDER_ABCD, BYTE_ORDER_CDAB, BYTE_ORDER_BADC, BYTE_ORDER_DCBA };
 static const char *const prefixes[] = { [TABLE_COIL] = "co", [TABLE_DISCRETE] = "di", [TABLE_INPUT] = "ir", [TABLE_HOLDING] = "hr" };

@@ -62,7 +62,7 @@ export class HeldKeys {
 
     press(motion) {
         if (this.held.has(motion))
-            return []; // key repeat of the keyboard
+            return []; // ignores the keyboard's key repeat
         this.held.set(motion, 0);
         return [scaled(motion, TAP_S)];
     }

@@ -25,7 +25,7 @@ export class Model {
         this.provingBegun = false;
         this.links = [];
         this.live = null; // null: no message yet
-        this.stopped = false; // see stop()
+        this.stopped = false; // true: a past instant is shown; see stop()
         this.clockSet = true; // true: the server's clock is synchronised
         this.clockErrorMs = null; // maximum clock error; null: unknown
         this.leapS = 0; // leap second announced for the end of the month: 1: will be inserted, -1: will be removed, 0: none

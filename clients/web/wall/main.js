@@ -109,7 +109,7 @@ async function look() {
 
 // --- as time goes by
 
-// by the display's own clock
+// OPENED: time by the display's own clock
 const lostWords = make('p'), lostSelf = make('p', { class: 'self' }), OPENED = new Date().toLocaleTimeString('en-GB');
 byId('lost').replaceChildren(lostWords, lostSelf);
 

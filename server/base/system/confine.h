@@ -11,7 +11,7 @@
 
 enum confine_access {
     CONFINE_READ,
-    CONFINE_EXECUTE, /* execute and read */
+    CONFINE_EXECUTE, /* execute and read files */
     CONFINE_WRITE    /* read and write; create, rename and remove regular files and folders below the path */
 };
 

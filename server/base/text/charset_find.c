@@ -360,7 +360,7 @@ static size_t take_sample(const char *bytes, size_t count, char sample[SAMPLE_BY
             continue;
         length = end - first < MAX_LINE - 2 ? end - first : MAX_LINE - 2;
         if (first > at) {
-            first--; /* include the letter before */
+            first--; /* includes the letter before */
             length++;
         }
         memcpy(sample + taken, bytes + first, length);

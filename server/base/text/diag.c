@@ -40,7 +40,7 @@ static int by_place(const void *pa, const void *pb)
     if (order == 0)
         order = (a->column > b->column) - (a->column < b->column);
     if (order == 0)
-        order = (a > b) - (a < b); /* keep the order of insertion */
+        order = (a > b) - (a < b); /* keeps the order of insertion */
     return order;
 }
 

@@ -23,7 +23,7 @@ struct postgres_owed { /* the time spans whose points must still be read from th
 struct postgres_params {
     struct log *log;
     struct counters *counters;
-    const struct plant *plant; /* must outlive it */
+    const struct plant *plant; /* must outlive the struct postgres */
     const char *folder;        /* folder of the months' files */
     /* true: until postgres_lead() is called, another daemon writes to the database, and only points left by an earlier run are sent */
     bool stands_by;

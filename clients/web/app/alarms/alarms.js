@@ -34,7 +34,7 @@ export class AlarmList {
         byId('shelve-form').addEventListener('submit', (event) => this.shelve(event));
         byId('shelve-cancel').addEventListener('click', () => byId('shelve').close());
         session.on('welcome', () => {
-            ['alarms-list', 'alarms-aside'].forEach((id) => byId(id).replaceChildren()); // rows of the previous plant
+            ['alarms-list', 'alarms-aside'].forEach((id) => byId(id).replaceChildren()); // removes the rows of the previous plant
             this.show();
         });
         session.on('alarms', () => this.show());

@@ -25,7 +25,7 @@ onmessage = ({ data }) => {
     if (isSaid || data.width)
         draw();
     if (data.width)
-        requestAnimationFrame(() => postMessage('watches')); // the picture is presented
+        requestAnimationFrame(() => postMessage('watches')); // sent once the drawn frame is presented
 };
 
 setInterval(() => {

@@ -47,7 +47,7 @@ export class CameraController {
         new ResizeObserver(() => this.stayHome()).observe(viewport.element);
         // stays in the home view, because the picture's shape changes when a view is split or unsplit
         session.on('params', () => this.stayHome());
-        probeCodecs(); // motion is about to begin
+        probeCodecs(); // tests H.264 now, because the camera is about to move
     }
 
     // Handles an event from input.js.

@@ -16,7 +16,7 @@ const isMeant = ({ type, key, target }) => type === 'pointerdown' || type === 'w
 // Does what cannot wait until the camera controller is loaded, such as preventDefault().
 function takeAtOnce(event, element) {
     if (event.type === 'wheel' || event.button === 1)
-        event.preventDefault(); // prevents scrolling
+        event.preventDefault(); // prevents the browser from scrolling
     if (event.type === 'pointerdown' && isOnPicture(event)) {
         element.setPointerCapture(event.pointerId);
         element.focus({ preventScroll: true });

@@ -107,7 +107,7 @@ export class Legend {
     show(again = false) {
         const { model } = this.session, params = model && this.paramsOf(this.session.shown);
         const group = params && model.group(params.group);
-        this.element.hidden = !group || params.look === 'materials'; // no field: nothing to explain
+        this.element.hidden = !group || params.look === 'materials'; // without a field there is nothing to explain
         if (!group)
             return;
         const range = this.session.rangeOf(params);
@@ -129,7 +129,7 @@ export class Legend {
 
     title(params) {
         const name = quantityText(this.session.model.group(params.group));
-        const sign = { difference: 'Δ ', uncertainty: '± ', blind: '? ' }[params.show] ?? ''; // until coverage.js is loaded
+        const sign = { difference: 'Δ ', uncertainty: '± ', blind: '? ' }[params.show] ?? ''; // used until coverage.js is loaded
         return TITLES[params.show]?.(name, params) ?? [sign + name];
     }
 

@@ -159,7 +159,7 @@ export class NamedViews {
                 if (image)
                     image.src = url;
             } catch {
-                break; // the title is enough
+                break; // a view without a thumbnail still has its title
             }
         }
         this.drawing = false;
