@@ -7,7 +7,8 @@
 
 #define PLANT_MAX_VALUE 1e30 /* maximum absolute value of a reading or a limit, because the field is computed in floats */
 
-/* Reads the plant file into a plant whose path and folder are set. Findings go to diag. tags_path stays NULL if the file cannot be read. */
+/* Reads the plant file into a plant whose path and folder are set. Findings go to diag. tags_path stays NULL if there is
+   no readable tag list. */
 void plant_file_read(struct plant *plant, struct diag *diag);
 /* Reads the value of the key `environment`; the plant's folder must be set. */
 void plant_environments_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);

@@ -24,7 +24,8 @@ struct upload_body {
     bool decides; /* the uploaded file holds the engineer's decisions; the end of the upload starts an import */
 };
 
-/* Adds an import step to the audit trail. Its result is recorded later, by the reload thread. */
+/* Adds an import step to the audit trail. result: as in struct audit_entry; why: the reason of a refusal, or NULL. The outcome of an import
+   order is recorded later, by the reload thread. */
 static void record_file(struct http_exchange *request, const char *file, const char *result, const char *why)
 {
     char *line = why ? mem_printf("%.*s", (int)strcspn(why, "\n"), why) : NULL;

@@ -43,7 +43,8 @@ struct admission {
    sessions. */
 void admission_join(struct admission *admission, struct address_share *share);
 void admission_leave(struct admission *admission, struct address_share *share);
-/* Counts the cost of a frame. share: figures of the client's address; NULL: no address is charged. */
+/* Counts the cost of a preview that answers an input or changed readings; ignores other frames. share: figures of the client's address;
+   NULL: no address is charged. */
 void admission_on_frame(struct admission *admission, struct address_share *share, const struct encoded_frame *encoded);
 /* Starts a new measuring window if the current one is at least a second old. */
 void admission_on_tick(struct admission *admission, int64_t now_ns);

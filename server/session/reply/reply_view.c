@@ -104,7 +104,7 @@ static void set_params(json_t *object, const struct session_context *context, co
     visibility_print(plant, &view->visibility, object);
 }
 
-/* Removes names that people or tags have, for clients without a token. */
+/* Removes the names of tags and of baselines, for clients without a token. */
 static void hide_names(json_t *object)
 {
     json_t *split = json_object_get(object, "split");
