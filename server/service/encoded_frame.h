@@ -4,13 +4,21 @@
 #define SERVICE_ENCODED_FRAME_H
 #include "service/frame_request.h"
 
+/* Why a request was answered without a packet. FRAME_SKIPPED: it was not drawn, because a later request of the client is answered instead,
+   or its instant is no longer loaded; this says nothing about what the client shows. */
+enum frame_absence {
+    FRAME_SKIPPED,
+    FRAME_UNCHANGED, /* the client already shows this content */
+    FRAME_FAILED     /* the frame could not be made */
+};
+
 struct encoded_frame { /* owned by the code that collected it; free with encoded_frame_destroy() */
     uint64_t client;
     uint64_t number;       /* sequence number of the client's request, assigned when drawing begins: a larger number shows a newer state */
-    struct packet *packet; /* NULL: the client already shows this content, or the frame could not be made */
+    struct packet *packet; /* NULL: none; `absence` says why */
     struct packet **earlier; /* packets of a shared stream that the client missed and must decode first, oldest first */
     int earlier_count;
-    bool failed; /* the frame could not be made */
+    enum frame_absence absence; /* only if packet is NULL */
     struct frame_request request;
     int64_t wait_ns; /* nanoseconds from the input to the start of drawing */
     int64_t made_ns; /* monotonic: when encoding ended */

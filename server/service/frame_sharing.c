@@ -60,7 +60,7 @@ void frame_sharing_submit(struct render_service *service, struct frame *frame, s
     request_group_finish(&here);
     group->count = 0;
     if (overtaken.count > 0)
-        render_service_answer_without_frame(service, &overtaken, false);
+        render_service_answer_without_frame(service, &overtaken, FRAME_SKIPPED);
     request_group_finish(&overtaken);
 }
 
@@ -73,7 +73,7 @@ static void answer_same(struct render_thread *thread, struct request_group *grou
     request_group_split(group, has_it, &now, &thread->same);
     pthread_mutex_unlock(&service->lock);
     counter_inc(service->same, (int64_t)thread->same.count);
-    render_service_answer_without_frame(service, &thread->same, false);
+    render_service_answer_without_frame(service, &thread->same, FRAME_UNCHANGED);
 }
 
 /* Returns whether a frame that was drawn for other clients can answer the group. It cannot if a request wants the record of the frame's

@@ -140,13 +140,13 @@ void render_service_lose_context(struct render_service *service)
 
 /* --- frames, to the event loop ---------------------------------------------------------------------------------------------- */
 
-static struct encoded_frame *encoded_frame_create(const struct request_ticket *ticket, bool failed)
+static struct encoded_frame *encoded_frame_create(const struct request_ticket *ticket, enum frame_absence absence)
 {
     struct encoded_frame *encoded = mem_new(sizeof(*encoded));
     *encoded = (struct encoded_frame){
         .client = ticket->client,
         .number = ticket->number,
-        .failed = failed,
+        .absence = absence,
         .request = ticket->request,
         .wait_ns = ticket->wait_ns,
         .made_ns = clock_mono_ns(),
@@ -175,10 +175,10 @@ static void announce(void *arg)
         service->params.notify(service->params.notify_arg);
 }
 
-void render_service_answer_without_frame(struct render_service *service, const struct request_group *group, bool failed)
+void render_service_answer_without_frame(struct render_service *service, const struct request_group *group, enum frame_absence absence)
 {
     for (size_t i = 0; i < group->count; i++)
-        give_back(service, encoded_frame_create(&group->tickets[i], failed));
+        give_back(service, encoded_frame_create(&group->tickets[i], absence));
     announce(service);
 }
 
@@ -196,7 +196,7 @@ static void forget_content(struct render_service *service, uint64_t id)
 /* Takes the encode queue's result for a ticket. Thread: a worker. */
 static void on_encoded(void *arg, const struct request_ticket *ticket, struct packet *const *packets, int count, bool failed)
 {
-    struct encoded_frame *encoded = encoded_frame_create(ticket, failed);
+    struct encoded_frame *encoded = encoded_frame_create(ticket, failed ? FRAME_FAILED : FRAME_UNCHANGED);
     if (failed)
         forget_content(arg, ticket->client);
     if (count > 0)

@@ -59,8 +59,8 @@ void render_service_remove_client(struct render_service *service, uint64_t id);
 
 /* --- render_service.c ------------------------------------------------------------------------------------------------- */
 
-/* Answers each request of the group without a frame: nothing new is to be seen, or drawing failed. Any thread. */
-void render_service_answer_without_frame(struct render_service *service, const struct request_group *group, bool failed);
+/* Answers each request of the group without a frame. Any thread. */
+void render_service_answer_without_frame(struct render_service *service, const struct request_group *group, enum frame_absence absence);
 
 /* --- render_thread.c -------------------------------------------------------------------------------------------------- */
 

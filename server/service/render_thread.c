@@ -37,10 +37,10 @@ static void fail(struct render_thread *thread, struct request_group *group)
         pthread_mutex_lock(&service->lock);
         request_group_split(group, request_again, service, &thread->same);
         pthread_mutex_unlock(&service->lock);
-        render_service_answer_without_frame(service, &thread->same, false);
+        render_service_answer_without_frame(service, &thread->same, FRAME_SKIPPED);
     } else {
         counter_inc(service->failures, 1);
-        render_service_answer_without_frame(service, group, true);
+        render_service_answer_without_frame(service, group, FRAME_FAILED);
     }
     group->count = 0;
 }
@@ -311,7 +311,7 @@ static void long_job_leave(struct render_thread *thread)
     pthread_mutex_lock(&service->lock);
     request_group_split(&thread->long_job.group, has_left, service, &thread->same);
     pthread_mutex_unlock(&service->lock);
-    render_service_answer_without_frame(service, &thread->same, false);
+    render_service_answer_without_frame(service, &thread->same, FRAME_SKIPPED);
     if (thread->long_job.group.count > 0)
         return;
     counter_inc(service->abandoned, 1);
@@ -400,7 +400,7 @@ static bool draw(struct render_thread *thread, struct request_group *group)
         return true;
     const struct snapshot *snapshot = render_thread_readings(thread, &group->tickets[0].request.view, &historical);
     if (!snapshot) {
-        render_service_answer_without_frame(thread->service, group, false);
+        render_service_answer_without_frame(thread->service, group, FRAME_SKIPPED);
         group->count = 0;
         return true;
     }

@@ -57,14 +57,15 @@ static void note_refined(struct session *session, const struct frame_request *re
 static bool is_lost(const struct session *session, const struct encoded_frame *encoded, bool late)
 {
     const struct frame_demand *demand = &session->demand;
-    return !encoded->packet && !encoded->failed && !late && encoded->request.view.tier == TIER_REFINED && demand->refined == REFINED_FULL &&
-           !demand->input && session->delivery.pacer.asked == 1 && session->delivery.newest_number > 0 && !session->delivery.newest_refined;
+    return !encoded->packet && encoded->absence != FRAME_FAILED && !late && encoded->request.view.tier == TIER_REFINED &&
+           demand->refined == REFINED_FULL && !demand->input && session->delivery.pacer.asked == 1 && session->delivery.newest_number > 0 &&
+           !session->delivery.newest_refined;
 }
 
 void session_on_frame(struct session *session, struct encoded_frame *encoded)
 {
     session->demand.refining &= encoded->request.urgency != URGENCY_REFINE && session->delivery.pacer.asked > 1;
-    if (encoded->failed)
+    if (!encoded->packet && encoded->absence == FRAME_FAILED)
         on_failure(session, &encoded->request);
     bool late = encoded->number < session->delivery.newest_number;
     /* After a preview the shown picture is no longer refined. This also holds if a refined frame arrived while the preview was drawn, or if
@@ -78,7 +79,7 @@ void session_on_frame(struct session *session, struct encoded_frame *encoded)
     }
     if (!encoded->packet || late) {
         session->stats.dropped += late;
-        if (session_is_tile(session) && !encoded->failed && !late)
+        if (session_is_tile(session) && !encoded->packet && encoded->absence == FRAME_UNCHANGED && !late)
             session_tile_unchanged(session, encoded->request.picture);
         pacer_dropped(&session->delivery.pacer);
         encoded_frame_destroy(&encoded);

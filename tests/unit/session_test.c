@@ -77,14 +77,14 @@ static bool ask(struct session_case *f, struct frame_request *request)
 static struct encoded_frame *empty_picture(struct session_case *f, const struct frame_request *request)
 {
     struct encoded_frame *encoded = mem_new(sizeof(*encoded));
-    *encoded = (struct encoded_frame){ .client = 7, .number = ++f->number, .request = *request };
+    *encoded = (struct encoded_frame){ .client = 7, .number = ++f->number, .absence = FRAME_UNCHANGED, .request = *request };
     return encoded;
 }
 
 static void paint_nothing(struct session_case *f, const struct frame_request *request)
 {
     struct encoded_frame *encoded = empty_picture(f, request);
-    encoded->failed = true;
+    encoded->absence = FRAME_FAILED;
     session_on_frame(f->session, encoded);
 }
 

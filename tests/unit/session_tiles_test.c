@@ -97,6 +97,37 @@ TEST(test_an_answer_without_a_frame_overtakes_one)
     tear_down(&wall);
 }
 
+/* Answers a tile's request for a picture without a frame. */
+static void answer_without_frame(struct session *session, uint64_t picture, uint64_t number, enum frame_absence absence)
+{
+    struct encoded_frame *encoded = mem_new(sizeof(*encoded));
+    *encoded = (struct encoded_frame){ .number = number, .absence = absence, .request.picture = picture };
+    session_on_frame(session, encoded);
+}
+
+/* A request whose readings were older was drawn after a later one, and is answered without a frame: the tile does not show its picture. An
+   answer "unchanged" means that the tile shows it. */
+TEST(test_a_skipped_picture_is_not_one_that_the_tile_shows)
+{
+    for (int unchanged = 0; unchanged < 2; unchanged++) {
+        struct wall_case wall;
+        uint64_t presented = 5;
+        set_up(&wall);
+        have(&wall, 0, 5, 3);
+        have(&wall, 1, 6, 4);
+        struct session *tile = wall.members[0];
+        tile->tile.place.display = 1;
+        tile->delivery.pacer.last_seq = 3;
+        tile->delivery.pacer.asked = 1;
+        answer_without_frame(tile, 6, 8, unchanged ? FRAME_UNCHANGED : FRAME_SKIPPED);
+        assert_int_equal(tile->delivery.pacer.asked, 0);
+        session_tiles_present(&wall.tiles, &presented, 0, 0);
+        assert_int_equal(presented, unchanged ? 6 : 5);
+        assert_true(tile->demand.any == !unchanged); /* another picture is requested for all tiles */
+        tear_down(&wall);
+    }
+}
+
 /* The picture exceeds the tiles by the amount of its shift at every size, so that no tile ever sees beyond its edge. Checks each shift
    of displays of this size, at a few preview sizes. */
 static void check_moves(int width_px, int height_px)
