@@ -159,10 +159,11 @@ static void start_placing(struct plant_runtime *runtime)
 
 void plant_runtime_open_lists(struct plant_runtime *runtime)
 {
-    runtime->named_views = named_views_open(runtime->context->log, runtime->plant, runtime->history);
-    runtime->notes = notes_open(runtime->context->log, runtime->history);
-    runtime->wall_remote = wall_remote_open(runtime->context->log, runtime->plant, runtime->history);
-    runtime->pairings = pairings_open(runtime->context->log, runtime->history);
+    const struct plant_runtime_context *context = runtime->context;
+    runtime->named_views = named_views_open(context->log, runtime->plant, runtime->history, context->file_writer);
+    runtime->notes = notes_open(context->log, runtime->history, context->file_writer);
+    runtime->wall_remote = wall_remote_open(context->log, runtime->plant, runtime->history, context->file_writer);
+    runtime->pairings = pairings_open(context->log, runtime->history, context->file_writer);
 }
 
 bool plant_runtime_start_recording(struct plant_runtime *runtime, struct plant_runtime *before)
@@ -173,7 +174,7 @@ bool plant_runtime_start_recording(struct plant_runtime *runtime, struct plant_r
                     the switch */
         plant_runtime_open_lists(runtime);
     if (runtime->history)
-        runtime->loop_checks = loop_checks_open(runtime->context->log, runtime->plant, runtime->history);
+        runtime->loop_checks = loop_checks_open(runtime->context->log, runtime->plant, runtime->history, runtime->context->file_writer);
     if (runtime->render_service)
         render_service_set_loop_checks(runtime->render_service, runtime->loop_checks);
     return start_historian(runtime, before) && start_alarm_service(runtime, before ? before->alarm_service : NULL) &&

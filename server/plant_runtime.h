@@ -19,6 +19,7 @@ struct plant_runtime_context { /* parts that a reload keeps */
     struct log *log;
     struct counters *counters;
     struct audit *audit; /* audit trail; NULL: nothing is recorded */
+    struct file_writer *file_writer; /* writes what users change */
     struct workers *workers;
     struct lease_keeper *keeper; /* lease keeper of a core that has a standby, or is a standby; NULL: none */
     bool *follows;               /* true: another core polls devices and owns the alarms; plant_runtime_lead() sets it to false */

@@ -11,6 +11,7 @@
 #include "access/tokens.h"
 #include "base/clock.h"
 #include "base/files/atomic_file.h"
+#include "base/files/file_writer.h"
 #include "base/mem.h"
 #include "base/text/json_text.h"
 #include "base/thread.h"
@@ -20,6 +21,7 @@
 #include "sibling.h"
 
 enum { MAX_FIRST_VIEWS = 16 }; /* maximum number of views that are drawn with the new plant before the switch */
+static const int64_t SETTLE_NS = NS_PER_S; /* time limit for an action to be on disk; after it, its user is told that it is not kept */
 enum { WAIT_MS = 3000 };       /* maximum wait in milliseconds until another program has finished changing the plant's folder */
 
 struct reload {
@@ -175,6 +177,9 @@ static void release_recording(void *arg)
 static void swap(void *arg)
 {
     struct swap *swap = arg;
+    /* The new plant reads the files that users' actions change. put_in_force() has waited already for all but the newest of these. */
+    file_writer_wait(swap->after->context->file_writer, SETTLE_NS);
+    file_writer_collect(swap->after->context->file_writer);
     plant_runtime_open_lists(swap->after);
     const struct net_plant plant = plant_runtime_net_plant(swap->after);
     net_release_plant(swap->net);
@@ -207,6 +212,7 @@ static void put_in_force(struct reload *reload, struct plant_runtime *after, con
     bool good = net_call(reload->net, release_recording, reload->net);
     if (good) {
         plant_runtime_hand_over(before, after->plant);
+        file_writer_wait(reload->context->file_writer, SETTLE_NS);
         good = plant_runtime_start_recording(after, before) && plant_runtime_start_sources(after) && net_call(reload->net, swap, &both);
     }
     if (good)

@@ -15,6 +15,7 @@
 
 #include "agent.h"
 #include "base/clock.h"
+#include "base/files/file_writer.h"
 #include "base/metrics/counters.h"
 #include "base/system/cgroup.h"
 #include "base/system/confine.h"
@@ -53,6 +54,7 @@ struct server {
     struct agent *agent;             /* answers load balancers; NULL: off */
     struct signing_key *signing_key; /* NULL: pictures are not signed */
     struct audit *audit;             /* NULL: nothing is recorded */
+    struct file_writer *file_writer;
     struct plant_import *import;     /* NULL: import is off */
     pthread_mutex_t wake_lock;       /* held while the render thread wakes the event loop, so that `net` is not destroyed in the meantime */
     struct net *net;
@@ -198,6 +200,7 @@ static bool start_net(struct server *server)
         .plant = plant_runtime_net_plant(server->runtime),
         .counters = server->counters,
         .audit = server->audit,
+        .file_writer = server->file_writer,
         .address = server->params.address,
         .port = server->params.port,
         .socket_fd = server->params.socket_fd,
@@ -466,6 +469,8 @@ static bool server_start(struct server *server)
     if (!net_access_good(server->log, &server->params.access) || !load_signing_key(server))
         return false;
     server->context.workers = server->workers = workers_create(server->params.threads);
+    if (!(server->context.file_writer = server->file_writer = file_writer_start(server->log, on_pictures, server)))
+        return false;
     server->web = find_web(server->params.web);
     reload_count(server->counters, server->runtime->plant->hash, true);
     supervision_starting(server->supervision, "drawing the first picture");
@@ -483,6 +488,7 @@ static void server_finish(struct server *server)
     pthread_mutex_unlock(&server->wake_lock);
     reload_destroy(&server->reload);
     net_destroy(&net);
+    file_writer_stop(&server->file_writer);
     agent_stop(&server->agent);
     if (server->audit)
         record(server, "stop");

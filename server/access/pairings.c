@@ -56,10 +56,10 @@ static bool good_list(const json_t *list)
 
 static const struct kept_list_kind KIND = { PAIRINGS_FILE, "devices", "id, hash, wall, display, from, by and time_us", good_list };
 
-struct pairings *pairings_open(struct log *log, const char *folder)
+struct pairings *pairings_open(struct log *log, const char *folder, struct file_writer *writer)
 {
     struct pairings *pairings = mem_new(sizeof(*pairings));
-    kept_list_open(&pairings->kept, log, folder, &KIND);
+    kept_list_open(&pairings->kept, log, folder, &KIND, writer);
     return pairings;
 }
 
@@ -85,23 +85,24 @@ enum refusal_code pairings_refusal(const struct pairings *pairings)
 
 /* --- paired devices ------------------------------------------------------------------------------------------------------------- */
 
-/* Finds a paired device by hash; takes the same time for every hash, so that timing reveals nothing. */
-static const json_t *find_device(const struct pairings *pairings, const uint8_t hash[TOKEN_HASH_BYTES])
+/* Finds a device by hash in a list of paired devices; takes the same time for every hash, so that timing reveals nothing. */
+static const json_t *find_device(const json_t *list, const uint8_t hash[TOKEN_HASH_BYTES])
 {
     char text[HASH_CHARS + 1];
     const json_t *found = NULL;
     hex_print(hash, TOKEN_HASH_BYTES, text);
-    for (size_t i = 0; i < json_array_size(pairings->kept.list); i++) {
-        const json_t *device = json_array_get(pairings->kept.list, i);
+    for (size_t i = 0; i < json_array_size(list); i++) {
+        const json_t *device = json_array_get(list, i);
         if (CRYPTO_memcmp(json_string_value(json_object_get(device, "hash")), text, HASH_CHARS) == 0)
             found = device;
     }
     return found;
 }
 
-bool pairings_find(const void *pairings, const uint8_t hash[TOKEN_HASH_BYTES], struct token_holder *out)
+bool pairings_find(const void *of, const uint8_t hash[TOKEN_HASH_BYTES], struct token_holder *out)
 {
-    const json_t *device = find_device(pairings, hash);
+    const struct pairings *pairings = of;
+    const json_t *device = find_device(pairings->kept.list, hash);
     *out = (struct token_holder){ .role = device ? ROLE_VIEWER : ROLE_NOBODY };
     if (!device)
         return false;
@@ -117,10 +118,11 @@ bool pairings_find(const void *pairings, const uint8_t hash[TOKEN_HASH_BYTES], s
 enum refusal_code pairings_revoke(struct pairings *pairings, const char *id)
 {
     enum refusal_code why = pairings_refusal(pairings);
-    size_t at = kept_list_find(pairings->kept.list, id);
-    if (why || at == json_array_size(pairings->kept.list))
+    json_t *newest = kept_list_newest(&pairings->kept);
+    size_t at = kept_list_find(newest, id);
+    if (why || at == json_array_size(newest))
         return why ? why : REFUSAL_DEVICELESS;
-    json_t *list = json_copy(pairings->kept.list);
+    json_t *list = json_copy(newest);
     json_array_remove(list, at);
     return kept_list_put(&pairings->kept, list);
 }
@@ -206,7 +208,7 @@ static bool make_room(struct pairings *pairings, size_t from)
     }
     if (victim == pairings->count)
         return false;
-    log_info(pairings->kept.log, "pairing: all %d codes are in use; dropped the oldest of %s, which held %zu", PAIRINGS,
+    log_info(pairings->kept.log, "pairing: all %d codes are in use; dropped the newest of %s, which held %zu", PAIRINGS,
              pairings->waiting[victim].from, most);
     forget(pairings, victim);
     return true;
@@ -254,6 +256,10 @@ static enum pairing ask(struct pairings *pairings, const uint8_t hash[TOKEN_HASH
     enum pairing paired = find_paired(pairings, hash, &request->place);
     if (paired != PAIRING_WAITS)
         return paired;
+    digits[0] = 0;
+    *left_s = 0;
+    if (find_device(kept_list_newest(&pairings->kept), hash)) /* accepted, and not on disk yet: its digits are used up */
+        return PAIRING_WAITS;
     forget_old(pairings, now_ns);
     size_t at = find_waiting(pairings, hash, &request->place);
     struct pending_pairing *waiting = at < pairings->count ? &pairings->waiting[at] : begin(pairings, hash, request, now_ns);
@@ -281,7 +287,7 @@ static enum refusal_code keep(struct pairings *pairings, const struct pending_pa
                                waiting->place.display, "from", waiting->from, "by", who, "time_us", (json_int_t)now_us);
     if (!device)
         return REFUSAL_NOT_UTF8;
-    json_t *list = json_copy(pairings->kept.list);
+    json_t *list = json_copy(kept_list_newest(&pairings->kept));
     json_array_append_new(list, device);
     return kept_list_put(&pairings->kept, list);
 }
@@ -310,12 +316,13 @@ enum refusal_code pairings_approve(struct pairings *pairings, const char *digits
             pairings->wrong_ns = now_ns;
         return REFUSAL_DIGITS;
     }
-    if (json_array_size(pairings->kept.list) == PAIRED_DEVICES)
+    const json_t *newest = kept_list_newest(&pairings->kept);
+    if (json_array_size(newest) == PAIRED_DEVICES)
         return REFUSAL_DEVICES;
     int n = 0;
     do
         snprintf(id, TOKEN_NAME_BYTES, "%s.%d.%d", waiting->place.wall, waiting->place.display, ++n);
-    while (kept_list_find(pairings->kept.list, id) < json_array_size(pairings->kept.list));
+    while (kept_list_find(newest, id) < json_array_size(newest));
     why = keep(pairings, waiting, id, who, now_us);
     if (!why)
         forget(pairings, (size_t)(waiting - pairings->waiting));

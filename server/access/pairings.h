@@ -7,6 +7,7 @@
 #include <jansson.h>
 
 #include "access/tokens.h"
+#include "base/files/file_writer.h"
 #include "base/refusal.h"
 #include "views/wall_remote.h"
 
@@ -33,7 +34,7 @@ struct pairing_request {
 struct pairings;
 /* Reads the paired devices. folder: folder of the history, must outlive the result; NULL: no device can be paired. If the file cannot be
    read (logged), no device is accepted, and the file is not overwritten. Never returns NULL. */
-struct pairings *pairings_open(struct log *log, const char *folder);
+struct pairings *pairings_open(struct log *log, const char *folder, struct file_writer *writer);
 void pairings_close(struct pairings **pairings); /* &NULL is allowed; sets *pairings to NULL */
 /* Returns true if the secret has the form of a token (tokens_make) with 256 bits. */
 bool pairings_secret_valid(const char *secret);

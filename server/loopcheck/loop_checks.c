@@ -28,6 +28,7 @@ static const char head[] = "Time,Tag Name,Result,Value,Unit,Expected,Tolerance,B
 struct loop_checks {
     struct log *log;
     const struct plant *plant;
+    struct file_writer *writer;
     char *folder, *path;
     struct loop_check *at; /* latest check by tag */
     uint64_t *numbers;     /* by tag: sequence number (loop_checks_number()) of the tag's newest check */
@@ -157,11 +158,12 @@ static void read_all(struct loop_checks *loop_checks)
     diag_finish(&diag);
 }
 
-struct loop_checks *loop_checks_open(struct log *log, const struct plant *plant, const char *folder)
+struct loop_checks *loop_checks_open(struct log *log, const struct plant *plant, const char *folder, struct file_writer *writer)
 {
     struct loop_checks *loop_checks = mem_new(sizeof(*loop_checks));
     loop_checks->log = log;
     loop_checks->plant = plant;
+    loop_checks->writer = writer;
     loop_checks->folder = mem_strdup(folder);
     loop_checks->path = mem_printf("%s/" LOOP_CHECKS_FILE, folder);
     loop_checks->at = mem_array(plant->tag_count, sizeof(*loop_checks->at));
@@ -180,6 +182,7 @@ void loop_checks_close(struct loop_checks **pointer)
     struct loop_checks *loop_checks = *pointer;
     if (!loop_checks)
         return;
+    file_writer_forget(loop_checks->writer, loop_checks);
     mem_free(loop_checks->folder);
     mem_free(loop_checks->path);
     mem_free(loop_checks->at);
@@ -189,14 +192,26 @@ void loop_checks_close(struct loop_checks **pointer)
     *pointer = NULL;
 }
 
+struct row_job {
+    struct file_job job; /* first member; its owner is `loop_checks` */
+    struct loop_checks *loop_checks;
+    struct log *log;
+    char *folder, *path;
+    struct text row;
+    int tag;
+    struct loop_check check;
+};
+
 /* Appends a row to the file. An incomplete last line, for example after a power failure, is ended with a newline first. Creates the
    folder if needed: the historian's thread creates it too, but may not have done so yet. */
-static bool append(struct log *log, const char *folder, const char *path, const struct text *row)
+static int append(struct file_job *job)
 {
-    mkdir(folder, 0777); /* result ignored: if this fails, opening the file reports the reason */
-    FILE *file = fopen(path, "a+b");
+    const struct row_job *own = (const struct row_job *)job;
+    const struct text *row = &own->row;
+    mkdir(own->folder, 0777); /* result ignored: if this fails, opening the file reports the reason */
+    FILE *file = fopen(own->path, "a+b");
     if (!file)
-        return false;
+        return -errno;
     bool good = fseek(file, 0, SEEK_END) == 0;
     long size = good ? ftell(file) : -1;
     if (size == 0)
@@ -204,33 +219,44 @@ static bool append(struct log *log, const char *folder, const char *path, const 
     else if (good && size > 0 && fseek(file, -1, SEEK_END) == 0 && fgetc(file) != '\n')
         good = fseek(file, 0, SEEK_END) == 0 && fputc('\n', file) != EOF;
     good = good && fwrite(row->at, 1, row->length, file) == row->length && fflush(file) == 0 && fsync(fileno(file)) == 0;
-    int error = errno;
+    int error = good ? 0 : -errno;
     /* removes the incomplete row, because the caller reports it as not stored */
     if (!good && size >= 0 && ftruncate(fileno(file), size) != 0)
-        log_err(log, "%s: %s", path, strerror(errno));
+        log_err(own->log, "%s: %s", own->path, strerror(errno));
     fclose(file);
-    if (good && size == 0 && plant_folder_sync(folder) != 0)
-        good = false;
-    errno = error;
-    return good;
+    return good && size == 0 ? plant_folder_sync(own->folder) : error;
+}
+
+static void finish_row(struct file_job *job, int error)
+{
+    struct row_job *own = (struct row_job *)job;
+    struct loop_checks *loop_checks = job->owner ? own->loop_checks : NULL;
+    if (loop_checks && error) {
+        log_err(own->log, "%s: %s: %s", own->path, loop_checks->plant->tags[own->tag].name, strerror(-error));
+    } else if (loop_checks) {
+        loop_checks->at[own->tag] = own->check;
+        loop_checks->numbers[own->tag] = ++loop_checks->number;
+        loop_checks->begun = true;
+        mark_unproven(loop_checks);
+    }
+    mem_free(own->folder);
+    mem_free(own->path);
+    text_finish(&own->row);
+    mem_free(own);
 }
 
 enum refusal_code loop_checks_add(struct loop_checks *loop_checks, int tag, const struct loop_check *check)
 {
-    struct text row = { 0 };
-    add_row(&row, loop_checks->plant, tag, check);
-    bool good = append(loop_checks->log, loop_checks->folder, loop_checks->path, &row);
-    int error = errno;
-    text_finish(&row);
-    if (!good) {
-        log_err(loop_checks->log, "%s: %s: %s", loop_checks->path, loop_checks->plant->tags[tag].name, strerror(error));
-        return atomic_file_not_kept(-error);
-    }
-    loop_checks->at[tag] = *check;
-    loop_checks->numbers[tag] = ++loop_checks->number;
-    loop_checks->begun = true;
-    mark_unproven(loop_checks);
-    return REFUSAL_NONE;
+    struct row_job *own = mem_new(sizeof(*own));
+    *own = (struct row_job){ .job = { .write = append, .finish = finish_row, .owner = loop_checks },
+                             .loop_checks = loop_checks,
+                             .log = loop_checks->log,
+                             .folder = mem_strdup(loop_checks->folder),
+                             .path = mem_strdup(loop_checks->path),
+                             .tag = tag,
+                             .check = *check };
+    add_row(&own->row, loop_checks->plant, tag, check);
+    return atomic_file_not_kept(file_writer_queue(loop_checks->writer, &own->job));
 }
 
 /* --- queries

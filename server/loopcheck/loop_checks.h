@@ -4,7 +4,7 @@
    Thread: the event loop. */
 #ifndef LOOPCHECK_LOOP_CHECKS_H
 #define LOOPCHECK_LOOP_CHECKS_H
-#include "base/log/log.h"
+#include "base/files/file_writer.h"
 #include "base/refusal.h"
 #include "base/text/text.h"
 #include "plant/plant.h"
@@ -29,11 +29,12 @@ struct loop_check {
 #define LOOP_CHECKS_FILE "proofs.csv"
 
 struct loop_checks;
-/* Reads the records of a plant. folder must exist before the first record is added. A file that cannot be read counts as empty (logged).
-   Never returns NULL. plant must outlive the result. */
-struct loop_checks *loop_checks_open(struct log *log, const struct plant *plant, const char *folder);
+/* Reads the records of a plant. A file that cannot be read counts as empty (logged). writer: the thread that writes records; NULL: they
+   are written at once. Never returns NULL. plant and writer must outlive the result. */
+struct loop_checks *loop_checks_open(struct log *log, const struct plant *plant, const char *folder, struct file_writer *writer);
 void loop_checks_close(struct loop_checks **loop_checks); /* &NULL is allowed; sets *loop_checks to NULL */
-/* Adds the record of a check of a tag, and writes it to disk. Returns REFUSAL_NONE, or why it could not be added. */
+/* Queues a record of a tag for the disk; once it is there, file_writer_collect() puts it in force. Returns REFUSAL_NONE, or why it could
+   not be added. */
 enum refusal_code loop_checks_add(struct loop_checks *loop_checks, int tag, const struct loop_check *check);
 /* Returns the newest record of a tag. */
 const struct loop_check *loop_checks_of(const struct loop_checks *loop_checks, int tag);

@@ -183,12 +183,18 @@ bool net_settle_answers(struct net *net)
 {
     struct server_context *server = &net->server;
     struct kept_answers *answers = &server->kept_answers;
-    if (!answers->waiting)
-        return false;
-    answers->waiting = false;
-    session_settle_gone(answers);
-    streams_settle(server);
-    renderers_settle(server);
+    bool changed = file_writer_collect(server->params.file_writer); /* lists that clients are sent */
+    if (answers->waiting) {
+        answers->waiting = false;
+        session_settle_gone(answers);
+        streams_settle(server);
+        renderers_settle(server);
+        http_settle(server);
+    }
+    if (changed) {
+        streams_on_alarms(server);
+        renderers_on_change(server);
+    }
     return answers->waiting;
 }
 
@@ -494,6 +500,7 @@ struct net *net_create(const struct net_params *params)
         .admission = &server->admission,
         .login_throttle = server->login_throttle,
         .audit = params->audit,
+        .file_writer = params->file_writer,
         .kept_answers = &server->kept_answers,
     };
     if (params->signing_key) {

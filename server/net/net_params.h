@@ -55,7 +55,8 @@ struct net_params {
     struct log *log;
     struct net_plant plant;
     struct counters *counters;
-    struct audit *audit; /* the audit trail; NULL: nothing is recorded */
+    struct audit *audit;             /* the audit trail; NULL: nothing is recorded */
+    struct file_writer *file_writer; /* writes what users change; its results are collected by the event loop */
     const char *address; /* numeric address to listen on */
     int port;            /* port to listen on; 0: any free one */
     int socket_fd;       /* socket that already listens, opened by systemd (net/handed_socket.h); -1: none */

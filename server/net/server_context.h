@@ -192,6 +192,8 @@ void http_on_sign_ins(struct server_context *server);
 void http_on_reloaded(struct server_context *server, bool good, const char *text);
 /* Answers all requests that wait for the plant that is about to be replaced. */
 void http_release_plant(struct server_context *server);
+/* Answers requests whose line in the audit trail is on disk, or cannot be written. */
+void http_settle(struct server_context *server);
 /* Answers requests that have waited too long. */
 void http_on_tick(struct server_context *server, int64_t now_ns);
 /* Sends a complete short answer in plain text. Returns the result for the libwebsockets callback. */

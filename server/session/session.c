@@ -256,9 +256,7 @@ static bool on_alarm(struct session *session, const struct message *message, str
     }
     const struct kept_action action = session_kept_begin(session);
     char *answer = alarm_do(context->alarm_service, context->plant, message, session_who(session));
-    char *what = session_alarm_what(session, message);
-    session_record_alarm(session, what, answer);
-    session_kept_reply(session, &action, answer, what);
+    session_kept_reply(session, &action, "alarm", session_alarm_what(session, message), answer);
     return true;
 }
 
@@ -266,8 +264,7 @@ static void on_view_edit(struct session *session, const struct message *message,
 {
     const struct kept_action action = session_kept_begin(session);
     char *answer = view_edit_do(session->context->named_views, message, session_who(session), now_utc_ns / 1000);
-    session_record_view(session, message, answer);
-    session_kept_reply(session, &action, answer, NULL);
+    session_kept_reply(session, &action, "view", session_view_what(message), answer);
 }
 
 static void on_note(struct session *session, const struct message *message, int64_t now_utc_ns)
@@ -275,16 +272,14 @@ static void on_note(struct session *session, const struct message *message, int6
     const struct session_context *context = session->context;
     const struct kept_action action = session_kept_begin(session);
     char *answer = note_do(context->notes, context->plant, message, session_who(session), now_utc_ns / 1000);
-    session_record_note(session, message, answer);
-    session_kept_reply(session, &action, answer, NULL);
+    session_kept_reply(session, &action, "note", session_note_what(session, message), answer);
 }
 
 static void on_send_to_wall(struct session *session, const struct message *message, int64_t now_utc_ns)
 {
     const struct kept_action action = session_kept_begin(session);
     char *answer = send_to_wall_do(session->context->wall_remote, message, session_who(session), now_utc_ns / 1000);
-    session_record_wall(session, message, answer);
-    session_kept_reply(session, &action, answer, NULL);
+    session_kept_reply(session, &action, "wall", session_wall_what(message), answer);
 }
 
 bool session_may_be(struct session *session, const struct wall_place *place, struct message_error *error)
@@ -325,9 +320,7 @@ static bool on_pair(struct session *session, const struct message *message, int6
                                   : pairings_revoke(context->pairings, id);
     json_t *said = json_pack("{s:s,s:I,s:s,s:b}", "type", "paired", "seq", (json_int_t)message->seq, "id", id, "kept", !why);
     refusal_add(said, why);
-    char *answer = json_text(said, 0);
-    session_record_pair(session, message, id, answer);
-    session_kept_reply(session, &action, answer, NULL);
+    session_kept_reply(session, &action, "device", mem_printf("%s %s", pairs ? "pair" : "unpair", id), json_text(said, 0));
     return true;
 }
 

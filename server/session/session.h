@@ -28,8 +28,8 @@ void session_record_leave(const struct session *session, const char *why);
 /* Queues the answers to actions whose journal and audit entries are on disk by now, or can never be written. Returns whether it queued
    any. */
 bool session_settle(struct session *session);
-/* Destroys a session whose client has gone. While it is open whether an action on alarms is on disk, the session stays in the list `gone`
-   of its context, so that a failure is still recorded in the audit trail. */
+/* Destroys a session whose client has gone. While it is open whether an action is on disk, the session stays in the list `gone` of its
+   context, so that a failure is still recorded in the audit trail. */
 void session_retire(struct session **session);
 /* For the sessions in the context's list `gone`: records in the audit trail which actions on alarms failed to reach the disk, and destroys
    the sessions that have no open action left. */

@@ -49,49 +49,36 @@ char *session_alarm_what(const struct session *session, const struct message *me
     return what.at;
 }
 
-void session_record_alarm(const struct session *session, const char *what, const char *answer)
+void session_record_action(const struct session *session, const char *event, const char *what, const char *answer)
 {
     json_t *said = json_loads(answer, 0, NULL), *refused = json_object_get(said, "refused");
-    char *why = json_array_size(refused) ? json_dumps(refused, JSON_COMPACT) : NULL;
-    record(session, "alarm", json_integer_value(json_object_get(said, "done")) > 0 ? "done" : "failed", what, why);
-    free(why);
+    char *all = json_array_size(refused) ? json_dumps(refused, JSON_COMPACT) : NULL;
+    bool done = json_integer_value(json_object_get(said, "done")) > 0 || json_is_true(json_object_get(said, "kept"));
+    record(session, event, done ? "done" : "failed", what, all ? all : json_string_value(json_object_get(said, "why")));
+    free(all);
     json_decref(said);
 }
 
-void session_record_not_kept(const struct session *session, const char *what, const char *why)
+void session_record_not_kept(const struct session *session, const char *event, const char *what, const char *why)
 {
-    record(session, "alarm", "failed", what, why);
+    record(session, event, "failed", what, why);
 }
 
-void session_record_loop_check(const struct session *session, const struct message *message, const char *answer)
+char *session_loop_check_what(const struct session *session, const struct message *message, const char *answer)
 {
     json_t *said = json_loads(answer, 0, NULL);
-    bool kept = json_is_true(json_object_get(said, "kept"));
-    const char *because = json_string_value(json_object_get(said, "why"));
     char *what = mem_printf("%s: %s", session->context->plant->tags[message->loop_check.tag].name,
                             json_is_true(json_object_get(said, "passed")) ? "passed" : "not passed");
-    record(session, "proof", kept ? "done" : "failed", what, because);
-    mem_free(what);
     json_decref(said);
+    return what;
 }
 
-/* Records an action; takes ownership of `what` (mem_free). Tells from the answer whether the action succeeded, or why it failed. */
-static void record_kept(const struct session *session, const char *event, char *what, const char *answer)
+char *session_view_what(const struct message *message)
 {
-    json_t *said = json_loads(answer, 0, NULL);
-    bool kept = json_is_true(json_object_get(said, "kept"));
-    record(session, event, kept ? "done" : "failed", what, json_string_value(json_object_get(said, "why")));
-    mem_free(what);
-    json_decref(said);
+    return mem_printf("%s %s", message->type == MESSAGE_SAVE_VIEW ? "save" : "remove", message->view_edit.id);
 }
 
-void session_record_view(const struct session *session, const struct message *message, const char *answer)
-{
-    const char *did = message->type == MESSAGE_SAVE_VIEW ? "save" : "remove";
-    record_kept(session, "view", mem_printf("%s %s", did, message->view_edit.id), answer);
-}
-
-void session_record_note(const struct session *session, const struct message *message, const char *answer)
+char *session_note_what(const struct session *session, const struct message *message)
 {
     const struct note_request *note = &message->note;
     const struct plant *plant = session->context->plant;
@@ -100,22 +87,15 @@ void session_record_note(const struct session *session, const struct message *me
                      : note->tag >= 0   ? plant->tags[note->tag].name
                      : note->asset >= 0 ? plant->assets[note->asset].id
                                         : "a place";
-    record_kept(session, "note",
-                mem_printf("%s %s%s%s%s%s", adds ? "at" : "remove", at, note->name[0] ? " as " : "", note->name, adds ? ": " : "",
-                           adds ? note->text : ""),
-                answer);
+    return mem_printf("%s %s%s%s%s%s", adds ? "at" : "remove", at, note->name[0] ? " as " : "", note->name, adds ? ": " : "",
+                      adds ? note->text : "");
 }
 
-void session_record_wall(const struct session *session, const struct message *message, const char *answer)
+char *session_wall_what(const struct message *message)
 {
     const struct wall_place *place = &message->wall.place;
     const char *did = message->view_edit.address[0] ? "send a view to" : message->wall.held ? "hold" : "give back";
-    record_kept(session, "wall", mem_printf("%s %s, display %d, %s", did, place->wall, place->display, place->area), answer);
-}
-
-void session_record_pair(const struct session *session, const struct message *message, const char *id, const char *answer)
-{
-    record_kept(session, "device", mem_printf("%s %s", message->type == MESSAGE_PAIR ? "pair" : "unpair", id), answer);
+    return mem_printf("%s %s, display %d, %s", did, place->wall, place->display, place->area);
 }
 
 static bool has_name(const struct session *session)

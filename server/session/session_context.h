@@ -4,6 +4,7 @@
 #define SESSION_SESSION_CONTEXT_H
 #include "access/openid/openid.h"
 #include "audit/audit.h"
+#include "base/files/file_writer.h"
 #include "base/system/clock_state.h"
 #include "scene/scene.h"
 #include "session/session_state.h"
@@ -61,6 +62,7 @@ struct session_context {
     int64_t lock_ns;                       /* monotonic duration without user activity after which the user must sign in again; 0: never */
     struct login_throttle *login_throttle; /* counts wrong tokens in `hello` messages; NULL: not counted */
     struct audit *audit;                   /* the audit trail; NULL: nothing is recorded */
+    struct file_writer *file_writer;       /* writes views, notes, walls, pairings and loop checks; NULL: they are written at once */
     /* list of answers that wait for the disk, shared by all sessions; NULL: session_destroy() drops such answers */
     struct kept_answers *kept_answers;
     struct resumes *resumes;           /* changed by hello */

@@ -18,37 +18,34 @@ const char *session_who(const struct session *session);
 
 /* --- session_audit.c: entries for the audit trail ----------------------------------------------------------------------- */
 
-/* Record in the audit trail an action on alarms, a loop check, a named view, a note, a pairing or a wall. answer: the message that the
-   client is sent. */
-void session_record_alarm(const struct session *session, const char *what, const char *answer);
-/* Describes an action on alarms for the audit trail; the caller frees the text with mem_free. */
+/* Describe an action for the audit trail; the caller frees the text with mem_free. answer: the message that the client is sent. */
 char *session_alarm_what(const struct session *session, const struct message *message);
-void session_record_loop_check(const struct session *session, const struct message *message, const char *answer);
-void session_record_view(const struct session *session, const struct message *message, const char *answer);
-void session_record_note(const struct session *session, const struct message *message, const char *answer);
-void session_record_pair(const struct session *session, const struct message *message, const char *id, const char *answer);
-void session_record_wall(const struct session *session, const struct message *message, const char *answer);
+char *session_loop_check_what(const struct session *session, const struct message *message, const char *answer);
+char *session_view_what(const struct message *message);
+char *session_note_what(const struct session *session, const struct message *message);
+char *session_wall_what(const struct message *message);
+/* Records an action in the audit trail. event: "alarm", "view", "note", "wall", "device" or "proof". */
+void session_record_action(const struct session *session, const char *event, const char *what, const char *answer);
 /* Records that a tag list is being put in force: by save_tags with `moved` moved sensors, by accept_places or by restore_tags. */
 void session_record_save(const struct session *session, const struct message *message, size_t moved);
 /* If the message's parameters save or remove baselines for all users, records that in the audit trail. */
 void session_record_params(const struct session *session, const struct message *message);
-/* Records that an action on alarms took effect but is not on disk. */
-void session_record_not_kept(const struct session *session, const char *what, const char *why);
+/* Records that an action is not on disk. */
+void session_record_not_kept(const struct session *session, const char *event, const char *what, const char *why);
 /* Records an error if it means that the client lacks the right to do what it asked for. */
 void session_record_refusal(const struct session *session, const struct message_error *error);
 
 /* --- session_kept.c: answers that wait for the disk ---------------------------------------------------------------------- */
 
 struct kept_action {
-    struct settling_ticket journal, audit;
+    struct settling_ticket journal, file, audit;
 };
-/* Notes the ends of journal and audit trail; call this before carrying out and recording an action. Pass the result to
-   session_kept_reply(). */
+/* Notes the ends of journal, files and audit trail; call this before carrying out an action. Pass the result to session_kept_reply(). */
 struct kept_action session_kept_begin(const struct session *session);
-/* Queues the answer once journal and audit trail have the action on disk. If they cannot be written, or are not written within a second,
-   the answer's members `not_kept` and `unaudited` say so. Takes ownership of the answer. alarm_what: description of an action on alarms,
-   also taken over; NULL: the action was no alarm action. */
-void session_kept_reply(struct session *session, const struct kept_action *action, char *answer, char *alarm_what);
+/* Records the action in the audit trail, and queues the answer once journal, file and audit trail have the action on disk. If they cannot
+   be written, or are not written within a second, the answer says so: `not_kept` for an action on alarms, otherwise `kept` false, and
+   `unaudited`. Takes ownership of `answer` and `what`. event: as in session_record_action(); static. */
+void session_kept_reply(struct session *session, const struct kept_action *action, const char *event, char *what, char *answer);
 /* Frees answers that still wait for the disk. */
 void session_kept_drop(struct session *session);
 

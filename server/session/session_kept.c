@@ -2,6 +2,7 @@
 /* Holds back answers until their action is on disk. Only the answer waits, not the event loop. */
 #include <errno.h>
 #include <jansson.h>
+#include <string.h>
 
 #include "alarm/alarm_service.h"
 #include "audit/audit.h"
@@ -11,11 +12,13 @@
 #include "session/session_impl.h"
 
 struct kept_answer {
-    char *text, *what; /* description of an action on alarms, for the audit trail; NULL: no alarm action */
+    char *text;
+    char *what;        /* description of the action, for the audit trail */
+    const char *event; /* kind of the action, for the audit trail */
     /* alarm service that carried out the action; NULL: the journal's decision is in `journal`, or there was no alarm action */
     const struct alarm_service *alarms;
     int journal_error; /* 0: the action is in the journal on disk; -errno: writing failed */
-    struct settling_ticket journal, audit;
+    struct settling_ticket journal, file, audit;
     struct kept_answer *next;
 };
 
@@ -31,20 +34,36 @@ static int journal_state(const struct session *session, struct kept_answer *kept
     return kept->journal_error;
 }
 
-static void say_not_kept(json_t *answer, int error)
+/* Returns whether journal and file have the action on disk: 0, -EINPROGRESS or an error. */
+static int disk_state(const struct session *session, struct kept_answer *kept)
 {
-    json_object_set(answer, "not_kept", json_object_get(answer, "done"));
-    json_object_set_new(answer, "done", json_integer(0));
-    refusal_add(answer, atomic_file_not_kept(error));
+    int journal = journal_state(session, kept), file = file_writer_settled(session->context->file_writer, &kept->file);
+    return journal ? journal : file;
 }
 
-static void answer_now(struct session *session, struct kept_answer *kept, int journal_error, int audit_error)
+/* Changes an answer that says that the action is on disk. Returns false if the answer does not say that. */
+static bool say_not_kept(json_t *answer, int error)
 {
-    json_t *answer = journal_error || audit_error ? json_loads(kept->text, 0, NULL) : NULL;
-    if (answer && journal_error && json_integer_value(json_object_get(answer, "done")) > 0) {
-        say_not_kept(answer, journal_error);
-        session_record_not_kept(session, kept->what, refusal_words(atomic_file_not_kept(journal_error)));
+    json_t *done = json_object_get(answer, "done");
+    if (json_integer_value(done) > 0) { /* an alarm action, which is in force although it is not on disk */
+        json_object_set(answer, "not_kept", done);
+        json_object_set_new(answer, "done", json_integer(0));
+    } else if (json_is_true(json_object_get(answer, "kept"))) {
+        json_object_set_new(answer, "kept", json_false());
+        if (json_object_get(answer, "passed"))
+            json_object_set_new(answer, "passed", json_false());
+    } else {
+        return false;
     }
+    refusal_add(answer, atomic_file_not_kept(error));
+    return true;
+}
+
+static void answer_now(struct session *session, struct kept_answer *kept, int disk_error, int audit_error)
+{
+    json_t *answer = disk_error || audit_error ? json_loads(kept->text, 0, NULL) : NULL;
+    if (answer && disk_error && say_not_kept(answer, disk_error))
+        session_record_not_kept(session, kept->event, kept->what, refusal_words(atomic_file_not_kept(disk_error)));
     if (answer && audit_error)
         refusal_add_unaudited(answer, atomic_file_not_kept(audit_error));
     if (answer) {
@@ -61,32 +80,38 @@ static void answer_now(struct session *session, struct kept_answer *kept, int jo
 static bool try_to_answer(struct session *session, struct kept_answer **at, bool now)
 {
     struct kept_answer *kept = *at;
-    int journal = journal_state(session, kept), audit = audit_settled(session->context->audit, &kept->audit);
-    if (!now && (journal == -EINPROGRESS || audit == -EINPROGRESS))
+    int disk = disk_state(session, kept), audit = audit_settled(session->context->audit, &kept->audit);
+    if (!now && (disk == -EINPROGRESS || audit == -EINPROGRESS))
         return false;
     *at = kept->next;
     session->kept_count--;
-    answer_now(session, kept, journal == -EINPROGRESS ? -ETIMEDOUT : journal, audit == -EINPROGRESS ? -ETIMEDOUT : audit);
+    answer_now(session, kept, disk == -EINPROGRESS ? -ETIMEDOUT : disk, audit == -EINPROGRESS ? -ETIMEDOUT : audit);
     return true;
 }
 
 struct kept_action session_kept_begin(const struct session *session)
 {
-    struct kept_action action = { .audit = audit_begin(session->context->audit) };
-    if (session->context->alarm_service)
-        action.journal = alarm_service_begin(session->context->alarm_service);
+    const struct session_context *context = session->context;
+    struct kept_action action = { .file = file_writer_begin(context->file_writer), .audit = audit_begin(context->audit) };
+    if (context->alarm_service)
+        action.journal = alarm_service_begin(context->alarm_service);
     return action;
 }
 
-void session_kept_reply(struct session *session, const struct kept_action *action, char *answer, char *alarm_what)
+void session_kept_reply(struct session *session, const struct kept_action *action, const char *event, char *what, char *answer)
 {
+    const struct session_context *context = session->context;
     struct kept_answer *kept = mem_new(sizeof(*kept)), **last = &session->kept;
-    *kept = (struct kept_answer){ .text = answer, .what = alarm_what, .journal = action->journal, .audit = action->audit };
-    if (alarm_what) {
-        kept->alarms = session->context->alarm_service;
-        alarm_service_end(session->context->alarm_service, &kept->journal);
+    *kept = (struct kept_answer){
+        .text = answer, .what = what, .event = event, .journal = action->journal, .file = action->file, .audit = action->audit
+    };
+    if (!strcmp(event, "alarm")) {
+        kept->alarms = context->alarm_service;
+        alarm_service_end(context->alarm_service, &kept->journal);
     }
-    audit_end(session->context->audit, &kept->audit);
+    file_writer_end(context->file_writer, &kept->file);
+    session_record_action(session, event, what, answer);
+    audit_end(context->audit, &kept->audit);
     while (*last)
         last = &(*last)->next;
     *last = kept;
@@ -109,10 +134,10 @@ bool session_settle(struct session *session)
     return answered;
 }
 
-static bool waits_for_journal(const struct session *session)
+static bool waits_for_disk(const struct session *session)
 {
-    const struct kept_answer *kept = session->kept;
-    while (kept && !kept->alarms)
+    struct kept_answer *kept = session->kept;
+    while (kept && disk_state(session, kept) != -EINPROGRESS)
         kept = kept->next;
     return kept != NULL;
 }
@@ -122,7 +147,7 @@ void session_retire(struct session **session_ptr)
     struct session *session = *session_ptr;
     struct kept_answers *answers = session->context->kept_answers;
     session_settle(session);
-    if (!answers || !waits_for_journal(session)) {
+    if (!answers || !waits_for_disk(session)) {
         session_destroy(session_ptr);
         return;
     }
@@ -136,7 +161,7 @@ void session_settle_gone(struct kept_answers *answers)
 {
     for (struct session **at = &answers->gone, *session; (session = *at);) {
         session_settle(session);
-        if (waits_for_journal(session)) {
+        if (waits_for_disk(session)) {
             at = &session->next_gone;
             continue;
         }

@@ -32,9 +32,10 @@ static void read_file(struct kept_list *kept)
     json_decref(file);
 }
 
-void kept_list_open(struct kept_list *kept, struct log *log, const char *folder, const struct kept_list_kind *kind)
+void kept_list_open(struct kept_list *kept, struct log *log, const char *folder, const struct kept_list_kind *kind,
+                    struct file_writer *writer)
 {
-    *kept = (struct kept_list){ .log = log, .kind = kind, .folder = folder, .list = json_array() };
+    *kept = (struct kept_list){ .log = log, .kind = kind, .folder = folder, .writer = writer, .list = json_array() };
     kept->path = folder ? mem_printf("%s/%s", folder, kind->file) : NULL;
     if (kept->path && access(kept->path, F_OK) == 0)
         read_file(kept);
@@ -43,8 +44,15 @@ void kept_list_open(struct kept_list *kept, struct log *log, const char *folder,
 
 void kept_list_close(struct kept_list *kept)
 {
+    file_writer_forget(kept->writer, kept);
+    json_decref(kept->next);
     json_decref(kept->list);
     mem_free(kept->path);
+}
+
+json_t *kept_list_newest(const struct kept_list *kept)
+{
+    return kept->next ? kept->next : kept->list;
 }
 
 enum refusal_code kept_list_refusal(const struct kept_list *kept)
@@ -52,36 +60,92 @@ enum refusal_code kept_list_refusal(const struct kept_list *kept)
     return !kept->path ? REFUSAL_UNRECORDED : kept->unreadable ? REFUSAL_KEPT_UNREAD : REFUSAL_NONE;
 }
 
+/* --- changes ---------------------------------------------------------------------------------------------------------------- */
+
+struct list_job {
+    struct file_job job; /* first member; its owner is `kept` */
+    struct kept_list *kept;
+    json_t *list;
+    char *folder, *path, *text;
+    bool mirrored; /* the list is that of another daemon: it is in force whether the disk takes it or not */
+};
+
+static void put_in_force(struct kept_list *kept, json_t *list)
+{
+    json_t *before = kept->list;
+    kept->list = json_incref(list);
+    kept->number++;
+    json_decref(before);
+}
+
+static int write_list(struct file_job *job)
+{
+    const struct list_job *own = (const struct list_job *)job;
+    mkdir(own->folder, 0777); /* errors are ignored, because writing the file reports them */
+    return own->text ? atomic_file_keep(own->path, own->text, strlen(own->text)) : -ENOMEM;
+}
+
+static void finish_list(struct file_job *job, int error)
+{
+    struct list_job *own = (struct list_job *)job;
+    struct kept_list *kept = job->owner ? own->kept : NULL;
+    if (kept && error)
+        log_err(kept->log, "%s: %s", kept->path, strerror(-error));
+    if (kept && (!error || own->mirrored))
+        put_in_force(kept, own->list);
+    if (kept && job->number && (error || kept->next == own->list)) { /* after an error all changes that were queued behind it fail, too */
+        json_decref(kept->next);
+        kept->next = NULL;
+    }
+    json_decref(own->list);
+    mem_free(own->folder);
+    mem_free(own->path);
+    free(own->text);
+    mem_free(own);
+}
+
+static enum refusal_code put(struct kept_list *kept, json_t *list, bool mirrored)
+{
+    if (!kept->path) {
+        put_in_force(kept, list);
+        json_decref(list);
+        return REFUSAL_NONE;
+    }
+    json_t *file = json_pack("{s:i,s:O}", "version", 1, kept->kind->key, list);
+    struct list_job *own = mem_new(sizeof(*own));
+    *own = (struct list_job){ .job = { .write = write_list, .finish = finish_list, .owner = kept },
+                              .kept = kept,
+                              .list = list,
+                              .folder = mem_strdup(kept->folder),
+                              .path = mem_strdup(kept->path),
+                              .text = json_dumps(file, JSON_INDENT(1)),
+                              .mirrored = mirrored };
+    json_decref(file);
+    json_incref(list);
+    int error = file_writer_queue(kept->writer, &own->job);
+    if (error || !kept->writer) {
+        json_decref(list);
+    } else {
+        json_decref(kept->next);
+        kept->next = list;
+    }
+    return atomic_file_not_kept(error);
+}
+
 enum refusal_code kept_list_put(struct kept_list *kept, json_t *list)
 {
-    json_t *file = json_pack("{s:i,s:O}", "version", 1, kept->kind->key, list);
-    char *text = json_dumps(file, JSON_INDENT(1));
-    if (kept->folder)
-        mkdir(kept->folder, 0777); /* errors are ignored, because writing the file reports them */
-    int error = !text ? -ENOMEM : kept->path ? atomic_file_keep(kept->path, text, strlen(text)) : 0;
-    free(text);
-    json_decref(file);
-    if (error) {
-        log_err(kept->log, "%s: %s", kept->path, strerror(-error));
-        json_decref(list);
-        return atomic_file_not_kept(error);
-    }
-    json_decref(kept->list);
-    kept->list = list;
-    kept->number++;
-    return REFUSAL_NONE;
+    return put(kept, list, false);
 }
 
 bool kept_list_mirror(struct kept_list *kept, json_t *list)
 {
     if (!kept->kind->good(list))
         return false;
-    if (json_equal(kept->list, list))
+    if (json_equal(kept_list_newest(kept), list))
         return true;
     if (kept->path && !kept->unreadable) /* a standby core also writes the list to disk, because it may become the leader */
-        return kept_list_put(kept, json_incref(list)) == REFUSAL_NONE;
-    json_decref(kept->list);
-    kept->list = json_incref(list);
-    kept->number++;
+        put(kept, json_incref(list), true);
+    else
+        put_in_force(kept, list);
     return true;
 }

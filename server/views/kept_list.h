@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "base/log/log.h"
+#include "base/files/file_writer.h"
 #include "base/refusal.h"
 
 struct kept_list_kind {
@@ -21,25 +21,31 @@ struct kept_list {
     const struct kept_list_kind *kind;
     const char *folder;
     char *path; /* path of the file; NULL: the list is not stored on disk */
-    json_t *list;
-    uint64_t number; /* change counter */
+    struct file_writer *writer;
+    json_t *list;    /* the list on disk, which clients are sent */
+    json_t *next;    /* the list after all changes that are queued for the disk; NULL: none is queued */
+    uint64_t number; /* change counter of `list` */
     bool unreadable;
 };
 
 /* Reads the list. folder: the history's folder, which need not exist; NULL: none. An unreadable file counts as empty (logged) and is not
-   overwritten. `folder` and `kind` must outlive the list. */
-void kept_list_open(struct kept_list *kept, struct log *log, const char *folder, const struct kept_list_kind *kind);
+   overwritten. writer: the thread that writes changes; NULL: changes are written at once. `folder`, `kind` and `writer` must outlive the
+   list. */
+void kept_list_open(struct kept_list *kept, struct log *log, const char *folder, const struct kept_list_kind *kind,
+                    struct file_writer *writer);
 void kept_list_close(struct kept_list *kept);
+/* Returns the list to which the next change applies: with the changes that are queued for the disk. */
+json_t *kept_list_newest(const struct kept_list *kept);
 /* Returns the index of the entry with this id, or the length of the list if no entry has it. */
 size_t kept_list_find(const json_t *list, const char *id);
 /* Returns REFUSAL_NONE if the list can be changed, else the reason why not. */
 enum refusal_code kept_list_refusal(const struct kept_list *kept);
-/* Writes the new list to disk, then replaces the list in memory; without a folder, only replaces the list in memory. Takes ownership of
- * `list`. Returns REFUSAL_NONE, or why it failed. */
+/* Queues the new list for the disk; once it is there, file_writer_collect() replaces `list`. Without a folder or a writer the list is
+   replaced before this function returns. Takes ownership of `list`. Returns REFUSAL_NONE, or why it failed. */
 enum refusal_code kept_list_put(struct kept_list *kept, json_t *list);
 
-/* Replaces the list by that of another daemon. Only a standby core also writes it to disk. Returns false, with nothing changed, if the list
- * is invalid. */
+/* Replaces the list by that of another daemon; only a standby core writes it to disk, and takes it also if its disk fails (logged).
+   Returns false, with nothing changed, if the list is invalid. */
 bool kept_list_mirror(struct kept_list *kept, json_t *list);
 
 #endif

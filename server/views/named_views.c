@@ -48,11 +48,11 @@ static bool good_list(const json_t *list)
 
 static const struct kept_list_kind VIEWS = { NAMED_VIEWS_FILE, "views", "id, title, view, by, time_us and before", good_list };
 
-struct named_views *named_views_open(struct log *log, const struct plant *plant, const char *folder)
+struct named_views *named_views_open(struct log *log, const struct plant *plant, const char *folder, struct file_writer *writer)
 {
     struct named_views *views = mem_new(sizeof(*views));
     views->plant = plant;
-    kept_list_open(&views->kept, log, folder, &VIEWS);
+    kept_list_open(&views->kept, log, folder, &VIEWS, writer);
     views->kept.number = plant->view_count + json_array_size(views->kept.list) > 0;
     return views;
 }
@@ -96,8 +96,9 @@ static bool same(const json_t *view, const struct named_view_edit *edit)
 enum refusal_code named_views_save(struct named_views *views, const struct named_view_edit *edit, const char *who, int64_t time_us)
 {
     enum refusal_code why = refusal(views, edit->id);
-    size_t count = json_array_size(views->kept.list), at = kept_list_find(views->kept.list, edit->id);
-    json_t *old = json_array_get(views->kept.list, at), *list, *view;
+    json_t *newest = kept_list_newest(&views->kept);
+    size_t count = json_array_size(newest), at = kept_list_find(newest, edit->id);
+    json_t *old = json_array_get(newest, at), *list, *view;
     if (why || (!old && count >= NAMED_VIEWS))
         return why ? why : REFUSAL_VIEWS;
     if (old && same(old, edit)) /* same content: only the position of the view in the list changes */
@@ -107,7 +108,7 @@ enum refusal_code named_views_save(struct named_views *views, const struct named
                          (json_int_t)time_us, "before", old ? versions(old) : json_array());
     if (!view)
         return REFUSAL_NOT_UTF8;
-    list = json_copy(views->kept.list);
+    list = json_copy(newest);
     if (old)
         json_array_remove(list, at);
     count = json_array_size(list);
@@ -120,10 +121,11 @@ enum refusal_code named_views_save(struct named_views *views, const struct named
 enum refusal_code named_views_remove(struct named_views *views, const char *id)
 {
     enum refusal_code why = refusal(views, id);
-    size_t at = kept_list_find(views->kept.list, id);
-    if (why || at == json_array_size(views->kept.list))
+    json_t *newest = kept_list_newest(&views->kept);
+    size_t at = kept_list_find(newest, id);
+    if (why || at == json_array_size(newest))
         return why ? why : REFUSAL_VIEWLESS;
-    json_t *list = json_copy(views->kept.list);
+    json_t *list = json_copy(newest);
     json_array_remove(list, at);
     return kept_list_put(&views->kept, list);
 }

@@ -7,7 +7,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "base/log/log.h"
+#include "base/files/file_writer.h"
 #include "base/refusal.h"
 #include "plant/plant.h"
 #include "plant/walls/wall.h"
@@ -23,11 +23,12 @@ struct named_view_edit {
 struct named_views;
 /* Reads the views of a plant. folder: the history's folder, which need not exist; NULL: saving is refused. An unreadable file counts as
    empty (logged) and is not overwritten. Never returns NULL. `plant` and `folder` must outlive the views. */
-struct named_views *named_views_open(struct log *log, const struct plant *plant, const char *folder);
+struct named_views *named_views_open(struct log *log, const struct plant *plant, const char *folder, struct file_writer *writer);
 void named_views_close(struct named_views **views); /* Frees the views and sets *views to NULL. *views may be NULL. */
-/* Saves a new or changed view, and writes the file. who: the user; time_us: UTC. Returns REFUSAL_NONE, or why it failed. */
+/* Saves a new or changed view, and queues the file (kept_list_put()). who: the user; time_us: UTC. Returns REFUSAL_NONE, or why it
+   failed. */
 enum refusal_code named_views_save(struct named_views *views, const struct named_view_edit *edit, const char *who, int64_t time_us);
-/* Removes a saved view with its earlier versions, and writes the file. Returns REFUSAL_NONE, or why it failed. */
+/* Removes a saved view with its earlier versions, and queues the file (kept_list_put()). Returns REFUSAL_NONE, or why it failed. */
 enum refusal_code named_views_remove(struct named_views *views, const char *id);
 /* Returns a counter that increases with each change of the views; 0: there has been no view. */
 uint64_t named_views_number(const struct named_views *views);

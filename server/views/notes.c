@@ -58,10 +58,10 @@ static bool good_list(const json_t *list)
 
 static const struct kept_list_kind KIND = { NOTES_FILE, "notes", "id, text, a place, by, time_us, until_us and ended_us", good_list };
 
-struct notes *notes_open(struct log *log, const char *folder)
+struct notes *notes_open(struct log *log, const char *folder, struct file_writer *writer)
 {
     struct notes *notes = mem_new(sizeof(*notes));
-    kept_list_open(&notes->kept, log, folder, &KIND);
+    kept_list_open(&notes->kept, log, folder, &KIND, writer);
     return notes;
 }
 
@@ -108,11 +108,12 @@ enum refusal_code notes_add(struct notes *notes, const struct note *note, const 
     enum refusal_code why = kept_list_refusal(&notes->kept);
     if (why)
         return why;
-    if (count(notes->kept.list, now_us, false) >= NOTES)
+    json_t *newest = kept_list_newest(&notes->kept);
+    if (count(newest, now_us, false) >= NOTES)
         return REFUSAL_NOTES;
     if (note->until_us && note->until_us <= now_us)
         return REFUSAL_NOTE_ENDED;
-    make_id(notes->kept.list, now_us, id);
+    make_id(newest, now_us, id);
     json_t *entry = json_pack("{s:s,s:s,s:s,s:I,s:I,s:I,s:s}", "id", id, "text", note->text, "by", who, "time_us", (json_int_t)now_us,
                               "until_us", (json_int_t)note->until_us, "ended_us", (json_int_t)0, "ended_by", "");
     if (!entry)
@@ -121,7 +122,7 @@ enum refusal_code notes_add(struct notes *notes, const struct note *note, const 
         json_object_set_new(entry, "position", json_pack("[f,f,f]", note->position_m[0], note->position_m[1], note->position_m[2]));
     else
         json_object_set_new(entry, note->tag ? "tag" : "asset", json_string(note->tag ? note->tag : note->asset));
-    json_t *list = json_copy(notes->kept.list);
+    json_t *list = json_copy(newest);
     json_array_append_new(list, entry);
     forget_oldest(list, now_us);
     return kept_list_put(&notes->kept, list);
@@ -130,10 +131,11 @@ enum refusal_code notes_add(struct notes *notes, const struct note *note, const 
 enum refusal_code notes_end(struct notes *notes, const char *id, const char *who, int64_t now_us)
 {
     enum refusal_code why = kept_list_refusal(&notes->kept);
-    size_t at = kept_list_find(notes->kept.list, id);
-    if (why || at == json_array_size(notes->kept.list) || has_ended(json_array_get(notes->kept.list, at), now_us))
+    json_t *newest = kept_list_newest(&notes->kept);
+    size_t at = kept_list_find(newest, id);
+    if (why || at == json_array_size(newest) || has_ended(json_array_get(newest, at), now_us))
         return why ? why : REFUSAL_NOTELESS;
-    json_t *list = json_copy(notes->kept.list), *note = json_copy(json_array_get(list, at)), *by = json_string(who);
+    json_t *list = json_copy(newest), *note = json_copy(json_array_get(list, at)), *by = json_string(who);
     json_object_set_new(note, "ended_us", json_integer(now_us));
     json_object_set_new(note, "ended_by", by ? by : json_string(""));
     json_array_set_new(list, at, note);

@@ -7,7 +7,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "base/log/log.h"
+#include "base/files/file_writer.h"
 #include "base/refusal.h"
 
 /* maximum number of ended notes that are stored: the newest ones */
@@ -24,11 +24,11 @@ struct note {
 struct notes;
 /* Reads the notes. folder: the history's folder; NULL: no notes can be made. An unreadable file counts as empty (logged) and is not
    overwritten. Never returns NULL. `folder` must outlive the notes. */
-struct notes *notes_open(struct log *log, const char *folder);
+struct notes *notes_open(struct log *log, const char *folder, struct file_writer *writer);
 void notes_close(struct notes **notes); /* Frees the notes and sets *notes to NULL. *notes may be NULL. */
-/* Adds a user's note and writes the file. Returns REFUSAL_NONE, with the note's id in `id`, or the reason of the failure. */
+/* Adds a user's note and queues the file (kept_list_put()). Returns REFUSAL_NONE with the note's id, or why it failed. */
 enum refusal_code notes_add(struct notes *notes, const struct note *note, const char *who, int64_t now_us, char id[NOTE_ID_BYTES]);
-/* Ends a note and writes the file. Returns REFUSAL_NONE, or the reason of the failure. */
+/* Ends a note and queues the file (kept_list_put()). Returns REFUSAL_NONE, or why it failed. */
 enum refusal_code notes_end(struct notes *notes, const char *id, const char *who, int64_t now_us);
 /* Returns a counter that increases with each change of the notes; 0: there has been no note. */
 uint64_t notes_number(const struct notes *notes);

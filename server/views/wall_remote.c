@@ -57,11 +57,11 @@ static bool good_list(const json_t *list)
 static const struct kept_list_kind KIND = { WALL_REMOTE_FILE, "walls", "id, wall, display, area, view, title, held, desk, by and time_us",
                                             good_list };
 
-struct wall_remote *wall_remote_open(struct log *log, const struct plant *plant, const char *folder)
+struct wall_remote *wall_remote_open(struct log *log, const struct plant *plant, const char *folder, struct file_writer *writer)
 {
     struct wall_remote *remote = mem_new(sizeof(*remote));
     remote->plant = plant;
-    kept_list_open(&remote->kept, log, folder, &KIND);
+    kept_list_open(&remote->kept, log, folder, &KIND, writer);
     return remote;
 }
 
@@ -108,7 +108,7 @@ enum refusal_code wall_remote_order(struct wall_remote *remote, const struct wal
                               "time_us", (json_int_t)now_us);
     if (!entry)
         return REFUSAL_NOT_UTF8;
-    json_t *list = json_copy(remote->kept.list);
+    json_t *list = json_copy(kept_list_newest(&remote->kept));
     size_t at = kept_list_find(list, id);
     if (at < json_array_size(list))
         json_array_remove(list, at);

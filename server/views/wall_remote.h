@@ -6,7 +6,7 @@
 #define VIEWS_WALL_REMOTE_H
 #include <jansson.h>
 
-#include "base/log/log.h"
+#include "base/files/file_writer.h"
 #include "base/refusal.h"
 #include "plant/plant.h"
 #include "plant/walls/wall.h"
@@ -29,11 +29,12 @@ struct wall_order {
 struct wall_remote;
 /* Reads the orders. folder: the history's folder; NULL: orders are lost when the daemon ends. An unreadable file counts as empty
    (logged) and is not overwritten. Never returns NULL. `plant` and `folder` must outlive the result. */
-struct wall_remote *wall_remote_open(struct log *log, const struct plant *plant, const char *folder);
+struct wall_remote *wall_remote_open(struct log *log, const struct plant *plant, const char *folder, struct file_writer *writer);
 void wall_remote_close(struct wall_remote **remote); /* Frees the orders and sets *remote to NULL. *remote may be NULL. */
 /* Returns why a pane cannot be controlled (static text): it is missing in the plant file, or has no views. NULL: it can be controlled. */
 const char *wall_place_wrong(const struct plant *plant, const struct wall_place *place);
-/* Carries out an order and writes the file. The pane must exist in the plant file. Returns REFUSAL_NONE, or the reason of the failure. */
+/* Carries out an order and queues the file (kept_list_put()). The pane must exist in the plant file. Returns REFUSAL_NONE, or why it
+   failed. */
 enum refusal_code wall_remote_order(struct wall_remote *remote, const struct wall_order *order, const char *who, int64_t now_us);
 /* Shows in a pane the position at which a user points. position_m NULL: removes the pointer from the pane. */
 void wall_remote_point(struct wall_remote *remote, const struct wall_place *place, const double *position_m, const char *who,

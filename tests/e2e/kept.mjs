@@ -19,6 +19,9 @@ const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : process.get
 const options = { skip, timeout: 240000 };
 const FULL = /the server’s disk is full|No space left on device/;
 const SECRET = `pc_${'7'.repeat(64)}`;
+const WALL = `views: [{ id: whole, title: Whole unit, view: "group=temperature" }]
+walls: [{ id: room, displays: [{ grid: [main], panes: [{ area: main, views: whole }] }] }]
+`;
 let plant, port, engineer, mounted;
 
 const path = (name) => join(plant.folder, name);
@@ -32,9 +35,7 @@ before(async () => {
     writeFileSync(path('tags.csv'), tags.replace('Stale s,H', 'Stale s,H,Latch').replace(/,1,90$/gm, ',600,90,')
         .replace(/^(PI-1.*,)$/m, '$11'));
     plant.giveDeviceTime();
-    appendFileSync(plant.file, `views: [{ id: whole, title: Whole unit, view: "group=temperature" }]
-walls: [{ id: room, displays: [{ grid: [main], panes: [{ area: main, views: whole }] }] }]
-`);
+    appendFileSync(plant.file, WALL);
     assert.equal(plant.prepare().code, 0);
     engineer = runProgram('plantcast', ['token', 'add', path('tokens'), '--role', 'engineer', '--name', 'eve']).out.trim();
     chmodSync(path('tokens'), 0o600);
@@ -89,7 +90,8 @@ async function told(type) {
 }
 const shelve = { action: 'shelve', for_s: 3600, reason: 'is looked at' };
 const onAlarm = (more) => ({ type: 'alarm', alarms: [['TI-1', 'H']], ...more });
-const device = () => fetch(`http://127.0.0.1:${port}/api/v1/pair?wall=room&display=1`, { headers: { Authorization: `Pairing ${SECRET}` } });
+const device = (at = port) => fetch(`http://127.0.0.1:${at}/api/v1/pair?wall=room&display=1`,
+    { headers: { Authorization: `Pairing ${SECRET}` } });
 
 // name, message (or a function that returns it), type of the answer, event in the audit trail, and a check that asks the daemon whether the
 // action is there.
@@ -220,7 +222,16 @@ function freezable(folder) {
         : null;
 }
 
-test('while the disk hangs, an alarm is answered with "not kept", and others are served meanwhile', options, async (t) => {
+// For each kind of action that is kept in a file: a message, and the type of its answer.
+const inFiles = async (at) => [
+    [{ type: 'note', text: 'leaks a little', asset: 'E-101' }, 'noted'],
+    [{ type: 'save_view', id: 'pump', title: 'The pump', view: 'asset=P-101A' }, 'view_saved'],
+    [{ type: 'send_to_wall', wall: 'room', display: 1, area: 'main', view: 'group=pressure', title: 'Look here' }, 'sent_to_wall'],
+    [{ type: 'prove', tag: 'TI-1', expected: 95.5, tolerance: 1, remark: 'by hand' }, 'proved'],
+    [{ type: 'pair', digits: (await (await device(at)).json()).digits }, 'paired'],
+];
+
+test('while the disk hangs, each action is answered with "not kept", and others are served meanwhile', options, async (t) => {
     const folder = mkdtempSync(join(tmpdir(), 'plantcast-frozen-')), small = freezable(folder);
     t.after(() => rmSync(folder, { recursive: true, force: true }));
     if (!small)
@@ -229,15 +240,19 @@ test('while the disk hangs, an alarm is answered with "not kept", and others are
     try {
         own.addAlarms();
         own.giveDeviceTime();
+        appendFileSync(own.file, WALL);
         assert.equal(own.prepare().code, 0);
         await own.startSim();
         await own.tell('set TI-1 95.5');
-        await own.startDaemon('--history', join(small.disk, 'history'), '--audit', join(small.disk, 'audit.log'));
+        writeFileSync(join(own.folder, 'tokens'), '', { mode: 0o600 });
+        await own.startDaemon('--history', join(small.disk, 'history'), '--audit', join(small.disk, 'audit.log'), '--import',
+            '--tokens', join(own.folder, 'tokens'), '--trust-local');
         const client = await PlainClient.open(own.port), at = `http://127.0.0.1:${own.port}/api/v1/alarms`;
         await client.hello();
         const leaver = await PlainClient.open(own.port);
         await leaver.hello();
         await until('the alarm', async () => (await (await fetch(at)).json()).alarms.some(({ tag }) => tag === 'TI-1'));
+        const files = await inFiles(own.port);
         assert.ok(small.freeze());
         let answered = false, served = 0;
         const begun = performance.now(), longest = { ms: 0 };
@@ -260,6 +275,16 @@ test('while the disk hangs, an alarm is answered with "not kept", and others are
         assert.match(first.unaudited, /the server’s disk does not answer/);
         assert.equal(last.done, 0);
         assert.ok(served > 20, `${served} requests in ${ms} ms`);
+        for (const [i, [message, type]] of files.entries()) {
+            client.say({ ...message, seq: 40 + i });
+            const said = await client.until(type, ({ texts }) => texts.find((one) => one.type === type && one.seq === 40 + i));
+            assert.deepEqual([said.kept, said.passed ?? false], [false, false], JSON.stringify(said));
+            assert.match(said.why, /the server’s disk does not answer/);
+            assert.match(said.unaudited, /the server’s disk does not answer/);
+        }
+        assert.equal((await (await fetch(`http://127.0.0.1:${own.port}/api/v1/notes`)).json()).list.length, 0, 'it is not on disk');
+        const sent = await fetch(`http://127.0.0.1:${own.port}/api/v1/import/upload?name=part.obj`, { method: 'POST', body: 'v 0 0 0' });
+        assert.deepEqual([sent.status, /does not answer/.test((await sent.json()).unaudited)], [200, true], 'the upload is there, no line');
         // The client closes at once: the audit trail still says that its action is not kept.
         leaver.say({ ...onAlarm({ ...shelve, reason: 'leaves at once' }), seq: 1 });
         leaver.close();

@@ -464,7 +464,7 @@ TEST_WITH(test_unproven_tags_are_marked, set_up, tear_down)
     plant->sources = &source;
     for (int i = 0; i < PLATE_TAGS; i++)
         plant->tags[i].source = 0;
-    struct loop_checks *loop_checks = loop_checks_open(rig.log, plant, folder);
+    struct loop_checks *loop_checks = loop_checks_open(rig.log, plant, folder, NULL);
     look_down(&view);
     view.camera.eye_m[2] = 14;
     view.width_px = view.height_px = WIDE_PX;

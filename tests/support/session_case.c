@@ -20,9 +20,9 @@ int session_case_set_up(void **state)
     c->admission.quotas = c->context.quotas = &c->quotas;
     c->context.admission = &c->admission;
     c->context.resumes = resumes_create();
-    c->context.named_views = named_views_open(NULL, c->context.plant, NULL);
-    c->context.notes = notes_open(NULL, NULL);
-    c->context.wall_remote = wall_remote_open(NULL, c->context.plant, NULL);
+    c->context.named_views = named_views_open(NULL, c->context.plant, NULL, NULL);
+    c->context.notes = notes_open(NULL, NULL, NULL);
+    c->context.wall_remote = wall_remote_open(NULL, c->context.plant, NULL, NULL);
     c->now_ns = 1000 * NS_PER_S;
     c->session = session_create(&c->context, 7, c->now_ns);
     *state = c;

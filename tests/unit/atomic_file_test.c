@@ -4,10 +4,13 @@
 #include "base/files/atomic_file.h"
 
 #include "tests/support/test.h"
+#include <errno.h>
+#include <pthread.h>
+#include <stdatomic.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-
+#include "base/files/file_writer.h"
 #include "base/mem.h"
 #include "base/text/text.h"
 #include "tests/support/temp.h"
@@ -94,4 +97,104 @@ CASE(links_and_files_beside_are_not_written_through)
     assert_nothing_beside(f);
     mem_free(secret);
     mem_free(link);
+}
+
+/* --- file_writer.c: the thread that writes such files for the event loop --------------------------------------------------------- */
+
+struct held_job {
+    struct file_job job;   /* first member */
+    pthread_mutex_t *gate; /* the job is written once the gate is open; NULL: at once */
+    int error, *finished;  /* finished: receives the result; ENOENT before */
+};
+
+static int write_held(struct file_job *job)
+{
+    struct held_job *own = (struct held_job *)job;
+    if (own->gate) {
+        pthread_mutex_lock(own->gate);
+        pthread_mutex_unlock(own->gate);
+    }
+    return own->error;
+}
+
+static void finish_held(struct file_job *job, int error)
+{
+    struct held_job *own = (struct held_job *)job;
+    *own->finished = job->owner ? error : -ECANCELED;
+    mem_free(own);
+}
+
+static int queue_held(struct file_writer *writer, const void *owner, pthread_mutex_t *gate, int error, int *finished)
+{
+    struct held_job *own = mem_new(sizeof(*own));
+    *own = (struct held_job){ { .write = write_held, .finish = finish_held, .owner = owner }, gate, error, finished };
+    *finished = ENOENT;
+    return file_writer_queue(writer, &own->job);
+}
+
+static void on_written(void *arg)
+{
+    atomic_fetch_add((atomic_int *)arg, 1);
+}
+
+TEST(a_failed_write_fails_those_that_build_on_it)
+{
+    struct log *log = log_create(LOG_ERROR);
+    pthread_mutex_t gate = PTHREAD_MUTEX_INITIALIZER;
+    atomic_int written = 0;
+    struct file_writer *writer = file_writer_start(log, on_written, &written);
+    int one, two, other, late, owner_a = 0, owner_b = 0;
+    pthread_mutex_lock(&gate);
+    struct settling_ticket first = file_writer_begin(writer), second, none = first;
+    assert_int_equal(queue_held(writer, &owner_a, &gate, -ENOSPC, &one), 0);
+    file_writer_end(writer, &first);
+    second = file_writer_begin(writer);
+    assert_int_equal(queue_held(writer, &owner_a, NULL, 0, &two), 0);
+    file_writer_end(writer, &second);
+    assert_int_equal(queue_held(writer, &owner_b, NULL, 0, &other), 0);
+    assert_int_equal(file_writer_settled(writer, &first), -EINPROGRESS);
+    assert_false(file_writer_wait(writer, NS_PER_MS));
+    first.until_ns = 0; /* a second later */
+    assert_int_equal(file_writer_settled(writer, &first), -ETIMEDOUT);
+    pthread_mutex_unlock(&gate);
+    assert_true(file_writer_wait(writer, 60 * NS_PER_S));
+    assert_int_equal(one, ENOENT); /* nothing is in force, or dropped, before the loop collects it */
+    assert_int_equal(queue_held(writer, &owner_a, NULL, 0, &late), -ENOSPC); /* builds on what failed */
+    assert_int_equal(late, -ENOSPC);
+    assert_true(file_writer_collect(writer));
+    assert_false(file_writer_collect(writer));
+    assert_int_equal(one, -ENOSPC);
+    assert_int_equal(two, -ENOSPC);
+    assert_int_equal(other, 0);
+    assert_int_equal(file_writer_settled(writer, &first), -ENOSPC);
+    assert_int_equal(file_writer_settled(writer, &second), -ENOSPC);
+    assert_int_equal(file_writer_settled(writer, &none), 0);
+    assert_int_equal(queue_held(writer, &owner_a, NULL, 0, &late), 0); /* builds on what is on disk */
+    file_writer_stop(&writer);
+    assert_int_equal(late, 0);
+    assert_int_equal(atomic_load(&written), 3); /* the follower of the failed job was not written */
+    log_destroy(&log);
+}
+
+TEST(a_disk_that_hangs_fills_the_queue_and_owners_may_leave)
+{
+    struct log *log = log_create(LOG_ERROR);
+    pthread_mutex_t gate = PTHREAD_MUTEX_INITIALIZER;
+    atomic_int written = 0;
+    struct file_writer *writer = file_writer_start(log, on_written, &written);
+    int results[200], owner = 0, leaver = 0, left, count = 0;
+    pthread_mutex_lock(&gate);
+    assert_int_equal(queue_held(writer, &leaver, &gate, 0, &left), 0);
+    while (count < 200 && queue_held(writer, &owner, NULL, 0, &results[count]) == 0)
+        count++;
+    assert_in_range(count, 63, 64);
+    assert_int_equal(results[count], -ETIMEDOUT); /* refused at once, those before it wait */
+    assert_int_equal(results[count - 1], ENOENT);
+    file_writer_forget(writer, &leaver);
+    pthread_mutex_unlock(&gate);
+    file_writer_stop(&writer);
+    assert_int_equal(left, -ECANCELED);
+    for (int i = 0; i < count; i++)
+        assert_int_equal(results[i], 0);
+    log_destroy(&log);
 }

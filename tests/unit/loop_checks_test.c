@@ -34,7 +34,7 @@ static int set_up(void **state)
     f->plant->tags_by_name = mem_array(TAGS, sizeof(*f->plant->tags_by_name));
     memcpy(f->plant->tags_by_name, (int[TAGS]){ COMPUTED, 0, 1 }, TAGS * sizeof(int));
     f->folder = temp_folder_create();
-    f->loop_checks = loop_checks_open(f->log, f->plant, f->folder);
+    f->loop_checks = loop_checks_open(f->log, f->plant, f->folder, NULL);
     *state = f;
     return 0;
 }
@@ -54,7 +54,7 @@ static int tear_down(void **state)
 static void open_again(struct loop_checks_fixture *f)
 {
     loop_checks_close(&f->loop_checks);
-    f->loop_checks = loop_checks_open(f->log, f->plant, f->folder);
+    f->loop_checks = loop_checks_open(f->log, f->plant, f->folder, NULL);
 }
 
 static const struct loop_check passed = { .state = LOOP_CHECK_PASSED,

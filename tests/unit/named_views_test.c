@@ -24,7 +24,7 @@ static int set_up(void **state)
     f->plant = (struct plant){ .views = &fixed, .view_count = 1 };
     f->folder = temp_folder_create();
     f->history = mem_printf("%s/history", f->folder);
-    f->views = named_views_open(f->log, &f->plant, f->history);
+    f->views = named_views_open(f->log, &f->plant, f->history, NULL);
     *state = f;
     return 0;
 }
@@ -45,7 +45,7 @@ static int tear_down(void **state)
 static void open_again(struct named_views_fixture *f)
 {
     named_views_close(&f->views);
-    f->views = named_views_open(f->log, &f->plant, f->history);
+    f->views = named_views_open(f->log, &f->plant, f->history, NULL);
 }
 
 static enum refusal_code save(struct named_views_fixture *f, const char *id, const char *title, int at)
@@ -156,7 +156,7 @@ CASE(what_cannot_be_read_is_not_written_over)
 
 CASE(without_a_folder_none_is_saved)
 {
-    struct named_views *views = named_views_open(f->log, &f->plant, NULL);
+    struct named_views *views = named_views_open(f->log, &f->plant, NULL, NULL);
     struct named_view_edit edit = { .id = "a", .title = "A", .address = "group=t", .at = -1 };
     assert_int_not_equal(named_views_save(views, &edit, "kim", 1), REFUSAL_NONE);
     named_views_close(&views);

@@ -2,6 +2,7 @@
 /* Notes survive a restart, expire or are ended by hand, and are limited in number; the notes in force during a shift can be listed. */
 #include "tests/support/test.h"
 
+#include <errno.h>
 #include <jansson.h>
 
 #include "base/mem.h"
@@ -23,7 +24,7 @@ static int set_up(void **state)
     f->log = log_create(LOG_ERROR);
     f->folder = temp_folder_create();
     f->history = mem_printf("%s/history", f->folder);
-    f->notes = notes_open(f->log, f->history);
+    f->notes = notes_open(f->log, f->history, NULL);
     *state = f;
     return 0;
 }
@@ -44,7 +45,7 @@ static int tear_down(void **state)
 static void open_again(struct notes_fixture *f)
 {
     notes_close(&f->notes);
-    f->notes = notes_open(f->log, f->history);
+    f->notes = notes_open(f->log, f->history, NULL);
 }
 
 static enum refusal_code add(struct notes_fixture *f, const char *text, int64_t at_us, int64_t until_us)
@@ -138,9 +139,51 @@ CASE(what_cannot_be_read_is_not_written_over)
     assert_int_not_equal(notes_add(f->notes, &(struct note){ .text = "\xff", .tag = "t" }, "kim", NOON, f->id), REFUSAL_NONE);
 }
 
+static void on_written(void *arg)
+{
+    (void)arg;
+}
+
+static void collect(struct file_writer *writer)
+{
+    assert_true(file_writer_wait(writer, 60 * NS_PER_S));
+    assert_true(file_writer_collect(writer));
+}
+
+CASE(a_note_is_shown_once_it_is_on_disk)
+{
+    struct file_writer *writer = file_writer_start(f->log, on_written, NULL);
+    struct notes *notes = notes_open(f->log, f->history, writer);
+    const struct note one = { .text = "one", .tag = "t" }, two = { .text = "two", .tag = "t" }, three = { .text = "three", .tag = "t" };
+    assert_int_equal(notes_add(notes, &one, "kim", NOON, f->id), REFUSAL_NONE);
+    assert_int_equal(notes_add(notes, &two, "kim", NOON, f->id), REFUSAL_NONE); /* keeps the first, which is still on its way */
+    assert_notes(notes_text(notes, NOON), "");
+    assert_int_equal(notes_number(notes), 0);
+    collect(writer);
+    assert_notes(notes_text(notes, NOON), "one two");
+    assert_int_equal(notes_number(notes), 2);
+    char *spoiled = mem_printf("rm -r '%s' && : > '%s'", f->history, f->history), *mended = mem_printf("rm '%s'", f->history);
+    assert_int_equal(system(spoiled), 0);
+    struct settling_ticket ticket = file_writer_begin(writer);
+    assert_int_equal(notes_end(notes, f->id, "kim", NOON + S), REFUSAL_NONE);
+    file_writer_end(writer, &ticket);
+    collect(writer);
+    assert_int_equal(file_writer_settled(writer, &ticket), -ENOTDIR);
+    assert_notes(notes_text(notes, NOON + 2 * S), "one two"); /* what cannot be kept has not happened */
+    assert_int_equal(system(mended), 0);
+    assert_int_equal(notes_end(notes, f->id, "kim", NOON + S), REFUSAL_NONE);
+    assert_int_equal(notes_add(notes, &three, "kim", NOON + S, f->id), REFUSAL_NONE);
+    notes_close(&notes); /* a reload: the file gets the change all the same */
+    file_writer_stop(&writer);
+    open_again(f);
+    assert_notes(notes_text(f->notes, NOON + 2 * S), "one three");
+    mem_free(spoiled);
+    mem_free(mended);
+}
+
 CASE(without_a_folder_none_is_made)
 {
-    struct notes *notes = notes_open(f->log, NULL);
+    struct notes *notes = notes_open(f->log, NULL, NULL);
     assert_int_not_equal(notes_add(notes, &(struct note){ .text = "a", .tag = "t" }, "kim", NOON, f->id), REFUSAL_NONE);
     notes_close(&notes);
 }

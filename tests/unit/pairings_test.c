@@ -24,7 +24,7 @@ static int set_up(void **state)
     struct pairings_fixture *f = mem_new(sizeof(*f));
     f->log = log_create(LOG_ERROR);
     f->folder = temp_folder_create();
-    f->pairings = pairings_open(f->log, f->folder);
+    f->pairings = pairings_open(f->log, f->folder, NULL);
     *state = f;
     return 0;
 }
@@ -94,7 +94,7 @@ CASE(a_device_is_bound_kept_and_revoked)
     assert_int_equal(pairings_ask(f->pairings, &other, 4 * NS_PER_S, again, &left_s), PAIRING_OTHER);
     assert_int_not_equal(approve(f, digits, 4 * NS_PER_S), REFUSAL_NONE); /* once only */
     pairings_close(&f->pairings);
-    f->pairings = pairings_open(f->log, f->folder);
+    f->pairings = pairings_open(f->log, f->folder, NULL);
     snprintf(path, sizeof(path), "%s/tokens", f->folder);
     assert_int_equal(atomic_file_put(path, "", 0), 0);
     assert_int_equal(chmod(path, 0600), 0);
@@ -182,7 +182,7 @@ static void mirror(const struct pairings_fixture *f, struct pairings *renderer, 
 /* The renderer has no folder of its own, and its clock differs. */
 CASE(a_renderer_asks_its_core)
 {
-    struct pairings *renderer = pairings_open(f->log, NULL);
+    struct pairings *renderer = pairings_open(f->log, NULL, NULL);
     char secret[TOKEN_MAX_CHARS + 1], digits[PAIRING_DIGITS + 1], there[PAIRING_DIGITS + 1];
     print_secret(3, secret);
     assert_int_equal(look(renderer, 3, 0, there), PAIRING_WAITS);
@@ -223,14 +223,14 @@ CASE(what_is_not_kept_lets_nobody_in)
 {
     char path[512];
     pairings_close(&f->pairings);
-    f->pairings = pairings_open(f->log, NULL);
+    f->pairings = pairings_open(f->log, NULL, NULL);
     assert_int_not_equal(pairings_refusal(f->pairings), REFUSAL_NONE);
     pairings_close(&f->pairings);
     snprintf(path, sizeof(path), "%s/%s", f->folder, PAIRINGS_FILE);
     const char *bad = "{\"devices\":[{\"id\":\"a b\","
                       "\"hash\":\"00\",\"wall\":\"w\",\"display\":1,\"from\":\"\",\"by\":\"\",\"time_us\":1}]}";
     assert_int_equal(atomic_file_put(path, bad, strlen(bad)), 0);
-    f->pairings = pairings_open(f->log, f->folder);
+    f->pairings = pairings_open(f->log, f->folder, NULL);
     assert_int_not_equal(pairings_refusal(f->pairings), REFUSAL_NONE);
     assert_false(pairings_secret_valid("pc_1234"));
     assert_false(pairings_secret_valid(""));

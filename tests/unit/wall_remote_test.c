@@ -27,7 +27,7 @@ static int set_up(void **state)
     f->wall = (struct wall){ .id = "room", .displays = &f->display, .display_count = 1 };
     f->plant = (struct plant){ .walls = &f->wall, .wall_count = 1 };
     f->folder = temp_folder_create();
-    f->remote = wall_remote_open(f->log, &f->plant, f->folder);
+    f->remote = wall_remote_open(f->log, &f->plant, f->folder, NULL);
     *state = f;
     return 0;
 }
@@ -66,7 +66,7 @@ CASE(the_newest_order_counts_and_is_kept)
     assert_int_equal(order(f, "group=t", false), REFUSAL_NONE);
     assert_int_equal(order(f, "group=p", false), REFUSAL_NONE);
     wall_remote_close(&f->remote);
-    f->remote = wall_remote_open(f->log, &f->plant, f->folder);
+    f->remote = wall_remote_open(f->log, &f->plant, f->folder, NULL);
     assert_list(wall_remote_text(f->remote), 1, "group=p");
     uint64_t number = wall_remote_number(f->remote);
     assert_int_equal(order(f, "", true), REFUSAL_NONE);
@@ -122,7 +122,7 @@ CASE(displays_come_and_go)
 CASE(without_a_folder_it_is_forgotten_with_the_daemon)
 {
     wall_remote_close(&f->remote);
-    f->remote = wall_remote_open(f->log, &f->plant, NULL);
+    f->remote = wall_remote_open(f->log, &f->plant, NULL, NULL);
     assert_int_equal(order(f, "group=t", false), REFUSAL_NONE);
     assert_list(wall_remote_text(f->remote), 1, "group=t");
 }

@@ -123,6 +123,7 @@ int atomic_file_keep(const char *path, const void *bytes, size_t count)
 enum refusal_code atomic_file_not_kept(int error)
 {
     switch (-error) {
+    case 0: return REFUSAL_NONE;
     case ENOSPC:
     case EDQUOT:
     case EFBIG: return REFUSAL_DISK_FULL;

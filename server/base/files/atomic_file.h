@@ -28,7 +28,7 @@ void atomic_file_abandon(struct atomic_file *file); /* Removes the temporary fil
 int atomic_file_put(const char *path, const void *bytes, size_t count);
 /* Like atomic_file_put(), but returns only when the file is safely on disk, for data that the daemon confirms as saved. */
 int atomic_file_keep(const char *path, const void *bytes, size_t count);
-/* Converts the error of a write (-errno) into the refusal that is sent to the user whose change was not saved. */
+/* Converts the result of a write (0 or -errno) into the refusal that is sent to the user whose change was not saved. */
 enum refusal_code atomic_file_not_kept(int error);
 struct atomic_file_part {
     const void *bytes;

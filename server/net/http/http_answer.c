@@ -220,7 +220,7 @@ void http_on_tick(struct server_context *server, int64_t now_ns)
 {
     for (struct http_exchange *request = server->snapshots, *next; request; request = next) {
         next = request->next;
-        if (now_ns < request->until_ns || request->pieces != PIECES_NONE)
+        if (now_ns < request->until_ns || request->pieces != PIECES_NONE || request->recorded)
             continue;
         request_forget(server, request);
         request->reloads = false;

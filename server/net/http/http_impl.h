@@ -39,6 +39,8 @@ struct http_exchange {
     uint64_t client;             /* id under which a waiting request is found (request_await) */
     int64_t until_ns;            /* monotonic time at which a waiting request is answered with "not ready" */
     bool reloads;                /* the request waits for a reload of the plant */
+    bool recorded;               /* the request is done, and waits until `record` is on disk */
+    struct settling_ticket record; /* line of the request in the audit trail */
     struct upload_body *body_in; /* upload in progress; NULL: none */
     const char *step;            /* path of a POST request of an import (static text), for the audit trail */
     struct asked *asked;         /* frame or pick for which the request waits; NULL: none */

@@ -2,12 +2,15 @@
 /* Import of a plant by engineers: uploads of exported files, import orders, and reading matches. The event loop writes uploads to files,
    piece by piece, without waiting for the disk. */
 #include <errno.h>
+#include <jansson.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/files/atomic_file.h"
 #include "base/mem.h"
+#include "base/text/json_text.h"
 #include "base/text/text.h"
 #include "net/http/http_impl.h"
 #include "net/connection.h"
@@ -60,11 +63,36 @@ static int answer_empty(struct http_exchange *request)
     return request_answer(request, HTTP_STATUS_OK, "application/json", mem_strdup("{}"), 2, NULL, NULL);
 }
 
-/* Records the import step as done in the audit trail, and answers the request. file: the file that the step concerned; "": none. */
+/* Records the import step as done in the audit trail; http_settle() answers the request once that line is on disk, or can not be written.
+   file: the file that the step concerned; "": none. */
 static int answer_done(struct http_exchange *request, const char *file)
 {
+    struct server_context *server = server_context_of(request->wsi);
+    request->record = audit_begin(server->params.audit);
     record_file(request, file, "done", NULL);
-    return answer_empty(request);
+    audit_end(server->params.audit, &request->record);
+    if (!server->params.audit)
+        return answer_empty(request);
+    request->recorded = server->kept_answers.waiting = true;
+    request_await(server, request);
+    return 0;
+}
+
+void http_settle(struct server_context *server)
+{
+    for (struct http_exchange *request = server->snapshots, *next; request; request = next) {
+        next = request->next;
+        int error = request->recorded ? audit_settled(server->params.audit, &request->record) : 0;
+        server->kept_answers.waiting |= error == -EINPROGRESS;
+        if (!request->recorded || error == -EINPROGRESS)
+            continue;
+        json_t *answer = json_object();
+        if (error)
+            refusal_add_unaudited(answer, atomic_file_not_kept(error));
+        request_forget(server, request);
+        request->recorded = false;
+        request_answered(request, request_answer_json(request, json_text(answer, 0)));
+    }
 }
 
 /* --- state of the import --- */

@@ -31,7 +31,7 @@ static void answer_all(struct server_context *server, bool reloads, int status, 
 {
     for (struct http_exchange *request = server->snapshots, *next; request; request = next) {
         next = request->next;
-        if (request->reloads != reloads)
+        if (request->reloads != reloads || request->recorded)
             continue;
         request_forget(server, request);
         request->reloads = false;

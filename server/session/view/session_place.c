@@ -115,7 +115,6 @@ bool session_check_loop(struct session *session, const struct message *message, 
     }
     const struct kept_action action = session_kept_begin(session);
     char *answer = loop_check_do(context->loop_checks, context->plant, context->snapshot, message, session_who(session));
-    session_record_loop_check(session, message, answer);
-    session_kept_reply(session, &action, answer, NULL);
+    session_kept_reply(session, &action, "proof", session_loop_check_what(session, message, answer), answer);
     return true;
 }

@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A thread that writes small files for the event loop, which never waits for the disk. Jobs are written in order; the loop is told the
+   result of each. Thread: the event loop, except where a comment names another one. */
+#ifndef BASE_FILES_FILE_WRITER_H
+#define BASE_FILES_FILE_WRITER_H
+#include <stdbool.h>
+
+#include "base/files/settling.h"
+#include "base/log/log.h"
+
+/* First member of a larger struct. The caller sets the first three members. */
+struct file_job {
+    int (*write)(struct file_job *job); /* writes the file; returns 0 or -errno. Thread: the writer's */
+    /* Puts the change in force if `error` is 0, otherwise drops it; frees the job. owner NULL: only frees it. */
+    void (*finish)(struct file_job *job, int error);
+    const void *owner; /* jobs of one owner build on each other: after one failed, those that were queued behind it fail, too */
+    uint64_t number;
+    int error;
+    struct file_job *next;
+};
+
+struct file_writer;
+/* Starts the thread. notify(arg) is called by the thread after each job: call file_writer_collect() then. Returns NULL if the thread cannot
+   start (logged). */
+struct file_writer *file_writer_start(struct log *log, void (*notify)(void *arg), void *arg);
+/* Writes what is queued, finishes all jobs and ends the thread. &NULL is allowed; sets *writer to NULL. */
+void file_writer_stop(struct file_writer **writer);
+/* Queues a job. writer NULL: writes and finishes the job at once. Returns 0 or -errno; on an error the job is finished already. */
+int file_writer_queue(struct file_writer *writer, struct file_job *job);
+/* Finishes all jobs that were written since the last call. Returns whether there were any. */
+bool file_writer_collect(struct file_writer *writer);
+/* Waits until no job is left to write, for timeout_ns at most. Returns whether none is left. Any thread. */
+bool file_writer_wait(struct file_writer *writer, int64_t timeout_ns);
+/* Makes the unfinished jobs of an owner, which is about to be freed, forget it: their files are still written. */
+void file_writer_forget(struct file_writer *writer, const void *owner);
+/* Tell whether the jobs that are queued between file_writer_begin() and file_writer_end() are on disk (base/files/settling.h). writer NULL:
+   they are. */
+struct settling_ticket file_writer_begin(const struct file_writer *writer);
+void file_writer_end(const struct file_writer *writer, struct settling_ticket *ticket);
+int file_writer_settled(const struct file_writer *writer, const struct settling_ticket *ticket);
+
+#endif
