@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "base/mem.h"
 #include "base/text/text.h"
@@ -12,7 +13,11 @@
 #include "placing/assumed_places.h"
 #include "placing/tag_file.h"
 #include "plant/plant.h"
+#include "plant/plant_folder.h"
+#include "plant/tags/tag_edit.h"
 #include "scene/scene_create.h"
+
+enum { WAIT_MS = 3000 }; /* maximum wait in milliseconds for another program that changes the plant's folder */
 
 struct accept_options {
     const char *plant, *asset, *group, *tags, *within, *confidence, *prepared, *undo;
@@ -35,7 +40,7 @@ static void print_usage(FILE *out)
           "  --confidence C     only sensors matched with at least this confidence, 0 to 1 (matches.csv next to the tag list)\n"
           "  --prepared FOLDER  output folder of plantcast-prep (default: PLANT.prepared next to the plant file)\n"
           "  --dry-run          print the names of these sensors, and change nothing\n"
-          "  --undo LIST.N      restore this version of the list\n"
+          "  --undo LIST.N      restore this version of the list, if it differs in nothing but `Place`\n"
           "Exit status: 1 if no sensor was accepted or the list cannot be written.\n",
           out);
 }
@@ -60,13 +65,69 @@ static int save(const char *path, char *before, char *after, const struct refusa
     return good ? 0 : 1;
 }
 
-static int undo(const struct accept_options *options, const char *path)
+/* Returns the list with `Place` cleared in all rows; NULL if it lacks a tag of the plant. */
+static char *without_places(const struct plant *plant, const char *list)
 {
-    struct refusal why = { .code = REFUSAL_NONE };
-    char *version = mem_printf("%.*s%s", (int)(text_base_name(path) - path), path, text_base_name(options->undo));
-    char *before = tag_file_read(path, &why), *after = before ? tag_file_read(version, &why) : NULL;
+    uint8_t *all = mem_array(plant->tag_count + 1, sizeof(*all));
+    struct refusal why;
+    for (size_t i = 0; i < plant->tag_count; i++)
+        all[i] = ASSUMED_ACCEPTED;
+    char *cleared = assumed_places_accept(plant, list, all, &why);
+    mem_free(all);
+    return cleared;
+}
+
+/* Returns why the version cannot undo an acceptance (mem_free); NULL: it can, because it differs from the present list in `Place` alone. */
+static char *wrong_version(const struct plant *plant, const char *before, const char *after)
+{
+    char *now = without_places(plant, before), *then = without_places(plant, after), *why = NULL;
+    struct tag_lines lines = { 0 };
+    if (!strcmp(before, after)) {
+        why = mem_strdup("it is the same as the present list");
+    } else if (!now || !then) {
+        why = mem_strdup("it does not have the tags of the present list");
+    } else if (strcmp(now, then) != 0) {
+        tag_lines(now, then, &lines);
+        why = mem_printf("it differs from the present list in more than `Place` (line %d); restore older versions on the page",
+                         lines.count ? lines.at[0].line : 1);
+        tag_lines_finish(&lines);
+    }
+    mem_free(now);
+    mem_free(then);
+    return why;
+}
+
+/* Returns the path of the version that --undo names (mem_free); NULL: that is no version of the list at `path`. */
+static char *version_path(const char *path, const char *name)
+{
+    const char *base = text_base_name(name), *list = text_base_name(path), *number = base + strlen(list);
+    char real[PATH_MAX];
+    if (strncmp(base, list, strlen(list)) != 0 || *number++ != '.' || !*number || number[strspn(number, "0123456789")])
+        return NULL;
+    char *version = mem_printf("%.*s%s", (int)(list - path), path, base);
+    if (base == name || (realpath(name, real) && !strcmp(real, version)))
+        return version;
     mem_free(version);
-    return save(path, before, after, &why);
+    return NULL;
+}
+
+static int undo(const struct accept_options *options, const struct plant *plant, const char *path)
+{
+    struct refusal failed = { .code = REFUSAL_NONE };
+    char *version = version_path(path, options->undo), *before = NULL, *after = NULL, *why = NULL;
+    if (!version)
+        why = mem_printf("it is no earlier version of %s: these are next to it, as %s.1, %s.2, ...", path, text_base_name(path),
+                         text_base_name(path));
+    else if ((before = tag_file_read(path, &failed)) && (after = tag_file_read(version, &failed)))
+        why = wrong_version(plant, before, after);
+    mem_free(version);
+    if (!why)
+        return save(path, before, after, &failed);
+    fprintf(stderr, "plantcast: --undo %s: %s\n", options->undo, why);
+    mem_free(before);
+    mem_free(after);
+    mem_free(why);
+    return 1;
 }
 
 static void print_outcome(const struct plant *plant, const uint8_t *outcome, bool names)
@@ -138,7 +199,7 @@ static int accept_in(const struct accept_options *options, const struct plant *p
     return code;
 }
 
-static int run(const struct accept_options *options)
+static int run_locked(const struct accept_options *options)
 {
     struct plant *plant = plant_load_or_print(options->plant);
     if (!plant)
@@ -146,9 +207,27 @@ static int run(const struct accept_options *options)
     struct log *log = log_create(LOG_WARN);
     char real[PATH_MAX]; /* if the list is a symlink, earlier versions are next to its target */
     const char *path = realpath(plant->tags_path, real) ? real : plant->tags_path;
-    int code = options->undo ? undo(options, path) : accept_in(options, plant, log, path);
+    int code = options->undo ? undo(options, plant, path) : accept_in(options, plant, log, path);
     log_destroy(&log);
     plant_destroy(&plant);
+    return code;
+}
+
+/* Locks the plant's folder, since a daemon or an import may be replacing the list. */
+static int run(const struct accept_options *options)
+{
+    if (options->dry_run)
+        return run_locked(options);
+    char *folder = plant_folder_of(options->plant), *why = NULL;
+    int lock = plant_folder_lock(&(struct plant_folder_params){ .folder = folder, .wait_ms = WAIT_MS }, &why), code = 1;
+    if (lock < 0)
+        fprintf(stderr, "plantcast: the plant's folder %s: %s; try again when that is done\n", folder, why);
+    else
+        code = run_locked(options);
+    if (lock >= 0)
+        close(lock);
+    mem_free(folder);
+    mem_free(why);
     return code;
 }
 

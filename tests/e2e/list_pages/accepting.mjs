@@ -2,11 +2,13 @@
 // Five hundred assumed positions are accepted at once, filtered by equipment, name, distance and confidence; restoring the old list gives
 // the same bytes.
 import assert from 'node:assert/strict';
-import { existsSync, readFileSync, writeFileSync } from 'node:fs';
+import { spawnSync } from 'node:child_process';
+import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { DESKTOP, openPage, settle, shoot, waitForPicture } from '../support/browser.mjs';
-import { missing, runProgram, TinyPlant } from '../support/tiny_plant.mjs';
+import { BIN, missing, runProgram, TinyPlant } from '../support/tiny_plant.mjs';
 
 const absent = missing();
 const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : !existsSync('/usr/bin/chromium') ? 'no chromium' : false;
@@ -135,4 +137,38 @@ test('on the command line: the same places, with a trial before and undo', optio
         assert.match(refused.err, why);
     }
     assert.equal(accept('--tags', 'nothing*').code, 1);
+});
+
+test('--undo takes only versions of that list which differ in Place alone, and nothing while another program is at work', options, () => {
+    const accept = (...args) => runProgram('plantcast', ['sensors', 'accept', plant.file, ...args]);
+    assert.equal(accept('--asset', 'E-101').code, 0);
+    const now = readFileSync(tagsFile, 'utf8'), last = readdirSync(plant.folder).filter((name) => /^tags\.csv\.\d+$/.test(name)).length;
+    const other = mkdtempSync(join(tmpdir(), 'plantcast-undo-'));
+    const write = (name, text) => writeFileSync(join(plant.folder, name), text);
+    try {
+        write('tags.csv.90', original.replace(/^(TA-001,.*),600,equipment/m, '$1,601,equipment'));
+        write('tags.csv.91', original.split('\n').toSpliced(1, 1).join('\n'));
+        write('tags.csv.92', now);
+        write('tags.csv.93', 'anything at all\n');
+        write('other.csv.1', original);
+        writeFileSync(join(other, 'tags.csv.1'), original);
+        for (const [version, why] of [['tags.csv.90', /in more than `Place` \(line \d+\)/], ['tags.csv.91', /does not have the tags/],
+            ['tags.csv.92', /the same as the present list/], ['tags.csv.93', /does not have the tags/],
+            ['other.csv.1', /no earlier version of/], ['tags.csv', /no earlier version of/], [plant.file, /no earlier version of/],
+            [join(other, 'tags.csv.1'), /no earlier version of/]]) {
+            const refused = accept('--undo', version);
+            assert.equal(refused.code, 1, version);
+            assert.match(refused.err, why, version);
+            assert.equal(refused.err.trim().split('\n').length, 1);
+            assert.equal(readFileSync(tagsFile, 'utf8'), now);
+        }
+        const locked = spawnSync('flock', [plant.folder, join(BIN, 'plantcast'), 'sensors', 'accept', plant.file, '--undo',
+            `tags.csv.${last}`], { encoding: 'utf8' });
+        assert.equal(locked.status, 1);
+        assert.match(locked.stderr, /flock \(process \d+\) is at work in it; try again/);
+        assert.equal(accept('--undo', join(plant.folder, `tags.csv.${last}`)).code, 0);
+        assert.equal(readFileSync(tagsFile, 'utf8'), original);
+    } finally {
+        rmSync(other, { recursive: true });
+    }
 });
