@@ -131,7 +131,7 @@ static void begin_ticks(struct video_program *program)
     g_source_attach(program->ticks, NULL);
 }
 
-/* --- life ---------------------------------------------------------------------------------------------------------------------------- */
+/* --- start and stop ------------------------------------------------------------------------------------------------------------------ */
 
 static gboolean on_signal(gpointer data)
 {

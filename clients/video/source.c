@@ -47,7 +47,7 @@ struct video_source {
     guint64 pictures;
 };
 
-/* --- what is wrong ------------------------------------------------------------------------------------------ */
+/* --- errors ------------------------------------------------------------------------------------------------- */
 
 /* Stores the first line of `said` as valid UTF-8 in `out`, cut to `size` bytes. Frees `said`. */
 static void keep(char *said, char *out, gsize size)
@@ -104,7 +104,7 @@ static void refuse(struct video_source *source, long status)
     g_free(words);
 }
 
-/* --- what comes ------------------------------------------------------------------------------------------ */
+/* --- responses ------------------------------------------------------------------------------------------- */
 
 static void take_plant(struct video_source *source, const json_t *o)
 {
@@ -269,7 +269,7 @@ static void on_answer(struct video_source *source)
     json_decref(o);
 }
 
-/* --- asking ------------------------------------------------------------------------------------------ */
+/* --- requests ---------------------------------------------------------------------------------------- */
 
 /* Thread function: performs the request while the main loop keeps drawing frames. */
 static void perform(GTask *task, gpointer object, gpointer data, GCancellable *cancel)
@@ -387,7 +387,7 @@ guint64 source_pictures(const struct video_source *source)
     return source->pictures;
 }
 
-/* --- life ------------------------------------------------------------------------------------------ */
+/* --- creating and destroying ----------------------------------------------------------------------- */
 
 struct video_source *source_create(const struct video_options *options)
 {

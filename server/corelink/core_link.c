@@ -72,7 +72,7 @@ struct core_link {
     struct core_arrival *arrivals, **last_arrival;
 };
 
-/* --- called from the loop --------------------------------------------------------------------------------------------------- */
+/* --- functions that the event loop calls ------------------------------------------------------------------------------------ */
 
 static void arrive(struct core_link *link, uint64_t client, char *text)
 {

@@ -139,7 +139,7 @@ static GLuint upload_texcoords(struct gpu_mesh *mesh, struct log *log, const cha
     return buffer;
 }
 
-/* --- life ----------------------------------------------------------------------------------------------------------------- */
+/* --- creating and destroying ---------------------------------------------------------------------------------------------- */
 
 bool mesh_init(struct gpu_mesh *mesh, const struct gl *gl, const char *name, const struct mesh_params *params)
 {

@@ -217,7 +217,7 @@ static int roll_point(struct month_file *file, int tag, int64_t id, const struct
     return error;
 }
 
-/* --- tidying ------------------------------------------------------------------------------------------------------------------ */
+/* --- moving recent points to the table of samples ----------------------------------------------------------------------------- */
 
 static int *tags_by_id(const struct month_file *file, int64_t *most)
 {

@@ -34,7 +34,7 @@ struct plant_import;
 struct plant_import *plant_import_create(const char *plant_path);
 void plant_import_destroy(struct plant_import **import); /* Frees the state. &NULL is fine; sets it to NULL. */
 
-/* --- called from the loop */
+/* --- functions that the event loop calls */
 
 /* Returns the path of the exports folder, valid as long as `import`. */
 const char *plant_import_exports(const struct plant_import *import);

@@ -60,7 +60,7 @@ struct placing {
     int jobs; /* pending coverage jobs */
 };
 
-/* --- life ------------------------------------------------------------------------------------------------------------------- */
+/* --- creating and destroying ------------------------------------------------------------------------------------------------ */
 
 struct placing *placing_create(const struct placing_params *params)
 {
@@ -226,7 +226,7 @@ static void let_go(struct placing *placing, struct placing_entry *entry, const s
     trial_reach_unref(&entry->sensor.reach);
 }
 
-/* --- sets --------------------------------------------------------------------------------------------------------------------- */
+/* --- sets of moves --------------------------------------------------------------------------------------------------------- */
 
 struct place_set *place_set_create(struct placing *placing)
 {
@@ -339,7 +339,7 @@ bool place_set_changed(struct place_set *set)
     return changed;
 }
 
-/* --- what workers found ------------------------------------------------------------------------------------------------------- */
+/* --- results of the workers --------------------------------------------------------------------------------------------------- */
 
 static void take(struct placing *placing, struct distance_ask *ask)
 {

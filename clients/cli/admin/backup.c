@@ -334,7 +334,7 @@ static bool restore(struct backup_job *job, const char *plant_path)
     return good;
 }
 
-/* --- the drill ------------------------------------------------------------------------------------------------------------------ */
+/* --- testing a backup ----------------------------------------------------------------------------------------------------------- */
 
 static bool is_database(const char *name)
 {

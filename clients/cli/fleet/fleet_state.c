@@ -9,7 +9,7 @@
 #include "base/mem.h"
 #include "base/text/json_text.h"
 
-/* --- of one ----------------------------------------------------------------------------------------------------------------- */
+/* --- one plant -------------------------------------------------------------------------------------------------------------- */
 
 /* Returns the rest of `line` after the prefix `name`, or NULL if the line has another prefix. */
 static const char *after(const char *line, const char *name)
@@ -80,7 +80,7 @@ bool fleet_state_read(const char *metrics, struct fleet_state *out)
     return any;
 }
 
-/* --- of all ----------------------------------------------------------------------------------------------------------------- */
+/* --- all plants ------------------------------------------------------------------------------------------------------------- */
 
 static json_t *plant_json(const struct fleet_plant *plant, const struct fleet_plant_state *known)
 {

@@ -100,7 +100,7 @@ static void summary_finish(struct summary *sum)
         mem_free(sum->stages[s].at);
 }
 
-/* --- what is printed ---------------------------------------------------------------------------------------------------------- */
+/* --- printing ----------------------------------------------------------------------------------------------------------------- */
 
 static void print_row(const char *name, const struct latency_samples *samples)
 {

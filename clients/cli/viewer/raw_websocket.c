@@ -108,7 +108,7 @@ bool raw_websocket_send(struct raw_websocket *raw, const char *text, size_t coun
     return send_frame(raw, OP_TEXT, text, count);
 }
 
-/* --- what comes ------------------------------------------------------------------------------------------------------------------ */
+/* --- receiving ------------------------------------------------------------------------------------------------------------------- */
 
 /* Like recv(), but returns 0 if nothing is available and -1 with *why if the connection has ended. bytes NULL: reads and drops the data. */
 static ssize_t take(const struct raw_websocket *raw, void *bytes, size_t count, const char **why)
@@ -247,7 +247,7 @@ int raw_websocket_read(struct raw_websocket *raw, struct raw_websocket_message *
     return 0;
 }
 
-/* --- life -------------------------------------------------------------------------------------------------------------------------- */
+/* --- creating and destroying ------------------------------------------------------------------------------------------------------- */
 
 bool raw_websocket_is_open(const struct raw_websocket *raw)
 {

@@ -26,7 +26,7 @@ void viewer_fail(struct viewer *viewer, const char *why)
     viewer->done = true;
 }
 
-/* --- what comes --------------------------------------------------------------------------------------------------------------- */
+/* --- receiving ---------------------------------------------------------------------------------------------------------------- */
 
 static void read_vector(const json_t *o, const char *name, double v[3])
 {
@@ -239,7 +239,7 @@ static int on_receive(struct viewer *viewer, struct lws *wsi, const void *bytes,
     return viewer->done ? -1 : 0;
 }
 
-/* --- its time ------------------------------------------------------------------------------------------------------------------- */
+/* --- the viewer's timer --------------------------------------------------------------------------------------------------------- */
 
 static bool expects_frames(const struct viewer *viewer)
 {
@@ -304,7 +304,7 @@ static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *use
     return 0;
 }
 
-/* --- life --------------------------------------------------------------------------------------------------------------------- */
+/* --- creating and destroying -------------------------------------------------------------------------------------------------- */
 
 const struct lws_protocols viewer_protocols[] = {
     { .name = WIRE_SUBPROTOCOL, .callback = on_event, .rx_buffer_size = 64 * 1024 },

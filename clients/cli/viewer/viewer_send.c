@@ -80,7 +80,7 @@ static int say_camera(struct viewer *viewer)
                viewer->camera_seq, eye[0], eye[1], eye[2], viewer->target[0], viewer->target[1], viewer->target[2], viewer->fov_deg);
 }
 
-/* --- the rest ----------------------------------------------------------------------------------------------------------------- */
+/* --- other messages ----------------------------------------------------------------------------------------------------------- */
 
 static int say_hello(struct viewer *viewer)
 {

@@ -363,7 +363,7 @@ export class Session {
         return this.markers.get(newest) ?? null;
     }
 
-    // --- what the screen asks
+    // --- the state of the view, for the page
 
     // Returns the home camera for a size in CSS pixels. legendLies() returns true if the legend lies across the top of the picture, null if
     // the picture has no legend.

@@ -47,7 +47,7 @@ session.on('frame', (frame) => session.drawn(frame, 0));
 let wall = null, shape = '', panes = [], scale = 1;
 const call = new AlarmCall();
 
-// --- the grid
+// --- layout
 
 function clear() {
     for (const { close } of panes)
@@ -107,7 +107,7 @@ async function look() {
     }
 }
 
-// --- as time goes by
+// --- periodic work
 
 // OPENED: time by the display's own clock
 const lostWords = make('p'), lostSelf = make('p', { class: 'self' }), OPENED = new Date().toLocaleTimeString('en-GB');
@@ -150,7 +150,7 @@ session.on('welcome', () => {
     look();
 });
 
-// --- who we are
+// --- access, and waking up
 
 session.on('denied', () => {
     session.token = null;

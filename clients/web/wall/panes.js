@@ -151,7 +151,7 @@ function ViewsPane(pane, context) {
     } };
 }
 
-// --- a trend
+// --- trend panes
 
 function TrendPane(pane, context) {
     const { session, wall, display, title } = context, inner = pageIn(context, 'trend', `${wall.id}/${display}/${pane.area}`);

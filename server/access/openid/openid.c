@@ -14,7 +14,7 @@
 
 static const int64_t ERROR_EVERY_NS = 5 * NS_PER_S;
 
-/* --- the event loop's side ---------------------------------------------------------------------------------------------------- */
+/* --- functions that the event loop calls -------------------------------------------------------------------------------------- */
 
 const struct openid_config *openid_config_of(const struct openid *openid)
 {

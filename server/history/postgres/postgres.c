@@ -83,7 +83,7 @@ static bool ends(const struct postgres *postgres)
     return poll(&fd, 1, 0) > 0;
 }
 
-/* --- the server --------------------------------------------------------------------------------------------------------------- */
+/* --- the connection to PostgreSQL --------------------------------------------------------------------------------------------- */
 
 /* Closes the connection after an error, and sets the time of the next attempt. Logs the error only if its cause has changed. */
 static void give_up(struct postgres *postgres, const char *why)

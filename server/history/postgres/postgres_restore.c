@@ -69,7 +69,7 @@ static void end(struct postgres_restore *restore)
         log_info(restore->log, "history: restored %lld points from PostgreSQL", (long long)restore->points);
 }
 
-/* --- in the database ---------------------------------------------------------------------------------------------------------- */
+/* --- ending lines in the database --------------------------------------------------------------------------------------------- */
 
 /* Ends the lines in the database at their last points, as month_file_recover() does in files. The newest samples become recorded points
    even if later points exist: a standby may have sent its first points already. */
@@ -134,7 +134,7 @@ static bool find_months(struct postgres_tables *tables, int *first, int *last, b
     return true;
 }
 
-/* --- a month ------------------------------------------------------------------------------------------------------------------ */
+/* --- restoring a month -------------------------------------------------------------------------------------------------------- */
 
 struct tag_there {
     int32_t id;

@@ -133,7 +133,7 @@ export class AlarmList {
         rows.forEach((row, i) => list.children[i] !== row && list.insertBefore(row, list.children[i] ?? null));
     }
 
-    // --- several at once
+    // --- actions on several alarms
 
     // Returns the ids and times of a row's alarms that this user can acknowledge, as a text; '' if there are none.
     waitsFor(row) {

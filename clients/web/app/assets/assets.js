@@ -87,7 +87,7 @@ export class Assets {
         this.list.set(rows);
     }
 
-    // --- what is selected
+    // --- selection
 
     mark() {
         const { selected = null } = this.session.params, tag = this.selection.tag;

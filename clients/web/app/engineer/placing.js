@@ -151,7 +151,7 @@ export class Placing {
         this.dragging = null;
     }
 
-    // --- what is shown
+    // --- display
 
     show() {
         const { model } = this.session;

@@ -249,7 +249,7 @@ export class Import {
         this.bringReport();
     }
 
-    // --- size
+    // --- size of the plant
 
     showSize() {
         const { model } = this.page.session;

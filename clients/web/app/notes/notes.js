@@ -44,7 +44,7 @@ export class Notes {
         return MAY.includes(this.session.role) && this.session.time.atUs === null;
     }
 
-    // --- making one
+    // --- making a note
 
     // Returns the things to which a note can be attached now: the selected tag, equipment or point.
     get places() {
@@ -86,7 +86,7 @@ export class Notes {
         this.session.post({ type: 'remove_note', seq: ++this.session.toldSeq, id });
     }
 
-    // --- those there are
+    // --- existing notes
 
     get notes() {
         return inForce(this.session.notes, this.session.clockUs(), this.session.time.atUs);
@@ -146,7 +146,7 @@ export class Notes {
             this.selectAsset(this.session.model.asset(asset));
     }
 
-    // --- where a desk points
+    // --- position at which a desk points
 
     point() {
         const { hangs, session } = this;

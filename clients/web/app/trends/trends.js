@@ -201,7 +201,7 @@ export class Trends {
             this.chart.setSize({ width, height: highPx() });
     }
 
-    // --- how it is drawn
+    // --- drawing
 
     options() {
         const units = [...new Set(this.tags.map((tag) => this.unitOf(tag) || '–'))];

@@ -75,7 +75,7 @@ export class Views {
         this.project(this.projection === 'perspective');
     }
 
-    // --- the cut
+    // --- the section
 
     range(axis) {
         const { min, max } = this.session.model.plant.bounds;
