@@ -23,7 +23,7 @@ enum { DRIFT_NEAREST = 2 };                         /* largest number of nearest
 
 enum drift_verdict {
     DRIFT_UNKNOWN, /* unknown: there are too few data or fewer than three sensors, or changes of the plant hide any drift */
-    DRIFT_NONE,    /* no drift: one of DRIFT_SIGMAS standard deviations would have been found */
+    DRIFT_NONE,    /* no drift: a drift of DRIFT_SIGMAS standard deviations would have been found */
     DRIFT_FOUND,
 };
 

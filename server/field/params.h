@@ -41,9 +41,9 @@ struct field_params {
 };
 /* Fills in the group's defaults from the plant file. */
 void field_params_default(const struct plant *plant, int group, struct field_params *params);
-/* Sets the shown quantity, and adapts the interpolation. `fin` lets values fall towards ambient, which
-   makes no sense for `show: operator` (each reading as a fraction between its tag's limits): `harmonic`, or `shepard` if that is not
-   prepared, replaces it. Uncertainty uses `gp` wherever it is prepared. */
+/* Sets the shown quantity, and adapts the interpolation. `fin` lets values fall towards ambient, which makes no sense for `show:
+   operator` (the position of each reading between its tag's limits): `harmonic`, or `shepard` if that is not prepared, replaces it.
+   Uncertainty uses `gp` wherever it is prepared. */
 void field_params_set_show(const struct plant *plant, struct field_params *params, enum field_show show);
 /* Returns whether two sets of parameters are equal. */
 bool field_params_equal(const struct field_params *a, const struct field_params *b);

@@ -17,7 +17,7 @@ enum sensor_use {
     SENSOR_ASIDE      /* the sensor is ignored, because another one gives the asset's value */
 };
 
-/* Which kind of sensor is nearest to a vertex. */
+/* Kind of the sensor that is nearest to a vertex. */
 enum place {
     PLACE_GOOD,     /* the nearest configured sensor is usable and within reach */
     PLACE_LOST,     /* the nearest sensor is not usable; another one is within reach */
