@@ -319,7 +319,10 @@ static bool read_text(struct tag_export *list, const char *bytes, size_t count, 
     list->encoding = text.encoding;
     list->damaged = text.damaged;
     bool good, json = *first_sign(text.utf8) == '{' || *first_sign(text.utf8) == '[';
-    if (json) {
+    if (*first_sign(text.utf8) == '<') {
+        snprintf(why, why_bytes, "it is XML, which is not read: export the tags as JSON, CSV or .xlsx");
+        good = false;
+    } else if (json) {
         good = tag_export_read_json(list, text.utf8, text.length, why, why_bytes);
     } else {
         list->separator = table_separator(text.utf8);
@@ -402,7 +405,8 @@ bool tag_export_read(struct tag_export *list, const char *path, const char *enco
     }
     mem_free(bytes);
     if (good && list->count == 0) {
-        snprintf(why, why_bytes, "no tags in it");
+        size_t length = strcspn(list->remarks.at ? list->remarks.at : "", "\n"); /* the first remark often tells the cause */
+        snprintf(why, why_bytes, "no tags in it%s%.*s", length > 0 ? ": " : "", (int)length, length > 0 ? list->remarks.at : "");
         good = false;
     }
     if (good)

@@ -2,9 +2,11 @@
 /* Reads Ignition's export. Folders and UDT instances (instances of user-defined types) contain tags, and tags have properties. A UDT
  * instance has the members of its type, and of all parents of that type. The instance and each type may override single properties. */
 #include <jansson.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "base/mem.h"
 #include "preprocess/match/tag_export.h"
@@ -40,7 +42,7 @@ struct complaint {
 struct tag_json_reader {
     struct tag_export *list;
     json_t *types; /* definitions of types, by path within the folder of types; borrowed */
-    struct complaint unknown, circular, unresolved;
+    struct complaint unknown, circular, unresolved, without;
     bool too_deep, too_many;
     /* number of references resolved for the current property; limited, because parameters may refer to each other in a cycle */
     int references;
@@ -112,7 +114,7 @@ static void index_types(struct tag_json_reader *reader, json_t *node, const char
     mem_free(below);
 }
 
-/* Finds a type by path, or else by name if only one type has that name. */
+/* Finds a type by path, or else by name, in any case, if only one type has that name. */
 static json_t *find_type(const struct tag_json_reader *reader, const char *id)
 {
     const char *wanted = !strncmp(id, "_types_/", 8) ? id + 8 : id, *slash = strrchr(wanted, '/'), *name = slash ? slash + 1 : wanted, *key;
@@ -123,7 +125,7 @@ static json_t *find_type(const struct tag_json_reader *reader, const char *id)
     json_object_foreach(reader->types, key, type)
     {
         const char *last = strrchr(key, '/');
-        if (!strcmp(last ? last + 1 : key, name)) {
+        if (!strcasecmp(last ? last + 1 : key, name)) {
             other = type;
             same++;
         }
@@ -230,38 +232,95 @@ static bool add_parameter(const struct scope *scope, const char *name, struct te
     return text != NULL;
 }
 
-/* Appends the value of a reference with an offset or a number format, such as "{Base+10}" and "{Number|000}". Returns false if it cannot be
- * resolved. */
+/* A term such as "Base+10*(Number-1)" that is being evaluated. */
+struct term_reading {
+    const struct scope *scope;
+    const char *at;
+    int depth;
+    bool good; /* false: the text is no term, or a parameter is no number */
+};
+
+static double sum_of(struct term_reading *term);
+
+static double parameter_of(struct term_reading *term)
+{
+    char name[200], *end = NULL;
+    struct text value = { 0 };
+    size_t length = strcspn(term->at, "|+-*/%()");
+    snprintf(name, sizeof(name), "%.*s", (int)length, term->at);
+    for (size_t last = strlen(name); last > 0 && name[last - 1] == ' '; last--)
+        name[last - 1] = 0;
+    term->at += length;
+    term->good &= length < sizeof(name) && add_parameter(term->scope, name, &value, term->depth) && value.at;
+    double number = term->good ? strtod(value.at, &end) : 0;
+    term->good = term->good && end != value.at && !*end;
+    text_finish(&value);
+    return number;
+}
+
+static double factor_of(struct term_reading *term)
+{
+    char *end;
+    term->at += strspn(term->at, " ");
+    double number = 0, sign = *term->at == '-' ? -1 : 1;
+    term->at += sign < 0;
+    if (*term->at == '(' && term->depth < MAX_DEPTH) {
+        term->at++;
+        term->depth++;
+        number = sum_of(term);
+        term->good &= *term->at == ')';
+        term->at += *term->at == ')';
+    } else if (*term->at >= '0' && *term->at <= '9') {
+        number = strtod(term->at, &end);
+        term->at = end;
+    } else {
+        number = parameter_of(term);
+    }
+    term->at += strspn(term->at, " ");
+    return sign * number;
+}
+
+static double product_of(struct term_reading *term)
+{
+    double number = factor_of(term);
+    while (term->good && *term->at && strchr("*/%", *term->at)) {
+        char sign = *term->at++;
+        double by = factor_of(term);
+        term->good &= sign == '*' || by != 0;
+        number = sign == '*' ? number * by : sign == '/' ? number / by : fmod(number, by);
+    }
+    return number;
+}
+
+static double sum_of(struct term_reading *term)
+{
+    double number = product_of(term);
+    while (term->good && *term->at && strchr("+-", *term->at)) {
+        bool minus = *term->at++ == '-';
+        double by = product_of(term);
+        number += minus ? -by : by;
+    }
+    return number;
+}
+
+/* Appends the value of a reference with arithmetic or a number format, such as "{Base+10*No}" and "{Number|000}". Returns false if it
+ * cannot be resolved. */
 static bool add_formatted(const struct scope *scope, const char *reference, struct text *out, int depth)
 {
-    char name[200], *end;
-    struct text value = { 0 };
-    size_t length = strcspn(reference, "|+-*");
-    if (length == strlen(reference) || length >= sizeof(name))
+    struct term_reading term = { scope, reference, depth, true };
+    if (!reference[strcspn(reference, "|+-*/%")])
         return false;
-    snprintf(name, sizeof(name), "%.*s", (int)length, reference);
-    while (length > 0 && name[length - 1] == ' ')
-        name[--length] = 0;
-    const char *rest = reference + strcspn(reference, "|+-*");
-    bool good = add_parameter(scope, name, &value, depth);
-    double number = good && value.at ? strtod(value.at, &end) : 0;
-    good = good && value.at && end != value.at && !*end;
-    for (char *after; good && strchr("+-*", *rest) && *rest; rest = after + strspn(after, " ")) {
-        double operand = strtod(rest + 1, &after);
-        good = after != rest + 1;
-        number = *rest == '+' ? number + operand : *rest == '-' ? number - operand : number * operand;
-    }
-    if (good && *rest == '|') {
-        const char *dot = strchr(rest, '.');
-        size_t digits = dot ? strspn(dot + 1, "0#") : 0, width = strspn(rest + 1, "0#,") + (digits > 0 ? digits + 1 : 0);
+    double number = sum_of(&term);
+    if (!term.good || !isfinite(number) || (*term.at && *term.at != '|'))
+        return false;
+    if (*term.at) {
+        const char *dot = strchr(term.at, '.');
+        size_t digits = dot ? strspn(dot + 1, "0#") : 0, width = strspn(term.at + 1, "0#,") + (digits > 0 ? digits + 1 : 0);
         text_add(out, "%0*.*f", (int)(width % 40), (int)(digits % 20), number);
-    } else if (good && !*rest) {
-        text_add(out, "%.12g", number);
     } else {
-        good = false;
+        text_add(out, "%.12g", number);
     }
-    text_finish(&value);
-    return good;
+    return true;
 }
 
 /* Appends a text with its references replaced. Returns false if a reference could not be resolved; such a reference stays in the text. */
@@ -310,8 +369,9 @@ static void set_field(const struct scope *scope, struct export_tag *tag, enum ex
         return;
     scope->reader->references = 0;
     bool good = add_value(scope, value, &out, 0);
-    if (!good && json_is_object(value) && field == EXPORT_ADDRESS)
-        complain(&scope->reader->unresolved, scope->folder, scope->name, text_of(value, "binding"));
+    if (!good && json_is_object(value))
+        complain(field == EXPORT_ADDRESS ? &scope->reader->unresolved : &scope->reader->without, scope->folder, scope->name,
+                 text_of(value, "binding"));
     if (out.at && (good || field == EXPORT_ADDRESS || json_is_string(value)))
         set_text(scope->reader->list, tag, field, out.at);
     text_finish(&out);
@@ -386,10 +446,13 @@ static void add_node(struct tag_json_reader *reader, struct layered_node *node, 
                      int depth)
 {
     const char *name = string_of(node, "name"), *type = string_of(node, "tagType");
+    json_t *item;
+    size_t index;
     if (depth >= MAX_DEPTH) {
         reader->too_deep = true;
         return;
     }
+    json_array_foreach(node->layers[0], index, item) add_node(reader, &(struct layered_node){ { item }, 1 }, frame, folder, depth + 1);
     if (!json_is_object(node->layers[0]) || !strcmp(type, "UdtType") || (!frame && !strcmp(name, types_folder)))
         return;
     int own = node->count;
@@ -416,9 +479,8 @@ static void say(struct tag_export *list, struct complaint *complaint, const char
 bool tag_export_read_json(struct tag_export *list, const char *text, size_t length, char *why, size_t why_bytes)
 {
     json_error_t error;
-    json_t *root = json_loadb(text, length, 0, &error), *item;
+    json_t *root = json_loadb(text, length, 0, &error);
     struct tag_json_reader reader = { .list = list };
-    size_t index;
     list->format = "Ignition (JSON)";
     if (!root) {
         snprintf(why, why_bytes, "line %d: not JSON: %.120s", error.line, error.text);
@@ -426,13 +488,11 @@ bool tag_export_read_json(struct tag_export *list, const char *text, size_t leng
     }
     reader.types = json_object();
     index_types(&reader, root, "", 0);
-    if (json_is_array(root))
-        json_array_foreach(root, index, item) add_node(&reader, &(struct layered_node){ { item }, 1 }, NULL, "", 1);
-    else
-        add_node(&reader, &(struct layered_node){ { root }, 1 }, NULL, "", 0);
+    add_node(&reader, &(struct layered_node){ { root }, 1 }, NULL, "", 0);
     say(list, &reader.unknown, "instances are of a type that the export does not have; export the folder of types, too");
     say(list, &reader.circular, "instances are of a type that contains itself: left out below there");
     say(list, &reader.unresolved, "addresses refer to parameters that have no value");
+    say(list, &reader.without, "units, ranges and descriptions are bound to something without a value: left out");
     if (reader.too_deep || reader.too_many)
         snprintf(why, why_bytes, reader.too_deep ? "folders deeper than %d" : "more than %d tags",
                  reader.too_deep ? MAX_DEPTH : TABLE_MAX_ROWS);

@@ -16,7 +16,10 @@ static const struct {
     { EXPORT_NAME,
       " tagname pointname pntname pointid tag tagno tagnumber tagid 태그명 태그이름 태그 module modulename point "
       "objectname name itemname symbolname signalname kks kkscode messstelle messstellenname messstellennummer messstellennr "
-      "pltstelle pltstellenname variablenname variable tagbezeichnung kennzeichen symbol nomdutag nomtag repere mnemonique "
+      "pltstelle pltstellenname variablenname variable tagbezeichnung kennzeichen symbol kurzzeichen kurzbezeichnung plsname akz "
+      "anlagenkennzeichen kksnr kksnummer emsrstelle messkreis loopname nomdeletiquette reperefonctionnel nomdupoint "
+      "nombredelaetiqueta nombredelavariable 点号 测点编号 点位号 仪表编号 信号名称 nomdutag nomtag repere "
+      "mnemonique "
       "nomdevariable nomvariable etiqueta nombredeltag nombredetag nombretag nombredevariable nometag nomedotag nomedatag "
       "位号 位号名 位号名称 仪表位号 设备位号 测点名 测点 测点名称 点名 变量名 变量名称 "
       "变量 标签名 标签 标签名称 标记名 計器番号 タグ名 タグ名称 タグno タグ番号 タグ 計器 "
@@ -29,7 +32,9 @@ static const struct {
       "주소 logicaladdress logischeadresse adresselogique direccionlogica indirizzologico 逻辑地址 "
       "論理アドレス 논리주소 adresse spsadresse modbusadresse registeradresse ioadresse direccion direccionmodbus "
       "direccionplc endereco indirizzo adres 地址 寄存器地址 寄存器 plc地址 modbus地址 アドレス "
-      "レジスタ 位址 暫存器 레지스터 адрес адресплк регистр nodeid opcitem opcaddress "
+      "レジスタ 位址 暫存器 레지스터 адрес адресплк регистр nodeid signaladresse adr operand "
+      "adresseautomate adresseapi direccionplc direcciondeplc plc어드레스 어드레스 plc주소 通道地址 plc寄存器 "
+      "变量地址 opcitem opcaddress "
       "opcitemid topic tagaddress plctag instrumenttag " },
     { EXPORT_TYPE,
       " datatype pointtype type datentyp typ typededonnees typedonnees tipodedatos tipodedato tipodato tipodedados "
@@ -46,7 +51,9 @@ static const struct {
     { EXPORT_SCALED_LOW,
       " scaledlow mineu pveulo englow pvengunitsmin 0rangevalue eu0 rangelow rangemin lowrange lrv lowerrange lowscale 최소 "
       "minimum min zero messbereichanfang messbereichvon messanfang bereichmin bereichvon messbereichmin anfangswert "
-      "untergrenze echellebasse echellemin minechelle minimumechelle basechelle plagemin minimale rangoinferior rangomin "
+      "untergrenze echellebasse messbereichsanfang mbanfang bereichsanfang skalenanfang von valeurmin valeurmini valeurminimale "
+      "debutechelle debutdechelle debutdegamme valorminimo valormin inicioescala 低量程 量程下 量程起点 echellemin "
+      "minechelle minimumechelle basechelle plagemin minimale rangoinferior rangomin "
       "rangominimo escalaminima minimo 量程下限 下限 量程低 量程低限 工程量下限 量程最小值 最小值 "
       "最小 レンジ下限 下限値 測定範囲下限 スケール下限 하한 최소값 범위하한 "
       "측정범위하한 레인지하한 нижниипредел нижняяграница минимум мин "
@@ -55,7 +62,9 @@ static const struct {
     { EXPORT_SCALED_HIGH,
       " scaledhigh maxeu pveuhi enghigh pvengunitsmax 100rangevalue eu100 rangehigh rangemax highrange urv upperrange "
       "highscale 최대 maximum max messbereichende messbereichbis messende bereichmax bereichbis messbereichmax endwert "
-      "obergrenze echellehaute echellemax maxechelle maximumechelle hautechelle plagemax maximale rangosuperior rangomax "
+      "obergrenze echellehaute messbereichsende mbende bereichsende skalenende bis valeurmax valeurmaxi valeurmaximale "
+      "finechelle findechelle findegamme valormaximo valormax finescala 高量程 量程上 量程终点 echellemax maxechelle "
+      "maximumechelle hautechelle plagemax maximale rangosuperior rangomax "
       "rangomaximo escalamaxima maximo 量程上限 上限 量程高 量程高限 工程量上限 量程最大值 最大值 "
       "最大 レンジ上限 上限値 測定範囲上限 スケール上限 상한 최대값 범위상한 "
       "측정범위상한 레인지상한 верхниипредел верхняяграница максимум макс "
@@ -63,13 +72,17 @@ static const struct {
       "верхниипределшкалы engmax eumax maxeng " },
     { EXPORT_UNIT,
       " engunits engunit engineeringunits engineeringunit pvengunits eudesc eunits eu uom 단위 units unit einheit "
-      "masseinheit physikalischeeinheit unite unites unitedemesure uniteingenieur unidad unidades unidaddemedida "
-      "unidadesdeingenieria unidade unitadimisura eenheid jednostka 单位 工程单位 單位 工程單位 単位 "
+      "masseinheit physikalischeeinheit einh dimension messeinheit uniteingenierie unitedingenierie ud 量纲 计量单位 "
+      "測定単位 측정범위단위 unite unites unitedemesure uniteingenieur unidad unidades unidaddemedida "
+      "unidadesdeingenieria unidaddeingenieria unidade unitadimisura eenheid jednostka 单位 工程单位 單位 工程單位 単位 "
       "工学単位 工業単位 공학단위 측정단위 единицаизмерения единицы единица "
       "едизм едизмерения размерность " },
     { EXPORT_DESCRIPTION,
       " description tagdescription ptdesc desc shortdesc comment documentation tooltip service descriptor 설명 beschreibung "
-      "bezeichnung benennung kommentar klartext text funktion designation libelle commentaire descriptif descripcion "
+      "bezeichnung benennung kommentar klartext text funktion bez funktionstext langtext langbezeichnung messstellenbezeichnung "
+      "commentaires libellefonctionnel descripciondeltag servicio comentarios denominacion 测点描述 中文描述 "
+      "中文说明 中文說明 位号描述 点描述 태그설명 서비스명 명칭 용도 계기명칭 designation libelle "
+      "commentaire descriptif descripcion "
       "comentario denominacion descricao descrizione commento omschrijving opis 描述 说明 注释 备注 用途 "
       "名称描述 測点説明 説明 コメント 備考 サービス 用途名 説明文 註解 說明 備註 설명문 "
       "내용 비고 서비스 코멘트 описание наименование комментарии "

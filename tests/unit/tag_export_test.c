@@ -193,6 +193,32 @@ TEST(test_udt_kinds)
             "X", "")),
           "A/P/T", "bar", "", "", 1, "contains itself: left out below there: A/P (X)" },
         { "types and instances in a list", "[" PUMP "," INSTANCE("P", "Pump", "") "]", "P/T", "°C", "120", "[PLC1]HR0", 1, NULL },
+        { "arithmetic with precedence",
+          PROVIDER(TYPE("Pump", "'parameters':{'N':{'value':3}},'tags':[" MEMBER("T", ",'opcItemPath':" BOUND("{N*10+2} {2+N*10} "
+            "{(N+1)/2} {N%2} {N*2|000} {-N}")) "]"),
+                   INSTANCE("P", "Pump", "")),
+          "A/P/T", "", "", "32 32 2 1 006 -3", 1, NULL },
+        { "a division by zero", PROVIDER(TYPE("Pump", "'parameters':{'N':{'value':3}},'tags':[" MEMBER("T", ",'opcItemPath':"
+            BOUND("{N/0}")) "]"), INSTANCE("P", "Pump", "")),
+          "A/P/T", "", "", "{N/0}", 1, "addresses refer to parameters that have no value: A/P/T ({N/0})" },
+        { "three types above each other, each with a default of its own",
+          PROVIDER(PUMP "," TYPE("Mid", "'typeId':'Pump','parameters':{'No':{'value':5}}") "," TYPE("Top", "'typeId':'Mid','tags':["
+            MEMBER("T", ",'engHigh':9") "," MEMBER("X", "") "]"),
+                   INSTANCE("P", "Top", ",'parameters':{'Dev':{'value':'PLC7'}}")),
+          "A/P/T", "°C", "9", "[PLC7]HR5", 2, NULL },
+        { "instances in an array of names", PROVIDER(PUMP, INSTANCE("P[0]", "Pump", "") "," INSTANCE("P[1]", "Pump", "")), "A/P[1]/T",
+          "°C", "120", "[PLC1]HR0", 2, NULL },
+        { "a list within a list", "[" PUMP ",[" INSTANCE("P", "Pump", "") ",[" INSTANCE("Q", "Pump", "") "]]]", "Q/T", "°C", "120",
+          "[PLC1]HR0", 2, NULL },
+        { "a unit bound to another tag", PROVIDER(TYPE("Pump", "'tags':[" MEMBER("T", ",'engUnit':{'bindType':'tag','binding':'[.]U'}")
+            "]"), INSTANCE("P", "Pump", "")),
+          "A/P/T", "", "", "", 1, "1 units, ranges and descriptions are bound to something without a value: left out: A/P/T ([.]U)" },
+        { "a type's path with the provider and another case", PROVIDER(PUMP, INSTANCE("P", "[default]_types_/pump", "")), "A/P/T", "°C",
+          "120", "[PLC1]HR0", 1, NULL },
+        { "one member of two overridden",
+          PROVIDER(TYPE("Pump", "'tags':[" MEMBER("T", ",'engUnit':'bar','engHigh':4") "," MEMBER("S", ",'engUnit':'A'") "]"),
+                   INSTANCE("P", "Pump", ",'tags':[" MEMBER("S", ",'engHigh':2") "]")),
+          "A/P/S", "A", "2", "", 2, NULL },
         { "a tag outside of instances", PROVIDER(PUMP, MEMBER("L", ",'engUnit':'%','engLow':20")), "L", "%", "100", "", 1, NULL },
     };
     for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
@@ -276,6 +302,40 @@ TEST(test_header_kinds)
         { "PI, by its own names", "tag,descriptor,engunits,zero,span,instrumenttag,pointsource\nT1,Pump,bar,0,10,ns=2;s=T1,OPC\n", "T1",
           "ns=2;s=T1", "bar", "0", "10", "Pump" },
         { "an instrument index", "Instrument Tag,Service,Unit\nT1,Pump,bar\n", "T1", "", "bar", "", "", "Pump" },
+        { "German, short", "AKZ;Adr.;Einh.;Min;Max;Bez.\nT1;4001;bar;0;10;Pumpe\n", "T1", "4001", "bar", "0", "10", "Pumpe" },
+        { "German, of a control system", "Kurzzeichen;Signaladresse;Maßeinheit;Messbereichsanfang;Messbereichsende;Funktionstext\n"
+          "T1;4001;bar;0;10;Pumpe\n", "T1", "4001", "bar", "0", "10", "Pumpe" },
+        { "German, from and to", "PLS-Name;Adresse;Dimension;von;bis;Text\nT1;4001;bar;0;10;Pumpe\n", "T1", "4001", "bar", "0", "10",
+          "Pumpe" },
+        { "German, KKS", "KKS-Nr.;SPS-Adresse;Physikalische Einheit;MB-Anfang;MB-Ende;Langtext\nT1;4001;bar;0;10;Pumpe\n", "T1", "4001",
+          "bar", "0", "10", "Pumpe" },
+        { "French, label", "Nom de l'étiquette;Adresse automate;Unité d'ingénierie;Valeur min;Valeur max;Commentaires\n"
+          "T1;4001;bar;0;10;Pompe\n", "T1", "4001", "bar", "0", "10", "Pompe" },
+        { "French, scale", 
+          "Repère fonctionnel;Adresse;Unité;Début échelle;Fin d'échelle;Libellé\n"
+          "T1;4001;bar;0;10;Pompe\n", "T1", "4001",
+          "bar", "0", "10", "Pompe" },
+        { "Spanish, other words", 
+          "Nombre de la etiqueta;Dirección PLC;Unidad de ingeniería;Valor mínimo;Valor máximo;Descripción del tag\n"
+          ""
+          "T1;4001;bar;0;10;Bomba\n", "T1", "4001", "bar", "0", "10", "Bomba" },
+        { "Spanish, short", "Tag;Dirección Modbus;Ud.;Mín.;Máx.;Servicio\nT1;4001;bar;0;10;Bomba\n", "T1", "4001", "bar", "0", "10",
+          "Bomba" },
+        { "Korean, description", 
+          "태그 이름;PLC어드레스;공학단위;최소;최대;태그 설명\n"
+          "T1;4001;bar;0;10;펌프\n", "T1", "4001", "bar", "0", "10", "펌프" },
+        { "Korean, mixed", 
+          "TAG NO.;어드레스;UNIT;RANGE MIN;RANGE MAX;서비스명\n"
+          "T1;4001;bar;0;10;펌프\n", "T1", "4001", "bar", "0", "10", "펌프" },
+        { "Chinese, numbered", 
+          "序号;位号;通道地址;工程单位;量程低限;量程高限;测点描述\n"
+          "1;T1;4001;bar;0;10;泵\n", "T1", "4001", "bar", "0", "10", "泵" },
+        { "Chinese, short", 
+          "点号;地址;量纲;低量程;高量程;中文描述\n"
+          "T1;4001;bar;0;10;泵\n", "T1", "4001", "bar", "0", "10", "泵" },
+        { "TIA, tags of an operator panel",
+          "Name;Path;Connection;PLC tag;DataType;Length;Coding;Access Method;Address;Comment [de-DE]\n"
+          "T1;Default;HMI_1;\"DB1\".T1;Real;4;Binary;Absolute access;%DB1.DBD0;Pumpe\n", "T1", "%DB1.DBD0", "", "", "", "Pumpe" },
         { "TIA", "Name,Path,Data Type,Logical Address,Comment,Hmi Visible\nT1,Default tag table,Int,%IW64,Pump,True\n", "T1", "%IW64", "",
           "", "", "Pump" },
         { "TIA, German", "Name;Pfad;Datentyp;Logische Adresse;Kommentar\nT1;Standard;Real;%DB1.DBD0;Pumpe\n", "T1", "%DB1.DBD0", "", "", "",
@@ -562,6 +622,8 @@ TEST(test_refused)
         { "", "no header" },         { "a,b\n1,2\n", "no header" },         { "Tag,Unit\n\"TT-1,2\n", "line 2: a quote does not end" },
         { "Tag,Unit\n", "no tags" }, { "PK\3\4rest", "not a spreadsheet" }, { "\xd0\xcf\x11\xe0", "save it as .xlsx" },
         { "[1, 2]", "no tags" },
+        { "<Tags><Tag name=\"T1\"/></Tags>", "it is XML, which is not read" },
+        { "{\"tags\":[{\"name\":\"P\",\"tagType\":\"UdtInstance\",\"typeId\":\"Pump\"}]}", "no tags in it: 1 instances are of a" },
     };
     struct tag_export list;
     for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
