@@ -311,26 +311,26 @@ TEST(test_header_kinds)
           "bar", "0", "10", "Pumpe" },
         { "French, label", "Nom de l'étiquette;Adresse automate;Unité d'ingénierie;Valeur min;Valeur max;Commentaires\n"
           "T1;4001;bar;0;10;Pompe\n", "T1", "4001", "bar", "0", "10", "Pompe" },
-        { "French, scale", 
+        { "French, scale",
           "Repère fonctionnel;Adresse;Unité;Début échelle;Fin d'échelle;Libellé\n"
           "T1;4001;bar;0;10;Pompe\n", "T1", "4001",
           "bar", "0", "10", "Pompe" },
-        { "Spanish, other words", 
+        { "Spanish, other words",
           "Nombre de la etiqueta;Dirección PLC;Unidad de ingeniería;Valor mínimo;Valor máximo;Descripción del tag\n"
           ""
           "T1;4001;bar;0;10;Bomba\n", "T1", "4001", "bar", "0", "10", "Bomba" },
         { "Spanish, short", "Tag;Dirección Modbus;Ud.;Mín.;Máx.;Servicio\nT1;4001;bar;0;10;Bomba\n", "T1", "4001", "bar", "0", "10",
           "Bomba" },
-        { "Korean, description", 
+        { "Korean, description",
           "태그 이름;PLC어드레스;공학단위;최소;최대;태그 설명\n"
           "T1;4001;bar;0;10;펌프\n", "T1", "4001", "bar", "0", "10", "펌프" },
-        { "Korean, mixed", 
+        { "Korean, mixed",
           "TAG NO.;어드레스;UNIT;RANGE MIN;RANGE MAX;서비스명\n"
           "T1;4001;bar;0;10;펌프\n", "T1", "4001", "bar", "0", "10", "펌프" },
-        { "Chinese, numbered", 
+        { "Chinese, numbered",
           "序号;位号;通道地址;工程单位;量程低限;量程高限;测点描述\n"
           "1;T1;4001;bar;0;10;泵\n", "T1", "4001", "bar", "0", "10", "泵" },
-        { "Chinese, short", 
+        { "Chinese, short",
           "点号;地址;量纲;低量程;高量程;中文描述\n"
           "T1;4001;bar;0;10;泵\n", "T1", "4001", "bar", "0", "10", "泵" },
         { "TIA, tags of an operator panel",
