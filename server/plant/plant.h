@@ -101,11 +101,11 @@ struct plant_mirror {  /* meaning of a tag that is an alarm bit of another syste
     bool acknowledged; /* the bit means "acknowledged" rather than "alarm present" */
 };
 
-struct plant_gp {                     /* parameters of the interpolation `gp` */
+struct plant_gp { /* parameters of the interpolation `gp` */
     /* range_m: correlation length in metres; noise, deviation: standard deviations of a reading's noise and of the field, in the group's
        unit; NaN: to be fitted to readings */
     double range_m, noise, deviation;
-    char *fit;                        /* path of a file with readings to fit the parameters to; NULL: no fitting */
+    char *fit; /* path of a file with readings to fit the parameters to; NULL: no fitting */
 };
 
 enum { PLANT_BREAKS = 16, PLANT_ISOLINES = 32 };
@@ -247,7 +247,7 @@ struct plant_sentinel {
 
 /* Another tag that tells whether this tag's value is valid: it is valid if ((value of the other tag & mask) == want) != negate. */
 struct plant_quality_tag {
-    int tag;             /* index */
+    int tag;             /* index of the other tag */
     uint64_t mask, want; /* mask 0: no quality tag */
     bool negate;
 };
@@ -356,7 +356,7 @@ struct plant {
     size_t colormap_count;
     /* indices of assets sorted by id, and of tags sorted by name; assets_by_id is NULL until the whole file is read */
     int *assets_by_id, *tags_by_name;
-    int *derived;                     /* indices of the derived tags, in an order in which each follows the tags in its expression */
+    int *derived; /* indices of the derived tags, in an order in which each follows the tags in its expression */
     size_t derived_count;
 };
 

@@ -37,16 +37,16 @@ struct scene {
     char *folder;               /* folder of the prepared files; NULL: the scene was made in memory */
     struct scene_asset *assets; /* by index in plant->assets */
     size_t asset_count;
-    double bounds_min_m[3], bounds_max_m[3]; /* of the main part: scene/main_part.h */
+    double bounds_min_m[3], bounds_max_m[3]; /* box of the main part (scene/main_part.h) */
     /* box of all assets including stray pieces (scene/main_part.h); min equal to max: the same box as bounds_min_m, bounds_max_m */
     double whole_min_m[3], whole_max_m[3];
     struct scene_outside {
-        size_t triangles; /* outside the main part */
-        int assets;       /* assets with such triangles */
+        size_t triangles; /* number of triangles outside the main part */
+        int assets;       /* number of assets with such triangles */
         double away_m;    /* distance from the main part of the farthest triangle outside it */
     } outside;
     double (*extremes_m)[3]; /* outermost points that a view of the whole plant has to contain (scene/extremes.h) */
-    size_t extreme_count;    /* 0: unknown */
+    size_t extreme_count;    /* number of extremes_m; 0: not known */
 };
 
 /* Chooses the box that near and far planes have to enclose: the box of everything. If a stray piece is so far away that the near plane

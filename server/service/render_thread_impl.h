@@ -43,8 +43,8 @@ struct render_thread {
     /* a suspended long job (a frame drawn in steps) for a large frame; it continues after a smaller frame of another address, which was
        allowed to overtake it */
     struct long_job parked;
-    bool warm;              /* the warm-up is complete */
-    int64_t turn_began_ns;  /* monotonic: since when the thread has been drawing without a wait or other work */
+    bool warm;             /* the warm-up is complete */
+    int64_t turn_began_ns; /* monotonic: since when the thread has been drawing without a wait or other work */
     struct awaited_frames in_flight;
     /* groups that wait until their field is computed; in each turn that such a group gets, a part of the field is computed */
     struct deferred_requests deferred;

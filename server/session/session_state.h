@@ -92,7 +92,7 @@ struct frame_demand {
 struct frame_delivery {
     struct pacer pacer;
     uint64_t newest_number;          /* sequence number of the newest frame received from the render service */
-    bool newest_refined;             /* that frame is refined */
+    bool newest_refined;             /* the frame newest_number is refined */
     struct encoded_frame *ready;     /* frames to be sent next, oldest first; a frame that decodes on its own replaces all before it */
     bool measured;                   /* pacer.acked is new (session_take_shown) */
     int steps[QUALITY_LADDER_STEPS]; /* number of viewers of this view, this session included, at each step of the quality ladder */
@@ -220,7 +220,7 @@ struct session {
     struct owed_texts owed;
     struct kept_answer *kept; /* answers that wait for the disk, oldest first (session_kept.c) */
     int kept_count;
-    struct session *next_gone; /* in struct kept_answers */
+    struct session *next_gone; /* next session in the list kept_answers.gone */
     struct session_placement placement;
     struct session_pick pick;
     struct message_rate rate;

@@ -21,7 +21,8 @@ struct web_site;
    files. */
 struct web_site *site_create(struct log *log, const char *folder);
 void site_destroy(struct web_site **site); /* destroys the site and sets *site to NULL; accepts a pointer to NULL */
-/* Returns the file of a decoded path that starts with '/', or NULL. The file lives as long as the site. */
+/* Returns the file of a decoded path that starts with '/', or NULL; a path that ends with '/' means index.html there. The file lives as
+   long as the site. */
 const struct site_file *site_find(const struct web_site *site, const char *path);
 
 #endif

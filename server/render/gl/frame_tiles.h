@@ -12,7 +12,7 @@ struct frame_tiles {
     int block_px, columns, rows;
     /* next: index of the next cell, counted through both passes (enum gl_pass); span: number of cells in its tile, 0: not chosen yet */
     int next, span;
-    int *in_tile;   /* indices of the assets that the current tile shows */
+    int *in_tile; /* indices of the assets that the current tile shows */
 };
 struct tile {
     int x_px, y_px, width_px, height_px; /* rectangle in pixels, from the top left of the frame */

@@ -24,7 +24,7 @@ struct occlusion { /* culling state of the frame drawn last; zero-initialise, th
     struct occlusion_box *boxes;
     struct occlusion_asset *assets;
     size_t box_count, asset_count;
-    size_t box_capacity, asset_capacity; /* capacities in main memory */
+    size_t box_capacity, asset_capacity; /* capacities of `boxes` and `assets`, elements */
     size_t box_room;                     /* capacity of box_buffer on the GPU, bytes */
 };
 

@@ -6,7 +6,7 @@
 #define RENDER_BAKE_FACES_H
 #include "render/gl/gpu_scene.h"
 
-enum { BAKE_FACE_SAMPLES = 6 }; /* per triangle; must match shaders/bake.comp */
+enum { BAKE_FACE_SAMPLES = 6 }; /* samples per triangle; must match shaders/bake.comp */
 
 struct bake_faces {
     size_t count;

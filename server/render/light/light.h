@@ -13,7 +13,7 @@ struct light {
     struct bake_programs programs;
     /* matrix to the plant frame, from the ground's texture coordinates (x, y) and the height above the ground (z) */
     double plant_from_ground[16];
-    double ground_height_m;    /* along `up` */
+    double ground_height_m;    /* coordinate of the ground along the up axis */
     size_t bound_bytes, bytes; /* bytes: limit, and sum over all light sets; a held set is never dropped, even above the limit */
     struct light_set sets[LIGHT_SETS];
     struct bake *bake; /* in progress; NULL: none */

@@ -8,7 +8,7 @@
 struct crowd_item {
     double x, y, depth_m;
     bool occluded;
-    bool kept; /* drawn whatever is near */
+    bool kept; /* true: drawn however many other markers are near */
     bool held; /* true: the marker was drawn in the previous frame */
 };
 

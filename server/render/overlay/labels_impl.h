@@ -9,10 +9,10 @@
 /* Boxes that a label may cover; each value includes those before. take() stores with each occupied box the smallest value whose labels may
    cover that box. */
 enum label_over {
-                  OVER_NOTHING,
-                  OVER_MARKS, /* markers without an alarm ring */
-                  OVER_RINGS, /* markers with and without an alarm ring (the circle around the marker of a tag in alarm) */
-                  OVER_ALL
+    OVER_NOTHING,
+    OVER_MARKS, /* markers without an alarm ring */
+    OVER_RINGS, /* markers with and without an alarm ring (the circle around the marker of a tag in alarm) */
+    OVER_ALL
 };
 
 struct cell_entry {

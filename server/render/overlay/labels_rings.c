@@ -38,7 +38,7 @@ struct rings {
     size_t count, group_count;
     double least; /* pixels by which CLOSE and STILL_CLOSE are multiplied: one unit, or more if that leaves too many labels */
     struct ring_group *groups;
-    int *group_of;          /* by index in `order` */
+    int *group_of;          /* by index in `order`: index of the group of that item */
     int *members;           /* indices of the items (markers) of all groups of alarm rings, group after group */
     struct offset *offsets; /* sorted by distance */
 };

@@ -14,7 +14,7 @@
 enum { POINTS_PER_LINE = 16, MAX_POINTS = 2048, MAX_LABELS = 128, MAX_ARROWS = 192, MAX_STROKES = 48 };
 /* MAX_PIECES: pieces into which an edge is divided at most; MAX_BISECTIONS: steps of the bisection within one piece. */
 enum { MAX_BISECTIONS = 24, MAX_PIECES = 16 };
-static const double SPACING = 0.1;        /* minimum distance between points on isolines, relative to the asset's size */
+static const double SPACING = 0.1; /* minimum distance between points on isolines, relative to the asset's size */
 /* on a frame, labels of the same isoline keep this multiple of the distance that labels of different isolines keep */
 static const double SAME_LINE_FACTOR = 4;
 
@@ -66,7 +66,7 @@ static bool is_apart(const struct isoline_search *search, double value, const do
 
 /* A piece of an edge. */
 struct edge_piece {
-    float ends_m[2][3]; /* as the asset file's positions */
+    float ends_m[2][3]; /* positions of both ends, in coordinates of the asset file */
     double values[2];
 };
 

@@ -9,7 +9,7 @@
 #include "render/pick/strokes.h"
 
 struct isoline_point {
-    double value, place_m[3]; /* plant frame */
+    double value, place_m[3]; /* value of the isoline, or of the field at an arrow; place_m: in the plant frame */
     double along[3];          /* direction of an arrow, plant frame; 0: unknown */
     bool arrow, uncertain;
     uint16_t stroke; /* index of the stroke in this frame, from 1 up, equal for all of its points; 0: the point belongs to no stroke */

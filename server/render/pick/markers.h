@@ -13,7 +13,7 @@ struct marker_iterator {
 };
 struct marker_place {
     int tag, asset;
-    const double *surface_m; /* plant frame */
+    const double *surface_m; /* position of the sensor on the surface, in the plant frame */
 };
 /* Gives the next sensor. Returns false at the end. */
 bool marker_next(struct marker_iterator *iterator, struct marker_place *out);

@@ -73,7 +73,7 @@ static void find_neighbours(struct stroke_set *set, const struct asset_view *vie
 struct tracing {
     const struct asset_view *view;
     const struct stroke_set *set;
-    const uint32_t (*tris)[3]; /* corners of the level's triangles */
+    const uint32_t (*tris)[3]; /* vertex indices of the level's triangles */
 };
 
 static void corners_of(const struct tracing *tracing, uint32_t tri, double out[3][3], double normal[3])

@@ -6,7 +6,7 @@
 #define RENDER_PICK_STROKES_H
 #include "render/pick/arrows.h"
 
-enum { STROKE_POINTS = 12, STROKES_MOST = 100 }; /* STROKES_MOST: per asset */
+enum { STROKE_POINTS = 12, STROKES_MOST = 100 }; /* maximum number of points of a stroke, and of strokes of an asset */
 
 struct stroke_point {
     struct direction_place place;

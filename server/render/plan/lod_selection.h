@@ -10,7 +10,7 @@ struct lod_params {
     const struct gpu_scene *gpu_scene;
     const struct view_constants *constants;
     enum tier tier;
-    const int *visible; /* assets */
+    const int *visible; /* indices of the visible assets */
     size_t visible_count;
 };
 /* Returns the error bound of the frame's levels of detail, in pixels; 0: finest levels only. The result depends only on camera and visible

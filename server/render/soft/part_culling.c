@@ -11,7 +11,7 @@
 #include "render/gl/ghosts.h"
 
 #define SLACK_PX 0.02f        /* boxes and vertices round differently */
-#define SLACK_DEPTH 1e-5f     /* relative to depth */
+#define SLACK_DEPTH 1e-5f     /* tolerance of depth, relative to the depth */
 #define IN_FRONT_OF_NEAR 2.0f /* depth that is used for points in front of the near plane; larger than any real depth */
 
 /* Computes a bounding rectangle, in pixels, of a box in the frame, and the box's nearest depth. Returns false if the box is outside the
@@ -39,7 +39,7 @@ SOFT_INLINE bool project(const struct raster *raster, const struct soft_mesh *me
         nearest = depth[i] > nearest ? depth[i] : nearest;
     }
     const float slack = SLACK_PX + raster->reach_px;
-    left += 0.5f - slack; /* pixels whose centres lie within */
+    left += 0.5f - slack; /* from here on, limits of the pixels whose centres lie within */
     top += 0.5f - slack;
     last += 0.5f + slack;
     bottom += 0.5f + slack;

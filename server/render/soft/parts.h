@@ -10,7 +10,7 @@ enum { PART_TRIANGLES = 256, PART_VERTICES = 256 };
 
 struct soft_part {
     struct asset_cluster cluster; /* bounding box and normal cone */
-    uint32_t first_vertex;        /* index in soft_parts.vertices */
+    uint32_t first_vertex;        /* index of the part's first vertex in soft_parts.vertices */
     /* the part's first index in soft_parts.corners, which holds all first corners, then all second ones, then all third ones */
     uint32_t first_corner;
     uint16_t vertex_count, triangle_count;

@@ -13,7 +13,7 @@ struct keeping {
 
 struct preview_triangle { /* a triangle projected into the frame, as cached while the buffer is filled */
     uint32_t id;
-    uint32_t number;      /* number in the band */
+    uint32_t number; /* index in the band's list of triangles */
     /* factors of x, y and 1 that give the weight of each corner at the point (x, y), up to a common factor (soft_weights) */
     double weights[3][3];
 };

@@ -33,7 +33,7 @@ struct refined {
         REFINED_COLOR,
         REFINED_DONE
     } step;
-    size_t at; /* work done within the step */
+    size_t at; /* number of work items (samples, bands or rows) of the step that are done */
     bool failed;
     float (*normals)[9]; /* by mesh: matrix that rotates normals from the file to the plant frame, column by column */
     size_t mesh_capacity;
@@ -46,7 +46,7 @@ struct refined {
     /* matrix, column by column: maps a normal to an offset on the sun's map; adding it lifts the point off its own surface, against shadow
        acne */
     float sun_from_normal[3][3];
-    float ground_step[3];        /* offset on the sun's map that lifts points off the ground, against shadow acne */
+    float ground_step[3]; /* offset on the sun's map that lifts points off the ground, against shadow acne */
 };
 
 struct refined_item { /* one surface within a pixel */

@@ -276,7 +276,7 @@ SOFT_INLINE void evaluate_fields(const struct raster *raster, const struct soft_
 SOFT_INLINE void color_row(const struct raster *raster, int left, int right, int row, uint8_t *out)
 {
     struct heights heights = { 0 };
-    struct sun_aim aims[AIMS]; /* by column, modulo AIMS */
+    struct sun_aim aims[AIMS]; /* ring buffer: by column / LANES, modulo AIMS */
     for (int column = left - BOUNDS_AHEAD; column <= right; column += LANES) {
         int aimed = column + BOUNDS_AHEAD, bounded = column + SHADOWS_AHEAD;
         if (aimed <= right)

@@ -58,7 +58,7 @@ struct soft_mesh { /* one asset in this frame */
 
 struct soft_pixels { /* field of a mesh that is evaluated at pixels; positions are relative to the centre of the mesh */
     struct pixel_field field;
-    float place_from_pixel[4][4]; /* columns */
+    float place_from_pixel[4][4]; /* matrix, column by column */
 };
 
 struct soft_rect { /* rectangle in pixels; right and bottom are included */
@@ -86,7 +86,7 @@ struct soft_found { /* list of the parts of one mesh that may be visible; its me
 
 struct soft_light {       /* copy of a light_set, read back from the GPU */
     uint64_t id;          /* id of the light set; 0: an empty entry */
-    uint8_t (**baked)[4]; /* per asset, then per vertex */
+    uint8_t (**baked)[4]; /* baked light by asset, then by vertex */
     /* shadow map in square tiles of two cache lines, each tile row by row, so that neighbouring texels mostly share cache lines */
     uint16_t *sun_map;
     uint32_t *sun_bounds; /* by tile of the shadow map: smallest texel | largest texel << 16 */
@@ -130,13 +130,13 @@ struct raster { /* source and target of one frame's rasterization; its memory is
     const float *lines;
     struct frame_uniforms block;
     struct soft_mesh *meshes;
-    struct soft_found *found; /* per mesh */
+    struct soft_found *found; /* by mesh: its parts that may be visible */
     size_t found_capacity;
     size_t mesh_count, vertex_count;
     size_t mesh_capacity;
     struct soft_pixels *pixels;
     size_t pixels_count, pixels_capacity;
-    int row_bias; /* added to the row of the colour map in a MARK_PIXELS mark, so that the sum is not negative */
+    int row_bias;                      /* added to the row of the colour map in a MARK_PIXELS mark, so that the sum is not negative */
     int width_px, height_px, pitch_px; /* pitch_px: row length, a multiple of LANES */
     /* largest distance of a sample from the pixel's centre along x or y; bounding rectangles of parts are enlarged by it. Previews: 0 */
     float reach_px;
@@ -238,7 +238,7 @@ void soft_keep(struct soft *soft, const struct frame_context *context, struct vi
 struct soft_triangle {
     uint32_t id; /* id of the triangle, as in struct soft_sample or raster->ids */
     uint32_t mesh, material;
-    uint32_t vertices[3]; /* vertex numbers in the file */
+    uint32_t vertices[3]; /* indices of the vertices in the asset file */
 };
 /* Finds the triangle with this id among the found parts (groups of triangles). On entry triangle->mesh is the index of the mesh to try
    first: that of a neighbouring pixel, or 0. */

@@ -22,11 +22,11 @@ struct eight_points {    /* eight surface points */
 
 /* --- where ------------------------------------------------------------------------------------------------------------------- */
 
-struct corners {                    /* corners of eight triangles relative to the points, from which weights are computed */
+struct corners { /* corners of eight triangles relative to the points, from which weights are computed */
     /* a, b: x and y of the vector from the point to the corner, in pixels; multiplied by clip w if a corner of the triangle cannot be
        projected */
     float a[3][LANES], b[3][LANES];
-    float w[3][LANES];              /* 1 / clip w of the corner; 1 if a corner of the triangle cannot be projected */
+    float w[3][LANES]; /* 1 / clip w of the corner; 1 if a corner of the triangle cannot be projected */
     /* for interpolating depth: g is 1, or clip w if a corner of the triangle cannot be projected; z is depth * g */
     float z[3][LANES], g[3][LANES];
 };

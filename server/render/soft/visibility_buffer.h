@@ -59,10 +59,10 @@ struct visibility_band { /* a band: group of pixel rows; written by one worker *
     /* present field values of each triangle: value at the first corner, difference of the second corner's from it, difference of the
        third's; fourth: 0, or 1 + index of the mesh if its field is evaluated at pixels */
     float (*corners)[4];
-    struct visibility_place *places; /* corner position and edges of each triangle; only filled in if a field is evaluated at pixels */
+    struct visibility_place *places;  /* corner position and edges of each triangle; only filled in if a field is evaluated at pixels */
     struct visibility_slopes *slopes; /* slopes of each triangle's corner weights; only filled in where there are isolines */
     struct visibility_part *parts;
-    struct visibility_gloss *gloss; /* per part, for glossy frames */
+    struct visibility_gloss *gloss; /* by index in `parts`; only filled in for the glossy look */
     struct visibility_mixed *mixed;
     size_t triangle_count, part_count, mixed_count;
     size_t place_count; /* number of elements of `places` */
@@ -75,8 +75,8 @@ struct visibility_mesh { /* an asset with a field */
     /* range of vertices that the mesh uses: indices among all of the frame, after visibility_buffer_settle() among the kept (visible)
        ones */
     uint32_t first_vertex, vertex_count;
-    bool read;        /* true if `carried` holds the values of the field version `content` */
-    uint64_t content; /* hash from struct fields_entry */
+    bool read;                 /* true if `carried` holds the values of the field version `content` */
+    uint64_t content;          /* hash from struct fields_entry */
     struct pixel_field pixels; /* from struct fields_entry */
 };
 

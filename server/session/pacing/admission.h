@@ -32,7 +32,7 @@ struct admission {
     const struct quotas *quotas;
     /* figures of the last finished seconds, newest last; `now`: figures of the current second */
     struct admission_window windows[ADMISSION_WINDOWS], now;
-    int64_t begin_ns;                                        /* monotonic start of `now` */
+    int64_t begin_ns; /* monotonic start of `now` */
     /* content id of the last counted frame: clients that share a frame report it one after the other, and it counts once */
     uint64_t last_content;
     int64_t pixels;               /* pixels of all views of all addresses */
