@@ -54,17 +54,17 @@ struct plant_runtime *plant_runtime_read(const struct plant_runtime_context *con
     const struct server_params *params = context->params;
     runtime->context = context;
     if (!(runtime->plant = plant_load(params->plant_path, diag)) ||
-        !(runtime->scene = plant_runtime_open_scene(context->log, params, runtime->plant))) {
+        !(runtime->services.scene = plant_runtime_open_scene(context->log, params, runtime->plant))) {
         plant_runtime_destroy(&runtime);
         return NULL;
     }
-    warn_of_far_sensors(context->log, runtime->scene);
-    view_named_check_all(runtime->scene, warn_of_view, (void *)context);
-    runtime->store = store_create(runtime->plant);
-    runtime->baselines = baselines_create();
-    runtime->snapshot_cache = snapshot_cache_create();
+    warn_of_far_sensors(context->log, runtime->services.scene);
+    view_named_check_all(runtime->services.scene, warn_of_view, (void *)context);
+    runtime->services.store = store_create(runtime->plant);
+    runtime->services.baselines = baselines_create();
+    runtime->services.snapshot_cache = snapshot_cache_create();
     if (!runtime->plant->history.off && params->role != SERVER_RENDER)
-        runtime->history = params->history ? mem_strdup(params->history) : plant_history_folder(runtime->plant);
+        runtime->services.history_folder = params->history ? mem_strdup(params->history) : plant_history_folder(runtime->plant);
     return runtime;
 }
 
@@ -82,12 +82,12 @@ static bool start_historian(struct plant_runtime *runtime, const struct plant_ru
     const struct historian_params params = { .log = context->log,
                                              .counters = context->counters,
                                              .plant = runtime->plant,
-                                             .store = runtime->store,
-                                             .folder = runtime->history,
+                                             .store = runtime->services.store,
+                                             .folder = runtime->services.history_folder,
                                              .follows = before != NULL,
                                              .owed = before ? &before->owed : NULL,
                                              .stands_by = follows(runtime) };
-    return !runtime->history || (runtime->historian = historian_start(&params));
+    return !runtime->services.history_folder || (runtime->services.historian = historian_start(&params));
 }
 
 static bool start_alarm_service(struct plant_runtime *runtime, struct alarm_service *before)
@@ -97,15 +97,15 @@ static bool start_alarm_service(struct plant_runtime *runtime, struct alarm_serv
         .log = context->log,
         .counters = context->counters,
         .plant = runtime->plant,
-        .store = runtime->store,
-        .folder = runtime->history,
+        .store = runtime->services.store,
+        .folder = runtime->services.history_folder,
         .keep_days = runtime->plant->history.keep_days,
         .mirrors = follows(runtime),
         .before = before,
         .notify = context->notify,
         .notify_arg = context->notify_arg,
     };
-    return (runtime->alarm_service = alarm_service_start(&params));
+    return (runtime->services.alarm_service = alarm_service_start(&params));
 }
 
 static bool start_notifier(struct plant_runtime *runtime)
@@ -113,11 +113,11 @@ static bool start_notifier(struct plant_runtime *runtime)
     const struct notifier_params params = { .log = runtime->context->log,
                                             .counters = runtime->context->counters,
                                             .plant = runtime->plant,
-                                            .alarm_service = runtime->alarm_service,
-                                            .folder = runtime->history,
+                                            .alarm_service = runtime->services.alarm_service,
+                                            .folder = runtime->services.history_folder,
                                             .kept = runtime->context->notify,
                                             .kept_arg = runtime->context->notify_arg };
-    return !runtime->plant->notify || follows(runtime) || (runtime->notifier = notifier_start(&params));
+    return !runtime->plant->notify || follows(runtime) || (runtime->services.notifier = notifier_start(&params));
 }
 
 static bool start_publisher(struct plant_runtime *runtime)
@@ -125,15 +125,15 @@ static bool start_publisher(struct plant_runtime *runtime)
     const struct publisher_params params = { .log = runtime->context->log,
                                              .counters = runtime->context->counters,
                                              .plant = runtime->plant,
-                                             .store = runtime->store,
-                                             .alarm_service = runtime->alarm_service };
+                                             .store = runtime->services.store,
+                                             .alarm_service = runtime->services.alarm_service };
     return !runtime->plant->publish || follows(runtime) || (runtime->publisher = publisher_start(&params));
 }
 
 static bool start_other_plants(struct plant_runtime *runtime)
 {
     return runtime->plant->other_plant_count == 0 ||
-           (runtime->other_plants = other_plants_start(runtime->context->log, runtime->plant));
+           (runtime->services.other_plants = other_plants_start(runtime->context->log, runtime->plant));
 }
 
 /* Creates the service for placing sensors from data that is already loaded; it starts no work before a session uses it. */
@@ -142,14 +142,14 @@ static void start_placing(struct plant_runtime *runtime)
     const struct plant_runtime_context *context = runtime->context;
     char *folder = plant_runtime_prepared_folder(context->params, runtime->plant);
     struct refusal why;
-    runtime->placing = placing_create(&(struct placing_params){ .log = context->log,
-                                                                .workers = context->workers,
-                                                                .scene = runtime->scene,
-                                                                .folder = folder,
-                                                                .notify = context->notify,
-                                                                .notify_arg = context->notify_arg });
-    runtime->tag_list = tag_file_read(runtime->plant->tags_path, &why);
-    if (!runtime->tag_list) {
+    runtime->services.placing = placing_create(&(struct placing_params){ .log = context->log,
+                                                                         .workers = context->workers,
+                                                                         .scene = runtime->services.scene,
+                                                                         .folder = folder,
+                                                                         .notify = context->notify,
+                                                                         .notify_arg = context->notify_arg });
+    runtime->services.tag_list = tag_file_read(runtime->plant->tags_path, &why);
+    if (!runtime->services.tag_list) {
         char text[REFUSAL_TEXT_BYTES];
         refusal_text(&why, text);
         log_warn(context->log, "%s", text);
@@ -160,24 +160,25 @@ static void start_placing(struct plant_runtime *runtime)
 void plant_runtime_open_lists(struct plant_runtime *runtime)
 {
     const struct plant_runtime_context *context = runtime->context;
-    runtime->named_views = named_views_open(context->log, runtime->plant, runtime->history, context->file_writer);
-    runtime->notes = notes_open(context->log, runtime->history, context->file_writer);
-    runtime->wall_remote = wall_remote_open(context->log, runtime->plant, runtime->history, context->file_writer);
-    runtime->pairings = pairings_open(context->log, runtime->history, context->file_writer);
+    runtime->services.named_views = named_views_open(context->log, runtime->plant, runtime->services.history_folder, context->file_writer);
+    runtime->services.notes = notes_open(context->log, runtime->services.history_folder, context->file_writer);
+    runtime->services.wall_remote = wall_remote_open(context->log, runtime->plant, runtime->services.history_folder, context->file_writer);
+    runtime->services.pairings = pairings_open(context->log, runtime->services.history_folder, context->file_writer);
 }
 
 bool plant_runtime_start_recording(struct plant_runtime *runtime, struct plant_runtime *before)
 {
     if (before)
-        store_adopt(runtime->store, before->store);
+        store_adopt(runtime->services.store, before->services.store);
     if (!before) /* after a reload, sessions of the old runtime change the users' files until the switch, so the event loop opens them at
                     the switch */
         plant_runtime_open_lists(runtime);
-    if (runtime->history)
-        runtime->loop_checks = loop_checks_open(runtime->context->log, runtime->plant, runtime->history, runtime->context->file_writer);
-    if (runtime->render_service)
-        render_service_set_loop_checks(runtime->render_service, runtime->loop_checks);
-    return start_historian(runtime, before) && start_alarm_service(runtime, before ? before->alarm_service : NULL) &&
+    if (runtime->services.history_folder)
+        runtime->services.loop_checks =
+            loop_checks_open(runtime->context->log, runtime->plant, runtime->services.history_folder, runtime->context->file_writer);
+    if (runtime->services.render_service)
+        render_service_set_loop_checks(runtime->services.render_service, runtime->services.loop_checks);
+    return start_historian(runtime, before) && start_alarm_service(runtime, before ? before->services.alarm_service : NULL) &&
            start_notifier(runtime) && start_publisher(runtime) && start_other_plants(runtime);
 }
 
@@ -188,20 +189,20 @@ static bool start_core_link(struct plant_runtime *runtime)
     struct core_link_params params = { .log = context->log,
                                        .counters = context->counters,
                                        .plant = runtime->plant,
-                                       .store = runtime->store,
-                                       .alarm_service = runtime->alarm_service,
+                                       .store = runtime->services.store,
+                                       .alarm_service = runtime->services.alarm_service,
                                        .url_count = server->core_count,
                                        .token_path = server->core_token,
                                        .ca_path = server->core_ca,
                                        .version = PLANTCAST_VERSION,
                                        .node = server->node,
                                        .keeper = context->keeper,
-                                       .historian = runtime->historian,
-                                       .folder = runtime->history,
+                                       .historian = runtime->services.historian,
+                                       .folder = runtime->services.history_folder,
                                        .notify = context->notify,
                                        .notify_arg = context->notify_arg };
     memcpy(params.urls, server->cores, sizeof(params.urls));
-    return (runtime->core_link = core_link_start(&params));
+    return (runtime->services.core_link = core_link_start(&params));
 }
 
 bool plant_runtime_start_sources(struct plant_runtime *runtime)
@@ -211,26 +212,26 @@ bool plant_runtime_start_sources(struct plant_runtime *runtime)
         return start_core_link(runtime);
     runtime->sources = mem_array(runtime->plant->source_count, sizeof(*runtime->sources));
     for (size_t i = 0; i < runtime->plant->source_count; i++)
-        if (!(runtime->sources[i] = source_start(context->log, runtime->plant, (int)i, runtime->store, context->counters)))
+        if (!(runtime->sources[i] = source_start(context->log, runtime->plant, (int)i, runtime->services.store, context->counters)))
             return false;
     if (runtime->plant->derived_count > 0)
-        runtime->derived = derived_start(context->log, runtime->plant, runtime->store);
+        runtime->derived = derived_start(context->log, runtime->plant, runtime->services.store);
     return runtime->plant->derived_count == 0 || runtime->derived;
 }
 
 void plant_runtime_stop_following(struct plant_runtime *runtime)
 {
-    core_link_halt(runtime->core_link);
+    core_link_halt(runtime->services.core_link);
 }
 
 bool plant_runtime_lead(struct plant_runtime *runtime)
 {
-    core_link_stop(&runtime->core_link);
+    core_link_stop(&runtime->services.core_link);
     *runtime->context->follows = false;
     clock_follow(0);
-    if (runtime->historian)
-        historian_lead(runtime->historian);
-    alarm_service_lead(runtime->alarm_service);
+    if (runtime->services.historian)
+        historian_lead(runtime->services.historian);
+    alarm_service_lead(runtime->services.alarm_service);
     return start_notifier(runtime) && start_publisher(runtime) && plant_runtime_start_sources(runtime);
 }
 
@@ -249,11 +250,11 @@ bool plant_runtime_start_render_service(struct plant_runtime *runtime, const str
         .gl = server->gl,
         .per_fragment = server->per_fragment,
         .gl_device = server->has_gl_device ? &server->gl_device : NULL,
-        .scene = runtime->scene,
-        .store = runtime->store,
-        .baselines = runtime->baselines,
-        .snapshot_cache = runtime->snapshot_cache,
-        .trials = placing_trials(runtime->placing),
+        .scene = runtime->services.scene,
+        .store = runtime->services.store,
+        .baselines = runtime->services.baselines,
+        .snapshot_cache = runtime->services.snapshot_cache,
+        .trials = placing_trials(runtime->services.placing),
         .workers = context->workers,
         .memory_bytes = server->memory_bytes,
         .h264_library = plant_runtime_h264_library(server),
@@ -264,10 +265,10 @@ bool plant_runtime_start_render_service(struct plant_runtime *runtime, const str
         .notify = context->notify,
         .notify_arg = context->notify_arg,
     };
-    runtime->render_service = render_service_create(&params);
-    if (runtime->render_service)
-        render_service_set_loop_checks(runtime->render_service, runtime->loop_checks);
-    return runtime->render_service != NULL;
+    runtime->services.render_service = render_service_create(&params);
+    if (runtime->services.render_service)
+        render_service_set_loop_checks(runtime->services.render_service, runtime->services.loop_checks);
+    return runtime->services.render_service != NULL;
 }
 
 static void stop_sources(struct plant_runtime *runtime)
@@ -275,8 +276,8 @@ static void stop_sources(struct plant_runtime *runtime)
     for (size_t i = 0; runtime->sources && i < runtime->plant->source_count; i++)
         source_stop(&runtime->sources[i]);
     source_stop(&runtime->derived);
-    if (runtime->core_link)
-        core_link_halt(runtime->core_link);
+    if (runtime->services.core_link)
+        core_link_halt(runtime->services.core_link);
     mem_free(runtime->sources);
     runtime->sources = NULL;
 }
@@ -284,34 +285,10 @@ static void stop_sources(struct plant_runtime *runtime)
 void plant_runtime_hand_over(struct plant_runtime *runtime, const struct plant *next)
 {
     stop_sources(runtime);
-    historian_end(&runtime->historian, next, &runtime->owed);
-    notifier_stop(&runtime->notifier);
+    historian_end(&runtime->services.historian, next, &runtime->owed);
+    notifier_stop(&runtime->services.notifier);
     publisher_stop(&runtime->publisher);
-    alarm_service_halt(runtime->alarm_service);
-}
-
-struct net_plant plant_runtime_net_plant(const struct plant_runtime *runtime)
-{
-    return (struct net_plant){
-        .scene = runtime->scene,
-        .store = runtime->store,
-        .render_service = runtime->render_service,
-        .baselines = runtime->baselines,
-        .snapshot_cache = runtime->snapshot_cache,
-        .alarm_service = runtime->alarm_service,
-        .placing = runtime->placing,
-        .named_views = runtime->named_views,
-        .notes = runtime->notes,
-        .wall_remote = runtime->wall_remote,
-        .other_plants = runtime->other_plants,
-        .pairings = runtime->pairings,
-        .loop_checks = runtime->loop_checks,
-        .core_link = runtime->core_link,
-        .historian = runtime->historian,
-        .notifier = runtime->notifier,
-        .tag_list = runtime->tag_list,
-        .history_folder = runtime->history,
-    };
+    alarm_service_halt(runtime->services.alarm_service);
 }
 
 void plant_runtime_destroy(struct plant_runtime **pointer)
@@ -319,28 +296,28 @@ void plant_runtime_destroy(struct plant_runtime **pointer)
     struct plant_runtime *runtime = *pointer;
     if (!runtime)
         return;
-    render_service_destroy(&runtime->render_service);
-    placing_destroy(&runtime->placing);
-    named_views_close(&runtime->named_views);
-    notes_close(&runtime->notes);
-    wall_remote_close(&runtime->wall_remote);
-    other_plants_stop(&runtime->other_plants);
-    pairings_close(&runtime->pairings);
-    loop_checks_close(&runtime->loop_checks);
-    mem_free(runtime->tag_list);
+    render_service_destroy(&runtime->services.render_service);
+    placing_destroy(&runtime->services.placing);
+    named_views_close(&runtime->services.named_views);
+    notes_close(&runtime->services.notes);
+    wall_remote_close(&runtime->services.wall_remote);
+    other_plants_stop(&runtime->services.other_plants);
+    pairings_close(&runtime->services.pairings);
+    loop_checks_close(&runtime->services.loop_checks);
+    mem_free(runtime->services.tag_list);
     stop_sources(runtime);
-    notifier_stop(&runtime->notifier);
+    notifier_stop(&runtime->services.notifier);
     publisher_stop(&runtime->publisher);
-    core_link_stop(&runtime->core_link);
-    alarm_service_stop(&runtime->alarm_service);
-    historian_stop(&runtime->historian);
-    store_destroy(&runtime->store);
-    baselines_destroy(&runtime->baselines);
-    if (runtime->snapshot_cache)
-        snapshot_cache_destroy(&runtime->snapshot_cache);
-    scene_destroy(&runtime->scene);
+    core_link_stop(&runtime->services.core_link);
+    alarm_service_stop(&runtime->services.alarm_service);
+    historian_stop(&runtime->services.historian);
+    store_destroy(&runtime->services.store);
+    baselines_destroy(&runtime->services.baselines);
+    if (runtime->services.snapshot_cache)
+        snapshot_cache_destroy(&runtime->services.snapshot_cache);
+    scene_destroy(&runtime->services.scene);
     plant_destroy(&runtime->plant);
-    mem_free(runtime->history);
+    mem_free(runtime->services.history_folder);
     mem_free(runtime);
     *pointer = NULL;
 }

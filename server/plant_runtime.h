@@ -10,6 +10,7 @@
 #include "notify/publisher.h"
 #include "placing/placing.h"
 #include "server_params.h"
+#include "session/plant_services.h"
 #include "value/derived.h"
 #include "value/source.h"
 #include "views/other_plants.h"
@@ -30,30 +31,13 @@ struct plant_runtime_context { /* parts that a reload keeps */
 struct plant_runtime {
     const struct plant_runtime_context *context;
     struct plant *plant;
-    struct scene *scene;
-    struct store *store;
-    struct baselines *baselines;
-    struct snapshot_cache *snapshot_cache;
-    struct historian *historian; /* NULL: nothing is recorded */
+    struct plant_services services; /* core_link takes the place of `sources` */
+    struct publisher *publisher;    /* NULL: nothing is published */
+    struct source **sources;        /* sources by index in plant->sources */
+    struct source *derived;         /* computes derived tags; NULL: there are none */
     /* time spans whose points must still be read from PostgreSQL when a reload replaces the plant; the next runtime's historian reads
        them */
     struct postgres_owed owed;
-    struct alarm_service *alarm_service;
-    struct notifier *notifier;   /* sends alarm notifications; NULL: none are sent */
-    struct publisher *publisher; /* NULL: nothing is published */
-    struct source **sources;     /* sources by index in plant->sources */
-    struct core_link *core_link; /* link to the core of a renderer or a standby core, which takes the place of sources; otherwise NULL */
-    struct source *derived;      /* computes derived tags; NULL: there are none */
-    struct render_service *render_service;
-    char *history; /* folder of the history; NULL: nothing is recorded */
-    struct placing *placing;
-    struct named_views *named_views;
-    struct notes *notes;
-    struct wall_remote *wall_remote;
-    struct other_plants *other_plants; /* other plants whose pictures walls show; NULL: the plant file names none */
-    struct pairings *pairings;
-    struct loop_checks *loop_checks; /* NULL: nothing is recorded */
-    char *tag_list;                  /* text of the tag list's file; NULL: it could not be read */
 };
 
 /* Reads plant and scene from disk and creates the store; starts nothing. Findings are added to diag. Returns NULL on failure, with the
@@ -83,8 +67,6 @@ bool plant_runtime_start_render_service(struct plant_runtime *runtime, const str
 /* Ends reading, recording and evaluating, so that a runtime of the plant `next` can take over. Frames are still drawn, with the readings
    from before the call. */
 void plant_runtime_hand_over(struct plant_runtime *runtime, const struct plant *next);
-/* Returns the parts of the runtime that the event loop uses. */
-struct net_plant plant_runtime_net_plant(const struct plant_runtime *runtime);
 
 /* Returns the name of the libavcodec encoder for H.264; NULL: H.264 is off. */
 const char *plant_runtime_h264_library(const struct server_params *params);

@@ -155,15 +155,14 @@ struct swap {
 static void look_at_views(void *arg)
 {
     struct swap *swap = arg;
-    const struct net_plant plant = plant_runtime_net_plant(swap->after);
-    swap->first_count = net_views(swap->net, &plant, swap->first, MAX_FIRST_VIEWS);
+    swap->first_count = net_views(swap->net, &swap->after->services, swap->first, MAX_FIRST_VIEWS);
 }
 
 /* Starts the new plant's render service while the old one still draws, so that the new one's first frames come quickly. */
 static bool start_render_service(struct reload *reload, struct plant_runtime *after)
 {
     struct swap swap = { .net = reload->net, .after = after };
-    store_adopt(after->store, (*reload->runtime)->store);
+    store_adopt(after->services.store, (*reload->runtime)->services.store);
     return net_call(reload->net, look_at_views, &swap) && plant_runtime_start_render_service(after, swap.first, swap.first_count);
 }
 
@@ -181,9 +180,8 @@ static void swap(void *arg)
     file_writer_wait(swap->after->context->file_writer, SETTLE_NS);
     file_writer_collect(swap->after->context->file_writer);
     plant_runtime_open_lists(swap->after);
-    const struct net_plant plant = plant_runtime_net_plant(swap->after);
     net_release_plant(swap->net);
-    net_take_plant(swap->net, &plant);
+    net_take_plant(swap->net, &swap->after->services);
 }
 
 static void say_difference(struct reload *reload, const struct plant_diff *diff, const char *before, double took_s)
@@ -436,8 +434,7 @@ static void import_now(struct reload *reload, struct import_order *order)
 static void lead_in_loop(void *arg)
 {
     struct reload *reload = arg;
-    const struct net_plant plant = plant_runtime_net_plant(*reload->runtime);
-    net_lead(reload->net, &plant);
+    net_lead(reload->net, &(*reload->runtime)->services);
 }
 
 static void lead_now(struct reload *reload, int64_t begun_ns)

@@ -197,7 +197,7 @@ static bool start_net(struct server *server)
 {
     struct net_params params = {
         .log = server->log,
-        .plant = plant_runtime_net_plant(server->runtime),
+        .plant = server->runtime->services,
         .counters = server->counters,
         .audit = server->audit,
         .file_writer = server->file_writer,
@@ -402,7 +402,7 @@ static void on_lost(void *arg)
 
 static bool take_seat(struct server *server, char name[LEASE_NODE_BYTES])
 {
-    char *why = seat_take(&server->seat, server->runtime->history);
+    char *why = seat_take(&server->seat, server->runtime->services.history_folder);
     if (!why && !lease_name(name, server->params.node, server->seat.id))
         why = mem_printf("--node: %s is longer than %d bytes", server->params.node, LEASE_NODE_BYTES - 2 - (int)strlen(server->seat.id));
     if (why)

@@ -40,7 +40,7 @@ static void take_key(struct server_context *server, const json_t *core)
 
 static void take_lists(struct server_context *server, const json_t *lists)
 {
-    const struct net_plant *plant = &server->params.plant;
+    const struct plant_services *plant = &server->params.plant;
     if (!named_views_mirror(plant->named_views, json_object_get(lists, "views")) ||
         !notes_mirror(plant->notes, json_object_get(lists, "notes")) ||
         !wall_remote_mirror(plant->wall_remote, json_object_get(lists, "walls")) ||

@@ -39,13 +39,13 @@ void net_release_recording(struct net *net);
 void net_release_plant(struct net *net);
 /* Called when this standby takes over because the core it followed is gone and their link has stopped. plant: the same plant without the
    link. */
-void net_lead(struct net *net, const struct net_plant *plant);
+void net_lead(struct net *net, const struct plant_services *plant);
 /* Switches to another plant; sessions keep showing what the new plant has under the same names. Returns false if history cannot be read
    any more, already logged. */
-bool net_take_plant(struct net *net, const struct net_plant *plant);
+bool net_take_plant(struct net *net, const struct plant_services *plant);
 /* Writes to `out` the distinct views, `most` at most, that the sessions will have in the next plant. Returns their number.
    next->render_service may be NULL. */
-size_t net_views(struct net *net, const struct net_plant *next, struct view *out, size_t most);
+size_t net_views(struct net *net, const struct plant_services *next, struct view *out, size_t most);
 /* Answers all requests for a reload with its result. */
 void net_report_reload(struct net *net, bool good, const char *text);
 /* Sends a client the result (as text) of saving the client's tag list. */

@@ -19,27 +19,7 @@
 #include "views/wall_remote.h"
 #include "placing/tag_file.h"
 #include "service/render_service.h"
-
-struct net_plant { /* everything that belongs to one loaded plant; a reload replaces it */
-    const struct scene *scene;
-    struct store *store;
-    struct render_service *render_service;
-    struct baselines *baselines;
-    struct snapshot_cache *snapshot_cache;
-    struct alarm_service *alarm_service;
-    struct placing *placing; /* NULL: sensors cannot be placed */
-    struct notes *notes;
-    struct wall_remote *wall_remote;
-    struct other_plants *other_plants; /* pictures of other plants; NULL: the plant file names no other plants */
-    struct pairings *pairings;
-    struct named_views *named_views;
-    struct core_link *core_link;     /* on a renderer: its link to the core; NULL: this daemon reads its devices itself */
-    struct historian *historian;     /* NULL: nothing is recorded */
-    struct notifier *notifier;       /* sends alarm notifications; NULL: none are sent */
-    struct loop_checks *loop_checks; /* NULL: loops cannot be checked */
-    const char *tag_list;            /* text of the tag list in force; NULL: not known */
-    const char *history_folder;      /* NULL: nothing is recorded */
-};
+#include "session/plant_services.h"
 
 struct net_status { /* state of the event loop, passed to the callback at each tick */
     struct render_service *render_service;
@@ -53,7 +33,7 @@ struct net_status { /* state of the event loop, passed to the callback at each t
 
 struct net_params {
     struct log *log;
-    struct net_plant plant;
+    struct plant_services plant; /* services of the loaded plant, without those that the settings rule out (net_plant.c) */
     struct counters *counters;
     struct audit *audit;             /* the audit trail; NULL: nothing is recorded */
     struct file_writer *file_writer; /* writes what users change; its results are collected by the event loop */

@@ -21,16 +21,15 @@ static bool is_new(const struct view *view, const struct view *others, size_t co
     return true;
 }
 
-size_t net_views(struct net *net, const struct net_plant *next, struct view *out, size_t most)
+size_t net_views(struct net *net, const struct plant_services *next, struct view *out, size_t most)
 {
     struct snapshot *snapshot = snapshot_create(next->scene->plant->tag_count);
     struct session_context session_context = net->server.session_context;
     size_t count = 0;
     store_snapshot(next->store, clock_mono_ns(), clock_plant_ns(), snapshot);
     session_context.plant = next->scene->plant;
-    session_context.scene = next->scene;
+    session_context.services = next;
     session_context.snapshot = snapshot;
-    session_context.baselines = next->baselines;
     for (const struct stream *stream = net->server.streams; stream && count < most; stream = stream->next)
         if (stream->session->hello && !stream->session->hidden) {
             session_view_in(stream->session, &session_context, &out[count]);
@@ -77,19 +76,19 @@ void net_release_plant(struct net *net)
     mem_free(server->links_up);
 }
 
-void net_lead(struct net *net, const struct net_plant *plant)
+void net_lead(struct net *net, const struct plant_services *plant)
 {
     struct server_context *server = &net->server;
     core_end_collect(server);
     server->params.plant = *plant;
     server->params.plant.core_link = NULL;
+    net_limit_services(server);
     core_end_bind(server);
-    server->session_context.placing = server->params.save ? server->params.plant.placing : NULL;
     net_check_links(server);
     streams_on_readings(server, false, true);
 }
 
-bool net_take_plant(struct net *net, const struct net_plant *plant)
+bool net_take_plant(struct net *net, const struct plant_services *plant)
 {
     struct server_context *server = &net->server;
     server->params.plant = *plant;

@@ -304,14 +304,14 @@ static bool send_links(const struct server_context *server, struct renderer_peer
 
 static struct lists_seen lists_now(const struct server_context *server)
 {
-    const struct net_plant *plant = &server->params.plant;
+    const struct plant_services *plant = &server->params.plant;
     return (struct lists_seen){ named_views_number(plant->named_views), notes_number(plant->notes), wall_remote_number(plant->wall_remote),
                                 wall_remote_pointer_number(plant->wall_remote), pairings_number(plant->pairings) };
 }
 
 static bool send_lists(const struct server_context *server, struct renderer_peer *renderer)
 {
-    const struct net_plant *plant = &server->params.plant;
+    const struct plant_services *plant = &server->params.plant;
     char *pointed = wall_remote_pointers_text(plant->wall_remote, renderer->lists.pointed);
     json_t *message = json_pack("{s:s,s:O,s:O,s:O,s:o,s:o}", "type", "lists", "views", named_views_list(plant->named_views), "notes",
                                 notes_list(plant->notes), "walls", wall_remote_list(plant->wall_remote), "pointed",

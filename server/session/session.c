@@ -196,7 +196,7 @@ static bool on_ack(struct session *session, const struct message *message, int64
 static void on_fit(struct session *session, const struct message *message)
 {
     struct camera camera = session->view.camera;
-    fit_apply(session->context->scene, &message->fit, &session->view, &camera);
+    fit_apply(session->context->services->scene, &message->fit, &session->view, &camera);
     session_reply(session, reply_camera_text(&camera, message->seq));
 }
 
@@ -250,12 +250,12 @@ static void clear_claimed_name(const struct session *session, struct message *me
 static bool on_alarm(struct session *session, const struct message *message, struct message_error *error)
 {
     const struct session_context *context = session->context;
-    if (!context->alarm_service || context->plant->alarms != ALARMS_LOCAL) {
+    if (!context->services->alarm_service || context->plant->alarms != ALARMS_LOCAL) {
         message_refuse(error, "not_allowed", NULL, REFUSAL_ELSEWHERE);
         return false;
     }
     const struct kept_action action = session_kept_begin(session);
-    char *answer = alarm_do(context->alarm_service, context->plant, message, session_who(session));
+    char *answer = alarm_do(context->services->alarm_service, context->plant, message, session_who(session));
     session_kept_reply(session, &action, "alarm", session_alarm_what(session, message), answer);
     return true;
 }
@@ -263,7 +263,7 @@ static bool on_alarm(struct session *session, const struct message *message, str
 static void on_view_edit(struct session *session, const struct message *message, int64_t now_utc_ns)
 {
     const struct kept_action action = session_kept_begin(session);
-    char *answer = view_edit_do(session->context->named_views, message, session_who(session), now_utc_ns / 1000);
+    char *answer = view_edit_do(session->context->services->named_views, message, session_who(session), now_utc_ns / 1000);
     session_kept_reply(session, &action, "view", session_view_what(message), answer);
 }
 
@@ -271,14 +271,14 @@ static void on_note(struct session *session, const struct message *message, int6
 {
     const struct session_context *context = session->context;
     const struct kept_action action = session_kept_begin(session);
-    char *answer = note_do(context->notes, context->plant, message, session_who(session), now_utc_ns / 1000);
+    char *answer = note_do(context->services->notes, context->plant, message, session_who(session), now_utc_ns / 1000);
     session_kept_reply(session, &action, "note", session_note_what(session, message), answer);
 }
 
 static void on_send_to_wall(struct session *session, const struct message *message, int64_t now_utc_ns)
 {
     const struct kept_action action = session_kept_begin(session);
-    char *answer = send_to_wall_do(session->context->wall_remote, message, session_who(session), now_utc_ns / 1000);
+    char *answer = send_to_wall_do(session->context->services->wall_remote, message, session_who(session), now_utc_ns / 1000);
     session_kept_reply(session, &action, "wall", session_wall_what(message), answer);
 }
 
@@ -299,7 +299,7 @@ static bool on_display(struct session *session, const struct message *message, s
     if (!session_may_be(session, &message->wall.place, error))
         return false;
     session->display = message->wall.place;
-    session->owed.pointers_sent = wall_remote_pointer_number(session->context->wall_remote);
+    session->owed.pointers_sent = wall_remote_pointer_number(session->context->services->wall_remote);
     return true;
 }
 
@@ -316,8 +316,9 @@ static bool on_pair(struct session *session, const struct message *message, int6
         snprintf(id, sizeof(id), "%s", message->pair.device);
     const struct kept_action action = session_kept_begin(session);
     const char *digits = message->pair.digits;
-    enum refusal_code why = pairs ? pairings_approve(context->pairings, digits, session_who(session), now_ns, now_utc_ns / 1000, id)
-                                  : pairings_revoke(context->pairings, id);
+    enum refusal_code why = pairs
+                                ? pairings_approve(context->services->pairings, digits, session_who(session), now_ns, now_utc_ns / 1000, id)
+                                : pairings_revoke(context->services->pairings, id);
     json_t *said = json_pack("{s:s,s:I,s:s,s:b}", "type", "paired", "seq", (json_int_t)message->seq, "id", id, "kept", !why);
     refusal_add(said, why);
     session_kept_reply(session, &action, "device", mem_printf("%s %s", pairs ? "pair" : "unpair", id), json_text(said, 0));
@@ -328,7 +329,7 @@ static void on_point(const struct session *session, const struct message *messag
 {
     const struct wall_request *wall = &message->wall;
     const double *position_m = wall->has_position ? wall->position_m : NULL;
-    wall_remote_point(session->context->wall_remote, &wall->place, position_m, session_who(session), wall->desk);
+    wall_remote_point(session->context->services->wall_remote, &wall->place, position_m, session_who(session), wall->desk);
 }
 
 static bool act(struct session *session, const struct message *message, int64_t now_ns, int64_t now_utc_ns, struct message_error *error)
@@ -520,7 +521,7 @@ void session_on_tick(struct session *session, int64_t now_ns)
     session_choose_again(session, now_ns);
     session_keep_pixels(session, now_ns);
     session->owed.time |=
-        session->hello && session->context->snapshot_cache && session->context->history_first_us && !session->owed.told_beginning;
+        session->hello && session->context->services->snapshot_cache && session->context->history_first_us && !session->owed.told_beginning;
 }
 
 bool session_moves(const struct session *session, int64_t now_ns)

@@ -111,7 +111,7 @@ void session_record_leave(const struct session *session, const char *why)
 
 static char *accepted_what(const struct session *session, const struct message *message)
 {
-    const struct scene *scene = session->context->scene;
+    const struct scene *scene = session->context->services->scene;
     uint8_t *outcome = mem_array(scene->plant->tag_count + 1, 1);
     size_t count = assumed_places_choose(scene, &message->accept, outcome);
     char filter[400];

@@ -7,6 +7,7 @@
 #include "base/files/file_writer.h"
 #include "base/system/clock_state.h"
 #include "scene/scene.h"
+#include "session/plant_services.h"
 #include "session/session_state.h"
 
 /* Members of struct session_context are set by the event loop. Sessions change only members whose comments say so. */
@@ -22,22 +23,12 @@ struct kept_answers {
 
 struct session_context {
     const struct plant *plant;
-    const struct scene *scene;
-    const struct snapshot *snapshot; /* the newest readings */
-    struct baselines *baselines;
-    struct snapshot_cache *snapshot_cache; /* readings of past instants; NULL: nothing is recorded */
+    const struct plant_services *services; /* sessions change named views, notes, walls, pairings and loop checks */
+    const struct snapshot *snapshot;       /* the newest readings */
     int64_t history_first_us;              /* UTC microseconds at which recorded history begins; 0: nothing is recorded yet */
     int64_t changed_ns;                    /* monotonic time when a snapshot last differed from its predecessor */
-    struct alarm_service *alarm_service;   /* NULL: no alarms */
     struct alarm_text_cache *alarm_texts;  /* cache of alarm texts; NULL: no caching */
-    struct placing *placing;               /* NULL: sensors cannot be placed */
-    const char *tag_list;                  /* text of the tag list in force; NULL: it could not be read */
     bool saving;                           /* a saved tag list is being activated by a reload */
-    struct loop_checks *loop_checks;       /* loop check records; NULL: loops cannot be checked */
-    struct named_views *named_views;       /* changed by save_view and remove_view */
-    struct notes *notes;                   /* changed by note and remove_note */
-    struct wall_remote *wall_remote;       /* changed by send_to_wall and point */
-    struct pairings *pairings;             /* changed by pair and unpair */
     /* On a renderer: forwards a session's message to the core, which answers later. Returns false if the core is not connected. NULL:
        this daemon is no renderer and acts on messages itself. */
     bool (*hand_on)(void *arg, const struct session *session, const char *text);

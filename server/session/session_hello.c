@@ -83,7 +83,7 @@ static bool begin_tile(struct session *session, const struct message *message, s
         return false;
     }
     session->tile.place = *place;
-    scene_home(session->context->scene, (double)view->width_px / view->height_px, &view->camera);
+    scene_home(session->context->services->scene, (double)view->width_px / view->height_px, &view->camera);
     return true;
 }
 
@@ -102,7 +102,7 @@ static bool begin_view(struct session *session, const struct message *message, c
         view_set_trial(view, 0);
     }
     if (!resumed)
-        view_default(session->context->scene, message->width_px, message->height_px, view);
+        view_default(session->context->services->scene, message->width_px, message->height_px, view);
     if (message->width_px) {
         view->width_px = message->width_px;
         view->height_px = message->height_px;
@@ -127,8 +127,8 @@ static bool begin_view(struct session *session, const struct message *message, c
 bool session_apply_params(const struct session *session, const struct message *message, struct view *view, struct message_error *error)
 {
     const struct session_context *context = session->context;
-    const struct params_context params = { .scene = context->scene,
-                                           .baselines = context->baselines,
+    const struct params_context params = { .scene = context->services->scene,
+                                           .baselines = context->services->baselines,
                                            .snapshot = session_snapshot(session) };
     struct view changed = *view;
     if (!params_apply(&params, &message->params, &changed, error) || !split_apply(&params, &message->split, &changed, error))
@@ -197,7 +197,7 @@ bool session_hello(struct session *session, const struct message *message, int64
     session->pixel_ratio = message->pixel_ratio > 0 ? message->pixel_ratio : before ? resumed.pixel_ratio : 1;
     resumes_open(context->resumes, session, session->identity.resume_secret);
     session->hello = session->owed.welcome = session->owed.tags_all = session->owed.status = session->demand.any = true;
-    session->owed.time = context->snapshot_cache != NULL;
+    session->owed.time = context->services->snapshot_cache != NULL;
     session->owed.loop_checks = true;
     return true;
 }

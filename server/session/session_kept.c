@@ -26,7 +26,7 @@ struct kept_answer {
    old one stands, and without a decision the action counts as not kept (-ECANCELED). */
 static int journal_state(const struct session *session, struct kept_answer *kept)
 {
-    struct alarm_service *service = session->context->alarm_service;
+    struct alarm_service *service = session->context->services->alarm_service;
     if (kept->alarms)
         kept->journal_error = kept->alarms == service ? alarm_service_settled(service, &kept->journal) : -ECANCELED;
     if (kept->journal_error != -EINPROGRESS)
@@ -93,8 +93,8 @@ struct kept_action session_kept_begin(const struct session *session)
 {
     const struct session_context *context = session->context;
     struct kept_action action = { .file = file_writer_begin(context->file_writer), .audit = audit_begin(context->audit) };
-    if (context->alarm_service)
-        action.journal = alarm_service_begin(context->alarm_service);
+    if (context->services->alarm_service)
+        action.journal = alarm_service_begin(context->services->alarm_service);
     return action;
 }
 
@@ -106,8 +106,8 @@ void session_kept_reply(struct session *session, const struct kept_action *actio
         .text = answer, .what = what, .event = event, .journal = action->journal, .file = action->file, .audit = action->audit
     };
     if (!strcmp(event, "alarm")) {
-        kept->alarms = context->alarm_service;
-        alarm_service_end(context->alarm_service, &kept->journal);
+        kept->alarms = context->services->alarm_service;
+        alarm_service_end(context->services->alarm_service, &kept->journal);
     }
     file_writer_end(context->file_writer, &kept->file);
     session_record_action(session, event, what, answer);

@@ -18,7 +18,7 @@ char *session_carried_text(const struct session_context *context, const struct v
             json_object_set_new(start, context->plant->assets[i].id, json_integer(context->plant->assets[i].start));
     json_object_set_new(o, "start", start);
     double low, high;
-    field_default_range(context->scene, &view->field, &low, &high);
+    field_default_range(context->services->scene, &view->field, &low, &high);
     /* the range is the group's default, so it is left out: the new plant may have another default */
     if (view->range_min == low && view->range_max == high)
         json_object_del(o, "range");
@@ -131,7 +131,7 @@ static void apply_carried(struct session *session, const char *carried)
 
 void session_look_again(struct session *session, const struct view *before, const char *carried)
 {
-    view_default(session->context->scene, before->width_px, before->height_px, &session->view);
+    view_default(session->context->services->scene, before->width_px, before->height_px, &session->view);
     session->view.camera = before->camera;
     session->view.camera_seq = before->camera_seq;
     session->view.params_seq = before->params_seq;

@@ -74,10 +74,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
     struct baselines *baselines = baselines_create();
     struct resumes *resumes = resumes_create();
     const bool up[1] = { true };
+    const struct plant_services services = { .scene = (struct scene *)small_scene(), .baselines = baselines };
     const struct session_context context = { .plant = plant,
-                                             .scene = small_scene(),
+                                             .services = &services,
                                              .snapshot = snapshot,
-                                             .baselines = baselines,
                                              .links_up = up,
                                              .version = "1",
                                              .quotas = &quotas,

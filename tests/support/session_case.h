@@ -6,6 +6,7 @@
 
 struct session_case {
     struct session_context context;
+    struct plant_services services;
     struct quotas quotas;
     struct admission admission;
     struct snapshot *snapshot;

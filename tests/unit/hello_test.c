@@ -19,6 +19,7 @@
 
 struct hello_fixture {
     struct session_context context;
+    struct plant_services services;
     struct quotas quotas;
     struct admission admission;
     struct log *log;
@@ -55,10 +56,10 @@ static int set_up(void **state)
     f->quotas = quotas_default();
     f->admission.quotas = &f->quotas;
     f->now_ns = 1000 * NS_PER_S;
+    f->services = (struct plant_services){ .scene = (struct scene *)small_scene(), .baselines = baselines_create() };
     f->context = (struct session_context){ .plant = small_scene()->plant,
-                                           .scene = small_scene(),
+                                           .services = &f->services,
                                            .snapshot = snapshot_create(small_scene()->plant->tag_count),
-                                           .baselines = baselines_create(),
                                            .links_up = (const bool[]){ true },
                                            .version = "1.2.3",
                                            .quotas = &f->quotas,
@@ -75,7 +76,7 @@ static int tear_down(void **state)
     struct snapshot *snapshot = (struct snapshot *)f->context.snapshot;
     assert_int_equal(f->admission.pixels, 0);
     snapshot_destroy(&snapshot);
-    baselines_destroy(&f->context.baselines);
+    baselines_destroy(&f->services.baselines);
     resumes_destroy(&f->context.resumes);
     tokens_destroy(&f->tokens);
     log_destroy(&f->log);

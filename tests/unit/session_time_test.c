@@ -20,7 +20,7 @@ static int set_up(void **state)
     session_case_set_up(state);
     struct session_case *f = *state;
     f->context.live = false;
-    f->context.snapshot_cache = snapshot_cache_create();
+    f->services.snapshot_cache = snapshot_cache_create();
     f->context.history_first_us = NOW_US - INT64_C(3600000000);
     return 0;
 }
@@ -28,7 +28,7 @@ static int set_up(void **state)
 static int tear_down(void **state)
 {
     struct session_case *f = *state;
-    struct snapshot_cache *snapshot_cache = f->context.snapshot_cache;
+    struct snapshot_cache *snapshot_cache = f->services.snapshot_cache;
     session_case_tear_down(state);
     snapshot_cache_destroy(&snapshot_cache);
     return 0;
@@ -112,7 +112,7 @@ static void bring(struct session_case *f, double ago_s, double value)
     int64_t at_us = NOW_US - (int64_t)llround(ago_s * 1e6);
     snapshot->taken_utc_ns = at_us * 1000;
     snapshot->readings[0] = (struct reading){ .value = value };
-    snapshot_cache_add(f->context.snapshot_cache, at_us, snapshot);
+    snapshot_cache_add(f->services.snapshot_cache, at_us, snapshot);
     snapshot_destroy(&snapshot);
     session_on_historical_snapshot(f->session, at_us, true, f->now_ns);
 }
@@ -213,11 +213,11 @@ CASE(test_what_cannot_be_read_is_said_and_changes_nothing)
     assert_true(f->session->view.at_us == 0 && f->session->travel.speed == 0 && isnan(wanted(f)));
     say(f, "{\"type\":\"time\",\"speed\":2}");
     expect_error(f, "bad_field");
-    struct snapshot_cache *snapshot_cache = f->context.snapshot_cache;
-    f->context.snapshot_cache = NULL;
+    struct snapshot_cache *snapshot_cache = f->services.snapshot_cache;
+    f->services.snapshot_cache = NULL;
     go(f, 60, 0);
     expect_error(f, "no_history");
-    f->context.snapshot_cache = snapshot_cache;
+    f->services.snapshot_cache = snapshot_cache;
 }
 
 CASE(test_the_newest_seconds_are_the_present)
@@ -237,7 +237,7 @@ CASE(test_new_parameters_stay_in_the_past)
     assert_true(f->session->view.at_us == NOW_US - 60000000 && f->session->view.field.slot == 1 && f->session->view.right.field.slot == 1);
     say(f, "{\"type\":\"params\",\"seq\":2,\"baseline\":{\"set\":\"then\"}}");
     struct baseline list[BASELINES_NAMED];
-    assert_int_equal(baselines_list(f->context.baselines, list), 1);
+    assert_int_equal(baselines_list(f->services.baselines, list), 1);
     assert_true(list[0].taken_utc_ns == (NOW_US - 60000000) * 1000);
 }
 

@@ -140,6 +140,7 @@ json_t *reply_tag(const struct plant *plant, const struct plant_tag *t)
 
 static json_t *tags(const struct session_context *context)
 {
+    const struct scene *scene = context->services->scene;
     const struct plant *plant = context->plant;
     json_t *list = json_array();
     for (size_t i = 0; i < plant->tag_count; i++) {
@@ -147,9 +148,9 @@ static json_t *tags(const struct session_context *context)
         json_object_set_new(object, "position", json_null());
         json_array_append_new(list, object);
     }
-    for (size_t a = 0; a < context->scene->asset_count; a++)
-        for (size_t s = 0; s < context->scene->assets[a].sensor_count; s++) {
-            const struct scene_sensor *sensor = &context->scene->assets[a].sensors[s];
+    for (size_t a = 0; a < scene->asset_count; a++)
+        for (size_t s = 0; s < scene->assets[a].sensor_count; s++) {
+            const struct scene_sensor *sensor = &scene->assets[a].sensors[s];
             json_object_set_new(json_array_get(list, (size_t)sensor->tag), "position", vector(sensor->surface_m));
         }
     return list;
@@ -157,8 +158,9 @@ static json_t *tags(const struct session_context *context)
 
 static json_t *plant_object(const struct session_context *context, const struct camera *home)
 {
+    const struct scene *scene = context->services->scene;
     json_t *object = json_pack("{s:o,s:o,s:o}", "name", string(context->plant->name), "time_zone", string(context->plant->time_zone),
-                               "bounds", box(context->scene->bounds_min_m, context->scene->bounds_max_m));
+                               "bounds", box(scene->bounds_min_m, scene->bounds_max_m));
     json_object_set_new(object, "configuration", string(context->plant->hash));
     if (context->node)
         json_object_set_new(object, "node", string(context->node));
@@ -168,20 +170,20 @@ static json_t *plant_object(const struct session_context *context, const struct 
     if (context->plant->view.set)
         json_object_set_new(json_object_get(object, "home"), "given", json_true());
     json_t *outline = json_array();
-    for (size_t i = 0; i < context->scene->extreme_count; i++)
-        json_array_append_new(outline, vector(context->scene->extremes_m[i]));
+    for (size_t i = 0; i < scene->extreme_count; i++)
+        json_array_append_new(outline, vector(scene->extremes_m[i]));
     json_object_set_new(object, "outline", outline);
-    if (context->scene->outside.triangles > 0)
+    if (scene->outside.triangles > 0)
         json_object_set_new(object, "outside",
-                            json_pack("{s:I,s:i,s:o}", "triangles", (json_int_t)context->scene->outside.triangles, "assets",
-                                      context->scene->outside.assets, "away_m", number(context->scene->outside.away_m)));
+                            json_pack("{s:I,s:i,s:o}", "triangles", (json_int_t)scene->outside.triangles, "assets", scene->outside.assets,
+                                      "away_m", number(scene->outside.away_m)));
     return object;
 }
 
 static void set_home(json_t *object, const struct session_context *context, int width_px, int height_px)
 {
     struct view home;
-    view_default(context->scene, width_px, height_px, &home);
+    view_default(context->services->scene, width_px, height_px, &home);
     json_object_set_new(object, "server", string(context->version));
     json_object_set_new(object, "plant", plant_object(context, &home.camera));
 }
@@ -194,7 +196,7 @@ static void set_lists(json_t *object, const struct session_context *context, boo
     json_object_set_new(object, "colormaps", colormaps());
     json_object_set_new(object, "environments", environments(context->plant));
     json_object_set_new(object, "links", open ? json_array() : links(context->plant));
-    json_object_set_new(object, "assets", assets(context->scene, open));
+    json_object_set_new(object, "assets", assets(context->services->scene, open));
     json_object_set_new(object, "tags", open ? json_array() : tags(context));
 }
 

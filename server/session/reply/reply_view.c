@@ -40,14 +40,15 @@ static json_t *baseline(const struct baseline *b)
 static json_t *baseline_of(const struct session_context *context, uint32_t id)
 {
     struct baseline found;
-    return context->baselines && id && baselines_describe(context->baselines, id, &found) ? baseline(&found) : json_null();
+    return context->services->baselines && id && baselines_describe(context->services->baselines, id, &found) ? baseline(&found)
+                                                                                                              : json_null();
 }
 
 static json_t *baselines(const struct session_context *context)
 {
     struct baseline list[BASELINES_NAMED];
     json_t *all = json_array();
-    size_t count = context->baselines ? baselines_list(context->baselines, list) : 0;
+    size_t count = context->services->baselines ? baselines_list(context->services->baselines, list) : 0;
     for (size_t i = 0; i < count; i++)
         json_array_append_new(all, baseline(&list[i]));
     return all;
@@ -178,7 +179,7 @@ char *reply_camera_text(const struct camera *camera, uint32_t seq)
 void reply_add_wrong(const struct session_context *context, json_t *view, const char *address)
 {
     struct message_error error = { 0 };
-    if (view_named_check(context->scene, address, &error))
+    if (view_named_check(context->services->scene, address, &error))
         return;
     json_object_set_new(view, "wrong", string(error.text));
     if (error.refusal.code)
@@ -187,7 +188,7 @@ void reply_add_wrong(const struct session_context *context, json_t *view, const 
 
 char *reply_views_text(const struct session_context *context, const char *id)
 {
-    json_t *message = named_views_message(context->named_views, id), *list = json_object_get(message, "list");
+    json_t *message = named_views_message(context->services->named_views, id), *list = json_object_get(message, "list");
     for (size_t i = 0; i < json_array_size(list); i++) {
         json_t *view = json_array_get(list, i);
         reply_add_wrong(context, view, json_string_value(json_object_get(view, "view")));

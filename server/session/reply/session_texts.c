@@ -40,28 +40,28 @@ static bool status_due(const struct session *session)
 static bool alarms_due(const struct session *session)
 {
     const struct session_context *context = session->context;
-    return session->hello && !session->hidden && !session_is_open(session) && context->alarm_service &&
-           (!session->owed.alarms_sent || alarm_service_number(context->alarm_service) > session->owed.alarms_number);
+    return session->hello && !session->hidden && !session_is_open(session) && context->services->alarm_service &&
+           (!session->owed.alarms_sent || alarm_service_number(context->services->alarm_service) > session->owed.alarms_number);
 }
 
 static bool loop_checks_due(const struct session *session)
 {
-    const struct loop_checks *loop_checks = session->context->loop_checks;
+    const struct loop_checks *loop_checks = session->context->services->loop_checks;
     return session->hello && !session_is_open(session) && !session->identity.holder.display && loop_checks &&
            (session->owed.loop_checks || loop_checks_number(loop_checks) > session->owed.loop_checks_sent);
 }
 
 static bool views_due(const struct session *session)
 {
-    return session->hello && !session_is_open(session) && session->context->named_views &&
-           named_views_number(session->context->named_views) > session->owed.views_sent;
+    return session->hello && !session_is_open(session) && session->context->services->named_views &&
+           named_views_number(session->context->services->named_views) > session->owed.views_sent;
 }
 
 /* Returns whether the list of notes must be sent: after a change of the notes, and when a session that shows the past moves to an instant
    at which other notes existed. */
 static bool notes_due(const struct session *session)
 {
-    const struct notes *notes = session->context->notes;
+    const struct notes *notes = session->context->services->notes;
     if (!session->hello || session_is_open(session) || !notes || notes_number(notes) == 0)
         return false;
     int64_t sent_us = session->owed.notes_at_us, at_us = session_view(session)->at_us;
@@ -71,22 +71,22 @@ static bool notes_due(const struct session *session)
 
 static bool walls_due(const struct session *session)
 {
-    return session->hello && !session_is_open(session) && session->context->wall_remote &&
-           wall_remote_number(session->context->wall_remote) > session->owed.walls_sent;
+    return session->hello && !session_is_open(session) && session->context->services->wall_remote &&
+           wall_remote_number(session->context->services->wall_remote) > session->owed.walls_sent;
 }
 
 static bool pointers_due(const struct session *session)
 {
     return session->hello && session->display.display > 0 && !session_is_open(session) &&
-           wall_remote_pointer_number(session->context->wall_remote) > session->owed.pointers_sent;
+           wall_remote_pointer_number(session->context->services->wall_remote) > session->owed.pointers_sent;
 }
 
 static void add_loop_checks(struct session *session, struct text *out)
 {
     const struct session_context *context = session->context;
     add_owned(session, out,
-              loop_checks_text(context->loop_checks, context->plant, session->owed.loop_checks_sent, session->owed.loop_checks));
-    session->owed.loop_checks_sent = loop_checks_number(context->loop_checks);
+              loop_checks_text(context->services->loop_checks, context->plant, session->owed.loop_checks_sent, session->owed.loop_checks));
+    session->owed.loop_checks_sent = loop_checks_number(context->services->loop_checks);
     session->owed.loop_checks = false;
 }
 
@@ -133,24 +133,27 @@ bool session_next_text(struct session *session, int64_t now_ns, int64_t now_utc_
         add_loop_checks(session, out);
     } else if (views_due(session)) {
         add_owned(session, out, reply_views_text(context, NULL));
-        session->owed.views_sent = named_views_number(context->named_views);
+        session->owed.views_sent = named_views_number(context->services->named_views);
     } else if (notes_due(session)) {
         session->owed.notes_at_us = session_view(session)->at_us;
-        session->owed.notes_sent = notes_number(context->notes);
+        session->owed.notes_sent = notes_number(context->services->notes);
         int64_t at_us = session->owed.notes_at_us;
-        add_owned(session, out, at_us ? notes_text_between(context->notes, at_us, at_us) : notes_text(context->notes, now_utc_ns / 1000));
+        add_owned(session, out,
+                  at_us ? notes_text_between(context->services->notes, at_us, at_us)
+                        : notes_text(context->services->notes, now_utc_ns / 1000));
     } else if (walls_due(session)) {
-        add_owned(session, out, wall_remote_text(context->wall_remote));
-        session->owed.walls_sent = wall_remote_number(context->wall_remote);
+        add_owned(session, out, wall_remote_text(context->services->wall_remote));
+        session->owed.walls_sent = wall_remote_number(context->services->wall_remote);
     } else if (pointers_due(session)) {
-        add_owned(session, out, wall_remote_pointers_text(context->wall_remote, session->owed.pointers_sent));
-        session->owed.pointers_sent = wall_remote_pointer_number(context->wall_remote);
+        add_owned(session, out, wall_remote_pointers_text(context->services->wall_remote, session->owed.pointers_sent));
+        session->owed.pointers_sent = wall_remote_pointer_number(context->services->wall_remote);
     } else if (status_due(session)) {
         add_owned(session, out, reply_status_text(context, now_utc_ns));
         session->owed.status = false;
     } else if (alarms_due(session)) {
         add_owned(session, out,
-                  alarms_text(context->alarm_texts, context->alarm_service, context->plant, now_utc_ns, &session->owed.alarms_number));
+                  alarms_text(context->alarm_texts, context->services->alarm_service, context->plant, now_utc_ns,
+                              &session->owed.alarms_number));
         session->owed.alarms_sent = true;
     } else if (session_tags_due(session, now_ns)) {
         add_tags(session, now_ns, out);

@@ -20,7 +20,7 @@ void session_place_leave(struct session *session)
 
 static bool can_place(const struct session *session, struct message_error *error)
 {
-    if (session->context->placing)
+    if (session->context->services->placing)
         return true;
     message_fail(error, "not_allowed", "sensors cannot be placed here");
     return false;
@@ -40,7 +40,7 @@ bool session_on_place(struct session *session, const struct message *message, in
     if (!can_place(session, error))
         return false;
     if (!session->placement.set)
-        session->placement.set = place_set_create(session->context->placing);
+        session->placement.set = place_set_create(session->context->services->placing);
     if (!place_set_moves(session->placement.set, message->place.moves, message->place.count, &why)) {
         message_refuse_with(error, "bad_field", "moves", why.code, "%s", why.args);
         return false;
@@ -62,14 +62,14 @@ bool session_ask_coverage(struct session *session, const struct message *message
     int group = message->coverage.group >= 0 ? message->coverage.group : session->view.field.group;
     if (!can_place(session, error))
         return false;
-    placing_request_coverage(context->placing, session->placement.set, group, message->coverage.far_m, context->snapshot, session->id,
-                             message->seq);
+    placing_request_coverage(context->services->placing, session->placement.set, group, message->coverage.far_m, context->snapshot,
+                             session->id, message->seq);
     return true;
 }
 
 void session_on_coverage(struct session *session, const struct sensor_coverage_answer *answer)
 {
-    session_reply(session, coverage_text(session->context->scene, session->placement.set, answer));
+    session_reply(session, coverage_text(session->context->services->scene, session->placement.set, answer));
 }
 
 struct tag_save *session_take_save(struct session *session)
@@ -85,7 +85,7 @@ bool session_save_tags(struct session *session, const struct message *message, s
     const struct placed *placed;
     if (!can_place(session, error))
         return false;
-    if (!context->tag_list) {
+    if (!context->services->tag_list) {
         message_refuse(error, "not_allowed", NULL, REFUSAL_UNREAD);
         return false;
     }
@@ -99,8 +99,8 @@ bool session_save_tags(struct session *session, const struct message *message, s
         return true;
     }
     tag_save_free(session->placement.save);
-    session_reply(session, tags_diff_text(context->scene, context->tag_list, session->placement.set, message, session_who(session),
-                                          &session->placement.save));
+    session_reply(session, tags_diff_text(context->services->scene, context->services->tag_list, session->placement.set, message,
+                                          session_who(session), &session->placement.save));
     if (session->placement.save)
         session_record_save(session, message, moves ? place_set_get(session->placement.set, &placed) : 0);
     return true;
@@ -109,12 +109,12 @@ bool session_save_tags(struct session *session, const struct message *message, s
 bool session_check_loop(struct session *session, const struct message *message, struct message_error *error)
 {
     const struct session_context *context = session->context;
-    if (!context->loop_checks) {
+    if (!context->services->loop_checks) {
         message_refuse(error, "no_history", "proofs are kept in the history folder", REFUSAL_UNRECORDED);
         return false;
     }
     const struct kept_action action = session_kept_begin(session);
-    char *answer = loop_check_do(context->loop_checks, context->plant, context->snapshot, message, session_who(session));
+    char *answer = loop_check_do(context->services->loop_checks, context->plant, context->snapshot, message, session_who(session));
     session_kept_reply(session, &action, "proof", session_loop_check_what(session, message, answer), answer);
     return true;
 }

@@ -37,7 +37,7 @@ static bool read_view(const struct session *session, const struct named_view *na
 {
     const struct session_context *context = session->context;
     const struct params_context params = {
-        .scene = context->scene, .baselines = context->baselines, .snapshot = session_snapshot(session), .bare = true
+        .scene = context->services->scene, .baselines = context->services->baselines, .snapshot = session_snapshot(session), .bare = true
     };
     struct view read;
     if (!view_named_read(&params, named->address, view->width_px, view->height_px, &read, error))

@@ -25,7 +25,7 @@ static void show(struct session *session, const struct historical_snapshot *hist
 {
     struct travel *travel = &session->travel;
     if (travel->historical)
-        snapshot_cache_give(session->context->snapshot_cache, &travel->historical);
+        snapshot_cache_give(session->context->services->snapshot_cache, &travel->historical);
     travel->historical = historical;
     travel->first = false;
     view_set_instant(&session->view, historical ? historical->at_us : 0, historical ? historical->slot : 0);
@@ -57,7 +57,7 @@ static void play(struct session *session, double speed, int64_t from_us, int64_t
 
 void session_time_begin(struct session *session, int64_t at_us, double speed)
 {
-    if (at_us == 0 || !session->context->snapshot_cache)
+    if (at_us == 0 || !session->context->services->snapshot_cache)
         return;
     session->travel.first = true;
     session->travel.speed = speed;
@@ -75,14 +75,14 @@ void session_time_leave(struct session *session)
 void session_time_end(struct session *session)
 {
     if (session->travel.historical)
-        snapshot_cache_give(session->context->snapshot_cache, &session->travel.historical);
+        snapshot_cache_give(session->context->services->snapshot_cache, &session->travel.historical);
 }
 
 void session_time_inherit(struct session *heir, const struct session *session)
 {
     struct travel *travel = &heir->travel;
     const struct historical_snapshot *historical =
-        session->travel.historical ? snapshot_cache_take(session->context->snapshot_cache, session->view.at_us) : NULL;
+        session->travel.historical ? snapshot_cache_take(session->context->services->snapshot_cache, session->view.at_us) : NULL;
     session_time_end(heir);
     *travel = session->travel;
     travel->historical = historical;
@@ -100,7 +100,7 @@ bool session_on_time(struct session *session, const struct time_request *request
         come_back(session, now_ns);
         return true;
     }
-    if (!session->context->snapshot_cache) {
+    if (!session->context->services->snapshot_cache) {
         message_refuse(error, "no_history", NULL, REFUSAL_UNRECORDED);
         return false;
     }
@@ -168,7 +168,7 @@ void session_on_historical_snapshot(struct session *session, int64_t at_us, bool
     struct travel *travel = &session->travel;
     if (!travel->wanted_us)
         return;
-    const struct historical_snapshot *historical = good ? snapshot_cache_take(session->context->snapshot_cache, at_us) : NULL;
+    const struct historical_snapshot *historical = good ? snapshot_cache_take(session->context->services->snapshot_cache, at_us) : NULL;
     if (!historical) {
         on_failure(session);
         return;

@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The services of one loaded plant. The plant runtime owns them; the event loop and the sessions use them. A reload replaces them all. */
+#ifndef SESSION_PLANT_SERVICES_H
+#define SESSION_PLANT_SERVICES_H
+
+struct plant_services {
+    struct scene *scene;
+    struct store *store;
+    struct render_service *render_service;
+    struct baselines *baselines;
+    struct snapshot_cache *snapshot_cache; /* readings of past instants; NULL in the event loop if nothing is recorded */
+    struct alarm_service *alarm_service;   /* NULL: no alarms */
+    struct placing *placing;               /* NULL: sensors cannot be placed */
+    struct named_views *named_views;
+    struct notes *notes;
+    struct wall_remote *wall_remote;
+    struct pairings *pairings;
+    struct other_plants *other_plants; /* NULL: the plant file names none */
+    struct core_link *core_link;       /* on a renderer or a standby core: link to the core; NULL: this daemon reads its devices itself */
+    struct historian *historian;       /* NULL: nothing is recorded */
+    struct notifier *notifier;         /* sends alarm notifications; NULL: none are sent */
+    struct loop_checks *loop_checks;   /* NULL: loops cannot be checked */
+    char *tag_list;                    /* text of the tag list in force; NULL: it could not be read */
+    char *history_folder;              /* NULL: nothing is recorded */
+};
+
+#endif
