@@ -492,7 +492,7 @@ static bool is_known_hopeless(const struct subdiv *subdiv)
 }
 
 /* Subdivides a level in several passes, each with a smaller error limit. If the level reaches its triangle limit, the errors that remain
- * are then the smallest ones. */
+ * are then the smallest ones. Measures nothing if each pixel evaluates the fields of all groups. */
 static void subdivide_level(struct subdiv *subdiv, struct level *level, size_t finer_tris)
 {
     static const double limits[] = { 16 * SUBDIV_AIM, 4 * SUBDIV_AIM, 2 * SUBDIV_AIM, SUBDIV_AIM };
@@ -505,19 +505,22 @@ static void subdivide_level(struct subdiv *subdiv, struct level *level, size_t f
     subdiv->jump_m = JUMP_WIDTH * max_of(tolerance_m, SHORTEST * error_m);
     double tris = (double)(level->index_count / 3), worth = subdiv->sensors < MANY_SENSORS && !subdiv->finest_full ? WORTH : WORTH_MANY;
     subdiv->most_tris = (size_t)(subdiv->finest ? tris + max_of(FINEST_GROWTH * tris, FINEST_GROWTH_TRIS) : worth * (double)finer_tris);
-    subdiv->full = !subdiv->finest && (is_known_hopeless(subdiv) || is_hopeless(subdiv, level, limits[0]));
+    const bool cuts = subdiv->in->linear->group_count > 0;
+    subdiv->full = !subdiv->finest && cuts && (is_known_hopeless(subdiv) || is_hopeless(subdiv, level, limits[0]));
     if (subdiv->full)
         return;
     subdiv_mesh_load(&subdiv->mesh, level);
     subdiv_place_sensors(subdiv, error_m);
     subdiv->full = subdiv->mesh.tri_count >= subdiv->most_tris;
-    for (size_t l = 0; l < sizeof(limits) / sizeof(*limits) && !subdiv->full; l++)
+    for (size_t l = 0; l < sizeof(limits) / sizeof(*limits) && cuts && !subdiv->full; l++)
         cut_to(subdiv, limits[l]);
     if (subdiv->full && !subdiv->finest)
         return;
     subdiv->finest_full |= subdiv->full;
-    measure_edges(subdiv);
-    tell_left(subdiv, level);
+    if (cuts) {
+        measure_edges(subdiv);
+        tell_left(subdiv, level);
+    }
     subdiv_mesh_store(&subdiv->mesh, level);
 }
 
