@@ -287,6 +287,43 @@ TEST(test_finds_the_nearest)
         }
 }
 
+struct labelled {
+    const uint32_t *label;
+    uint32_t skipped;
+};
+
+static bool is_other(const void *arg, uint32_t tri)
+{
+    const struct labelled *l = arg;
+    return l->label[tri] != l->skipped;
+}
+
+/* Labels by place, so that whole nodes have one label. */
+TEST(test_skipping_a_label_finds_what_a_predicate_finds)
+{
+    uint32_t label[3000];
+    struct trimesh mesh;
+    make_mesh(&mesh, 3000, 0);
+    struct bvh *bvh = bvh_create(&mesh);
+    for (size_t t = 0; t < mesh.tri_count; t++)
+        label[t] = (uint32_t)(mesh.points[mesh.tris[t][0]][0] + 4) / 4;
+    bvh_set_labels(bvh, label);
+    for (int p = 0; p < POINTS; p++) {
+        const struct labelled l = { label, (uint32_t)p % 4 };
+        const double point[3] = { between(-4, 10), between(-4, 10), between(-4, 10) }, limit_m = p % 3 ? INFINITY : between(0, 3);
+        struct bvh_place at, slow;
+        bvh_nearest_unlike(bvh, point, limit_m, l.skipped, p % 2 ? of_third : NULL, &(uint32_t){ 1 }, &at);
+        if (p % 2 == 0) {
+            bvh_nearest(bvh, point, limit_m, is_other, &l, &slow);
+            assert_int_equal(at.tri, slow.tri);
+            assert_true(at.distance_m == slow.distance_m);
+        }
+        assert_true(at.tri == TRIMESH_NONE || is_other(&l, at.tri));
+    }
+    bvh_destroy(&bvh);
+    trimesh_finish(&mesh);
+}
+
 /* Points on and above a lattice: many distances are exactly equal. */
 TEST(test_equally_near_ones_go_by_number)
 {

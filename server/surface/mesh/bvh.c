@@ -108,6 +108,7 @@ void bvh_destroy(struct bvh **bvh_ptr)
         return;
     mem_free(bvh->nodes);
     mem_free(bvh->wide);
+    mem_free(bvh->wide_label);
     mem_free(bvh->order);
     mem_free(bvh->centres);
     mem_free(bvh);

@@ -23,6 +23,13 @@ struct bvh_place {
 void bvh_nearest(const struct bvh *bvh, const double point[3], double limit_m, bool (*allowed)(const void *arg, uint32_t tri),
                  const void *arg, struct bvh_place *place);
 
+/* Labels each triangle of the mesh; `label` must outlive the hierarchy. */
+void bvh_set_labels(struct bvh *bvh, const uint32_t *label);
+/* Finds the nearest point as bvh_nearest() does, on triangles with another label than this one. Skips nodes whose triangles all have this
+   label. */
+void bvh_nearest_unlike(const struct bvh *bvh, const double point[3], double limit_m, uint32_t label,
+                        bool (*allowed)(const void *arg, uint32_t tri), const void *arg, struct bvh_place *place);
+
 /* Returns whether the mesh has a point within limit_m on an allowed triangle; faster than finding the nearest point. *tri: a triangle to
  * try first, or TRIMESH_NONE (neighbouring points often have the same nearest triangle); receives the triangle found. */
 bool bvh_any_within(const struct bvh *bvh, const double point[3], double limit_m, bool (*allowed)(const void *arg, uint32_t tri),

@@ -31,7 +31,10 @@ struct bvh {
         uint32_t child[BVH_WIDE];
     } * wide; /* children come before their parent, so the root is the last node */
     size_t wide_count, wide_capacity;
+    const uint32_t *label; /* by triangle; NULL: no labels */
+    uint32_t *wide_label;  /* by node of eight children: the label that all its triangles have, or BVH_MIXED */
 };
+#define BVH_MIXED UINT32_MAX
 
 /* Builds bvh->wide, the nodes with eight children that queries use, from the binary tree. Their float boxes enclose the double boxes. */
 void bvh_build_wide(struct bvh *bvh);

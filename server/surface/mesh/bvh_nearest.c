@@ -174,8 +174,26 @@ void bvh_build_wide(struct bvh *bvh)
         build_wide(bvh, 0, (uint32_t)mesh->tri_count, halvings);
 }
 
+void bvh_set_labels(struct bvh *bvh, const uint32_t *label)
+{
+    bvh->label = label;
+    bvh->wide_label = mem_array(bvh->wide_count, sizeof(*bvh->wide_label));
+    for (size_t n = 0; n < bvh->wide_count; n++) {
+        const struct bvh_wide *node = &bvh->wide[n];
+        bool any = false;
+        for (int i = 0; i < BVH_WIDE; i++) {
+            if (node->low[0][i] > node->high[0][i]) /* an unused child */
+                continue;
+            uint32_t child = node->child[i], of = child & BVH_IS_TRIANGLE ? label[child & ~BVH_IS_TRIANGLE] : bvh->wide_label[child];
+            bvh->wide_label[n] = !any || of == bvh->wide_label[n] ? of : BVH_MIXED;
+            any = true;
+        }
+    }
+}
+
 struct nearest_search {
     const struct bvh *bvh;
+    uint32_t skipped; /* label of triangles that are skipped; BVH_MIXED: none */
     const double *point;
     bool (*allowed)(const void *arg, uint32_t tri);
     const void *arg;
@@ -227,18 +245,26 @@ SIMD_AVX2 static unsigned look_wide(const struct bvh_wide *node, const float p[3
 #define look_wide look_plain
 #endif
 
+static inline bool is_skipped(const struct nearest_search *s, uint32_t child)
+{
+    return (child & BVH_IS_TRIANGLE ? s->bvh->label[child & ~BVH_IS_TRIANGLE] : s->bvh->wide_label[child]) == s->skipped;
+}
+
 /* Pushes the children whose box is within the limit onto the stack, the nearest on top. An entry has the squared distance in the upper half
  * (bits of non-negative floats sort like the floats) and the child's index in the lower half. Returns the number of entries pushed. */
-SIMD_BODY size_t push_near(look *look_at, const struct bvh_wide *node, const float p[3], float limit2, uint64_t *stack)
+SIMD_BODY size_t push_near(const struct nearest_search *s, look *look_at, const struct bvh_wide *node, const float p[3], float limit2,
+                           uint64_t *stack)
 {
     float distance2[BVH_WIDE];
     size_t count = 0;
-    for (unsigned near = look_at(node, p, limit2, distance2); near; near &= near - 1, count++) {
+    for (unsigned near = look_at(node, p, limit2, distance2); near; near &= near - 1) {
         const int i = __builtin_ctz(near);
         uint32_t bits;
+        if (s->skipped != BVH_MIXED && is_skipped(s, node->child[i]))
+            continue;
         memcpy(&bits, &distance2[i], sizeof(bits));
         uint64_t own = (uint64_t)bits << 32 | node->child[i];
-        size_t at = count;
+        size_t at = count++;
         for (; at > 0 && stack[at - 1] < own; at--)
             stack[at] = stack[at - 1];
         stack[at] = own;
@@ -252,7 +278,7 @@ SIMD_BODY void search(struct nearest_search *s, look *look_at)
     const struct bvh_wide *wide = s->bvh->wide;
     uint64_t stack[BVH_STACK];
     float limit2 = in_floats(s->best2);
-    size_t depth = s->bvh->wide_count ? push_near(look_at, &wide[s->bvh->wide_count - 1], p, limit2, stack) : 0;
+    size_t depth = s->bvh->wide_count ? push_near(s, look_at, &wide[s->bvh->wide_count - 1], p, limit2, stack) : 0;
     while (depth) {
         uint64_t top = stack[--depth];
         uint32_t child = (uint32_t)top, bits = (uint32_t)(top >> 32);
@@ -261,7 +287,7 @@ SIMD_BODY void search(struct nearest_search *s, look *look_at)
         if (distance2 > limit2)
             continue;
         if (!(child & BVH_IS_TRIANGLE)) {
-            depth += push_near(look_at, &wide[child], p, limit2, stack + depth);
+            depth += push_near(s, look_at, &wide[child], p, limit2, stack + depth);
             continue;
         }
         child &= ~BVH_IS_TRIANGLE;
@@ -284,21 +310,27 @@ SIMD_AVX2 static void search_wide(struct nearest_search *s)
     search(s, look_wide);
 }
 
-void bvh_nearest(const struct bvh *bvh, const double point[3], double limit_m, bool (*allowed)(const void *arg, uint32_t tri),
-                 const void *arg, struct bvh_place *place)
+void bvh_nearest_unlike(const struct bvh *bvh, const double point[3], double limit_m, uint32_t label,
+                        bool (*allowed)(const void *arg, uint32_t tri), const void *arg, struct bvh_place *place)
 {
-    struct nearest_search s = { bvh, point, allowed, arg, false, limit_m * limit_m, place };
+    struct nearest_search s = { bvh, label, point, allowed, arg, false, limit_m * limit_m, place };
     *place = (struct bvh_place){ .tri = TRIMESH_NONE, .distance_m = INFINITY };
     (simd_has_avx2() ? search_wide : search_plain)(&s);
     if (place->tri != TRIMESH_NONE)
         place->distance_m = sqrt(s.best2);
 }
 
+void bvh_nearest(const struct bvh *bvh, const double point[3], double limit_m, bool (*allowed)(const void *arg, uint32_t tri),
+                 const void *arg, struct bvh_place *place)
+{
+    bvh_nearest_unlike(bvh, point, limit_m, BVH_MIXED, allowed, arg, place);
+}
+
 bool bvh_any_within(const struct bvh *bvh, const double point[3], double limit_m, bool (*allowed)(const void *arg, uint32_t tri),
                     const void *arg, uint32_t *tri)
 {
     struct bvh_place place = { .tri = TRIMESH_NONE };
-    struct nearest_search s = { bvh, point, allowed, arg, true, limit_m * limit_m, &place };
+    struct nearest_search s = { bvh, BVH_MIXED, point, allowed, arg, true, limit_m * limit_m, &place };
     if (*tri != TRIMESH_NONE && (!allowed || allowed(arg, *tri)))
         try_tri(bvh, *tri, point, &s.best2, &place);
     if (place.tri == TRIMESH_NONE)

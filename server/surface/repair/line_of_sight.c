@@ -62,7 +62,6 @@ static void find_normal(const struct line_of_sight *sight, uint32_t tri, double 
 struct looking {
     const struct line_of_sight *sight;
     const double *from;
-    uint32_t own;
 };
 
 static bool looks_back(const void *arg, uint32_t tri)
@@ -70,8 +69,6 @@ static bool looks_back(const void *arg, uint32_t tri)
     const struct looking *looking = arg;
     const struct trimesh *mesh = looking->sight->mesh;
     double n[3], up[3];
-    if (looking->sight->body[tri] == looking->own)
-        return false;
     if (looks_both_ways(looking->sight, tri))
         return true;
     find_normal(looking->sight, tri, n);
@@ -114,11 +111,11 @@ static bool is_blocked(const struct line_of_sight *sight, const double from[3], 
 bool line_of_sight_find(const struct line_of_sight *sight, uint32_t point, uint32_t own, struct bvh_place *place)
 {
     const double *from = sight->mesh->points[point];
-    const struct looking looking = { sight, from, own };
+    const struct looking looking = { sight, from };
     double way[3];
     if (!sight->first)
         return false;
-    bvh_nearest(sight->bvh, from, sight->parts->tolerance_m, looks_back, &looking, place);
+    bvh_nearest_unlike(sight->bvh, from, sight->parts->tolerance_m, own, looks_back, &looking, place);
     if (place->tri == TRIMESH_NONE)
         return false;
     vec_sub(place->point, from, way);

@@ -137,25 +137,19 @@ static void find_crossings(struct contacts *c, const char *may_cross)
     mem_free(at_crossing);
 }
 
-static bool other_body(const void *arg, uint32_t tri)
+static bool reaches_as_far(const void *arg, uint32_t tri)
 {
     const struct contacts *c = arg;
-    return c->body[tri] != c->own;
-}
-
-static bool other_body_as_far(const void *arg, uint32_t tri)
-{
-    const struct contacts *c = arg;
-    return c->body[tri] != c->own && reach_of(c, tri) >= c->reach_m;
+    return reach_of(c, tri) >= c->reach_m;
 }
 
 /* Finds the point of another body that is nearest to point_m, within the reach of both bodies' parts. place->tri is TRIMESH_NONE if there
  * is none. */
 static void find_touch(const struct contacts *c, const double point_m[3], struct bvh_place *place)
 {
-    bvh_nearest(c->bvh, point_m, c->reach_m, other_body, c, place);
+    bvh_nearest_unlike(c->bvh, point_m, c->reach_m, c->own, NULL, NULL, place);
     if (place->tri != TRIMESH_NONE && place->distance_m > reach_of(c, place->tri))
-        bvh_nearest(c->bvh, point_m, c->reach_m, other_body_as_far, c, place);
+        bvh_nearest_unlike(c->bvh, point_m, c->reach_m, c->own, reaches_as_far, c, place);
 }
 
 /* Finds points that touch another body, and requests that they are inserted there. A surface within a thin part's reach (half of its
@@ -393,6 +387,8 @@ static void find_contacts(struct contacts *c)
     char *may_cross = crossing_faces_find(c->parts);
     bool is_one = is_one_body(c);
     struct bvh *bvh = is_one && !may_cross ? NULL : bvh_create(c->mesh);
+    if (!is_one)
+        bvh_set_labels(bvh, c->body);
     c->bvh = bvh;
     memset(c->touched, 0xff, c->mesh->point_count * sizeof(*c->touched));
     if (!is_one)
