@@ -133,8 +133,9 @@ static void say_nothing(void *arg, const char *text)
 static struct sibling_params params_of(struct import_job *job, enum import_phase phase)
 {
     plant_import_set_phase(job->params.import, phase);
-    return (
-        struct sibling_params){ .stop = stop, .say = phase == IMPORT_PREPARING ? say_nothing : say, .arg = job, .lent = job->params.lock };
+    return (struct sibling_params){
+        .stop = stop, .say = phase == IMPORT_PREPARING ? say_nothing : say, .arg = job, .log = job->params.log, .lent = job->params.lock
+    };
 }
 
 static char *run(struct import_job *job, struct arguments *list, enum import_phase phase, char **remark)

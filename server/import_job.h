@@ -6,6 +6,7 @@
 #include "importing/plant_import.h"
 
 struct import_job_params {
+    struct log *log;
     struct plant_import *import;
     const char *plant_path, *tags_path;
     const char *prepared;        /* folder of prepared assets */

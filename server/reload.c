@@ -296,8 +296,8 @@ static bool prepare(struct reload *reload)
 {
     const struct plant_runtime_context *context = reload->context;
     char *folder = plant_runtime_prepared_folder(context->params, (*reload->runtime)->plant);
-    char *why = sibling_prepare(&(struct sibling_params){ .stop = is_stopping, .arg = reload }, folder, context->params->plant_path,
-                                &context->params->access.quotas);
+    char *why = sibling_prepare(&(struct sibling_params){ .stop = is_stopping, .arg = reload, .log = context->log }, folder,
+                                context->params->plant_path, &context->params->access.quotas);
     if (why)
         log_err(context->log, "%s", why);
     bool good = !why;
@@ -387,7 +387,8 @@ static void import_locked(struct reload *reload, struct import_order *order, int
 {
     const struct plant_runtime_context *context = reload->context;
     char *folder = plant_runtime_prepared_folder(context->params, (*reload->runtime)->plant);
-    const struct import_job_params params = { .import = reload->import,
+    const struct import_job_params params = { .log = context->log,
+                                              .import = reload->import,
                                               .plant_path = context->params->plant_path,
                                               .tags_path = (*reload->runtime)->plant->tags_path,
                                               .prepared = folder,

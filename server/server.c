@@ -288,8 +288,8 @@ static bool prepare(struct server *server)
         log_warn(server->log, "%s: preparing the plant: prepared files are missing or outdated", server->params.plant_path);
         supervision_starting(server->supervision, "preparing the plant");
         atomic_store(&preparing, true);
-        why = sibling_prepare(&(struct sibling_params){ .stop = is_told_to_end, .notifies = true }, folder, server->params.plant_path,
-                              &server->params.access.quotas);
+        why = sibling_prepare(&(struct sibling_params){ .stop = is_told_to_end, .log = server->log, .notifies = true }, folder,
+                              server->params.plant_path, &server->params.access.quotas);
         atomic_store(&preparing, false);
         good = !why && !atomic_load(&told_to_end);
         if (atomic_load(&told_to_end))

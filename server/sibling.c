@@ -51,8 +51,10 @@ static void limit(struct sibling *sibling)
     if (bytes > 0)
         prlimit(sibling->child, RLIMIT_DATA, &(struct rlimit){ bytes, bytes }, NULL);
 #endif
-    sibling->cgroup = cgroup_create("reader", bytes, MAX_TASKS);
-    cgroup_add(sibling->cgroup, sibling->child);
+    bool divided = cgroup_create("reader", bytes, MAX_TASKS, &sibling->cgroup);
+    if (!divided || !cgroup_add(sibling->cgroup, sibling->child))
+        log_warn(sibling->params->log, "%s: its limits hold for each process alone: the cgroup `reader` cannot be %s: %s",
+                 sibling->params->arguments[0], divided ? "joined" : "made", strerror(errno));
 }
 
 static int start(struct sibling *sibling)

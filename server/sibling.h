@@ -6,6 +6,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "base/log/log.h"
+
 enum { SIBLING_LENT = 3, SIBLING_PARTLY = 3 /* SIBLING_LENT: descriptor under which the program gets a lent lock; SIBLING_PARTLY: exit
                                                status of plantcast-import if it imported only some models */ };
 
@@ -15,6 +17,7 @@ struct sibling_params {
     /* callback that receives the program's output piece by piece; NULL: the output goes to this process's stdout and stderr */
     void (*say)(void *arg, const char *text);
     void *arg;                                /* argument of both callbacks */
+    struct log *log;
     /* receives the program's last line on stderr if it ended with SIBLING_PARTLY (mem_free); NULL: that exit status counts as a failure */
     char **remark;
     bool notifies;                            /* true: the program may report its progress to the service manager */

@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Child processes: their output, how they end, and what confinement forbids them. */
 #include "tests/support/test.h"
+#include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <sys/xattr.h>
 #include <time.h>
@@ -14,6 +16,7 @@
 #include "base/mem.h"
 #include "preprocess/child/child.h"
 #include "preprocess/child/work_folder.h"
+#include "tests/support/temp.h"
 
 static struct text output;
 static char why[CHILD_WHY_BYTES];
@@ -207,6 +210,107 @@ TEST(test_each_abi_of_landlock_restricts_what_it_knows)
     assert_int_equal(confine_ruleset_of(-1).files, 0); /* -1 is the kernel's answer where Landlock is absent or switched off */
 }
 
+/* --- older kernels: what a confined process can do with each Landlock ABI ----------------------------------------------------- */
+
+static char secret[128], in[128], own[128], away[128]; /* secret, away: forbidden; in: may be read; own: folder that may be written */
+
+static char *in_folder(const char *folder, const char *name)
+{
+    static char path[256];
+    snprintf(path, sizeof(path), "%s/%s", folder, name);
+    return path;
+}
+
+static bool opens(const char *path, int flags)
+{
+    int file = open(path, flags | O_CLOEXEC, 0600);
+    if (file >= 0)
+        close(file);
+    return file >= 0;
+}
+
+static bool moves_away(void)
+{
+    char from[256];
+    snprintf(from, sizeof(from), "%s/f", own);
+    return rename(from, in_folder(away, "f")) == 0;
+}
+
+static bool finds_memory(void)
+{
+    char path[64];
+    snprintf(path, sizeof(path), "/proc/%d/mem", (int)getppid());
+    return opens(path, O_RDONLY);
+}
+
+/* The bit of each attempt that succeeds. */
+enum { READ_SECRET = 1, EMPTY_SECRET = 2, SIGNAL = 4, ALTER = 8, ALLOWED = 16 };
+
+static int attempt_all(void)
+{
+    int done = 0;
+    done |=
+        opens(in, O_RDONLY) && opens(in_folder(own, "f"), O_RDWR | O_CREAT) && opens(in_folder(own, "g"), O_RDWR | O_CREAT) ? ALLOWED : 0;
+    done |= kill(getppid(), 0) == 0 ? SIGNAL : 0;
+    done |= truncate(secret, 0) == 0 || opens(secret, O_RDONLY | O_TRUNC) ? EMPTY_SECRET : 0;
+    done |= opens(secret, O_RDONLY) || opens(away, O_RDONLY | O_DIRECTORY) ? READ_SECRET : 0;
+    done |= opens(secret, O_WRONLY) || opens(in, O_WRONLY) || opens(in_folder(away, "new"), O_WRONLY | O_CREAT) || moves_away() ||
+                    mkdir(in_folder(away, "d"), 0700) == 0 || link(secret, in_folder(own, "l")) == 0 || finds_memory() ||
+                    unlink(secret) == 0
+                ? ALTER
+                : 0;
+    return done;
+}
+
+static int attempts_under(enum confine_role role, int abi)
+{
+    int status = 0;
+    pid_t pid = fork();
+    if (pid == 0) {
+        const struct confine_path paths[] = { { in, CONFINE_READ }, { own, CONFINE_WRITE } };
+        const struct confine_params params = { .role = role, .paths = paths, .path_count = 2, .most_abi = abi };
+        _exit(confine(&params) == 0 ? attempt_all() : 255);
+    }
+    waitpid(pid, &status, 0);
+    assert_true(WIFEXITED(status) && WEXITSTATUS(status) != 255);
+    return WEXITSTATUS(status);
+}
+
+static void lay_out(const char *folder)
+{
+    const char *const names[] = { "secret", "in" };
+    char *const paths[] = { secret, in };
+    for (int i = 0; i < 2; i++) {
+        snprintf(paths[i], sizeof(secret), "%s/%s", folder, names[i]);
+        FILE *file = fopen(paths[i], "w");
+        assert_true(file && fputs("content", file) >= 0 && fclose(file) == 0);
+    }
+    snprintf(own, sizeof(own), "%s/own", folder);
+    snprintf(away, sizeof(away), "%s/away", folder);
+    assert_true((mkdir(own, 0700) == 0 || errno == EEXIST) && (mkdir(away, 0700) == 0 || errno == EEXIST));
+}
+
+/* A reader can do nothing of the list with any ABI; for a command the log names what is left open, and nothing else is. */
+TEST(test_each_abi_of_landlock_holds_or_the_log_names_what_it_leaves_open)
+{
+    char lacks[CONFINE_LACKS_BYTES], *folder = temp_folder_create();
+    int newest = (int)syscall(444, NULL, 0, 1); /* landlock_create_ruleset: asks for the ABI */
+    for (int abi = 1; abi <= newest; abi++) {
+        lay_out(folder);
+        assert_int_equal(attempts_under(CONFINE_READER, abi), ALLOWED);
+        int open = attempts_under(CONFINE_COMMAND, abi);
+        confine_lacks_with(abi, true, lacks);
+        assert_true(open & ALLOWED);
+        assert_true(!(open & (READ_SECRET | ALTER)) == !strstr(lacks, "read and write all files"));
+        assert_true(!(open & EMPTY_SECRET) == !strstr(lacks, "empty all files"));
+        assert_true(!(open & SIGNAL) == !strstr(lacks, "signal other processes"));
+        print_message("Landlock ABI %d: %s\n", abi, *lacks ? lacks : "nothing is left open");
+    }
+    temp_folder_destroy(&folder);
+    if (newest < 1)
+        skip();
+}
+
 /* Returns the folder of a new cgroup, delegated as systemd does it; NULL if this machine has no cgroup v2 with memory limits. */
 static const char *delegated_cgroup(void)
 {
@@ -235,10 +339,12 @@ static int use_cgroup(const char *service)
     snprintf(name, sizeof(name), "%s/cgroup.procs", service);
     if (!(procs = fopen(name, "w")) || fprintf(procs, "0") != 1 || fclose(procs) != 0)
         return 1;
-    if (cgroup_create("reader", room, 8))
+    if (!cgroup_create("reader", room, 8, &path) || path)
         return 2; /* no child group may exist before the daemon has its own */
-    if (!cgroup_divide() || !cgroup_divide() || !(path = cgroup_create("reader", (size_t)64 << 20, 8)))
+    if (!cgroup_divide() || !cgroup_divide() || !cgroup_create("reader", (size_t)64 << 20, 8, &path) || !path)
         return 3;
+    if (cgroup_add(path, 1 << 30) || errno != ESRCH)
+        return 8; /* a process that is not there */
     int go[2];
     if (pipe(go) != 0)
         return 4;
@@ -266,10 +372,11 @@ static int use_cgroup(const char *service)
 TEST(test_a_child_has_a_cgroup_with_a_limit_where_one_is_delegated)
 {
     const char *service = delegated_cgroup();
-    char daemon[128];
+    char daemon[128], *path;
     int status = 0;
     assert_false(cgroup_divide()); /* ours is not delegated */
-    assert_null(cgroup_create("reader", room, 8));
+    assert_true(cgroup_create("reader", room, 8, &path));
+    assert_null(path);
     if (!service) {
         print_message("no cgroup v2 with limits of memory that this user may divide\n");
         skip();

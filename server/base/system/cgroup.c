@@ -51,8 +51,10 @@ static bool write_file(const char *folder, const char *name, const char *text)
     char path[PATH_MAX];
     int file = snprintf(path, sizeof(path), "%s/%s", folder, name) < PATH_MAX ? open(path, O_WRONLY | O_CLOEXEC) : -1;
     bool good = file >= 0 && write(file, text, strlen(text)) == (ssize_t)strlen(text);
+    int error = errno;
     if (file >= 0)
         close(file);
+    errno = error;
     return good;
 }
 
@@ -84,20 +86,23 @@ bool cgroup_divide(void)
     return write_file(service, "cgroup.subtree_control", "+memory +pids");
 }
 
-char *cgroup_create(const char *name, size_t memory_bytes, int max_tasks)
+bool cgroup_create(const char *name, size_t memory_bytes, int max_tasks, char **path)
 {
     char service[PATH_MAX], number[32];
+    *path = NULL;
     if (!find_service(service))
-        return NULL;
-    char *path = mem_printf("%s/%s", service, name);
+        return true;
+    *path = mem_printf("%s/%s", service, name);
     snprintf(number, sizeof(number), "%d", max_tasks);
-    bool good = (mkdir(path, 0755) == 0 || errno == EEXIST) && write_file(path, "pids.max", number);
+    bool good = (mkdir(*path, 0755) == 0 || errno == EEXIST) && write_file(*path, "pids.max", number);
     snprintf(number, sizeof(number), "%zu", memory_bytes);
-    good = good && write_file(path, "memory.max", memory_bytes ? number : "max");
-    write_file(path, "memory.swap.max", "0"); /* the file memory.swap.max is absent if the kernel does not count swap */
+    good = good && write_file(*path, "memory.max", memory_bytes ? number : "max");
+    int error = errno;
+    write_file(*path, "memory.swap.max", "0"); /* the file memory.swap.max is absent if the kernel does not count swap */
     if (!good)
-        cgroup_destroy(&path);
-    return path;
+        cgroup_destroy(path);
+    errno = error;
+    return good;
 }
 
 bool cgroup_add(const char *path, pid_t pid)

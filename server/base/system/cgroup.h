@@ -11,10 +11,10 @@
    once, before other threads start children. Returns false if systemd has not delegated the cgroup, or the cgroup lacks these
    controllers. */
 bool cgroup_divide(void);
-/* Makes a cgroup NAME next to the daemon's, limited to memory_bytes (0: unlimited) and max_tasks. Returns its folder, or NULL if
-   cgroup_divide() did not succeed. */
-char *cgroup_create(const char *name, size_t memory_bytes, int max_tasks);
-/* Moves a process into a cgroup. path NULL: no-op, returns true. */
+/* Makes a cgroup NAME next to the daemon's, limited to memory_bytes (0: unlimited) and max_tasks. *path receives its folder for
+   cgroup_destroy(); NULL if cgroup_divide() did not succeed. Returns false with errno, and *path NULL, if the kernel refuses the cgroup. */
+bool cgroup_create(const char *name, size_t memory_bytes, int max_tasks, char **path);
+/* Moves a process into a cgroup. path NULL: no-op, returns true. Returns false with errno if the kernel refuses the move. */
 bool cgroup_add(const char *path, pid_t pid);
 /* Ends all processes of the cgroup, removes it and frees its path. &NULL: no-op. */
 void cgroup_destroy(char **path);

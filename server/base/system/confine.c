@@ -176,6 +176,8 @@ static void offer_to_oom_killer(void)
 int confine(const struct confine_params *params)
 {
     int abi = landlock_abi();
+    if (params->most_abi && abi > params->most_abi)
+        abi = params->most_abi;
     offer_to_oom_killer();
     drop_capabilities(params->role);
     if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0)

@@ -26,6 +26,7 @@ struct confine_params {
     const struct confine_path *paths;
     size_t path_count;
     bool notifies; /* true: may send datagrams to the service manager's Unix socket */
+    int most_abi;  /* newest Landlock ABI to use, for tests of older kernels; 0: the kernel's */
 };
 
 /* Confines the calling thread and every process that it starts. Refused system calls return EPERM; system calls newer than this
