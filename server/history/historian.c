@@ -139,7 +139,8 @@ static void put(struct historian *historian, int tag, const struct history_point
     counter_inc(historian->counters.points, (int64_t)(historian->waiting.count - before));
 }
 
-/* Records quality changes caused by time alone, such as a reading that goes stale: the store makes no sample event for them. */
+/* Records quality changes caused by time alone, such as a reading that goes stale: the store makes no sample event for them. A standby gets
+   them from store_tell_aged(), so that both histories have the same points. */
 static void take_qualities(struct historian *historian, int64_t mono_ns, int64_t utc_ns)
 {
     store_snapshot(historian->store, mono_ns, utc_ns, historian->snapshot);
@@ -147,8 +148,10 @@ static void take_qualities(struct historian *historian, int64_t mono_ns, int64_t
         const struct reading *reading = &historian->snapshot->readings[i];
         if (reading->quality == recorder_quality(historian->recorder, (int)i))
             continue;
-        put(historian, (int)i,
-            &(struct history_point){ utc_ns / 1000, quality_is_bad(reading->quality) ? NAN : reading->value, reading->quality });
+        const struct sample_event event = { (int)i, quality_is_bad(reading->quality) ? NAN : reading->value, reading->quality, mono_ns,
+                                            utc_ns };
+        if (store_tell_aged(historian->store, &event))
+            put(historian, (int)i, &(struct history_point){ utc_ns / 1000, event.value, event.quality });
     }
 }
 

@@ -41,6 +41,7 @@ struct store {
     struct {
         store_listener *hear;
         void *arg;
+        bool all; /* also called for store_tell_aged() */
     } listeners[STORE_LISTENERS];
     struct {
         void (*changed)(void *arg); /* NULL: no callback */
@@ -146,7 +147,7 @@ void store_adopt(struct store *store, struct store *before)
     pthread_mutex_unlock(&before->lock);
 }
 
-void store_listen(struct store *store, store_listener *listener, void *arg)
+static void listen(struct store *store, store_listener *listener, void *arg, bool all)
 {
     int i = 0;
     pthread_mutex_lock(&store->lock);
@@ -155,7 +156,29 @@ void store_listen(struct store *store, store_listener *listener, void *arg)
     assert(i < STORE_LISTENERS);
     store->listeners[i].hear = listener;
     store->listeners[i].arg = arg;
+    store->listeners[i].all = all;
     pthread_mutex_unlock(&store->lock);
+}
+
+void store_listen(struct store *store, store_listener *listener, void *arg)
+{
+    listen(store, listener, arg, false);
+}
+
+void store_listen_all(struct store *store, store_listener *listener, void *arg)
+{
+    listen(store, listener, arg, true);
+}
+
+bool store_tell_aged(struct store *store, const struct sample_event *event)
+{
+    pthread_mutex_lock(&store->lock);
+    bool newest = store->tags[event->tag].sampled_mono_ns <= event->mono_ns;
+    for (int i = 0; i < STORE_LISTENERS && newest; i++)
+        if (store->listeners[i].hear && store->listeners[i].all)
+            store->listeners[i].hear(store->listeners[i].arg, event);
+    pthread_mutex_unlock(&store->lock);
+    return newest;
 }
 
 void store_unlisten(struct store *store, store_listener *listener, void *arg)

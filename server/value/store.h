@@ -38,6 +38,11 @@ void store_destroy(struct store **store);
 void store_adopt(struct store *store, struct store *before);
 /* Adds a listener; a store has at most STORE_LISTENERS. */
 void store_listen(struct store *store, store_listener *listener, void *arg);
+/* Does the same as store_listen(), and also calls the listener for store_tell_aged(). */
+void store_listen_all(struct store *store, store_listener *listener, void *arg);
+/* Tells the listeners of store_listen_all() that time alone changed the quality of a tag, for example that its reading went stale. Returns
+ * false, with nobody told, if a sample of the tag has arrived since event->mono_ns: that sample tells the quality. */
+bool store_tell_aged(struct store *store, const struct sample_event *event);
 /* Removes a listener; the store no longer calls it once this function has returned. */
 void store_unlisten(struct store *store, store_listener *listener, void *arg);
 /* Sets the callback for changes of readings, alarms or links. The thread that makes the change calls it under the store's lock: once, and

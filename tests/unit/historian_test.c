@@ -20,6 +20,7 @@
 #include "base/files/atomic_file.h"
 #include "base/mem.h"
 #include "base/text/text.h"
+#include "corelink/core_samples.h"
 #include "history/historian.h"
 #include "history/history.h"
 #include "history/month.h"
@@ -210,6 +211,84 @@ CASE(all_that_was_told_is_there)
     look(s, lost_ns + 10 * NS_PER_MS, snapshot);
     assert_int_equal(snapshot->readings[3].quality, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE);
     snapshot_destroy(&snapshot);
+}
+
+/* Passes the samples of a leader to its standby, as the link between two cores does. */
+static void pass_on(struct core_samples *link, struct historian *standby)
+{
+    struct text bytes = { 0 };
+    struct sample_event *samples;
+    size_t count;
+    while (core_samples_write(link, &bytes) > 0) {
+        assert_null(core_samples_read(&samples, &count, TAGS, bytes.at, bytes.length, clock_mono_ns()));
+        historian_mirror(standby, samples, count);
+        mem_free(samples);
+        bytes.length = 0;
+    }
+    text_finish(&bytes);
+}
+
+static void read_series(struct historian_setup *s, const char *name, int tag, struct history_series *series)
+{
+    int64_t now_us = clock_utc_ns() / 1000;
+    char *folder = temp_path(s->folder, name);
+    struct history_reader *reader = history_reader_create(s->log, folder);
+    int error = history_series(reader, s->tags[tag].name, now_us - 7200 * US_PER_S, now_us + 7200 * US_PER_S, 10000, series);
+    assert_int_equal(error, 0);
+    history_reader_destroy(&reader);
+    mem_free(folder);
+}
+
+static bool has_quality(const struct history_series *series, uint32_t quality)
+{
+    for (size_t i = 0; i < series->points.count; i++)
+        if (series->points.at[i].quality == quality)
+            return true;
+    return false;
+}
+
+/* Readings go stale, and then a device is lost of which no sample ever came: nothing but time tells the historian. */
+CASE(a_standby_records_what_time_alone_changes)
+{
+    struct history_series here = { 0 }, there = { 0 };
+    char *folder = temp_path(s->folder, "standby");
+    for (int i = 0; i < TAGS; i++)
+        s->plant->tags[i].stale_s = i < TAGS / 2 ? 0.5 : 3600;
+    store_destroy(&s->store);
+    s->store = store_create(s->plant);
+    struct store *mirror = store_create(s->plant);
+    struct historian *standby = historian_start(&(struct historian_params){
+        .log = s->log, .counters = s->counters, .plant = s->plant, .store = mirror, .folder = folder, .stands_by = true });
+    struct core_samples *link = core_samples_listen(s->store);
+    store_link_lost(s->store, 0, clock_mono_ns()); /* no sample has come: the store tells no time of this loss */
+    start(s);
+    do {
+        sleep_ns(50 * NS_PER_MS);
+        read_series(s, "history", TAGS - 1, &here);
+    } while (!has_quality(&here, QUALITY_BAD_NO_COMMUNICATION));
+    write_all(s, 7);
+    do {
+        sleep_ns(50 * NS_PER_MS);
+        read_series(s, "history", 0, &here);
+    } while (!has_quality(&here, QUALITY_BAD_COMMUNICATION_ERROR));
+    historian_stop(&s->historian);
+    pass_on(link, standby);
+    historian_stop(&standby);
+    for (int i = 0; i < TAGS; i++) {
+        read_series(s, "history", i, &here);
+        read_series(s, "standby", i, &there);
+        assert_true(here.points.count >= 2);
+        assert_int_equal(here.points.count, there.points.count);
+        for (size_t k = 0; k < here.points.count; k++) {
+            assert_int_equal(here.points.at[k].t_us, there.points.at[k].t_us);
+            assert_int_equal(here.points.at[k].quality, there.points.at[k].quality);
+        }
+    }
+    history_series_finish(&here);
+    history_series_finish(&there);
+    core_samples_end(&link);
+    store_destroy(&mirror);
+    mem_free(folder);
 }
 
 CASE(quiet_readers_see_the_last_second)
