@@ -50,7 +50,8 @@ void net_calls_close(struct net *net);
 void net_bind_plant(struct net *net);
 /* Starts the readers of the plant's history, if there is one. Returns false if they cannot start, already logged. */
 bool net_open_history(struct net *net);
-/* Removes services from server->params.plant that the settings rule out. Call after each change of params.plant. */
+/* Sets services in server->params.plant to NULL that cannot be used here: snapshot_cache if nothing is recorded, placing if this daemon
+   cannot save tag lists. Call after each change of params.plant. */
 void net_limit_services(struct server_context *server);
 /* Starts the thread that signs pictures, if there is a key. Returns false if it cannot start, already logged. */
 bool net_open_signer(struct net *net);

@@ -33,7 +33,7 @@ struct net_status { /* state of the event loop, passed to the callback at each t
 
 struct net_params {
     struct log *log;
-    struct plant_services plant; /* services of the loaded plant, without those that the settings rule out (net_plant.c) */
+    struct plant_services plant; /* services of the loaded plant; net_limit_services() sets unusable ones to NULL */
     struct counters *counters;
     struct audit *audit;             /* the audit trail; NULL: nothing is recorded */
     struct file_writer *file_writer; /* writes what users change; its results are collected by the event loop */

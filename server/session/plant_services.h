@@ -8,14 +8,14 @@ struct plant_services {
     struct store *store;
     struct render_service *render_service;
     struct baselines *baselines;
-    struct snapshot_cache *snapshot_cache; /* readings of past instants; NULL in the event loop if nothing is recorded */
+    struct snapshot_cache *snapshot_cache; /* readings of past instants; in the event loop's copy NULL if nothing is recorded */
     struct alarm_service *alarm_service;   /* NULL: no alarms */
     struct placing *placing;               /* NULL: sensors cannot be placed */
     struct named_views *named_views;
     struct notes *notes;
     struct wall_remote *wall_remote;
     struct pairings *pairings;
-    struct other_plants *other_plants; /* NULL: the plant file names none */
+    struct other_plants *other_plants; /* pictures of other plants; NULL: the plant file names no other plants */
     struct core_link *core_link;       /* on a renderer or a standby core: link to the core; NULL: this daemon reads its devices itself */
     struct historian *historian;       /* NULL: nothing is recorded */
     struct notifier *notifier;         /* sends alarm notifications; NULL: none are sent */

@@ -23,7 +23,7 @@ struct kept_answers {
 
 struct session_context {
     const struct plant *plant;
-    const struct plant_services *services; /* sessions change named views, notes, walls, pairings and loop checks */
+    const struct plant_services *services; /* sessions change only its named views, notes, walls, pairings and loop checks */
     const struct snapshot *snapshot;       /* the newest readings */
     int64_t history_first_us;              /* UTC microseconds at which recorded history begins; 0: nothing is recorded yet */
     int64_t changed_ns;                    /* monotonic time when a snapshot last differed from its predecessor */
