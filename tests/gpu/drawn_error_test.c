@@ -397,42 +397,92 @@ TEST(test_lost_sensors_and_wild_readings_are_measured)
 
 /* --- what was found --------------------------------------------------------------------------------------------------------- */
 
-TEST_WITH(test_long_part, prep_case_set_up, prep_case_tear_down)
+struct long_part {
+    struct plant *plant;
+    struct drawn_error_case site;
+};
+
+/* Prepares the part with this kind of distance. Skips the test where the part is absent. */
+static void long_part_init(struct long_part *part, struct prep_case *c, const char *distance)
 {
     static const double readings[] = { 20, 95, 40, 110, 60, 5 };
-    struct prep_case *c = *state;
     if (access(FOUND, R_OK) != 0) {
         print_message("# " FOUND " is not there\n");
         skip();
     }
-    char *copy = mem_printf("cp %s* %s && chmod -R u+w %s", FOUND, c->folder, c->folder);
+    char *copy = mem_printf("cp %s* %s && chmod -R u+w %s && sed -i 's/distance: euclidean/distance: %s/' %s", FOUND, c->folder, c->folder,
+                            distance, c->plant);
     assert_int_equal(system(copy), 0);
     mem_free(copy);
     prep_case_expect(c, "$PLANT", 0);
     struct diag diag = { 0 };
-    struct plant *plant = plant_load(c->plant, &diag);
+    part->plant = plant_load(c->plant, &diag);
     diag_finish(&diag);
     char *prepared = mem_printf("%s/plant.prepared", c->folder);
-    struct scene *scene = plant ? scene_create(rig.log, plant, prepared) : NULL;
-    assert_non_null(scene);
-    struct drawn_error_case site = { .scene = scene,
-                                     .field = field_create(rig.workers, scene),
-                                     .snapshot = snapshot_create(plant->tag_count) };
-    site.renderer = renderer_create(rig.log, rig.gl, scene, site.field);
-    assert_non_null(site.renderer);
-    for (int i = 0; i < SENSORS; i++)
-        site.snapshot->readings[i] = (struct reading){ .value = readings[i], .quality = QUALITY_GOOD };
-    struct drawn_error_tally tally = { .worst_beyond = -1 };
-    random_state = sweep_seed();
-    for (int round = 0; round < sweep(8, 2); round++)
-        compare(&site, &tally);
-    expect_exact("long_part", &tally);
-    renderer_destroy(&site.renderer);
-    field_destroy(&site.field);
-    snapshot_destroy(&site.snapshot);
-    scene_destroy(&scene);
-    plant_destroy(&plant);
+    struct scene *scene = part->plant ? scene_create(rig.log, part->plant, prepared) : NULL;
     mem_free(prepared);
+    assert_non_null(scene);
+    part->site = (struct drawn_error_case){ .scene = scene,
+                                            .field = field_create(rig.workers, scene),
+                                            .snapshot = snapshot_create(part->plant->tag_count) };
+    part->site.renderer = renderer_create(rig.log, rig.gl, scene, part->site.field);
+    assert_non_null(part->site.renderer);
+    for (int i = 0; i < SENSORS; i++)
+        part->site.snapshot->readings[i] = (struct reading){ .value = readings[i], .quality = QUALITY_GOOD };
+    random_state = sweep_seed();
+}
+
+static void long_part_finish(struct long_part *part)
+{
+    struct scene *scene = (struct scene *)part->site.scene;
+    renderer_destroy(&part->site.renderer);
+    field_destroy(&part->site.field);
+    snapshot_destroy(&part->site.snapshot);
+    scene_destroy(&scene);
+    plant_destroy(&part->plant);
+}
+
+TEST_WITH(test_long_part, prep_case_set_up, prep_case_tear_down)
+{
+    struct long_part part;
+    struct drawn_error_tally tally = { .worst_beyond = -1 };
+    long_part_init(&part, *state, "euclidean");
+    for (int round = 0; round < sweep(8, 2); round++)
+        compare(&part.site, &tally);
+    expect_exact("long_part", &tally);
+    long_part_finish(&part);
+}
+
+/* Along surfaces half of the part is off by more than a step, and picks at a fifth (tests/bench/notes/windows.md): all of it is marked. */
+TEST_WITH(test_long_part_along_surfaces, prep_case_set_up, prep_case_tear_down)
+{
+    struct long_part part;
+    int picks = 0, bare_picks = 0, pixels = 0, bare_pixels = 0;
+    long_part_init(&part, *state, "geodesic");
+    float(*measured)[4] = mem_array(PIXELS, sizeof(*measured));
+    for (int round = 0; round < sweep(8, 2); round++) {
+        struct view view;
+        view_default(part.site.scene, WIDTH_PX, HEIGHT_PX, &view);
+        view.tier = round % 2 ? TIER_REFINED : TIER_PREVIEW;
+        look(part.site.scene, &view);
+        assert_true(renderer_measure(part.site.renderer, &view, part.site.snapshot, true, measured));
+        for (int i = 0; i < PIXELS; i++) {
+            pixels += measured[i][1] == 0;
+            bare_pixels += measured[i][1] == 0 && measured[i][2] <= 0.5f;
+        }
+        for (int i = 0; i < PICKS; i++) {
+            struct pick pick;
+            pick_at(part.site.scene, part.site.field, &view, part.site.snapshot, between(0, WIDTH_PX), between(0, HEIGHT_PX), &pick);
+            picks += pick.asset >= 0;
+            bare_picks += pick.asset >= 0 && (!pick.uncertain || !(pick.drawn_error > 0));
+        }
+    }
+    print_message("# %d of %d picks and %d of %d pixels are not marked\n", bare_picks, picks, bare_pixels, pixels);
+    assert_true(picks > 300 && pixels > 3000);
+    assert_int_equal(bare_picks, 0);
+    assert_int_equal(bare_pixels, 0);
+    mem_free(measured);
+    long_part_finish(&part);
 }
 
 int main(void)
