@@ -44,6 +44,8 @@ static void read_block(struct modbus_source *modbus, size_t index)
         return;
     }
     modbus->answered_ns = now_ns;
+    if (!modbus_is_gateway_exception(status))
+        modbus->fallen = 0;
     modbus_manners_answered(modbus, block);
     if (status == 0)
         modbus_take_values(modbus, block, words);

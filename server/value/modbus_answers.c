@@ -85,12 +85,17 @@ int64_t modbus_refused_pause_ns(int before)
     return before < 5 ? REFUSED_DELAY_NS << before : MAX_REFUSED_DELAY_NS;
 }
 
+bool modbus_is_gateway_exception(int code)
+{
+    return code == MODBUS_EXCEPTION_GATEWAY_PATH || code == MODBUS_EXCEPTION_GATEWAY_TARGET;
+}
+
 void modbus_take_exception(struct modbus_source *modbus, size_t index, int code, int64_t now_ns)
 {
     struct read_plan_block *block = &modbus->plan.blocks[index];
     const char *why = modbus_strerror(MODBUS_ENOBASE + code);
     uint32_t quality = quality_of_exception(code);
-    if (code == MODBUS_EXCEPTION_GATEWAY_PATH || code == MODBUS_EXCEPTION_GATEWAY_TARGET) {
+    if (modbus_is_gateway_exception(code)) {
         modbus_unit_is_down(modbus, modbus_unit_of(modbus, block), why);
         return;
     }

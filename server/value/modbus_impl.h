@@ -57,6 +57,7 @@ struct modbus_source {
     int64_t asked_ns;       /* monotonic time at which the last request ended */
     int64_t answered_ns;    /* monotonic time of the last answer */
     bool link_up;
+    int fallen; /* number of units that have stopped answering since the last answer of any unit */
     struct modbus_manners manners;
     struct log_pace pace;      /* rate limit of the log line "no readings" */
     bool loss_said;            /* the log says "no readings" for the source, and not yet "readings are back" */
@@ -66,12 +67,15 @@ struct modbus_source {
     int *lost;                 /* buffer for tag indices, with room for all tags */
 };
 
+/* Number of units that stop answering one after the other, with no answer of any unit meanwhile, after which the gateway counts as lost. */
+enum { GATEWAY_UNITS = 3 };
+
 /* Returns the Modbus unit (slave address) from which a block of the read plan is read. */
 struct modbus_unit *modbus_unit_of(const struct modbus_source *modbus, const struct read_plan_block *block);
 /* Records that a unit answered. Logs this if the log says that the unit does not answer. */
 void modbus_unit_is_up(struct modbus_source *modbus, struct modbus_unit *unit);
 /* Records that a unit does not answer: its tags lose their link (store_tags_lost()), and the unit gets no request before a backoff delay
- * has passed. */
+ * has passed. If that makes GATEWAY_UNITS such units, all units of the source lose their link at once. */
 void modbus_unit_is_down(struct modbus_source *modbus, struct modbus_unit *unit, const char *why);
 /* Opens the link if it is closed. Returns false if it is closed and cannot be opened now; modbus->connect_ns is then the time of the next
  * attempt. */
@@ -100,6 +104,8 @@ void modbus_unit_settle(struct modbus_source *modbus, struct modbus_unit *unit, 
 
 /* Decodes the response to a block (tags read by one request) and writes its tags to the store. */
 void modbus_take_values(struct modbus_source *modbus, struct read_plan_block *block, const uint16_t *words);
+/* Returns true for exceptions by which a gateway says that it cannot reach a unit. */
+bool modbus_is_gateway_exception(int code);
 /* Handles a Modbus exception (error response): retries a busy device, splits a refused block, and marks refused tags as Bad. */
 void modbus_take_exception(struct modbus_source *modbus, size_t block, int code, int64_t now_ns);
 /* Records whether the device refuses a block's tags (refused) or answers them again, and logs a change. Returns true if this changed for

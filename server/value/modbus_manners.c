@@ -42,7 +42,9 @@ void modbus_manners_before(struct modbus_source *modbus, const struct modbus_uni
     int64_t patience_ns = manners->first_wait_ns;
     if (!modbus->link_up && manners->silent_connections > 0 && patience_ns < FIRST_ANSWER_TIMEOUT_NS)
         patience_ns = manners->silent_connections == 1 ? FIRST_ANSWER_TIMEOUT_NS : 2 * FIRST_ANSWER_TIMEOUT_NS;
-    manners->first_excused = manners->timed_out && manners->timed_out != unit && unit->state == UNIT_UP && patience_ns < GATEWAY_TIMEOUT_NS;
+    /* a gateway that was waited for once is not waited for again: it may be lost */
+    bool waits = manners->timed_out && manners->timed_out != unit && modbus->fallen < GATEWAY_UNITS - 1;
+    manners->first_excused = waits && unit->state == UNIT_UP && patience_ns < GATEWAY_TIMEOUT_NS;
     if (manners->first_excused)
         patience_ns = GATEWAY_TIMEOUT_NS;
     manners->timed_out = NULL;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A Modbus source: records which units (slave addresses) answer, and when a silent unit or a refused block is requested again. */
 #include <errno.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "base/clock.h"
@@ -44,6 +45,8 @@ void modbus_unit_is_up(struct modbus_source *modbus, struct modbus_unit *unit)
     if (modbus->link_up)
         return;
     modbus->link_up = true;
+    for (size_t i = 0; i < modbus->plan.unit_count; i++)
+        modbus->units[i].retry_ns = clock_mono_ns(); /* the gateway may be back, and with it all units */
     counter_set(modbus->up, 1);
     counter_set(modbus->host, 1 + modbus_link_host(modbus->link));
     store_link_up(modbus->base.store, modbus->base.index, clock_mono_ns());
@@ -82,12 +85,31 @@ static void try_elsewhere(struct modbus_source *modbus)
         modbus->units[i].retry_ns = now_ns;
 }
 
+/* Marks all units as down. Those that were up are requested again at once. */
+static void lose_gateway(struct modbus_source *modbus)
+{
+    for (size_t i = 0; i < modbus->plan.unit_count; i++) {
+        struct modbus_unit *unit = &modbus->units[i];
+        if (unit->state == UNIT_UP)
+            unit->retry_ns = clock_mono_ns();
+        unit->state = UNIT_DOWN;
+        unit->doubted = false;
+    }
+}
+
 void modbus_unit_is_down(struct modbus_source *modbus, struct modbus_unit *unit, const char *why)
 {
-    char more[LOG_PACE_BYTES];
+    char more[LOG_PACE_BYTES], gateway[160];
+    modbus->fallen += unit->state == UNIT_UP;
     unit->state = UNIT_DOWN;
     unit->doubted = false;
     unit->retry_ns = clock_mono_ns() + backoff_next_ns(&unit->backoff, (uint64_t)clock_mono_ns());
+    if (modbus->fallen >= GATEWAY_UNITS && any_unit_up(modbus)) {
+        lose_gateway(modbus);
+        snprintf(gateway, sizeof(gateway), "the gateway counts as lost: %d units stopped answering one after the other: %s", modbus->fallen,
+                 why);
+        why = gateway;
+    }
     if (!any_unit_up(modbus)) {
         link_lost(modbus, why);
         if (modbus->base.config->host_count > 1)
@@ -119,7 +141,7 @@ static struct read_plan_block *other_block(struct modbus_source *modbus, const s
 bool modbus_unit_doubt(struct modbus_source *modbus, struct modbus_unit *unit, size_t block)
 {
     struct read_plan_block *failed = &modbus->plan.blocks[block], *other = other_block(modbus, failed);
-    if (unit->state != UNIT_UP || unit->doubted || !other)
+    if (unit->state != UNIT_UP || unit->doubted || !other || modbus->fallen >= GATEWAY_UNITS - 1)
         return false;
     unit->doubted = true;
     unit->doubted_table = failed->table;

@@ -195,7 +195,7 @@ static bool answer(struct device_thread *t, int fd, const uint8_t *request, int 
         return true;
     if (manner == DEVICE_SILENT || (device->silent_unit && unit == device->silent_unit))
         return true;
-    if (device->dead_unit && unit == device->dead_unit) {
+    if (device->dead_unit && (unit == device->dead_unit || device->dead_unit == -1)) {
         if (device->dead_late_ms && stopped_within(t, device->dead_late_ms))
             return true;
         refuse(t, request, MODBUS_EXCEPTION_GATEWAY_TARGET);

@@ -38,7 +38,7 @@ struct modbus_device { /* members may be set before the start or while the devic
     _Atomic int away_ms;                 /* refuses connections for this long after one has ended */
     _Atomic int idle_ms;                 /* closes a connection that was idle for this long; 0: never */
     _Atomic int mute_register;           /* requests for this register are never answered; 0: none */
-    _Atomic int dead_unit;               /* unit whose requests get exception 11; 0: none */
+    _Atomic int dead_unit;               /* unit whose requests get exception 11; -1: all units; 0: none */
     _Atomic int dead_late_ms;            /* delay of that exception, during which the device answers nobody */
     _Atomic int silent_unit;             /* unit that never answers; 0: none */
     _Atomic int requests, refused, connections;

@@ -333,3 +333,71 @@ CASE(a_dead_unit_that_blocks_its_gateway)
     assert_int_equal(lines_with("for the first answer after connecting"), 0);
     assert_int_equal(lines_with("unit 1 does not answer"), 0);
 }
+
+/* --- gateways that are lost with all their units ----------------------------------------------------------------------------- */
+
+enum { UNITS = 12 };
+
+static void start_gateway(struct modbus_case *s)
+{
+    for (int i = 0; i < UNITS; i++) {
+        char name[20];
+        snprintf(name, sizeof(name), "U%d", i);
+        plant_by_hand_tag(s->plant, name, TABLE_HOLDING, i, DATA_INT16)->modbus_unit = i + 1;
+        s->plant->tags[i].stale_s = 300;
+    }
+    s->plant->sources[0].poll_ms = POLL_MS;
+    modbus_case_be_impatient(s);
+    device_start(&s->device);
+    modbus_case_start(s);
+    for (int i = 0; i < UNITS; i++)
+        modbus_case_expect(s, i, QUALITY_GOOD, 10);
+}
+
+/* Asserts that all units are lost together, with one line for the gateway and one for each of the two units before, and come back. */
+static void expect_lost_together(struct modbus_case *s)
+{
+    await_line("the gateway counts as lost: 3 units stopped answering one after the other", 60);
+    for (int i = 0; i < UNITS; i++)
+        modbus_case_expect(s, i, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE, 10);
+    assert_int_equal(lines_with("does not answer"), 2);
+    s->device.manner = DEVICE_GOOD;
+    s->device.dead_unit = 0;
+    for (int i = 0; i < UNITS; i++)
+        modbus_case_expect(s, i, QUALITY_GOOD, 30);
+    assert_int_equal(lines_with("no readings"), 1);
+    assert_int_equal(lines_with("answers again"), 2);
+}
+
+CASE(a_gateway_that_falls_silent_is_told_once_for_all_units)
+{
+    start_gateway(s);
+    int requests = s->device.requests;
+    s->device.manner = DEVICE_SILENT;
+    await_line("the gateway counts as lost", 60);
+    /* the second unit is asked for 5 s, as long as a gateway may block; without the rule, each of the eleven is */
+    assert_in_range(s->device.requests - requests, 3, 60);
+    expect_lost_together(s);
+}
+
+CASE(a_gateway_that_reaches_no_unit_is_told_once_for_all_units)
+{
+    start_gateway(s);
+    s->device.dead_unit = -1;
+    expect_lost_together(s);
+}
+
+/* Two of twelve units die: the others stay Good all the time. */
+CASE(two_dead_units_are_no_lost_gateway)
+{
+    start_gateway(s);
+    s->device.silent_unit = 4;
+    s->device.dead_unit = 9;
+    await_line("unit 4 does not answer", 30);
+    await_line("unit 9 does not answer", 30);
+    for (int end = s->device.requests + 60; s->device.requests < end; sleep_ns(5 * NS_PER_MS))
+        for (int i = 0; i < UNITS; i++)
+            assert_true(i == 3 || i == 8 || modbus_case_look(s, i)->quality == QUALITY_GOOD);
+    assert_int_equal(lines_with("no readings"), 0);
+    assert_int_equal(lines_with("the gateway counts as lost"), 0);
+}

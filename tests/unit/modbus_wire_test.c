@@ -217,6 +217,14 @@ CASE(garbage_on_a_line)
 {
     check_hostile(s, DEVICE_LINE, DEVICE_GARBAGE);
 }
+CASE(garbage_in_rtu_over_tcp)
+{
+    check_hostile(s, DEVICE_RTU_TCP, DEVICE_GARBAGE);
+}
+CASE(long_answers_in_rtu_over_tcp)
+{
+    check_hostile(s, DEVICE_RTU_TCP, DEVICE_LONG);
+}
 CASE(answers_of_other_units)
 {
     check_hostile(s, DEVICE_TCP, DEVICE_FOREIGN);
