@@ -140,7 +140,7 @@ function isOfRest(points, us, value, quality) {
 
 const FEW = 50; // points that may wait to be sent: there are always new ones
 
-// In make test-long, since it waits for half a minute. historian_test has the points that time alone makes.
+// In make test-long: two cores, a device and a database go at their own pace. historian_test has the points that time alone makes.
 const inLong = { ...options, skip: skip || long };
 test('history is whole: what the database has is what the API has, and the gaps are the take-overs', inLong, async () => {
     await sleep(5000);
@@ -255,7 +255,7 @@ test('two of one name, and a core without a database, are refused by name', opti
     await started.program.stop();
 });
 
-test('a core of another version or configuration keeps no seat from one that matches, a renderer\'s token takes none', options, async () => {
+test('a core of another version or configuration keeps no seat, and a renderer\'s token takes none', options, async () => {
     const core = await two.leader(), other = two.other(core);
     const [, present] = /plantcast_configuration_info\{hash="(\w+)"\} 1/.exec(await (await core.node.fetch('/metrics')).text());
     const stranger = async (token, differs) => {
