@@ -33,8 +33,8 @@ static int64_t close_once(float (*positions_m)[3], size_t vertex_count, const ui
     struct repair_report report = { 0 };
     size_t degenerate, repeated;
     int64_t moved = -1;
-    if (trimesh_weld(&mesh, (const float(*)[3])positions_m, vertex_count, indices, index_count / 3, SAME_M, point_of, &degenerate,
-                     &repeated)) {
+    if (trimesh_weld(&mesh, &(struct trimesh_model){ (const float(*)[3])positions_m, vertex_count, indices, index_count / 3 }, SAME_M,
+                     point_of, &degenerate, &repeated)) {
         uint32_t *target = mem_array(mesh.point_count, sizeof(*target));
         repair_join_points(&mesh, within_m, target, &report);
         moved = report.k < 0 ? -1 : 0;

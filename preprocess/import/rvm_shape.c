@@ -276,26 +276,31 @@ static void add_circular_torus(struct cad_node *node, const struct primitive_fra
             add_cap(node, frame, &ends[end], corners, (end == 1) == (angle > 0));
 }
 
-/* Adds part of an ellipsoid of revolution about the Z axis, with radius `across` and height `up`: from the angle `low` above the equator up
- * to the pole. */
-static void add_dome(struct cad_node *node, const struct primitive_frame *frame, double across, double up, double centre_z, double low,
-                     int corners, double phase)
+struct dome {          /* part of an ellipsoid of revolution about the Z axis, from the angle `low` above the equator up to the pole */
+    double across, up; /* radius and height of the ellipsoid */
+    double centre_z, low, phase;
+    int corners;
+};
+
+static void add_dome(struct cad_node *node, const struct primitive_frame *frame, const struct dome *dome)
 {
+    const int corners = dome->corners;
+    const double low = dome->low, across = dome->across, up = dome->up;
     int rows = (int)fmax(2, ceil(corners * (M_PI / 2 - low) / (2 * M_PI)));
     uint32_t before = 0;
     for (int i = 0; i < rows; i++) {
         double t = low + (M_PI / 2 - low) * i / rows;
         uint32_t row = (uint32_t)node->vertex_count;
         for (int k = 0; k < corners; k++) {
-            double angle = phase + 2 * M_PI * k / corners, c = cos(angle), s = sin(angle);
-            add_vertex(node, frame, (double[3]){ across * cos(t) * c, across * cos(t) * s, centre_z + up * sin(t) },
+            double angle = dome->phase + 2 * M_PI * k / corners, c = cos(angle), s = sin(angle);
+            add_vertex(node, frame, (double[3]){ across * cos(t) * c, across * cos(t) * s, dome->centre_z + up * sin(t) },
                        (double[3]){ up * cos(t) * c, up * cos(t) * s, across * sin(t) });
         }
         if (i > 0)
             join_rows(node, frame, before, row, (uint32_t)corners);
         before = row;
     }
-    uint32_t pole = add_vertex(node, frame, (double[3]){ 0, 0, centre_z + up }, (double[3]){ 0, 0, 1 });
+    uint32_t pole = add_vertex(node, frame, (double[3]){ 0, 0, dome->centre_z + up }, (double[3]){ 0, 0, 1 });
     for (uint32_t k = 0; k < (uint32_t)corners; k++)
         add_triangle(node, frame, before + k, before + (k + 1) % (uint32_t)corners, pole);
 }
@@ -318,7 +323,7 @@ static void add_dish(struct cad_node *node, const struct primitive_frame *frame,
     struct corner_ring base = level_ring(radius, 0);
     base.phase = phase_of(frame, base.x, base.y);
     int corners = corners_of(radius * frame->scale, chord_m);
-    add_dome(node, frame, across, up, centre, low, corners, base.phase);
+    add_dome(node, frame, &(struct dome){ across, up, centre, low, base.phase, corners });
     if (!(open_faces & 1))
         add_cap(node, frame, &base, corners, true);
 }

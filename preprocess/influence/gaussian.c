@@ -460,28 +460,27 @@ static void weigh(struct solving *solving, struct workers *workers)
     over(workers, GAUSSIAN_SAMPLES / BLOCK, 1, sample_blocks, solving);
 }
 
-bool gaussian_solve(struct influence *influence, struct log *log, struct workers *workers, const struct influence_mesh *mesh,
-                    const struct gaussian_params *params, const struct influence_anchor *anchors, size_t vertex_count,
-                    struct influence_bend *bend)
+bool gaussian_solve(struct influence *influence, const struct influence_task *task, const struct gaussian_params *params)
 {
-    struct solving solving = { .influence = influence, .mesh = mesh, .anchors = anchors, .params = *params, .bend = bend };
+    const struct influence_mesh *mesh = task->mesh;
+    struct solving solving = { .influence = influence, .mesh = mesh, .anchors = task->anchors, .params = *params, .bend = task->bend };
     cholmod_common common;
     laplacian_start(&common);
-    *influence = (struct influence){ .count = mesh->source_count, .vertex_count = vertex_count };
+    *influence = (struct influence){ .count = mesh->source_count, .vertex_count = task->vertex_count };
     bool good = allocate(&solving) && begin(&solving, &common);
     if (good)
-        over(workers, influence->count, BLOCK, solve_kernels, &solving);
+        over(task->workers, influence->count, BLOCK, solve_kernels, &solving);
     good = good && !solving.failed;
     if (good)
         gaussian_bodies_scale(&solving.bodies, influence->count, solving.covariance, solving.scale);
     good = good && find_precision(&solving);
     if (good)
-        weigh(&solving, workers);
+        weigh(&solving, task->workers);
     good = good && !solving.failed;
     if (good)
         find_deviations(&solving);
     else
-        log_err(log, "Gaussian process between %zu sensors on %zu points, range %g m: %s", influence->count, mesh->mesh.point_count,
+        log_err(task->log, "Gaussian process between %zu sensors on %zu points, range %g m: %s", influence->count, mesh->mesh.point_count,
                 params->range_m, common.status == CHOLMOD_NOT_POSDEF ? "system is not positive definite" : "out of memory");
     finish(&solving, &common);
     cholmod_finish(&common);

@@ -21,12 +21,8 @@ struct gaussian_params {
     double range_m, noise, deviation; /* range in metres; noise and deviation (standard deviations) in the unit of the readings */
 };
 
-/* Computes H, P and the standard deviation at each vertex, the latter from random samples with a fixed seed. anchors: for each of the
- * vertex_count vertices, its position on the mesh. bend: receives the weights of all sensors at mesh points, to measure the interpolation
- * error inside drawn triangles; may be NULL. workers may be NULL. Returns false after logging if out of memory or if the system is
- * singular. Call influence_finish() in both cases. */
-bool gaussian_solve(struct influence *influence, struct log *log, struct workers *workers, const struct influence_mesh *mesh,
-                    const struct gaussian_params *params, const struct influence_anchor *anchors, size_t vertex_count,
-                    struct influence_bend *bend);
+/* Computes H, P and the standard deviation at each vertex, the latter from random samples with a fixed seed. Returns false after logging if
+ * out of memory or if the system is singular. Call influence_finish() in both cases. */
+bool gaussian_solve(struct influence *influence, const struct influence_task *task, const struct gaussian_params *params);
 
 #endif

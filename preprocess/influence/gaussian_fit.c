@@ -206,17 +206,18 @@ static bool try_one(struct gaussian_fit *fit, double log_range, struct range_tri
 }
 
 /* Prepares a fit. Returns false after logging if out of memory. Call finish_fit() in both cases. */
-static bool begin_fit(struct gaussian_fit *fit, const struct gaussian_params *stated, struct log *log, struct workers *workers,
-                      const struct influence_mesh *mesh, const struct readings_table *table)
+static bool begin_fit(struct gaussian_fit *fit, const struct gaussian_params *stated, const struct gaussian_data *data)
 {
-    const size_t n = table->count;
-    *fit = (struct gaussian_fit){ .stated = stated, .table = table, .log = log, .workers = workers, .best_likelihood = -INFINITY };
+    const size_t n = data->table->count;
+    *fit = (struct gaussian_fit){
+        .stated = stated, .table = data->table, .log = data->log, .workers = data->workers, .best_likelihood = -INFINITY
+    };
     fit->scatter = mem_array(n * n, sizeof(*fit->scatter));
     fit->room[0] = mem_array(n * n, sizeof(double));
     fit->room[1] = mem_array(n * n, sizeof(double));
     fit->means = mem_array(n, sizeof(*fit->means));
     find_scatter(fit);
-    return gaussian_covariance_init(&fit->covariance, log, mesh);
+    return gaussian_covariance_init(&fit->covariance, data->log, data->mesh);
 }
 
 static void finish_fit(struct gaussian_fit *fit)
@@ -247,15 +248,16 @@ static void pick_few(const struct influence_mesh *mesh, const struct readings_ta
 }
 
 /* Finds the best range of the grid with a subset of the sensors. */
-static bool look_around(const struct gaussian_params *stated, struct log *log, struct workers *workers, const struct influence_mesh *mesh,
-                        const struct readings_table *table, double first, double step, double *log_range)
+static bool look_around(const struct gaussian_params *stated, const struct gaussian_data *data, double first, double step,
+                        double *log_range)
 {
     struct influence_mesh few_of_mesh;
     struct readings_table few_of_table;
     struct gaussian_fit fit;
     struct range_trial trial;
-    pick_few(mesh, table, &few_of_mesh, &few_of_table);
-    bool good = begin_fit(&fit, stated, log, workers, &few_of_mesh, &few_of_table);
+    pick_few(data->mesh, data->table, &few_of_mesh, &few_of_table);
+    const struct gaussian_data few = { data->log, data->workers, &few_of_mesh, &few_of_table };
+    bool good = begin_fit(&fit, stated, &few);
     for (int i = 0; good && i < RANGES; i++)
         good = try_one(&fit, first + step * i, &trial);
     *log_range = fit.best.range_m > 0 ? logarithm(fit.best.range_m) : first;
@@ -310,20 +312,19 @@ static bool close_in(struct gaussian_fit *fit, double start, double step, double
     return true;
 }
 
-bool gaussian_fit(struct gaussian_params *params, struct log *log, struct workers *workers, const struct influence_mesh *mesh,
-                  const struct readings_table *table, double least_m, double most_m, char why[300])
+bool gaussian_fit(struct gaussian_params *params, const struct gaussian_data *data, double least_m, double most_m, char why[300])
 {
-    const size_t n = table->count;
+    const size_t n = data->table->count;
     struct gaussian_fit fit;
     if (n < MIN_SENSORS) {
         snprintf(why, 300, "%zu sensors on one asset: nothing can be fitted to fewer than %d; state range_m, noise and deviation", n,
                  MIN_SENSORS);
         return false;
     }
-    bool good = begin_fit(&fit, params, log, workers, mesh, table);
+    bool good = begin_fit(&fit, params, data);
     if (good && isnan(params->range_m)) {
         double first = logarithm(least_m), last = logarithm(most_m), step = (last - first) / (RANGES - 1), start;
-        good = look_around(params, log, workers, mesh, table, first, step, &start) && close_in(&fit, start, step / 2, first, last);
+        good = look_around(params, data, first, step, &start) && close_in(&fit, start, step / 2, first, last);
     } else if (good) {
         struct range_trial trial;
         good = try_one(&fit, logarithm(params->range_m), &trial);

@@ -16,9 +16,15 @@ struct readings_table {     /* readings at the instants at which every sensor ha
 bool readings_table_read(struct readings_table *table, const char *path, const char *const *names, size_t count, char why[300]);
 void readings_table_finish(struct readings_table *table);
 
+struct gaussian_data { /* readings of the sensors on a mesh */
+    struct log *log;
+    struct workers *workers;
+    const struct influence_mesh *mesh;
+    const struct readings_table *table;
+};
+
 /* Replaces the NaN members of *params by fitted values; searches range_m between least_m and most_m. Returns false with the reason in
  * why. */
-bool gaussian_fit(struct gaussian_params *params, struct log *log, struct workers *workers, const struct influence_mesh *mesh,
-                  const struct readings_table *table, double least_m, double most_m, char why[300]);
+bool gaussian_fit(struct gaussian_params *params, const struct gaussian_data *data, double least_m, double most_m, char why[300]);
 
 #endif

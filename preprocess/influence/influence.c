@@ -154,27 +154,27 @@ static void make_symmetric(struct influence *influence)
         }
 }
 
-bool influence_conduct(struct influence *influence, struct log *log, struct workers *workers, const struct influence_mesh *mesh,
-                       double decay_m, const struct influence_anchor *anchors, size_t vertex_count, struct influence_bend *bend)
+bool influence_conduct(struct influence *influence, const struct influence_task *task, double decay_m)
 {
-    struct conduct conduct = { .influence = influence, .mesh = mesh, .anchors = anchors, .bend = bend };
+    const struct influence_mesh *mesh = task->mesh;
+    struct conduct conduct = { .influence = influence, .mesh = mesh, .anchors = task->anchors, .bend = task->bend };
     cholmod_common common;
     laplacian_start(&common);
-    *influence = (struct influence){ .count = mesh->source_count, .vertex_count = vertex_count };
-    influence->shares = mem_try_array(influence->count * vertex_count, sizeof(*influence->shares));
+    *influence = (struct influence){ .count = mesh->source_count, .vertex_count = task->vertex_count };
+    influence->shares = mem_try_array(influence->count * task->vertex_count, sizeof(*influence->shares));
     influence->precision = mem_try_array(influence->count * influence->count, sizeof(*influence->precision));
     bool good = influence->shares && influence->precision && laplacian_init(&conduct.laplacian, &mesh->intrinsic) &&
                 factor(&conduct, decay_m, &common);
-    conduct.block = block_of(&conduct, workers);
-    if (good && workers)
-        workers_for(workers, influence->count, conduct.block, solve_some, &conduct);
+    conduct.block = block_of(&conduct, task->workers);
+    if (good && task->workers)
+        workers_for(task->workers, influence->count, conduct.block, solve_some, &conduct);
     else if (good)
         solve_some(&conduct, 0, influence->count);
     good = good && !conduct.failed;
     if (good)
         make_symmetric(influence);
     else
-        log_err(log, "conduction between %zu sensors on %zu points: %s", influence->count, mesh->mesh.point_count,
+        log_err(task->log, "conduction between %zu sensors on %zu points: %s", influence->count, mesh->mesh.point_count,
                 common.status == CHOLMOD_NOT_POSDEF ? "system is not positive definite" : "out of memory");
     cholmod_free_factor(&conduct.factor, &common);
     cholmod_finish(&common);

@@ -26,11 +26,20 @@ struct influence {
     float *errors;
 };
 
-/* Computes the influence by conduction. decay_m: decay length, INFINITY for harmonic. anchors: for each of the vertex_count vertices, its
- * position on the mesh. bend: receives the weights of all sensors at mesh points, to measure the interpolation error inside drawn
- * triangles; may be NULL. workers may be NULL. Returns false after logging if out of memory. Call influence_finish() in both cases. */
-bool influence_conduct(struct influence *influence, struct log *log, struct workers *workers, const struct influence_mesh *mesh,
-                       double decay_m, const struct influence_anchor *anchors, size_t vertex_count, struct influence_bend *bend);
+/* Input of influence_conduct() and gaussian_solve(). */
+struct influence_task {
+    struct log *log;
+    struct workers *workers;                /* NULL: the calling thread does all work */
+    const struct influence_mesh *mesh;      /* the surface and the discs of its sensors */
+    const struct influence_anchor *anchors; /* for each of the vertex_count vertices, its position on the mesh */
+    size_t vertex_count;
+    /* receives the weights of all sensors at mesh points, to measure the interpolation error inside drawn triangles; NULL: not measured */
+    struct influence_bend *bend;
+};
+
+/* Computes the influence by conduction. decay_m: decay length, INFINITY for harmonic. Returns false after logging if out of memory. Call
+ * influence_finish() in both cases. */
+bool influence_conduct(struct influence *influence, const struct influence_task *task, double decay_m);
 /* Frees the arrays of a computed or zeroed struct. */
 void influence_finish(struct influence *influence);
 

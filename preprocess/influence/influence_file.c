@@ -104,7 +104,7 @@ static bool find_params(struct influence_making *making, int group, const double
         snprintf(why, sizeof(why), "out of memory");
         good = false;
     }
-    good = good && gaussian_fit(gp, making->log, making->workers, &mesh, &table, least_m, FIT_MAX * size, why);
+    good = good && gaussian_fit(gp, &(struct gaussian_data){ making->log, making->workers, &mesh, &table }, least_m, FIT_MAX * size, why);
     if (good)
         log_info(making->log,
                  "asset %s, group %s: gp fitted to %zu readings of each of %zu sensors: range %.3g m, noise %.3g, deviation %.3g %s", asset,
@@ -132,15 +132,11 @@ static bool range_good(const struct influence_making *making, int group, const s
 }
 
 static bool solve(struct influence_making *making, struct influence *found, enum interpolation interpolation, double decay_m,
-                  const struct influence_mesh *mesh, const struct gaussian_params *gp, const struct influence_anchor *anchors,
-                  struct influence_bend *bend)
+                  const struct influence_task *task, const struct gaussian_params *gp)
 {
-    const size_t count = making->input->vertex_count;
     struct gaussian_params taken = *gp;
     taken.range_m = min_of(gp->range_m, LONGEST * surface_report(making->input->surface)->size_m);
-    return interpolation == INTERPOLATION_GP
-               ? gaussian_solve(found, making->log, making->workers, mesh, &taken, anchors, count, bend)
-               : influence_conduct(found, making->log, making->workers, mesh, decay_m, anchors, count, bend);
+    return interpolation == INTERPOLATION_GP ? gaussian_solve(found, task, &taken) : influence_conduct(found, task, decay_m);
 }
 
 /* Computes found->errors (interpolation errors by vertex). Writes 1 (unknown) for all vertices if they were not measured. Returns false if
@@ -162,10 +158,9 @@ static bool bound_errors(const struct influence_making *making, const struct pla
     return true;
 }
 
-/* Computes one interpolation of a group and adds it to the file's entries. bend: measures interpolation errors; NULL: not measured, because
- * there are too many points. */
-static bool add_entry(struct influence_making *making, int group, enum interpolation interpolation, const struct influence_mesh *mesh,
-                      const struct gaussian_params *gp, const struct influence_anchor *anchors, struct influence_bend *bend)
+/* Computes one interpolation of a group and adds it to the file's entries. task->bend: NULL if it has too many places to measure. */
+static bool add_entry(struct influence_making *making, int group, enum interpolation interpolation, const struct influence_task *task,
+                      const struct gaussian_params *gp)
 {
     const struct influence_input *input = making->input;
     double decay_m = interpolation == INTERPOLATION_FIN ? plant_decay_m(asset_of(input)) : (double)INFINITY;
@@ -174,7 +169,7 @@ static bool add_entry(struct influence_making *making, int group, enum interpola
     mem_grow(&making->found, &making->found_capacity, at + 1, sizeof(*making->found));
     making->entries[at] = (struct influence_entry){ .group = (uint32_t)group,
                                                     .interpolation = interpolation,
-                                                    .sensor_count = (uint32_t)mesh->source_count,
+                                                    .sensor_count = (uint32_t)task->mesh->source_count,
                                                     .disc_m = input->plant->groups[group].disc_m,
                                                     .decay_m = isfinite(decay_m) ? decay_m : 0 };
     making->header.entry_count++;
@@ -183,8 +178,8 @@ static bool add_entry(struct influence_making *making, int group, enum interpola
         making->entries[at].noise = gp->noise;
         making->entries[at].deviation = gp->deviation;
     }
-    return solve(making, &making->found[at], interpolation, decay_m, mesh, gp, anchors, bend) &&
-           bound_errors(making, &input->plant->groups[group], interpolation, bend, &making->found[at]);
+    return solve(making, &making->found[at], interpolation, decay_m, task, gp) &&
+           bound_errors(making, &input->plant->groups[group], interpolation, task->bend, &making->found[at]);
 }
 
 static bool add_transport(struct influence_making *making, int group, const struct influence_mesh *mesh,
@@ -311,9 +306,10 @@ static bool add_group(struct influence_making *making, int group)
                                               input->levels,      input->level_count };
             bounded = influence_bend_init(&bend, &mesh, input->surface, &drawn, BEND_PLACES);
         }
+        const struct influence_task task = { making->log, making->workers, &mesh, anchors, input->vertex_count, bounded ? &bend : NULL };
         for (int i = INTERPOLATION_HARMONIC; good && i < INTERPOLATIONS; i++)
             if (plant_prepares(of, (enum interpolation)i))
-                good = add_entry(making, group, (enum interpolation)i, &mesh, &gp, anchors, bounded ? &bend : NULL);
+                good = add_entry(making, group, (enum interpolation)i, &task, &gp);
         if (good && of->directed)
             good = add_transport(making, group, &mesh, anchors);
         mem_free(anchors);

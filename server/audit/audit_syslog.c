@@ -35,14 +35,14 @@ struct audit_syslog {
     int64_t stop_ns; /* monotonic time at which the thread must end; 0: no end requested */
 };
 
-void audit_syslog_frame(struct text *out, const char *host, int pid, const char *event, bool good, int64_t utc_us, const char *line,
-                        size_t count)
+void audit_syslog_frame(struct text *out, const struct syslog_message *message)
 {
     char at[TIMESTAMP_BYTES];
-    timestamp_print(utc_us, at);
-    char *head = mem_printf("<%d>1 %s %s plantcastd %d %s - ", AUDIT_FACILITY * 8 + (good ? NOTICE : WARNING), at, host, pid, event);
-    text_add(out, "%zu %s", strlen(head) + count, head);
-    text_add_bytes(out, line, count);
+    timestamp_print(message->utc_us, at);
+    char *head = mem_printf("<%d>1 %s %s plantcastd %d %s - ", AUDIT_FACILITY * 8 + (message->good ? NOTICE : WARNING), at, message->host,
+                            message->pid, message->event);
+    text_add(out, "%zu %s", strlen(head) + message->count, head);
+    text_add_bytes(out, message->line, message->count);
     mem_free(head);
 }
 
@@ -184,7 +184,8 @@ void audit_syslog_send(struct audit_syslog *syslog, const char *event, bool good
         counter_inc(syslog->lost, 1);
     } else {
         struct framed *framed = mem_new(sizeof(*framed));
-        audit_syslog_frame(&framed->text, syslog->host, (int)getpid(), event, good, utc_us, line, count);
+        const struct syslog_message message = { syslog->host, (int)getpid(), event, good, utc_us, line, count };
+        audit_syslog_frame(&framed->text, &message);
         *syslog->last = framed;
         syslog->last = &framed->next;
         if (syslog->waiting++ == 0)

@@ -14,8 +14,16 @@ void audit_syslog_stop(struct audit_syslog **syslog);
 /* Queues a copy of a line to be sent. Thread: any. */
 void audit_syslog_send(struct audit_syslog *syslog, const char *event, bool good, int64_t utc_us, const char *line, size_t count);
 
-/* Appends a syslog message to `out`, preceded by its length, as syslog over a stream requires. host: "-" if it is not known. Pure. */
-void audit_syslog_frame(struct text *out, const char *host, int pid, const char *event, bool good, int64_t utc_us, const char *line,
-                        size_t count);
+struct syslog_message {
+    const char *host; /* "-" if it is not known */
+    int pid;
+    const char *event;
+    bool good; /* the action was done */
+    int64_t utc_us;
+    const char *line; /* the `count` bytes to send */
+    size_t count;
+};
+/* Appends a syslog message to `out`, preceded by its length, as syslog over a stream requires. Pure. */
+void audit_syslog_frame(struct text *out, const struct syslog_message *message);
 
 #endif

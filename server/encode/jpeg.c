@@ -99,8 +99,8 @@ static bool compress(struct jpeg_encoder *jpeg, const struct frame *frame, const
     const uint8_t *from = frame->bgrx + (size_t)part->y_px * (size_t)frame->stride_bytes + (size_t)part->x_px * 4;
     const char *why = jpeg_writer_why(jpeg->writer);
     unsigned char *to = jpeg->out + *end;
-    size_t count = params->full_chroma ? jpeg_write_whole(jpeg->writer, from, frame->stride_bytes, part->width_px, part->height_px,
-                                                          params->quality, to, max_bytes(part))
+    const struct jpeg_pixels pixels = { from, frame->stride_bytes, part->width_px, part->height_px };
+    size_t count = params->full_chroma ? jpeg_write_whole(jpeg->writer, &pixels, params->quality, to, max_bytes(part))
                                        : compress_halved(jpeg, from, frame->stride_bytes, part, params->quality, to, &why);
     if (count == 0)
         log_err(jpeg->base.log, "jpeg %dx%d: %s", part->width_px, part->height_px, why);

@@ -115,12 +115,11 @@ static void write_halved(struct jpeg_compress_struct *codec, const struct yuv_pl
     }
 }
 
-static void write_whole(struct jpeg_compress_struct *codec, const uint8_t *bgrx, int stride_bytes, int width_px, int height_px,
-                        int quality)
+static void write_whole(struct jpeg_compress_struct *codec, const struct jpeg_pixels *pixels, int quality)
 {
-    begin(codec, width_px, height_px, JCS_EXT_BGRX, quality, false);
+    begin(codec, pixels->width_px, pixels->height_px, JCS_EXT_BGRX, quality, false);
     while (codec->next_scanline < codec->image_height) {
-        JSAMPROW row = (JSAMPROW)(uintptr_t)(bgrx + (ptrdiff_t)codec->next_scanline * stride_bytes);
+        JSAMPROW row = (JSAMPROW)(uintptr_t)(pixels->bgrx + (ptrdiff_t)codec->next_scanline * pixels->stride_bytes);
         jpeg_write_scanlines(codec, &row, 1);
     }
 }
@@ -131,15 +130,14 @@ static void set_room(struct jpeg_writer *writer, unsigned char *to, size_t capac
     writer->to.free_in_buffer = capacity;
 }
 
-size_t jpeg_write_whole(struct jpeg_writer *writer, const uint8_t *bgrx, int stride_bytes, int width_px, int height_px, int quality,
-                        unsigned char *to, size_t capacity)
+size_t jpeg_write_whole(struct jpeg_writer *writer, const struct jpeg_pixels *pixels, int quality, unsigned char *to, size_t capacity)
 {
     set_room(writer, to, capacity);
     if (setjmp(writer->failed)) {
         jpeg_abort_compress(&writer->codec);
         return 0;
     }
-    write_whole(&writer->codec, bgrx, stride_bytes, width_px, height_px, quality);
+    write_whole(&writer->codec, pixels, quality);
     jpeg_finish_compress(&writer->codec);
     return capacity - writer->to.free_in_buffer;
 }

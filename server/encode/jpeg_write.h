@@ -19,9 +19,12 @@ struct jpeg_writer *jpeg_writer_create(void);          /* NULL: out of memory */
 void jpeg_writer_destroy(struct jpeg_writer **writer); /* &NULL is fine; sets it to NULL */
 /* Both jpeg_write functions write to `to`, which has room for `capacity` bytes. They return the number of bytes written; 0 on failure,
    with the reason in jpeg_writer_why(). */
+struct jpeg_pixels {
+    const uint8_t *bgrx;
+    int stride_bytes, width_px, height_px;
+};
 /* Encodes pixels with full chroma. */
-size_t jpeg_write_whole(struct jpeg_writer *writer, const uint8_t *bgrx, int stride_bytes, int width_px, int height_px, int quality,
-                        unsigned char *to, size_t capacity);
+size_t jpeg_write_whole(struct jpeg_writer *writer, const struct jpeg_pixels *pixels, int quality, unsigned char *to, size_t capacity);
 /* Encodes planes with subsampled chroma. The rows of luma must be padded to a multiple of JPEG_PAD_PX pixels, those of chroma to half of
    that, with copies of the edge pixel. */
 enum { JPEG_PAD_PX = 16 };

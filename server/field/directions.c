@@ -175,17 +175,16 @@ static struct direction find_one(const struct field_layout *layout, const float 
     return out;
 }
 
-void directions_find(const struct scene *scene, int asset, const struct field_params *params, const struct sensor_direction *sensors,
-                     size_t sensor_count, const struct direction_place *places, size_t place_count, struct direction *out)
+void directions_find(const struct direction_sources *sources, const struct direction_place *places, size_t count, struct direction *out)
 {
-    struct field_layout *layout = layout_create(scene, asset, params->group, NULL);
+    struct field_layout *layout = layout_create(sources->scene, sources->asset, sources->params->group, NULL);
     const float *angles = layout ? angles_of(layout) : NULL;
-    bool good = angles && layout->sensor_count == sensor_count;
-    struct spread *spreads = mem_array(sensor_count, sizeof(*spreads));
-    for (size_t i = 0; good && i < sensor_count; i++)
-        spreads[i] = spread_of(layout, angles, i, &sensors[i]);
-    for (size_t p = 0; p < place_count; p++)
-        out[p] = good ? find_one(layout, angles, params, spreads, &places[p]) : (struct direction){ 0 };
+    bool good = angles && layout->sensor_count == sources->sensor_count;
+    struct spread *spreads = mem_array(sources->sensor_count, sizeof(*spreads));
+    for (size_t i = 0; good && i < sources->sensor_count; i++)
+        spreads[i] = spread_of(layout, angles, i, &sources->sensors[i]);
+    for (size_t p = 0; p < count; p++)
+        out[p] = good ? find_one(layout, angles, sources->params, spreads, &places[p]) : (struct direction){ 0 };
     mem_free(spreads);
     layout_destroy(&layout);
 }

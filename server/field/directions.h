@@ -33,8 +33,14 @@ struct direction {
     float along[3]; /* unit tangent vector, in the axes of the asset file */
     bool known, uncertain;
 };
-/* Finds the direction at each point from the vectors that directions_read() returned. */
-void directions_find(const struct scene *scene, int asset, const struct field_params *params, const struct sensor_direction *sensors,
-                     size_t sensor_count, const struct direction_place *places, size_t place_count, struct direction *out);
+struct direction_sources { /* vectors of an asset's sensors, from which directions at other places are found */
+    const struct scene *scene;
+    int asset;
+    const struct field_params *params;
+    const struct sensor_direction *sensors; /* from directions_read() */
+    size_t sensor_count;
+};
+/* Finds the direction at each of the `count` places. */
+void directions_find(const struct direction_sources *sources, const struct direction_place *places, size_t count, struct direction *out);
 
 #endif

@@ -81,8 +81,8 @@ static bool weld(struct surface *surface, const float (*positions)[3], const uin
     struct surface_report *report = &surface->report;
     surface->vertex_point = mem_try_array(surface->vertex_count, sizeof(*surface->vertex_point));
     if (!surface->vertex_point ||
-        !trimesh_weld(&surface->mesh, positions, surface->vertex_count, triangles, triangle_count, size_m * WELD_OF_SIZE,
-                      surface->vertex_point, &report->degenerate_triangles, &report->repeated_triangles))
+        !trimesh_weld(&surface->mesh, &(struct trimesh_model){ positions, surface->vertex_count, triangles, triangle_count },
+                      size_m * WELD_OF_SIZE, surface->vertex_point, &report->degenerate_triangles, &report->repeated_triangles))
         return no_surface(surface, why, "out of memory");
     report->triangles = triangle_count;
     report->welded_vertices = surface->mesh.point_count;

@@ -308,11 +308,11 @@ TEST(test_strangers_texts)
 TEST(test_syslog_frame)
 {
     struct text out = { 0 };
-    audit_syslog_frame(&out, "host.example", 17, "login", false, AT_US, "{}", 2);
+    audit_syslog_frame(&out, &(struct syslog_message){ "host.example", 17, "login", false, AT_US, "{}", 2 });
     assert_int_equal(atoi(out.at), strlen(strchr(out.at, ' ') + 1));
     assert_string_equal(strchr(out.at, ' ') + 1, "<108>1 2026-11-18T11:06:40.000Z host.example plantcastd 17 login - {}");
     text_finish(&out);
-    audit_syslog_frame(&out, "-", 17, "login", true, AT_US, "{}", 2);
+    audit_syslog_frame(&out, &(struct syslog_message){ "-", 17, "login", true, AT_US, "{}", 2 });
     assert_non_null(strstr(out.at, "<109>1 "));
     text_finish(&out);
 }

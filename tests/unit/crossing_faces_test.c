@@ -8,26 +8,12 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 #include "surface/mesh/bvh.h"
-#include "tests/support/cad.h"
+#include "tests/support/surface_case.h"
 #include "tests/support/sweep.h"
 
 #define AROUND 12
 #define RINGS 24
 #define MOST_FACES 60
-
-static struct cad_random chance;
-
-static int set_up(void **state)
-{
-    (void)state;
-    cad_random_start(&chance);
-    return 0;
-}
-
-static double between(double low, double high)
-{
-    return low + (high - low) * cad_random(&chance);
-}
 
 struct crossing_model {
     float at[AROUND * RINGS][3];
@@ -40,8 +26,10 @@ struct crossing_model {
 static void model_join(struct crossing_model *model, double tolerance_m)
 {
     size_t degenerate = 0, repeated = 0;
-    assert_true(trimesh_weld(&model->mesh, (const float(*)[3])model->at, model->vertex_count, model->corners, model->triangle_count, 1e-6,
-                             model->vertex_point, &degenerate, &repeated));
+    assert_true(
+        trimesh_weld(&model->mesh,
+                     &(struct trimesh_model){ (const float(*)[3])model->at, model->vertex_count, model->corners, model->triangle_count },
+                     1e-6, model->vertex_point, &degenerate, &repeated));
     parts_init(&model->parts, &model->mesh, model->triangle_count, tolerance_m, true);
     trimesh_stop_counting(&model->mesh);
 }
@@ -176,4 +164,4 @@ TEST(no_crossing_of_pieces_is_missed)
     mem_free(model);
 }
 
-TEST_GROUP(set_up, NULL)
+TEST_GROUP(surface_case_set_up, surface_case_tear_down)

@@ -57,8 +57,9 @@ static void body_init(struct body *body, int asset)
         fail_msg("%s: %s", plant->assets[asset].id, why);
     const struct geometry *g = &body->geometry;
     uint32_t *point = mem_array(g->vertex_count, sizeof(*point));
-    assert_true(trimesh_weld(&body->mesh, (const float(*)[3])g->positions_m, g->vertex_count, g->indices, g->index_count / 3, 1e-6, point,
-                             &body->slivers_without_area, &body->repeated));
+    assert_true(trimesh_weld(&body->mesh,
+                             &(struct trimesh_model){ (const float(*)[3])g->positions_m, g->vertex_count, g->indices, g->index_count / 3 },
+                             1e-6, point, &body->slivers_without_area, &body->repeated));
     mem_free(point);
 }
 

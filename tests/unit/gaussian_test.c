@@ -67,7 +67,8 @@ static void prepare_coarse(struct gaussian_case *s, const double (*places_m)[3],
 static void solve(struct gaussian_case *s, struct gaussian_params params)
 {
     influence_finish(&s->influence);
-    assert_true(gaussian_solve(&s->influence, the_log, workers, &s->mesh, &params, s->anchors, s->shape.vertex_count, NULL));
+    const struct influence_task task = { the_log, workers, &s->mesh, s->anchors, s->shape.vertex_count, NULL };
+    assert_true(gaussian_solve(&s->influence, &task, &params));
 }
 
 static void finish(struct gaussian_case *s)
@@ -503,15 +504,16 @@ TEST(test_fit_finds_what_made_the_readings)
         }
     }
     struct gaussian_params p = { (double)NAN, (double)NAN, (double)NAN }, stated = { 0.7, (double)NAN, 6 };
-    assert_true(gaussian_fit(&p, the_log, workers, &s.mesh, &table, 0.1, 6, why));
+    const struct gaussian_data data = { the_log, workers, &s.mesh, &table };
+    assert_true(gaussian_fit(&p, &data, 0.1, 6, why));
     print_message("fitted: range %.3f (0.7), noise %.3f (0.8), deviation %.3f (6)\n", p.range_m, p.noise, p.deviation);
     assert_true(p.range_m > 0.55 && p.range_m < 0.9);
     assert_true(p.noise > 0.7 && p.noise < 0.9);
     assert_true(p.deviation > 4.8 && p.deviation < 7.5);
-    assert_true(gaussian_fit(&stated, the_log, workers, &s.mesh, &table, 0.1, 6, why));
+    assert_true(gaussian_fit(&stated, &data, 0.1, 6, why));
     assert_true(stated.range_m == 0.7 && fabs(stated.deviation - 6) < 1e-9 && stated.noise > 0.7 && stated.noise < 0.9);
     table.count = 2;
-    assert_false(gaussian_fit(&p, the_log, workers, &s.mesh, &table, 0.1, 6, why));
+    assert_false(gaussian_fit(&p, &data, 0.1, 6, why));
     readings_table_finish(&table);
     gaussian_covariance_finish(&kernel);
     mem_free(root);

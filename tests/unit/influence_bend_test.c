@@ -105,25 +105,21 @@ static double worst_at(const struct bend_case *drawn, const struct influence *in
     return 255 * fmax(plus, -minus);
 }
 
-typedef bool solve_fn(struct influence *influence, const struct influence_mesh *mesh, const struct influence_anchor *anchors, size_t count,
-                      struct influence_bend *bend);
+typedef bool solve_fn(struct influence *influence, const struct influence_task *task);
 
-static bool solve_harmonic(struct influence *influence, const struct influence_mesh *mesh, const struct influence_anchor *anchors,
-                           size_t count, struct influence_bend *bend)
+static bool solve_harmonic(struct influence *influence, const struct influence_task *task)
 {
-    return influence_conduct(influence, the_log, workers, mesh, (double)INFINITY, anchors, count, bend);
+    return influence_conduct(influence, task, (double)INFINITY);
 }
 
-static bool solve_fin(struct influence *influence, const struct influence_mesh *mesh, const struct influence_anchor *anchors, size_t count,
-                      struct influence_bend *bend)
+static bool solve_fin(struct influence *influence, const struct influence_task *task)
 {
-    return influence_conduct(influence, the_log, workers, mesh, 0.3, anchors, count, bend);
+    return influence_conduct(influence, task, 0.3);
 }
 
-static bool solve_gp(struct influence *influence, const struct influence_mesh *mesh, const struct influence_anchor *anchors, size_t count,
-                      struct influence_bend *bend)
+static bool solve_gp(struct influence *influence, const struct influence_task *task)
 {
-    return gaussian_solve(influence, the_log, workers, mesh, &(struct gaussian_params){ 0.8, 0.1, 5 }, anchors, count, bend);
+    return gaussian_solve(influence, task, &(struct gaussian_params){ 0.8, 0.1, 5 });
 }
 
 struct case_of {
@@ -146,7 +142,7 @@ static void compare_finer(const struct case_of *of, const struct bend_case *draw
     assert_true(influence_mesh_init(&mesh, surface, places_m, of->sensors, DISC_M, FINER_M));
     struct influence_anchor *anchors = mem_array(count, sizeof(*anchors));
     influence_mesh_anchors(&mesh, embedding, count, anchors);
-    assert_true(of->solve(&exact, &mesh, anchors, count, NULL));
+    assert_true(of->solve(&exact, &(struct influence_task){ the_log, workers, &mesh, anchors, count, NULL }));
     for (size_t i = 0; i < PLACES; i++) {
         struct surface_point hit;
         double place_m[3], bound = 0, found = worst_at(drawn, &exact, i, 0);
@@ -195,8 +191,8 @@ static void holds(const struct case_of *of)
     influence_mesh_anchors(&mesh, embedding, vertices + PLACES, anchors);
     const struct bend_drawn on = { (const float(*)[3])drawn.shape.positions, drawn.shape.triangles, vertices, triangles, anchors, NULL, 0 };
     assert_true(influence_bend_init(&bend, &mesh, surface, &on, MOST));
-    assert_true(of->solve(&truth, &mesh, anchors, vertices + PLACES, NULL));
-    assert_true(of->solve(&ours, &mesh, anchors, vertices, &bend));
+    assert_true(of->solve(&truth, &(struct influence_task){ the_log, workers, &mesh, anchors, vertices + PLACES, NULL }));
+    assert_true(of->solve(&ours, &(struct influence_task){ the_log, workers, &mesh, anchors, vertices, &bend }));
     for (size_t s = 0; s < of->sensors; s++)
         assert_memory_equal(ours.shares + s * vertices, truth.shares + s * (vertices + PLACES), vertices * sizeof(*ours.shares));
     float *steps = mem_array(triangles, sizeof(*steps)), *errors = mem_array(vertices, sizeof(*errors));

@@ -10,7 +10,7 @@
 #include "field/neighbours.h"
 #include "placing/sensor_suggest.h"
 #include "scene/scene_create.h"
-#include "tests/support/cad.h"
+#include "tests/support/surface_case.h"
 #include "tests/support/model_maker.h"
 #include "tests/support/prep_case.h"
 #include "tests/support/temp.h"
@@ -20,21 +20,7 @@
 #define WIDTH_M 0.1
 #define SENSORS 12 /* more sensors than the field sums in one pass */
 
-static struct log *the_log;
-
-static int set_up(void **state)
-{
-    the_log = log_create(LOG_ERROR);
-    return prep_case_set_up(state);
-}
-
-static int tear_down(void **state)
-{
-    log_destroy(&the_log);
-    return prep_case_tear_down(state);
-}
-
-#define CASE(name) TEST_ON(struct prep_case *c, name, set_up, tear_down)
+#define CASE(name) TEST_ON(struct prep_case *c, name, prep_case_set_up, prep_case_tear_down)
 
 static void write_model(const struct prep_case *c)
 {
@@ -338,7 +324,7 @@ static struct direction points_at(struct plant_in_use *u, double x_m)
     }
     size_t count = directions_read(u->scene, 0, 0, u->snapshot, &said);
     assert_int_equal(count, 4);
-    directions_find(u->scene, 0, &u->params, said, count, &place, 1, &found);
+    directions_find(&(struct direction_sources){ u->scene, 0, &u->params, said, count }, &place, 1, &found);
     mem_free(said);
     return found;
 }
@@ -754,3 +740,5 @@ CASE(test_damaged_file)
     assert_int_not_equal(access(path, F_OK), 0);
     mem_free(path);
 }
+
+TEST_GROUP(surface_case_set_up, surface_case_tear_down)

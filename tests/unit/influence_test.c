@@ -36,7 +36,8 @@ static void solve(struct influence_case *s, const double (*places_m)[3], size_t 
         (const float(*)[3])s->shape.positions, s->shape.triangles, vertices, s->shape.triangle_count, anchors, NULL, 0
     };
     assert_true(influence_bend_init(&bend, &mesh, s->surface, &drawn, 1000000));
-    assert_true(influence_conduct(&s->influence, the_log, workers, &mesh, decay_m, anchors, vertices, &bend));
+    const struct influence_task task = { the_log, workers, &mesh, anchors, vertices, &bend };
+    assert_true(influence_conduct(&s->influence, &task, decay_m));
     influence_bend_measure(&bend, 0, NULL, s->errors, &(struct bend_report){ 0 });
     influence_bend_finish(&bend);
     influence_mesh_finish(&mesh);

@@ -59,8 +59,8 @@ TEST(a_gap_is_not_set_into_one_that_it_runs_over)
         memcpy(positions[i], corners[i / 4] + 2 * (i % 4), 2 * sizeof(float));
     for (uint32_t i = 0; i < 6 * QUADS; i++)
         triangles[i] = 4 * (i / 6) + (const uint32_t[6]){ 0, 1, 2, 0, 2, 3 }[i % 6];
-    assert_true(
-        trimesh_weld(&mesh, (const float(*)[3])positions, 4 * QUADS, triangles, 2 * QUADS, 1e-6, vertex_point, &degenerate, &repeated));
+    assert_true(trimesh_weld(&mesh, &(struct trimesh_model){ (const float(*)[3])positions, 4 * QUADS, triangles, 2 * QUADS }, 1e-6,
+                             vertex_point, &degenerate, &repeated));
     repair_seams(&mesh, TOLERANCE_M, target, &report);
     assert_false(sheets_share(&mesh));
     assert_int_equal(open_edges(&mesh), 6 + 8);
@@ -92,7 +92,8 @@ TEST(a_gap_is_closed_across_not_with_what_lies_on_it)
         for (int i = 0; i < 6; i++)
             triangles[6 * q + (uint32_t)i] = 4 * q + turned[q / 2][i];
     }
-    assert_true(trimesh_weld(&mesh, (const float(*)[3])positions, 16, triangles, 8, 1e-9, vertex_point, &degenerate, &repeated));
+    assert_true(trimesh_weld(&mesh, &(struct trimesh_model){ (const float(*)[3])positions, 16, triangles, 8 }, 1e-9, vertex_point,
+                             &degenerate, &repeated));
     repair_seams(&mesh, TOLERANCE_M, target, &report);
     for (int i = 0; i < 2; i++) { /* the vertices at each end of the crack are merged */
         static const uint32_t ends[2][4] = { { 1, 4, 9, 12 }, { 2, 7, 10, 15 } };

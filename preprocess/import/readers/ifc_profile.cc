@@ -72,10 +72,14 @@ std::vector<TopoDS_Face> faces_of(const TopoDS_Wire &outer, const std::vector<To
 using lengths = std::vector<double>;
 
 /* Builds an I profile whose flanges may differ in width. The fillet radii are those between the web and each flange. */
-TopoDS_Wire i_shape(double depth, double web, double bottom, double bottom_thick, double bottom_fillet, double top, double top_thick,
-                    double top_fillet)
+struct i_profile {
+    double depth, web, bottom, bottom_thick, bottom_fillet, top, top_thick, top_fillet;
+};
+
+TopoDS_Wire i_shape(const i_profile &i)
 {
-    double y = depth / 2, b = bottom / 2, t = top / 2, w = web / 2, low = -y + bottom_thick, high = y - top_thick;
+    double y = i.depth / 2, b = i.bottom / 2, t = i.top / 2, w = i.web / 2, low = -y + i.bottom_thick, high = y - i.top_thick;
+    double bottom_fillet = i.bottom_fillet, top_fillet = i.top_fillet;
     return outline({ { -b, -y, 0 }, { b, -y, 0 }, { b, low, 0 }, { w, low, bottom_fillet }, { w, high, top_fillet }, { t, high, 0 },
                      { t, y, 0 }, { -t, y, 0 }, { -t, high, 0 }, { -w, high, top_fillet }, { -w, low, bottom_fillet }, { -b, low, 0 } });
 }
@@ -130,9 +134,9 @@ std::vector<TopoDS_Face> parametric(const std::string &type, const lengths &d)
     if (type == "IFCELLIPSEPROFILEDEF")
         return faces_of(ellipse(d[0], d[1]), {});
     if (type == "IFCISHAPEPROFILEDEF")
-        return faces_of(i_shape(d[1], d[2], d[0], d[3], d[4], d[0], d[3], d[4]), {});
+        return faces_of(i_shape({ d[1], d[2], d[0], d[3], d[4], d[0], d[3], d[4] }), {});
     if (type == "IFCASYMMETRICISHAPEPROFILEDEF")
-        return faces_of(i_shape(d[1], d[2], d[0], d[3], d[4], d[5], d[6] > 0 ? d[6] : d[3], d[7]), {});
+        return faces_of(i_shape({ d[1], d[2], d[0], d[3], d[4], d[5], d[6] > 0 ? d[6] : d[3], d[7] }), {});
     if (type == "IFCLSHAPEPROFILEDEF")
         return faces_of(l_shape(d), {});
     if (type == "IFCUSHAPEPROFILEDEF")

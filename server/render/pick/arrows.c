@@ -129,7 +129,8 @@ void arrows_update(struct arrow_set *set, const struct scene *scene, int asset, 
     if (set->content == field->directions_content)
         return;
     set->content = field->directions_content;
-    directions_find(scene, asset, &field->params, field->directions, field->direction_count, set->places, set->count, set->found);
+    const struct direction_sources sources = { scene, asset, &field->params, field->directions, field->direction_count };
+    directions_find(&sources, set->places, set->count, set->found);
 }
 
 double arrows_value(const struct arrow_set *set, size_t place, const struct asset_view *file, const struct fields_entry *field)

@@ -200,6 +200,7 @@ static void trace(struct stroke_set *set, const struct tracing *tracing, const s
         set->lengths[i] = arrows->found[i].known;
     }
     const double step_m = STEP_PART * arrows->spacing_m;
+    const struct direction_sources sources = { scene, asset, &field->params, field->directions, field->direction_count };
     for (int n = 1; n < STROKE_POINTS; n++, going = 0) {
         for (size_t i = 0; i < set->count; i++) {
             const struct stroke_point *last = &set->points[i][n - 1];
@@ -207,7 +208,7 @@ static void trace(struct stroke_set *set, const struct tracing *tracing, const s
             if (set->lengths[i] == n && step(tracing, &places[going], last->to.along, step_m / 2))
                 of[going++] = i;
         }
-        directions_find(scene, asset, &field->params, field->directions, field->direction_count, places, going, found);
+        directions_find(&sources, places, going, found);
         size_t halfway = going;
         going = 0;
         for (size_t k = 0; k < halfway; k++) {
@@ -217,7 +218,7 @@ static void trace(struct stroke_set *set, const struct tracing *tracing, const s
             if (to.known && step(tracing, &places[going], to.along, step_m))
                 of[going++] = of[k];
         }
-        directions_find(scene, asset, &field->params, field->directions, field->direction_count, places, going, found);
+        directions_find(&sources, places, going, found);
         for (size_t k = 0; k < going; k++) {
             const struct stroke_point *last = &set->points[of[k]][n - 1];
             if (!found[k].known || dot(found[k].along, last->to.along) < MIN_DOT)

@@ -153,10 +153,10 @@ bool soft_resolve_again(struct soft *soft, const struct frame_context *context, 
     if (!buffer || (context->colormap.lines && !buffer->lined) || (points->count > 0 && !buffer->depth))
         return false;
     frame_uniforms_fill(&block, context);
-    const uint32_t *colormap = soft_colormap(soft, &context->colormap, context->view->look == LOOK_GLOSSY && !buffer->gloss);
+    const struct resolve_paint paint = { soft_colormap(soft, &context->colormap, context->view->look == LOOK_GLOSSY && !buffer->gloss),
+                                         block.scale[3], block.lines[0], context->colormap.nearest };
     resolve_read(buffer, context, soft->workers);
-    resolve_colors(buffer, colormap, &(struct resolve_lines){ block.lines[0], context->colormap.nearest }, block.scale[3], soft->workers, 0,
-                   buffer->band_count, frame);
+    resolve_colors(buffer, &paint, soft->workers, 0, buffer->band_count, frame);
     if (points->count > 0)
         isolines_find(context, points, buffer->depth, (size_t)buffer->width_px, frame);
     frame->markers = mem_array(buffer->marker_count, sizeof(*frame->markers));

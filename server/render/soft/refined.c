@@ -314,8 +314,8 @@ bool refined_step(struct refined *refined, const struct frame_context *context, 
         break;
     case REFINED_COLOR:
         done = advance(refined, bands, BANDS, &begin, &end);
-        resolve_colors(refined->buffer, raster->colormap, &(struct resolve_lines){ raster->block.lines[0], raster->lines },
-                       raster->block.scale[3], workers, (int)begin, (int)(end - begin), frame);
+        const struct resolve_paint paint = { raster->colormap, raster->block.scale[3], raster->block.lines[0], raster->lines };
+        resolve_colors(refined->buffer, &paint, workers, (int)begin, (int)(end - begin), frame);
         break;
     case REFINED_DONE: return true;
     }

@@ -10,9 +10,7 @@
 struct coloring {
     const struct visibility_buffer *buffer;
     const float *scale;
-    const uint32_t *colormap;
-    struct resolve_lines lines;
-    float pattern_px;
+    struct resolve_paint paint;
     /* log: the scale is logarithmic; rich: there are isolines, or the scale is logarithmic, so the slower code path is used */
     bool log, rich;
     struct frame *frame;
@@ -80,8 +78,8 @@ static void weight_steps(const struct visibility_slopes *slopes, float w1, float
 static float line_part(const struct coloring *coloring, float column, float slope)
 {
     float place = (column - (1 + SLACK * COLUMNS_OF_RANGE)) * (1 / COLUMNS_OF_RANGE);
-    float nearest = coloring->lines.nearest[(int)clamped(column - 1, 0, COLORMAP_PLACES - 1)];
-    return slope > MIN_SLOPE ? clamped(0.5f * coloring->lines.line_px + 0.5f - fabsf(place - nearest) / slope, 0, 1) : 0;
+    float nearest = coloring->paint.nearest[(int)clamped(column - 1, 0, COLORMAP_PLACES - 1)];
+    return slope > MIN_SLOPE ? clamped(0.5f * coloring->paint.line_px + 0.5f - fabsf(place - nearest) / slope, 0, 1) : 0;
 }
 
 static uint32_t packed(double red, double green, double blue)
@@ -111,19 +109,19 @@ struct shown_place { /* the field at one pixel */
 
 static uint32_t color_of_place(const struct coloring *coloring, const struct shown_place *place)
 {
-    const uint32_t *colors = coloring->colormap + place->row * COLORMAP_COLUMNS;
+    const uint32_t *colors = coloring->paint.colormap + place->row * COLORMAP_COLUMNS;
     float x = place->x, y = place->y;
     if (place->no_data)
         return mix(colors[COLORMAP_PATTERNS + PATTERN_HATCH_LIGHT], colors[COLORMAP_PATTERNS + PATTERN_HATCH_DARK],
-                   clamped(hatch(x, y, coloring->pattern_px), 0, 1));
+                   clamped(hatch(x, y, coloring->paint.pattern_px), 0, 1));
     if (coloring->rich && place->no_limits)
         return mix(colors[COLORMAP_PATTERNS + PATTERN_PLAIN_LIGHT], colors[COLORMAP_PATTERNS + PATTERN_PLAIN_DARK],
-                   clamped(rule(y, coloring->pattern_px), 0, 1));
+                   clamped(rule(y, coloring->paint.pattern_px), 0, 1));
     float column = column_of_carried(coloring, place->carried);
     uint32_t color = colors[(int)clamped(column, 0, COLORMAP_PLACES + 1)];
     if (place->uncertain)
-        color = mix(color, colors[COLORMAP_PATTERNS + PATTERN_STIPPLE], clamped(stipple(x, y, coloring->pattern_px), 0, 1));
-    return coloring->lines.line_px > 0 ? lined(color, line_part(coloring, column, place->slope)) : color;
+        color = mix(color, colors[COLORMAP_PATTERNS + PATTERN_STIPPLE], clamped(stipple(x, y, coloring->paint.pattern_px), 0, 1));
+    return coloring->paint.line_px > 0 ? lined(color, line_part(coloring, column, place->slope)) : color;
 }
 
 /* Interpolates the field at a point of a triangle from its corners. w: weights of the corners. steps: change of the weights per pixel, read
@@ -171,7 +169,7 @@ static uint32_t flagged_color(const struct coloring *coloring, const struct visi
     float w1 = (float)(weights & 0xffff) * WEIGHT, w2 = (float)(weights >> 16) * WEIGHT, w[3] = { 1 - w1 - w2, w1, w2 };
     float steps[2][2] = { { 0 } };
     struct shown_place place = { .row = row, .x = x, .y = y };
-    if (coloring->lines.line_px > 0)
+    if (coloring->paint.line_px > 0)
         weight_steps(&band->slopes[triangle], w1, w2, x, y, steps);
     if (band->corners[triangle][3] > 0)
         evaluate_place(coloring, band, triangle, w, steps, &place);
@@ -270,9 +268,9 @@ SOFT_INLINE lanes_int may_be_lined(const struct coloring *coloring, const struct
     }
     lanes place = (column - (1 + SLACK * COLUMNS_OF_RANGE)) * (1 / COLUMNS_OF_RANGE), nearest;
     lanes_int at = lanes_whole(lanes_clamp(lanes_choose(column == column, column, none) - 1.0f, 0, COLORMAP_PLACES - 1));
-    nearest = lanes_look_up(coloring->lines.nearest, at);
+    nearest = lanes_look_up(coloring->paint.nearest, at);
     lanes away = lanes_most(place - nearest, nearest - place);
-    return ~(away > slope * (0.5f * coloring->lines.line_px + 0.51f));
+    return ~(away > slope * (0.5f * coloring->paint.line_px + 0.51f));
 }
 
 /* Returns the colours of eight pixels of the field; arbitrary where shown->known is 0. */
@@ -284,7 +282,7 @@ SOFT_INLINE lanes_int field_colors(const struct coloring *coloring, const struct
         carried = columns_of_logs(carried, coloring->scale);
     lanes_int columns = lanes_whole(lanes_clamp(carried, 0, COLORMAP_PLACES + 1));
     for (int i = 0; i < LANES; i++)
-        colors[i] = (int32_t)coloring->colormap[(rows >> (8 * i) & 0xff) * COLORMAP_COLUMNS + (uint32_t)columns[i]];
+        colors[i] = (int32_t)coloring->paint.colormap[(rows >> (8 * i) & 0xff) * COLORMAP_COLUMNS + (uint32_t)columns[i]];
     return colors;
 }
 
@@ -346,7 +344,7 @@ SOFT_INLINE void color_parts(const struct coloring *coloring, const struct visib
     }
     ahead->first = first;
     ahead->end = first + count;
-    ahead->all_known = !lanes_any(~all_known) && !(coloring->lines.line_px > 0);
+    ahead->all_known = !lanes_any(~all_known) && !(coloring->paint.line_px > 0);
 }
 
 /* Adds glossy light to a colour. gloss NULL: returns the colour unchanged. */
@@ -364,7 +362,7 @@ static uint64_t flagged_sum(const struct coloring *coloring, const struct visibi
     uint64_t sum = 0;
     for (size_t i = mixed->first_part; i < (size_t)mixed->first_part + mixed->part_count; i++) {
         const struct visibility_part *part = &band->parts[i];
-        if (ahead->known[i - ahead->first] && !(coloring->lines.line_px > 0))
+        if (ahead->known[i - ahead->first] && !(coloring->paint.line_px > 0))
             sum += ahead->colors[i - ahead->first];
         else
             sum += spread(glossed(coloring, flagged_color(coloring, band, part->triangle, part->weights, part->row, x, y),
@@ -424,7 +422,7 @@ SOFT_INLINE lanes_int color_lanes(const struct coloring *coloring, const struct 
     memcpy(&rows, buffer->rows + at, sizeof(rows));
     carry(coloring, band, surfaces & field, *(const lanes_int *)(buffer->weights + at), &shown);
     lanes_int colors = field_colors(coloring, &shown, rows);
-    if (coloring->lines.line_px > 0)
+    if (coloring->paint.line_px > 0)
         shown.known &= ~may_be_lined(coloring, band, surfaces & field, &shown, x, y);
     for (uint32_t left = lanes_bits(field & ~shown.known); left; left &= left - 1) {
         size_t i = (size_t)__builtin_ctz(left), pixel = at + i;
@@ -467,12 +465,10 @@ static void color_bands(void *arg, size_t begin, size_t end)
         color_band(coloring, (int)(coloring->first_band + band));
 }
 
-void resolve_colors(const struct visibility_buffer *buffer, const uint32_t *colormap, const struct resolve_lines *lines, float pattern_px,
-                    struct workers *workers, int first, int count, struct frame *frame)
+void resolve_colors(const struct visibility_buffer *buffer, const struct resolve_paint *paint, struct workers *workers, int first,
+                    int count, struct frame *frame)
 {
     bool log = is_log(buffer->scale);
-    struct coloring coloring = {
-        buffer, buffer->scale, colormap, *lines, pattern_px, log, log || lines->line_px > 0, frame, (size_t)first
-    };
+    struct coloring coloring = { buffer, buffer->scale, *paint, log, log || paint->line_px > 0, frame, (size_t)first };
     workers_for(workers, (size_t)count, 2, color_bands, &coloring);
 }

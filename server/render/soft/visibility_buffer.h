@@ -115,10 +115,11 @@ bool visibility_buffer_gloss(struct visibility_buffer *buffer, const struct soft
 /* frees the buffer and sets *buffer to NULL; accepts a pointer to NULL */
 void visibility_buffer_destroy(struct visibility_buffer **buffer);
 size_t visibility_buffer_bytes(const struct visibility_buffer *buffer);
-/* Isolines of a frame. line_px 0: there are none. */
-struct resolve_lines {
-    float line_px;
-    const float *nearest; /* COLORMAP_PLACES entries, from struct shaded_colormap */
+struct resolve_paint {        /* colours, patterns and isolines of a frame */
+    const uint32_t *colormap; /* COLORMAP_ROWS x COLORMAP_COLUMNS texels */
+    float pattern_px;         /* cell size of patterns */
+    float line_px;            /* width of isolines; 0: there are none */
+    const float *nearest;     /* COLORMAP_PLACES entries, from struct shaded_colormap */
 };
 
 /* Adds a triangle to the band's list, unless it equals the triangle added last. Returns its index in the list. Runs on a worker. */
@@ -132,8 +133,8 @@ bool visibility_buffer_settle(struct visibility_buffer *buffer, struct workers *
 void resolve_read(struct visibility_buffer *buffer, const struct frame_context *context, struct workers *workers);
 /* Stores the slopes of the triangle that visibility_add_triangle() added last. weights: from soft_weights(). Runs on a worker. */
 void visibility_add_slopes(struct visibility_band *band, const double weights[3][3]);
-/* Colours `count` bands from `first` on. colormap: COLORMAP_ROWS x COLORMAP_COLUMNS texels. pattern_px: cell size of patterns. */
-void resolve_colors(const struct visibility_buffer *buffer, const uint32_t *colormap, const struct resolve_lines *lines, float pattern_px,
-                    struct workers *workers, int first, int count, struct frame *frame);
+/* Colours `count` bands from `first` on. */
+void resolve_colors(const struct visibility_buffer *buffer, const struct resolve_paint *paint, struct workers *workers, int first,
+                    int count, struct frame *frame);
 
 #endif

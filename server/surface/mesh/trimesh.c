@@ -306,16 +306,16 @@ static void clean(struct trimesh *mesh, size_t *degenerate, size_t *repeated)
     edge_table_finish(&seen);
 }
 
-bool trimesh_weld(struct trimesh *mesh, const float (*positions)[3], size_t vertex_count, const uint32_t *triangles, size_t triangle_count,
-                  double weld_m, uint32_t *vertex_point, size_t *degenerate, size_t *repeated)
+bool trimesh_weld(struct trimesh *mesh, const struct trimesh_model *model, double weld_m, uint32_t *vertex_point, size_t *degenerate,
+                  size_t *repeated)
 {
     *mesh = (struct trimesh){ 0 };
     *degenerate = *repeated = 0;
-    if (!weld_points(mesh, positions, vertex_count, weld_m, vertex_point))
+    if (!weld_points(mesh, model->positions, model->vertex_count, weld_m, vertex_point))
         return false;
-    mem_grow(&mesh->tri_times, &mesh->times_capacity, triangle_count, sizeof(*mesh->tri_times));
-    for (size_t t = 0; t < triangle_count; t++) {
-        const uint32_t *v = triangles + 3 * t;
+    mem_grow(&mesh->tri_times, &mesh->times_capacity, model->triangle_count, sizeof(*mesh->tri_times));
+    for (size_t t = 0; t < model->triangle_count; t++) {
+        const uint32_t *v = model->triangles + 3 * t;
         trimesh_add_tri(mesh, vertex_point[v[0]], vertex_point[v[1]], vertex_point[v[2]], (uint32_t)t);
     }
     clean(mesh, degenerate, repeated);

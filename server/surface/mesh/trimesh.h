@@ -17,11 +17,17 @@ struct trimesh {
     size_t point_count, point_capacity, tri_count, tri_capacity, source_capacity, times_capacity;
 };
 
+struct trimesh_model {
+    const float (*positions)[3];
+    size_t vertex_count;
+    const uint32_t *triangles; /* three vertices each */
+    size_t triangle_count;
+};
 /* Builds a mesh from a model, merging vertices closer than weld_m. Drops triangles without area (counted in *degenerate) and all but one of
  * several triangles with the same three points (counted in *repeated and in tri_times). vertex_point[vertex] receives the index of its
  * point. Returns false if out of memory. */
-bool trimesh_weld(struct trimesh *mesh, const float (*positions)[3], size_t vertex_count, const uint32_t *triangles, size_t triangle_count,
-                  double weld_m, uint32_t *vertex_point, size_t *degenerate, size_t *repeated);
+bool trimesh_weld(struct trimesh *mesh, const struct trimesh_model *model, double weld_m, uint32_t *vertex_point, size_t *degenerate,
+                  size_t *repeated);
 /* Frees the mesh. */
 void trimesh_finish(struct trimesh *mesh);
 /* Frees tri_times: the numbers of model triangles per triangle are no longer counted. */

@@ -210,11 +210,13 @@ static void set_into_edges(struct seams *s)
 
 /* One round of closing seams: merges border points within tolerance_m of each other, or, with into_edges, inserts border points into border
  * edges. */
-static void seam_round(struct trimesh *mesh, const struct borders *borders, double tolerance_m, double end_m, bool fits, bool into_edges,
-                       uint32_t *target, size_t target_count, struct repair_report *report)
+static void seam_round(struct trimesh *mesh, struct seams seams, bool into_edges, uint32_t *target, size_t target_count,
+                       struct repair_report *report)
 {
+    const struct borders *borders = seams.borders;
     struct mesh_edit edit;
-    struct seams seams = { .mesh = mesh, .borders = borders, .edit = &edit, .tolerance_m = tolerance_m, .end_m = end_m, .fits = fits };
+    seams.mesh = mesh;
+    seams.edit = &edit;
     mesh_edit_init(&edit);
     if (into_edges) {
         set_into_edges(&seams);
@@ -222,7 +224,7 @@ static void seam_round(struct trimesh *mesh, const struct borders *borders, doub
         double(*cloud)[3] = mem_array(borders->point_count, sizeof(*cloud));
         for (size_t i = 0; i < borders->point_count; i++)
             memcpy(cloud[i], mesh->points[borders->points[i]], sizeof(*cloud));
-        int k = point_cloud_neighbours((const double(*)[3])cloud, borders->point_count, tolerance_m, join_near, &seams);
+        int k = point_cloud_neighbours((const double(*)[3])cloud, borders->point_count, seams.tolerance_m, join_near, &seams);
         report->k = k < 0 || report->k < 0 ? -1 : k > report->k ? k : report->k;
         mem_free(cloud);
     }
@@ -243,8 +245,10 @@ void repair_seams(struct trimesh *mesh, double tolerance_m, uint32_t *target, st
         borders_init(&borders, mesh);
         if (round == 1)
             repair_hanging(mesh, &borders, tolerances_m[0], target, target_count, report);
-        seam_round(mesh, &borders, tolerances_m[round / 2], round == 1 ? tolerance_m : 0, round < 2, round % 2 == 1, target, target_count,
-                   report);
+        const struct seams seams = {
+            .borders = &borders, .tolerance_m = tolerances_m[round / 2], .end_m = round == 1 ? tolerance_m : 0, .fits = round < 2
+        };
+        seam_round(mesh, seams, round % 2 == 1, target, target_count, report);
         borders_finish(&borders);
     }
 }
@@ -256,7 +260,8 @@ void repair_join_points(struct trimesh *mesh, double tolerance_m, uint32_t *targ
     for (uint32_t i = 0; i < target_count; i++)
         target[i] = i;
     borders_init(&borders, mesh);
-    seam_round(mesh, &borders, tolerance_m, 0, true, false, target, target_count, report);
+    const struct seams seams = { .borders = &borders, .tolerance_m = tolerance_m, .fits = true };
+    seam_round(mesh, seams, false, target, target_count, report);
     borders_finish(&borders);
 }
 
@@ -288,7 +293,8 @@ size_t repair_rims(struct trimesh *mesh, const char *hidden, const struct body_p
         for (uint32_t i = 0; i < mesh->point_count; i++)
             then[i] = i;
         borders_init_rims(&borders, &seen, &rest, parts);
-        seam_round(&seen, &borders, widest_m, 0, false, round == 1, then, mesh->point_count, report);
+        const struct seams seams = { .borders = &borders, .tolerance_m = widest_m };
+        seam_round(&seen, seams, round == 1, then, mesh->point_count, report);
         borders_finish(&borders);
         trimesh_rename(&rest, then, &degenerate, &repeated);
         for (uint32_t i = 0; i < mesh->point_count; i++)

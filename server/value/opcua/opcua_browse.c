@@ -74,8 +74,10 @@ static int browse_rest(struct browse *browse, size_t parent, UA_ByteString point
     while (status == 0 && point.length > 0) {
         UA_BrowseNextRequest request = { .continuationPoints = &point, .continuationPointsSize = 1 };
         UA_BrowseNextResponse response;
-        status = opcua_call(browse->client, &request, &UA_TYPES[UA_TYPES_BROWSENEXTREQUEST], &response,
-                            &UA_TYPES[UA_TYPES_BROWSENEXTRESPONSE], browse->stop_fd, browse->deadline_mono_ns, why);
+        status = opcua_call(browse->client,
+                            &(struct opcua_exchange){ &request, &UA_TYPES[UA_TYPES_BROWSENEXTREQUEST], &response,
+                                                      &UA_TYPES[UA_TYPES_BROWSENEXTRESPONSE] },
+                            browse->stop_fd, browse->deadline_mono_ns, why);
         UA_ByteString_clear(&point);
         if (status == 0 && response.resultsSize == 1) {
             see_all(browse, parent, &response.results[0]);
@@ -101,8 +103,10 @@ static int browse_node(struct browse *browse, size_t at, char why[200])
                                  .requestedMaxReferencesPerNode = REFERENCES_AT_ONCE };
     UA_BrowseResponse response;
     UA_ByteString point = UA_BYTESTRING_NULL;
-    int status = opcua_call(browse->client, &request, &UA_TYPES[UA_TYPES_BROWSEREQUEST], &response, &UA_TYPES[UA_TYPES_BROWSERESPONSE],
-                            browse->stop_fd, browse->deadline_mono_ns, why);
+    int status =
+        opcua_call(browse->client,
+                   &(struct opcua_exchange){ &request, &UA_TYPES[UA_TYPES_BROWSEREQUEST], &response, &UA_TYPES[UA_TYPES_BROWSERESPONSE] },
+                   browse->stop_fd, browse->deadline_mono_ns, why);
     if (status == 0 && response.resultsSize == 1) {
         see_all(browse, at, &response.results[0]);
         point = response.results[0].continuationPoint;
@@ -145,8 +149,10 @@ static int read_variable(struct browse *browse, size_t at, char why[200])
                                  { .nodeId = step->id, .attributeId = UA_ATTRIBUTEID_DESCRIPTION } };
     UA_ReadRequest request = { .nodesToRead = values, .nodesToReadSize = 2, .timestampsToReturn = UA_TIMESTAMPSTORETURN_NEITHER };
     UA_ReadResponse response;
-    int status = opcua_call(browse->client, &request, &UA_TYPES[UA_TYPES_READREQUEST], &response, &UA_TYPES[UA_TYPES_READRESPONSE],
-                            browse->stop_fd, browse->deadline_mono_ns, why);
+    int status =
+        opcua_call(browse->client,
+                   &(struct opcua_exchange){ &request, &UA_TYPES[UA_TYPES_READREQUEST], &response, &UA_TYPES[UA_TYPES_READRESPONSE] },
+                   browse->stop_fd, browse->deadline_mono_ns, why);
     bool is_one = status == 0 && response.resultsSize == 2 && is_number(&response.results[0].value);
     char *address = is_one ? address_of(browse, &step->id) : NULL;
     if (address) {

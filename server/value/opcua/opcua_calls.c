@@ -72,10 +72,10 @@ int opcua_call_end(struct opcua_client *client, UA_StatusCode sent, int stop_fd,
     return status;
 }
 
-int opcua_call(struct opcua_client *client, const void *request, const UA_DataType *request_type, void *response,
-               const UA_DataType *response_type, int stop_fd, int64_t deadline_mono_ns, char why[200])
+int opcua_call(struct opcua_client *client, const struct opcua_exchange *exchange, int stop_fd, int64_t deadline_mono_ns, char why[200])
 {
-    opcua_call_begin(client, response, response_type);
-    UA_StatusCode sent = __UA_Client_AsyncService(client->library, request, request_type, opcua_on_answer, response_type, client, NULL);
+    opcua_call_begin(client, exchange->response, exchange->response_type);
+    UA_StatusCode sent = __UA_Client_AsyncService(client->library, exchange->request, exchange->request_type, opcua_on_answer,
+                                                  exchange->response_type, client, NULL);
     return opcua_call_end(client, sent, stop_fd, deadline_mono_ns, why);
 }

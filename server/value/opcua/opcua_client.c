@@ -191,8 +191,10 @@ static int discover(struct opcua_client *client, int stop_fd, int64_t deadline_m
         if (i == 0)
             status = open_library(client, &open, false, stop_fd, deadline_mono_ns, why);
         if (i > 0 || status == 0)
-            status = opcua_call(client, &request, &UA_TYPES[UA_TYPES_GETENDPOINTSREQUEST], &response,
-                                &UA_TYPES[UA_TYPES_GETENDPOINTSRESPONSE], stop_fd, deadline_mono_ns, why);
+            status = opcua_call(client,
+                                &(struct opcua_exchange){ &request, &UA_TYPES[UA_TYPES_GETENDPOINTSREQUEST], &response,
+                                                          &UA_TYPES[UA_TYPES_GETENDPOINTSRESPONSE] },
+                                stop_fd, deadline_mono_ns, why);
         else
             break;
         if (status == 0)

@@ -40,10 +40,15 @@ struct opcua_client {
 /* Receives until *done is true, or until the deadline. Returns 0; -ECANCELED; -ETIMEDOUT with the reason in `why`; another negative code
  * with the reason in `why` if the connection has ended. */
 int opcua_wait(struct opcua_client *client, const bool *done, int stop_fd, int64_t deadline_mono_ns, char why[200]);
+struct opcua_exchange {
+    const void *request;
+    const UA_DataType *request_type;
+    void *response;
+    const UA_DataType *response_type;
+};
 /* Sends a request and waits for its response. Returns the codes of opcua_wait(), or -EPROTO if the server refuses the request. The caller
  * clears the response with UA_clear() in all cases. */
-int opcua_call(struct opcua_client *client, const void *request, const UA_DataType *request_type, void *response,
-               const UA_DataType *response_type, int stop_fd, int64_t deadline_mono_ns, char why[200]);
+int opcua_call(struct opcua_client *client, const struct opcua_exchange *exchange, int stop_fd, int64_t deadline_mono_ns, char why[200]);
 /* opcua_call() in two steps, for requests that are sent by functions of the library: call opcua_call_begin() before the library function,
  * and opcua_call_end() with its result. Pass opcua_on_answer as the callback, with the client as userdata. */
 void opcua_call_begin(struct opcua_client *client, void *response, const UA_DataType *type);

@@ -43,8 +43,10 @@ int opcua_read_namespaces(struct opcua_client *client, int stop_fd, int64_t dead
                                  { .nodeId = UA_NODEID_NUMERIC(0, MAX_ITEMS_PER_CALL), .attributeId = UA_ATTRIBUTEID_VALUE } };
     UA_ReadRequest request = { .nodesToRead = values, .nodesToReadSize = 2, .timestampsToReturn = UA_TIMESTAMPSTORETURN_NEITHER };
     UA_ReadResponse response;
-    int status = opcua_call(client, &request, &UA_TYPES[UA_TYPES_READREQUEST], &response, &UA_TYPES[UA_TYPES_READRESPONSE], stop_fd,
-                            deadline_mono_ns, why);
+    int status =
+        opcua_call(client,
+                   &(struct opcua_exchange){ &request, &UA_TYPES[UA_TYPES_READREQUEST], &response, &UA_TYPES[UA_TYPES_READRESPONSE] },
+                   stop_fd, deadline_mono_ns, why);
     if (status == 0 && response.resultsSize == 2) {
         const UA_Variant *most = &response.results[1].value;
         keep_namespaces(client, &response.results[0].value);
