@@ -486,8 +486,8 @@ static void on_receive(struct server_context *server, struct stream *stream, con
             return;
         }
         on_message(server, stream);
+        pump(server, stream);
     }
-    pump(server, stream);
 }
 
 void stream_on_historical_snapshot(struct server_context *server, const struct history_loader_answer *answer)
