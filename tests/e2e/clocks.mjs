@@ -16,8 +16,7 @@ before(async () => {
     if (options.skip)
         return;
     nodes = await Nodes.create({ slowDevice: true }); // a picture without any good reading has no age
-    for (const [tag, value] of [['TI-1', 20], ['TI-2', 20], ['PI-1', 5]])
-        await nodes.plant.tell(`set ${tag} ${value}`);
+    await nodes.plant.set({ 'TI-1': 20, 'TI-2': 20, 'PI-1': 5 });
 });
 after(() => nodes?.destroy());
 

@@ -21,8 +21,7 @@ before(async () => {
     nodes = await Nodes.create({ slowDevice: true });
     core = await nodes.core();
     [a, b] = await Promise.all([nodes.renderer('a', core), nodes.renderer('b', core)]);
-    for (const [tag, value] of [['TI-1', 80.25], ['TI-2', 20], ['PI-1', 5]])
-        await nodes.plant.tell(`set ${tag} ${value}`);
+    await nodes.plant.set({ 'TI-1': 80.25, 'TI-2': 20, 'PI-1': 5 });
 });
 after(() => nodes?.destroy());
 

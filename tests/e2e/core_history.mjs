@@ -34,8 +34,7 @@ before(async () => {
     writeFileSync(join(nodes.plant.folder, 'series.csv'), series());
     const imported = runProgram('plantcast', ['history', 'import', nodes.plant.file, join(nodes.plant.folder, 'series.csv')]);
     assert.equal(imported.code, 0, imported.err);
-    for (const [tag, value] of [['TI-1', 95], ['TI-2', 20], ['PI-1', 5]])
-        await nodes.plant.tell(`set ${tag} ${value}`);
+    await nodes.plant.set({ 'TI-1': 95, 'TI-2': 20, 'PI-1': 5 });
     core = await nodes.core();
     renderer = await nodes.renderer('far', core);
     await until('readings', async () => (await renderer.tags())['TI-1'].quality_name === 'Good');

@@ -18,9 +18,7 @@ before(async () => {
     if (skip)
         return;
     plant = await TinyPlant.create();
-    assert.equal(plant.prepare().code, 0);
-    await plant.startSim();
-    await plant.startDaemon(...LIMITS.flatMap((limit) => ['--limit', limit]));
+    await plant.start(...LIMITS.flatMap((limit) => ['--limit', limit]));
     pid = plant.daemon.child.pid;
 });
 after(() => plant?.destroy());

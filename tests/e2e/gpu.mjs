@@ -25,9 +25,7 @@ async function start(hardware) {
     places.push({ plant, faults });
     faults.set('hardware', hardware ? 1 : 0);
     plant.as = faults.spawn;
-    assert.equal(plant.prepare().code, 0);
-    await plant.startSim();
-    await plant.startDaemon();
+    await plant.start();
     for (const [tag, value] of [['TI-1', WARM[0]], ['TI-2', 20], ['PI-1', 5]])
         await plant.tell(`set ${tag} ${value}`);
     return { plant, faults };

@@ -21,8 +21,7 @@ before(async () => {
     server = await PostgresServer.start();
     server.makeDatabase('plants');
     two = await TwoCores.create(server, '', HOST);
-    for (const [tag, value] of [['TI-1', 50], ['TI-2', 20], ['PI-1', 5]])
-        await two.plant.tell(`set ${tag} ${value}`);
+    await two.plant.set({ 'TI-1': 50, 'TI-2': 20, 'PI-1': 5 });
     await Promise.all([two.start('one'), two.start('two')]);
     await two.followed(await two.leader());
     const agentPort = await freePort();

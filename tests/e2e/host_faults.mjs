@@ -57,9 +57,7 @@ test('a volume that becomes read-only: it runs on and says so; what it held come
     process.env.RUNTIME_DIRECTORY = runtime; // the service's runtime folder, in which the daemon stores what no disk accepts
     const plant = await TinyPlant.create();
     try {
-        assert.equal(plant.prepare().code, 0);
-        await plant.startSim();
-        await plant.startDaemon('--history', history);
+        await plant.start('--history', history);
         await take(plant, 11);
         await until('a point on disk', () => ledger(plant, history).some((line) => /,11[.,]/.test(`${line},`)));
         writeFileSync(trigger, '1');

@@ -46,8 +46,7 @@ before(async () => {
     cpSync(aside, plant.folder, { recursive: true });
     rmSync(aside, { recursive: true });
     await plant.startSim();
-    for (const [tag, value] of [['TI-1', 95.5], ['TI-2', 20], ['PI-1', 5]])
-        await plant.tell(`set ${tag} ${value}`);
+    await plant.set({ 'TI-1': 95.5, 'TI-2': 20, 'PI-1': 5 });
     port = await freePort();
     await start();
     await until('the alarm', async () => (await alarm())?.state === 'unacknowledged');

@@ -27,8 +27,7 @@ before(async () => {
     plant.daemon = new Program('plantcastd', [plant.file, '--port', '0', '--log-format', 'json', '--tokens', file, '--history',
         join(plant.folder, 'history'), '--audit', join(plant.folder, 'audit')]);
     plant.port = Number((await plant.daemon.line(/"ready https?:\/\/[\d.]+:(\d+)\//m))[1]);
-    for (const [tag, value] of [['TI-1', 80], ['TI-2', 20], ['PI-1', 5]])
-        await plant.tell(`set ${tag} ${value}`);
+    await plant.set({ 'TI-1': 80, 'TI-2': 20, 'PI-1': 5 });
     await sleep(3000);
 });
 after(() => plant?.destroy());

@@ -25,9 +25,7 @@ before(async () => {
     firstTags = readFileSync(tagsFile, 'utf8').replace('Stale s', 'Stale s,H').replace(/,1$/gm, ',60,');
     writeFileSync(tagsFile, firstTags.replace('E-101,0.5,0,0,60,', 'E-101,0.5,0,0,60,-1')); // TI-1 is beyond H
     writeFileSync(plant.file, `${readFileSync(plant.file, 'utf8').replace('timeout_ms: 300', 'timeout_ms: 10000')}alarms: local\n`);
-    assert.equal(plant.prepare().code, 0);
-    await plant.startSim();
-    await plant.startDaemon();
+    await plant.start();
 });
 after(() => plant?.destroy());
 

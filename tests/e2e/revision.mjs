@@ -228,9 +228,7 @@ test('under a daemon that runs: readings, history and alarms keep their tags', {
     const outside = mkdtempSync(join(tmpdir(), 'plantcast-revised-'));
     try {
         bring(plant, '--modbus', `127.0.0.1:${tiny.modbusPort}`, '--byte-order', 'CDAB');
-        assert.equal(tiny.prepare().code, 0);
-        await tiny.startSim();
-        await tiny.startDaemon();
+        await tiny.start();
         await tiny.tell('set TT-1101 77');
         await tiny.tell('set art1111po.TE-03 44');
         await until('a reading', async () => (await value('TT-1101')).value === 77);

@@ -60,11 +60,8 @@ walls: [{ id: tiled, tile: { columns: 2, rows: 1, views: warm } }]
 `);
     makeKey('server');
     makeKey('other');
-    assert.equal(plant.prepare().code, 0);
-    await plant.startSim();
-    await plant.startDaemon('--signing-key', path('server.pem'));
-    for (const [tag, value] of [['TI-1', 80], ['TI-2', 20], ['PI-1', 5]])
-        await plant.tell(`set ${tag} ${value}`);
+    await plant.start('--signing-key', path('server.pem'));
+    await plant.set({ 'TI-1': 80, 'TI-2': 20, 'PI-1': 5 });
     await sleep(500);
     picture = await fetchPicture('width=640&height=400');
 });

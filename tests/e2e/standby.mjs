@@ -28,8 +28,7 @@ before(async () => {
   recipients: [{ id: hook, webhook: "http://127.0.0.1:${hook.port}/" }]
   rules: [{ id: all, to: hook }]
 `);
-    for (const [tag, value] of [['TI-1', 50], ['TI-2', 20], ['PI-1', 5]])
-        await two.plant.tell(`set ${tag} ${value}`);
+    await two.plant.set({ 'TI-1': 50, 'TI-2': 20, 'PI-1': 5 });
 });
 after(async () => {
     await feeding?.();

@@ -53,8 +53,7 @@ for (const off_s of [HOUR_S, -HOUR_S])
         allowLateAnswers(two);
         other.before = withClockOff(off_s);
         try {
-            for (const [tag, value] of [['TI-1', 95], ['TI-2', 20], ['PI-1', 5]])
-                await two.plant.tell(`set ${tag} ${value}`);
+            await two.plant.set({ 'TI-1': 95, 'TI-2': 20, 'PI-1': 5 });
             await two.start('one');
             await two.leader();
             await two.start('two');

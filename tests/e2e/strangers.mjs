@@ -94,8 +94,7 @@ test('through a proxy that nobody told of: 403, on every way to listen', { skip 
 test('anyone who looks on is told of no reading, tag or person, and follows nobody by counting', { skip }, async () => {
     await plant.startSim();
     await serve('--behind-proxy', '--host', 'plant.example', '--open-viewers', '--tokens', tokensFile);
-    for (const [tag, value] of [['TI-1', 81.25], ['TI-2', 20.5], ['PI-1', 5]])
-        await plant.tell(`set ${tag} ${value}`);
+    await plant.set({ 'TI-1': 81.25, 'TI-2': 20.5, 'PI-1': 5 });
     const as = (more = {}) => PlainClient.open(plant.port, { host: 'plant.example' }).then(async (client) => {
         client.welcome = await client.hello(more);
         return client;

@@ -23,9 +23,7 @@ before(async () => {
     plant = await TinyPlant.create();
     plant.keepFresh();
     appendFileSync(plant.file, WALLS);
-    assert.equal(plant.prepare().code, 0);
-    await plant.startSim();
-    await plant.startDaemon();
+    await plant.start();
 });
 after(() => plant?.destroy());
 

@@ -84,8 +84,7 @@ async function startOther() {
     const tls = ['--tls-cert', file('mail.pem'), '--tls-key', file('mail.key')];
     otherArgs = [...tls, '--tokens', file('tokens'), '--port', String(await freePort())];
     await other.startDaemon(...otherArgs);
-    for (const [tag, value] of [['TI-1', 80], ['TI-2', 20], ['PI-1', 5]])
-        await other.tell(`set ${tag} ${value}`);
+    await other.set({ 'TI-1': 80, 'TI-2': 20, 'PI-1': 5 });
 }
 
 // Starts the plant: its wall shows the other plant large, and next to it one whose server answers nonsense.
@@ -110,9 +109,7 @@ async function startPlant() {
     tokens.viewer = addToken(file, 'wall', '--unattended');
     tokens.display = addToken(file, 'one', '--display', 'room:1');
     tokens.second = addToken(file, 'two', '--display', 'room:2');
-    assert.equal(plant.prepare().code, 0);
-    await plant.startSim();
-    await plant.startDaemon('--tokens', file);
+    await plant.start('--tokens', file);
 }
 
 before(async () => {

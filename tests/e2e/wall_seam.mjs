@@ -29,11 +29,8 @@ before(async () => {
     plant = await TinyPlant.create();
     plant.keepFresh();
     appendFileSync(plant.file, WALLS);
-    assert.equal(plant.prepare().code, 0);
-    await plant.startSim();
-    await plant.startDaemon();
-    for (const [tag, value] of [['TI-1', 80], ['TI-2', 20], ['PI-1', 5]])
-        await plant.tell(`set ${tag} ${value}`);
+    await plant.start();
+    await plant.set({ 'TI-1': 80, 'TI-2': 20, 'PI-1': 5 });
 });
 after(() => plant?.destroy());
 

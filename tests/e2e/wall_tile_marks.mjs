@@ -31,11 +31,8 @@ before(async () => {
     const tags = join(plant.folder, 'tags.csv');
     writeFileSync(tags, readFileSync(tags, 'utf8').replace(/,1,90$/gm, ',600,90'));
     writeFileSync(plant.file, readFileSync(plant.file, 'utf8').replace('timeout_ms: 300', 'timeout_ms: 10000') + WALLS);
-    assert.equal(plant.prepare().code, 0);
-    await plant.startSim();
-    await plant.startDaemon();
-    for (const [tag, value] of [['TI-1', 50], ['TI-2', 20], ['PI-1', 5]])
-        await plant.tell(`set ${tag} ${value}`);
+    await plant.start();
+    await plant.set({ 'TI-1': 50, 'TI-2': 20, 'PI-1': 5 });
 });
 beforeEach(async () => {
     if (options.skip)

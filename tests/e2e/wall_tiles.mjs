@@ -31,9 +31,7 @@ before(async () => {
     plant = await TinyPlant.create();
     appendFileSync(plant.file, WALLS);
     plant.keepFresh();
-    assert.equal(plant.prepare().code, 0);
-    await plant.startSim();
-    await plant.startDaemon();
+    await plant.start();
     const values = { 'TI-1': 80, 'TI-2': 20, 'PI-1': 5 }; // from now on nothing changes by itself
     for (const [tag, value] of Object.entries(values))
         await plant.tell(`set ${tag} ${value}`);

@@ -7,6 +7,11 @@ struct log *the_log;
 struct workers *workers;
 struct cad_random chance;
 
+double between(double low, double high)
+{
+    return low + (high - low) * cad_random(&chance);
+}
+
 int surface_case_set_up(void **state)
 {
     (void)state;

@@ -10,6 +10,9 @@ extern struct log *the_log;
 extern struct workers *workers;
 extern struct cad_random chance;
 
+/* Returns a random number from `chance`. */
+double between(double low, double high);
+
 /* Set-up and tear-down of a cmocka group. */
 int surface_case_set_up(void **state);
 int surface_case_tear_down(void **state);

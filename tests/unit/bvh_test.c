@@ -6,24 +6,10 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 #include "surface/mesh/bvh.h"
-#include "tests/support/cad.h"
+#include "tests/support/surface_case.h"
 
 #define POINTS 400
 #define FAR 1e-9 /* share of the coordinates; between points closer than this, rounding decides */
-
-static struct cad_random chance;
-
-static int set_up(void **state)
-{
-    (void)state;
-    cad_random_start(&chance);
-    return 0;
-}
-
-static double between(double low, double high)
-{
-    return low + (high - low) * cad_random(&chance);
-}
 
 /* Makes a mesh of triangles on a lattice of points, many of which share a corner or an edge, and loose triangles of all sizes and
    shapes. */
@@ -365,4 +351,4 @@ TEST(test_a_parallel_segment_crosses_nothing)
     assert_int_equal(crossed, 0);
 }
 
-TEST_GROUP(set_up, NULL)
+TEST_GROUP(surface_case_set_up, surface_case_tear_down)

@@ -6,26 +6,12 @@
 #include <math.h>
 
 #include "base/mem.h"
-#include "tests/support/cad.h"
+#include "tests/support/surface_case.h"
 
 #define ADDED 300
 #define WITHIN_M 1e-7
 #define MOST_TRIS (4 * ADDED + 8)
 #define MOST_LEFT (ADDED / 2) /* many triangles are so thin from the start that no neighbour can absorb them */
-
-static struct cad_random chance;
-
-static double between(double low, double high)
-{
-    return low + (high - low) * cad_random(&chance);
-}
-
-static int set_up(void **state)
-{
-    (void)state;
-    cad_random_start(&chance);
-    return 0;
-}
 
 /* Two triangles that share the diagonal from (0, 0, 0) to (1, 1, 0): the corner (1, 0, 0) on its right, (0, 1, lift_m) on its left. */
 struct flat_plate {
@@ -234,4 +220,4 @@ TEST(what_is_not_flat_stays)
     trimesh_finish(&plate.mesh);
 }
 
-TEST_GROUP(set_up, NULL)
+TEST_GROUP(surface_case_set_up, surface_case_tear_down)

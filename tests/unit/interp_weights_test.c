@@ -5,19 +5,10 @@
 #include "tests/support/test.h"
 #include <math.h>
 
-#include "tests/support/cad.h"
+#include "tests/support/surface_case.h"
 
 #define MOST 40
 #define SAME 2e-6 /* shares are up to 1 */
-
-static struct cad_random chance;
-
-static int set_up(void **state)
-{
-    (void)state;
-    cad_random_start(&chance);
-    return 0;
-}
 
 struct weights_trial {
     size_t count, padded;
@@ -209,4 +200,4 @@ TEST(distances_and_errors_are_those_of_a_plain_loop)
     }
 }
 
-TEST_GROUP(set_up, NULL)
+TEST_GROUP(surface_case_set_up, surface_case_tear_down)

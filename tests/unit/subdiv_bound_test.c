@@ -5,20 +5,11 @@
 
 #include "base/mem.h"
 #include "preprocess/subdivision/subdivide_impl.h"
-#include "tests/support/cad.h"
+#include "tests/support/surface_case.h"
 
 #define BLOCK 8u
 #define TRIANGLES 24000u
 #define PARTS 3u
-
-static struct cad_random chance;
-
-static int set_up(void **state)
-{
-    (void)state;
-    cad_random_start(&chance);
-    return 0;
-}
 
 /* Makes a level whose triangle t has the vertices 3 t to 3 t + 2. */
 static void make_level(struct level *level)
@@ -134,4 +125,4 @@ TEST(a_sample_is_not_sure_of_what_one_triangle_needs)
     mem_free(errors);
 }
 
-TEST_GROUP(set_up, NULL)
+TEST_GROUP(surface_case_set_up, surface_case_tear_down)

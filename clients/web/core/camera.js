@@ -2,7 +2,7 @@
 // Cameras (camera_moves.js moves them). A camera is { eye, target, up, fov }: positions in metres in plant coordinates, fov vertical in
 // degrees; target is the centre of orbits. A camera with height_m (height of the picture in metres) is orthographic and only keeps fov.
 // Every function returns a new camera. Positions in the picture are pixels from the top left.
-import { along, cross, dot, finite, length, middle, scale, subtract, unit } from './vector.js';
+import { along, cross, dot, finite, length, middle, subtract, unit } from './vector.js';
 
 export const RADIANS = Math.PI / 180;
 export const LEAST_M = 1e-5; // smallest distance, or height of a picture, that the server accepts

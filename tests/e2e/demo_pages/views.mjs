@@ -161,9 +161,7 @@ test('who flies to a tag sees it', options, async (t) => {
 test('what stands before a tag on all sides becomes a ghost; Backspace goes back, and all is as it was', options, async () => {
     const tiny = await TinyPlant.create(), text = readFileSync(tiny.file, 'utf8');
     writeFileSync(tiny.file, text.replace('groups:', '  - { id: HOUSE, model: box.gltf, placement: { scale: 3 } }\ngroups:'));
-    assert.equal(tiny.prepare().code, 0);
-    await tiny.startSim();
-    await tiny.startDaemon();
+    await tiny.start();
     const own = await openPage(`http://127.0.0.1:${tiny.port}/`, { viewport: { width: 1200, height: 720 } }), on = own.page;
     const ghosts = (ids) => on.waitForFunction((all) => globalThis.plantcast.session.confirmed.ghost.join() === all, ids.join());
     try {

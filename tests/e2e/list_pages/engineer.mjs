@@ -21,8 +21,7 @@ before(async () => {
     writeFileSync(tagsFile, `${readFileSync(tagsFile, 'utf8')}TI-9,400007,Float,°C,spare,temperature,,,,,1\n`);
     assert.equal(plant.prepare().code, 0);
     await plant.startSim();
-    for (const [tag, value] of [['TI-1', 80], ['TI-2', 20], ['TI-9', 50], ['PI-1', 5]])
-        await plant.tell(`set ${tag} ${value}`);
+    await plant.set({ 'TI-1': 80, 'TI-2': 20, 'TI-9': 50, 'PI-1': 5 });
     plant.disown();
     await plant.startDaemon();
     browser = await openPage(`http://127.0.0.1:${plant.port}/`, DESKTOP);

@@ -31,8 +31,7 @@ walls:
     writeFileSync(tags, `${[`${head},H,HH`, ...rows.map((row) => row + limits[row.split(',')[0]])].join('\n')}\n`);
     assert.equal(plant.prepare().code, 0);
     await plant.startSim();
-    for (const [tag, value] of [['TI-1', 50], ['TI-2', 20], ['PI-1', 5]])
-        await plant.tell(`set ${tag} ${value}`);
+    await plant.set({ 'TI-1': 50, 'TI-2': 20, 'PI-1': 5 });
     await plant.startDaemon();
     url = `http://127.0.0.1:${plant.port}/`;
     desk = await openPage(url, SCREEN);

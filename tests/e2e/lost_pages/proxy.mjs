@@ -24,9 +24,7 @@ before(async () => {
     if (options.skip)
         return;
     plant = await TinyPlant.create();
-    assert.equal(plant.prepare().code, 0);
-    await plant.startSim();
-    await plant.startDaemon();
+    await plant.start();
 });
 after(() => plant?.destroy());
 

@@ -24,11 +24,8 @@ before(async () => {
     appendFileSync(plant.file, 'alarms: local\n');
     const tags = join(plant.folder, 'tags.csv');
     writeFileSync(tags, readFileSync(tags, 'utf8').split('\n').map((line, i) => line && line + (i === 0 ? ',H,HH' : ',60,90')).join('\n'));
-    assert.equal(plant.prepare().code, 0);
-    await plant.startSim();
-    await plant.startDaemon();
-    for (const [tag, value] of [['TI-1', 95.5], ['TI-2', 20], ['PI-1', 5]])
-        await plant.tell(`set ${tag} ${value}`);
+    await plant.start();
+    await plant.set({ 'TI-1': 95.5, 'TI-2': 20, 'PI-1': 5 });
     url = `http://127.0.0.1:${plant.port}/`;
 });
 after(() => plant?.destroy());
@@ -283,9 +280,7 @@ function certify(folder) {
 test('by https it is installed: it opens without its server, says so, and is live again with it', options, async (context) => {
     const secure = await TinyPlant.create(), by = certify(secure.folder);
     context.after(() => secure.destroy());
-    assert.equal(secure.prepare().code, 0);
-    await secure.startSim();
-    await secure.startDaemon(...by.daemon);
+    await secure.start(...by.daemon);
     const { port } = secure, address = `https://127.0.0.1:${port}/`;
     await withPage(address, { ...TABLET, args: by.browser, profile: true }, async (page) => {
         await page.evaluate(() => navigator.serviceWorker.ready);

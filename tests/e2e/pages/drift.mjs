@@ -86,8 +86,7 @@ const overhang = (page) => page.evaluate(() => {
 });
 
 test('the page lists it, and its card shows the week', options, async () => {
-    for (const [tag, value] of [['TI-1', 60], ['TI-2', 50], ['TI-3', 63], ['TI-4', 45]])
-        await plant.tell(`set ${tag} ${value}`);
+    await plant.set({ 'TI-1': 60, 'TI-2': 50, 'TI-3': 63, 'TI-4': 45 });
     const languages = [['en', /\+[78]\.\d °C.*: drifts/, /no drift detected/], ['de', /\+[78],\d °C.*: driftet/, /keine Drift/],
         ['ko', /\+[78]\.\d °C.*드리프트 있음/, /드리프트 없음/]];
     for (const [language, found, none] of languages.slice(0, process.env.PLANTCAST_SHOTS ? 3 : 1)) {

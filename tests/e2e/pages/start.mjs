@@ -37,9 +37,7 @@ test('a plant may begin with less than all of it; whoever asks for the rest keep
     const write = (id, how) => writeFileSync(tiny.file, text.replace('{ id: P-101A,', '{ id: P-101A, start: ghost,')
         .replace('groups:', `  - { id: ${id}, model: box.gltf, start: ${how}, placement: { scale: 9 } }\ngroups:`));
     write('HOUSE', 'hidden');
-    assert.equal(tiny.prepare().code, 0);
-    await tiny.startSim();
-    await tiny.startDaemon();
+    await tiny.start();
     const url = `http://127.0.0.1:${tiny.port}/`, own = await openPage(url, { viewport: { width: 1200, height: 720 } }), { page } = own;
     const sets = async () => page.evaluate(() => {
         const { hidden, isolate, ghost } = globalThis.plantcast.session.confirmed;

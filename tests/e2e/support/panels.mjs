@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A plant with alarms, and a tour of everything on the page that opens.
-import assert from 'node:assert/strict';
 import { appendFileSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { drawnAt, land } from './browser.mjs';
@@ -13,9 +12,7 @@ export async function startAlarmed(arrange = () => {}) {
     arrange(plant.file);
     const tags = join(plant.folder, 'tags.csv');
     writeFileSync(tags, readFileSync(tags, 'utf8').split('\n').map((line, i) => line && line + (i === 0 ? ',H,HH' : ',60,90')).join('\n'));
-    assert.equal(plant.prepare().code, 0);
-    await plant.startSim();
-    await plant.startDaemon();
+    await plant.start();
     await plant.tell('set TI-1 95.5');
     return [plant, `http://127.0.0.1:${plant.port}/`];
 }

@@ -133,14 +133,25 @@ export class TinyPlant {
 
     // Returns a prepared plant with simulator and daemon, one side warm and one cold.
     static async running() {
-        const plant = await TinyPlant.create(), { code, err } = plant.prepare();
+        const plant = await TinyPlant.create();
+        await plant.start();
+        await plant.set({ 'TI-1': 80, 'TI-2': 20, 'PI-1': 5 });
+        return plant;
+    }
+
+    // Prepares the plant, and starts its simulator and its daemon with these arguments.
+    async start(...args) {
+        const { code, err } = this.prepare();
         if (code !== 0)
             throw new Error(`it cannot be prepared: ${err}`);
-        await plant.startSim();
-        await plant.startDaemon();
-        for (const [tag, value] of [['TI-1', 80], ['TI-2', 20], ['PI-1', 5]])
-            await plant.tell(`set ${tag} ${value}`);
-        return plant;
+        await this.startSim();
+        await this.startDaemon(...args);
+    }
+
+    // Sets values of tags in the simulator: { tag: value }.
+    async set(values) {
+        for (const [tag, value] of Object.entries(values))
+            await this.tell(`set ${tag} ${value}`);
     }
 
     prepare() {
@@ -268,8 +279,7 @@ export async function startTiny(more = '', flags = []) {
         if (code !== 0)
             throw new Error(`it cannot be prepared: ${err}`);
         await plant.startSim();
-        for (const [tag, value] of [['TI-1', 80], ['TI-2', 20], ['PI-1', 5]])
-            await plant.tell(`set ${tag} ${value}`);
+        await plant.set({ 'TI-1': 80, 'TI-2': 20, 'PI-1': 5 });
         await startDaemon();
     } catch (error) {
         await plant.destroy();

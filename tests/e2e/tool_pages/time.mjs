@@ -38,8 +38,7 @@ before(async () => {
     assert.equal(imported.code, 0, imported.err);
     await plant.startSim();
     // sets normal values, so that there is only the alarm that a test raises
-    for (const [tag, value] of [['TI-1', 50], ['TI-2', 40], ['PI-1', 5]])
-        await plant.tell(`set ${tag} ${value}`);
+    await plant.set({ 'TI-1': 50, 'TI-2': 40, 'PI-1': 5 });
     await plant.startDaemon();
     browser = await openPage(`http://127.0.0.1:${plant.port}/`, { viewport: { width: 1280, height: 720 } });
     page = browser.page;
