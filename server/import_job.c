@@ -14,7 +14,7 @@
 #include "base/text/text.h"
 #include "importing/export_folder.h"
 #include "plant/plant_folder.h"
-#include "sibling.h"
+#include "helper_program.h"
 
 /* OWN_MB: memory limit in MB of plantcast-import itself, without the processes that read files for it */
 enum { FILES = 3, MAX_ARGUMENTS = 300, OWN_MB = 512 };
@@ -130,23 +130,23 @@ static void say_nothing(void *arg, const char *text)
     (void)text;
 }
 
-static struct sibling_params params_of(struct import_job *job, enum import_phase phase)
+static struct helper_params params_of(struct import_job *job, enum import_phase phase)
 {
     plant_import_set_phase(job->params.import, phase);
-    return (struct sibling_params){
+    return (struct helper_params){
         .stop = stop, .say = phase == IMPORT_PREPARING ? say_nothing : say, .arg = job, .log = job->params.log, .lent = job->params.lock
     };
 }
 
 static char *run(struct import_job *job, struct arguments *list, enum import_phase phase, char **remark)
 {
-    struct sibling_params params = params_of(job, phase);
+    struct helper_params params = params_of(job, phase);
     list->at[list->count] = NULL;
     params.arguments = list->at;
     params.remark = remark;
     params.memory_bytes = ((size_t)job->params.quotas->at[QUOTA_IMPORT_MB] + OWN_MB) << 20;
     params.memory_option = "--limit import-megabytes";
-    char *why = sibling_run(&params);
+    char *why = helper_run(&params);
     for (size_t i = 0; i < list->owned; i++)
         mem_free(list->own[i]);
     return why;
@@ -169,7 +169,7 @@ static void add_limits(struct arguments *list, const struct import_job *job)
 /* Adds the option that tells a program that this daemon has locked the plant's folder for it, and lends it the lock. */
 static void add_lent(struct arguments *list)
 {
-    list->own[list->owned] = mem_printf("%d", SIBLING_LENT);
+    list->own[list->owned] = mem_printf("%d", HELPER_LENT);
     add(list, "--folder-lent");
     add(list, list->own[list->owned++]);
 }
@@ -256,9 +256,9 @@ static char *match_tags(struct import_job *job, const struct import_order *order
 
 static char *prepare(struct import_job *job)
 {
-    struct sibling_params params = params_of(job, IMPORT_PREPARING);
+    struct helper_params params = params_of(job, IMPORT_PREPARING);
     job->prepares = true;
-    return sibling_prepare(&params, job->params.prepared, job->params.plant_path, job->params.quotas);
+    return helper_prepare(&params, job->params.prepared, job->params.plant_path, job->params.quotas);
 }
 
 char *import_job_run(struct import_job *job, const struct import_order *order, char **remark)

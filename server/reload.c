@@ -18,7 +18,7 @@
 #include "import_job.h"
 #include "plant/plant_diff.h"
 #include "plant/plant_folder.h"
-#include "sibling.h"
+#include "helper_program.h"
 
 enum { MAX_FIRST_VIEWS = 16 }; /* maximum number of views that are drawn with the new plant before the switch */
 static const int64_t SETTLE_NS = NS_PER_S; /* time limit for an action to be on disk; after it, its user is told that it is not kept */
@@ -296,8 +296,8 @@ static bool prepare(struct reload *reload)
 {
     const struct plant_runtime_context *context = reload->context;
     char *folder = plant_runtime_prepared_folder(context->params, (*reload->runtime)->plant);
-    char *why = sibling_prepare(&(struct sibling_params){ .stop = is_stopping, .arg = reload, .log = context->log }, folder,
-                                context->params->plant_path, &context->params->access.quotas);
+    char *why = helper_prepare(&(struct helper_params){ .stop = is_stopping, .arg = reload, .log = context->log }, folder,
+                               context->params->plant_path, &context->params->access.quotas);
     if (why)
         log_err(context->log, "%s", why);
     bool good = !why;

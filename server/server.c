@@ -20,14 +20,14 @@
 #include "base/system/cgroup.h"
 #include "base/system/confine.h"
 #include "base/mem.h"
-#include "corelink/seat.h"
+#include "corelink/node_id.h"
 #include "encode/encoder.h"
 #include "scene/far_sensors.h"
 #include "field/colormap.h"
 #include "plant_runtime.h"
 #include "provenance/signing_key.h"
 #include "reload.h"
-#include "sibling.h"
+#include "helper_program.h"
 #include "message/view_named.h"
 #include "plant/models/model_check.h"
 #include "plant/plant_folder.h"
@@ -46,7 +46,7 @@ struct server {
     struct plant_runtime_context context;
     struct plant_runtime *runtime;
     struct reload *reload;
-    struct seat seat;            /* unique identity of this core, even among cores of the same name (corelink/seat.h) */
+    struct node_id node_id;      /* unique identity of this core, even among cores of the same name (corelink/node_id.h) */
     struct lease_keeper *keeper; /* keeps the lease that decides which of two cores leads; NULL: this core is alone */
     bool follows, lost;          /* follows: another core polls the devices; lost: this core had the lease to lead and lost it */
     bool divided;                /* true: child processes that read files get cgroups of their own */
@@ -288,8 +288,8 @@ static bool prepare(struct server *server)
         log_warn(server->log, "%s: preparing the plant: prepared files are missing or outdated", server->params.plant_path);
         supervision_starting(server->supervision, "preparing the plant");
         atomic_store(&preparing, true);
-        why = sibling_prepare(&(struct sibling_params){ .stop = is_told_to_end, .log = server->log, .notifies = true }, folder,
-                              server->params.plant_path, &server->params.access.quotas);
+        why = helper_prepare(&(struct helper_params){ .stop = is_told_to_end, .log = server->log, .notifies = true }, folder,
+                             server->params.plant_path, &server->params.access.quotas);
         atomic_store(&preparing, false);
         good = !why && !atomic_load(&told_to_end);
         if (atomic_load(&told_to_end))
@@ -402,9 +402,9 @@ static void on_lost(void *arg)
 
 static bool take_seat(struct server *server, char name[LEASE_NODE_BYTES])
 {
-    char *why = seat_take(&server->seat, server->runtime->services.history_folder);
-    if (!why && !lease_name(name, server->params.node, server->seat.id))
-        why = mem_printf("--node: %s is longer than %d bytes", server->params.node, LEASE_NODE_BYTES - 2 - (int)strlen(server->seat.id));
+    char *why = node_id_take(&server->node_id, server->runtime->services.history_folder);
+    if (!why && !lease_name(name, server->params.node, server->node_id.id))
+        why = mem_printf("--node: %s is longer than %d bytes", server->params.node, LEASE_NODE_BYTES - 2 - (int)strlen(server->node_id.id));
     if (why)
         log_err(server->log, "%s", why);
     bool good = !why;
@@ -496,7 +496,7 @@ static void server_finish(struct server *server)
     plant_import_destroy(&server->import);
     plant_runtime_destroy(&server->runtime);
     lease_keeper_destroy(&server->keeper); /* gives the lease back; nothing polls devices any more */
-    seat_leave(&server->seat);
+    node_id_release(&server->node_id);
     workers_destroy(&server->workers);
     supervision_destroy(&server->supervision);
     counters_destroy(&server->counters);

@@ -19,7 +19,7 @@ struct lease_keeper_params {
     void *arg;
 };
 
-/* Writes the node's name "NODE ID", which differs even from that of a core with the same NODE (corelink/seat.h). Returns false if it is
+/* Writes the node's name "NODE ID", which differs even from that of a core with the same NODE (corelink/node_id.h). Returns false if it is
    too long. */
 bool lease_name(char out[LEASE_NODE_BYTES], const char *node, const char *id);
 

@@ -93,7 +93,7 @@ static void answer_with(struct render_service *service, struct frame *frame, str
 /* Adds the group's requests to the submitted frame with the same content, if there is one. */
 static void join_awaited(struct render_thread *thread, struct request_group *group, uint64_t content)
 {
-    struct awaited_frame *flight = awaited_frames_find(&thread->in_flight, content);
+    struct pending_readback *flight = pending_readbacks_find(&thread->in_flight, content);
     if (!flight)
         return;
     counter_inc(thread->service->shared, (int64_t)group->count);

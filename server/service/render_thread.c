@@ -102,13 +102,13 @@ static void deliver(struct render_thread *thread, struct frame *frame, const str
 static void submit(struct render_thread *thread, struct request_group *group, const struct historical_snapshot **historical,
                    const struct split_plan *plan)
 {
-    struct awaited_frame encoded = { .historical = *historical, .content = plan->content };
+    struct pending_readback encoded = { .historical = *historical, .content = plan->content };
     encoded.split = split_view_submit(thread->renderer, plan);
     if (!encoded.split) {
         fail(thread, group);
         return;
     }
-    awaited_frames_push(&thread->in_flight, &encoded, group, &thread->snapshot);
+    pending_readbacks_push(&thread->in_flight, &encoded, group, &thread->snapshot);
     *historical = NULL;
     thread->stale |= !encoded.historical;
 }
@@ -117,16 +117,16 @@ static void drop_oldest(struct render_thread *thread)
 {
     if (thread->in_flight.at[0].historical)
         snapshot_cache_give(thread->service->params.snapshot_cache, &thread->in_flight.at[0].historical);
-    awaited_frames_pop(&thread->in_flight);
+    pending_readbacks_pop(&thread->in_flight);
 }
 
 /* Waits until the oldest submitted frame is complete and passes it to the encode queue. */
 static void finish_oldest(struct render_thread *thread)
 {
-    struct awaited_frame *encoded = &thread->in_flight.at[0];
+    struct pending_readback *encoded = &thread->in_flight.at[0];
     struct frame *frame = split_view_end(thread->renderer, &encoded->split);
     if (is_good(thread, frame))
-        deliver(thread, frame, awaited_frames_readings(encoded), &encoded->group);
+        deliver(thread, frame, pending_readbacks_readings(encoded), &encoded->group);
     else
         fail(thread, &encoded->group);
     drop_oldest(thread);
@@ -135,8 +135,8 @@ static void finish_oldest(struct render_thread *thread)
 /* Passes all complete frames to the encode queue; if the list is full, waits for the oldest. */
 static void finish_complete(struct render_thread *thread)
 {
-    struct awaited_frames *in_flight = &thread->in_flight;
-    while (in_flight->count > 0 && (in_flight->count == AWAITED_FRAMES_MOST || split_view_is_complete(in_flight->at[0].split)))
+    struct pending_readbacks *in_flight = &thread->in_flight;
+    while (in_flight->count > 0 && (in_flight->count == PENDING_READBACKS_MAX || split_view_is_complete(in_flight->at[0].split)))
         finish_oldest(thread);
 }
 
@@ -459,7 +459,7 @@ static bool render_thread_init(struct render_thread *thread, struct render_servi
     thread->snapshot = snapshot_create(params->scene->plant->tag_count);
     thread->long_job.snapshot = snapshot_create(params->scene->plant->tag_count);
     thread->parked.snapshot = snapshot_create(params->scene->plant->tag_count);
-    awaited_frames_init(&thread->in_flight, params->scene->plant->tag_count);
+    pending_readbacks_init(&thread->in_flight, params->scene->plant->tag_count);
     store_snapshot(params->store, clock_mono_ns(), clock_plant_ns(), thread->snapshot);
     render_thread_memory_init(&thread->memory, service);
     return gl_begin(thread, params->gl, false);
@@ -477,7 +477,7 @@ static void render_thread_finish(struct render_thread *thread)
     request_group_finish(&thread->same);
     recent_frames_finish(&thread->recent);
     deferred_requests_finish(&thread->deferred);
-    awaited_frames_finish(&thread->in_flight);
+    pending_readbacks_finish(&thread->in_flight);
 }
 
 static void set_lost(struct render_service *service, bool lost)

@@ -4,7 +4,7 @@
 #define SERVICE_RENDER_THREAD_IMPL_H
 #include "render/memory.h"
 #include "service/deferred_requests.h"
-#include "service/awaited_frames.h"
+#include "service/pending_readbacks.h"
 #include "service/recent_frames.h"
 #include "service/render_service_impl.h"
 
@@ -45,7 +45,7 @@ struct render_thread {
     struct long_job parked;
     bool warm;             /* the warm-up is complete */
     int64_t turn_began_ns; /* monotonic: since when the thread has been drawing without a wait or other work */
-    struct awaited_frames in_flight;
+    struct pending_readbacks in_flight;
     /* groups that wait until their field is computed; in each turn that such a group gets, a part of the field is computed */
     struct deferred_requests deferred;
     struct thread_memory memory;

@@ -6,7 +6,7 @@ import { say } from '../../core/words.js';
 import { byId, make, setText } from '../common/dom.js';
 import { closeButton, fill } from '../common/widgets.js';
 import { Exports } from './exports.js';
-import { Lit } from './lit.js';
+import { Highlights } from './highlights.js';
 import { Report } from './report.js';
 import { Source } from './source.js';
 import { TagTable } from './tag_table.js';
@@ -36,10 +36,10 @@ export class Import {
     constructor(page) {
         this.page = page;
         this.button = byId('import-toggle');
-        this.lit = new Lit(page);
+        this.highlights = new Highlights(page);
         this.exports = new Exports({ session: page.session, onState: (state) => this.show(state),
             onEnd: (state, sent) => this.onEnd(state, sent) });
-        this.table = new TagTable({ page, lit: this.lit, save: () => this.decide() });
+        this.table = new TagTable({ page, highlights: this.highlights, save: () => this.decide() });
         this.source = new Source({ session: page.session, connect: (source) => this.try(() => this.exports.order('/source', source)) });
         this.report = new Report({ answer: (unit) => this.try(() => this.read({ what: 'anew', mesh_units: unit })) });
         this.build();
@@ -106,7 +106,7 @@ export class Import {
         }
         this.element.hidden = this.open;
         this.button.setAttribute('aria-expanded', this.open);
-        this.lit.show({ assets: [] });
+        this.highlights.show({ assets: [] });
         this.showPerson();
         if (this.open) {
             this.exports.look();
@@ -265,6 +265,6 @@ export class Import {
     }
 
     showPerson() {
-        this.lit.show({ person: this.open && this.person.checked && !this.isNew });
+        this.highlights.show({ person: this.open && this.person.checked && !this.isNew });
     }
 }

@@ -18,8 +18,8 @@ const meet = (a, b, m) => [0, 1, 2].every((i) => a.min[i] < b.max[i] + m && b.mi
 
 export class TagTable {
     // save(): sends the decisions.
-    constructor({ page, lit, save }) {
-        Object.assign(this, { page, lit, save, filter: 'all', chosen: null, shown: null });
+    constructor({ page, highlights, save }) {
+        Object.assign(this, { page, highlights, save, filter: 'all', chosen: null, shown: null });
         this.matches = new Matches((name) => this.isPlaced(name));
         this.build();
     }
@@ -136,7 +136,7 @@ export class TagTable {
 
     light(flies = false) {
         const assets = this.chosen && this.element.offsetParent !== null ? this.candidatesOf(this.chosen) : [];
-        this.lit.show({ assets });
+        this.highlights.show({ assets });
         if (assets.length > 0 && flies)
             this.page.modules.use('cameraController', (controller) =>
                 controller.flyToBox(union(assets.map(({ bounds }) => bounds)), ROOM), 'lit');
@@ -233,7 +233,7 @@ export class TagTable {
         const tag = this.page.session.model.tag(this.chosen.tag);
         if (!tag?.group)
             return;
-        this.lit.show({ assets: [] });
+        this.highlights.show({ assets: [] });
         this.showAlone(tag.asset);
         this.page.modules.use('engineer', (engineer) => {
             if (!engineer.open)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Starts another program as a child process, applies its limits, and reads what it prints to two pipes. */
-#include "sibling.h"
+#include "helper_program.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -25,8 +25,8 @@
 enum { STDOUT, STDERR, PIPES, POLL_MS = 50, MAX_STDERR_BYTES = 64 * 1024, MAX_TASKS = 512 };
 static const int64_t KILL_AFTER_NS = 30 * NS_PER_S;
 
-struct sibling {
-    const struct sibling_params *params;
+struct helper {
+    const struct helper_params *params;
     pid_t child;
     int ends[PIPES][2];  /* descriptors of the pipes; -1: closed */
     struct text written; /* output of the program on stderr */
@@ -43,104 +43,104 @@ static void close_end(int *fd)
 }
 
 /* Applies priority and memory limits. This happens within a millisecond of the start, before the program has read any input. */
-static void limit(struct sibling *sibling)
+static void limit(struct helper *helper)
 {
-    size_t bytes = sibling->params->memory_bytes;
-    setpriority(PRIO_PROCESS, (id_t)sibling->child, 10);
+    size_t bytes = helper->params->memory_bytes;
+    setpriority(PRIO_PROCESS, (id_t)helper->child, 10);
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) /* not set under sanitizers, whose shadow memory would count as data */
     if (bytes > 0)
-        prlimit(sibling->child, RLIMIT_DATA, &(struct rlimit){ bytes, bytes }, NULL);
+        prlimit(helper->child, RLIMIT_DATA, &(struct rlimit){ bytes, bytes }, NULL);
 #endif
-    bool divided = cgroup_create("reader", bytes, MAX_TASKS, &sibling->cgroup);
-    if (!divided || !cgroup_add(sibling->cgroup, sibling->child))
-        log_warn(sibling->params->log, "%s: its limits hold for each process alone: the cgroup `reader` cannot be %s: %s",
-                 sibling->params->arguments[0], divided ? "joined" : "made", strerror(errno));
+    bool divided = cgroup_create("reader", bytes, MAX_TASKS, &helper->cgroup);
+    if (!divided || !cgroup_add(helper->cgroup, helper->child))
+        log_warn(helper->params->log, "%s: its limits hold for each process alone: the cgroup `reader` cannot be %s: %s",
+                 helper->params->arguments[0], divided ? "joined" : "made", strerror(errno));
 }
 
-static int start(struct sibling *sibling)
+static int start(struct helper *helper)
 {
     char program[PATH_MAX];
     posix_spawn_file_actions_t actions;
     ssize_t length = readlink("/proc/self/exe", program, sizeof(program) - NAME_MAX - 1);
     program[length > 0 ? length : 0] = 0;
     char *slash = strrchr(program, '/');
-    strncpy(slash ? slash + 1 : program, sibling->params->arguments[0], NAME_MAX);
+    strncpy(slash ? slash + 1 : program, helper->params->arguments[0], NAME_MAX);
     posix_spawn_file_actions_init(&actions);
     int error = 0;
-    for (int i = 0; i < PIPES && sibling->params->say && !error; i++) {
-        error = pipe2(sibling->ends[i], O_CLOEXEC) == 0 ? 0 : errno;
+    for (int i = 0; i < PIPES && helper->params->say && !error; i++) {
+        error = pipe2(helper->ends[i], O_CLOEXEC) == 0 ? 0 : errno;
         if (!error)
-            error = posix_spawn_file_actions_adddup2(&actions, sibling->ends[i][1], i == STDOUT ? STDOUT_FILENO : STDERR_FILENO);
+            error = posix_spawn_file_actions_adddup2(&actions, helper->ends[i][1], i == STDOUT ? STDOUT_FILENO : STDERR_FILENO);
     }
     if (!error)
         error = posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    if (!error && sibling->params->lent > 0)
-        error = posix_spawn_file_actions_adddup2(&actions, sibling->params->lent, SIBLING_LENT);
+    if (!error && helper->params->lent > 0)
+        error = posix_spawn_file_actions_adddup2(&actions, helper->params->lent, HELPER_LENT);
     if (!error)
-        error = posix_spawn_file_actions_addclosefrom_np(&actions, sibling->params->lent > 0 ? SIBLING_LENT + 1 : STDERR_FILENO + 1);
-    char **environment = confine_environment(NULL, sibling->params->notifies);
+        error = posix_spawn_file_actions_addclosefrom_np(&actions, helper->params->lent > 0 ? HELPER_LENT + 1 : STDERR_FILENO + 1);
+    char **environment = confine_environment(NULL, helper->params->notifies);
     if (!error)
-        error = posix_spawn(&sibling->child, program, &actions, NULL, (char *const *)(uintptr_t)sibling->params->arguments, environment);
+        error = posix_spawn(&helper->child, program, &actions, NULL, (char *const *)(uintptr_t)helper->params->arguments, environment);
     mem_free(environment);
     posix_spawn_file_actions_destroy(&actions);
     for (int i = 0; i < PIPES; i++)
-        close_end(&sibling->ends[i][1]);
+        close_end(&helper->ends[i][1]);
     if (!error)
-        limit(sibling);
+        limit(helper);
     return error;
 }
 
-static void read_end(struct sibling *sibling, int which)
+static void read_end(struct helper *helper, int which)
 {
     char piece[4096];
-    ssize_t n = read(sibling->ends[which][0], piece, sizeof(piece) - 1);
+    ssize_t n = read(helper->ends[which][0], piece, sizeof(piece) - 1);
     if (n < 0 && errno == EINTR)
         return;
     if (n <= 0) {
-        close_end(&sibling->ends[which][0]);
+        close_end(&helper->ends[which][0]);
         return;
     }
     piece[n] = 0;
-    sibling->params->say(sibling->params->arg, piece);
-    if (which == STDERR && sibling->written.length < MAX_STDERR_BYTES)
-        text_add(&sibling->written, "%s", piece);
+    helper->params->say(helper->params->arg, piece);
+    if (which == STDERR && helper->written.length < MAX_STDERR_BYTES)
+        text_add(&helper->written, "%s", piece);
 }
 
 /* Tells the program to end when the caller asks for it or the time limit is over, and kills a program that does not end. */
-static void end_in_time(struct sibling *sibling)
+static void end_in_time(struct helper *helper)
 {
     int64_t now_ns = clock_mono_ns();
-    if (sibling->told || sibling->timed_out) {
-        if (now_ns >= sibling->kill_ns)
-            kill(sibling->child, SIGKILL);
+    if (helper->told || helper->timed_out) {
+        if (now_ns >= helper->kill_ns)
+            kill(helper->child, SIGKILL);
         return;
     }
-    sibling->told = sibling->params->stop(sibling->params->arg);
-    sibling->timed_out = !sibling->told && sibling->params->timeout_s > 0 && now_ns >= sibling->until_ns;
-    if (sibling->told || sibling->timed_out) {
-        sibling->kill_ns = now_ns + KILL_AFTER_NS;
-        kill(sibling->child, SIGTERM);
+    helper->told = helper->params->stop(helper->params->arg);
+    helper->timed_out = !helper->told && helper->params->timeout_s > 0 && now_ns >= helper->until_ns;
+    if (helper->told || helper->timed_out) {
+        helper->kill_ns = now_ns + KILL_AFTER_NS;
+        kill(helper->child, SIGTERM);
     }
 }
 
 /* Reads the program's output and watches stop and time limit, until the program has ended. Returns its exit status. Other processes may
    still hold its pipes open. */
-static int attend(struct sibling *sibling)
+static int attend(struct helper *helper)
 {
     int status = 0;
-    sibling->until_ns = clock_mono_ns() + sibling->params->timeout_s * NS_PER_S;
+    helper->until_ns = clock_mono_ns() + helper->params->timeout_s * NS_PER_S;
     for (bool ended = false; !ended;) {
-        struct pollfd polled[PIPES] = { { sibling->ends[STDOUT][0], POLLIN, 0 }, { sibling->ends[STDERR][0], POLLIN, 0 } };
-        ended = waitpid(sibling->child, &status, WNOHANG) != 0; /* true once the program has ended; its last output is still read after
+        struct pollfd polled[PIPES] = { { helper->ends[STDOUT][0], POLLIN, 0 }, { helper->ends[STDERR][0], POLLIN, 0 } };
+        ended = waitpid(helper->child, &status, WNOHANG) != 0; /* true once the program has ended; its last output is still read after
                                                                    that */
         int ready = poll(polled, PIPES, ended ? 0 : POLL_MS);
         for (int i = 0; i < PIPES && ready > 0; i++)
             if (polled[i].revents)
-                read_end(sibling, i);
+                read_end(helper, i);
         if (ended && ready > 0)
             ended = false;
         if (!ended)
-            end_in_time(sibling);
+            end_in_time(helper);
     }
     return status;
 }
@@ -156,42 +156,42 @@ static char *last_line(const struct text *text)
     return end > begin ? mem_printf("%.*s", (int)(end - begin), text->at + begin) : NULL;
 }
 
-char *sibling_run(const struct sibling_params *params)
+char *helper_run(const struct helper_params *params)
 {
     const char *name = params->arguments[0];
-    struct sibling sibling = { .params = params, .ends = { { -1, -1 }, { -1, -1 } } };
+    struct helper helper = { .params = params, .ends = { { -1, -1 }, { -1, -1 } } };
     char *why = NULL;
-    int error = start(&sibling), status = error ? 0 : attend(&sibling);
+    int error = start(&helper), status = error ? 0 : attend(&helper);
     if (error)
         why = mem_printf("%s cannot be run: %s", name, strerror(error));
-    else if (sibling.told)
+    else if (helper.told)
         why = mem_printf("%s was ended before it was done", name);
-    else if (sibling.timed_out)
+    else if (helper.timed_out)
         why = mem_printf("%s was ended after %d s (%s)", name, params->timeout_s, params->timeout_option);
-    else if (params->remark && WIFEXITED(status) && WEXITSTATUS(status) == SIBLING_PARTLY)
-        *params->remark = last_line(&sibling.written);
+    else if (params->remark && WIFEXITED(status) && WEXITSTATUS(status) == HELPER_PARTLY)
+        *params->remark = last_line(&helper.written);
     else if (WIFSIGNALED(status) && params->memory_bytes > 0)
         why = mem_printf("%s crashed (%s); its limit of memory is %zu MB (%s)", name, strsignal(WTERMSIG(status)),
                          params->memory_bytes >> 20, params->memory_option);
     else if (WIFSIGNALED(status))
         why = mem_printf("%s crashed (%s)", name, strsignal(WTERMSIG(status)));
-    else if (WEXITSTATUS(status) != 0 && !(why = last_line(&sibling.written)))
+    else if (WEXITSTATUS(status) != 0 && !(why = last_line(&helper.written)))
         why = mem_printf("%s ended with status %d", name, WEXITSTATUS(status));
     for (int i = 0; i < PIPES; i++)
-        close_end(&sibling.ends[i][0]);
-    cgroup_destroy(&sibling.cgroup);
-    text_finish(&sibling.written);
+        close_end(&helper.ends[i][0]);
+    cgroup_destroy(&helper.cgroup);
+    text_finish(&helper.written);
     return why;
 }
 
-char *sibling_prepare(const struct sibling_params *how, const char *folder, const char *plant_path, const struct quotas *quotas)
+char *helper_prepare(const struct helper_params *how, const char *folder, const char *plant_path, const struct quotas *quotas)
 {
     const char *const arguments[] = { "plantcast-prep", "-o", folder, plant_path, NULL };
-    struct sibling_params params = *how;
+    struct helper_params params = *how;
     params.arguments = arguments;
     params.timeout_s = (int)quotas->at[QUOTA_PREPARE_S];
     params.memory_bytes = quotas->at[QUOTA_PREPARE_MB] > 0 ? (size_t)quotas->at[QUOTA_PREPARE_MB] << 20 : memory_machine_bytes() / 4 * 3;
     params.timeout_option = "--limit prepare-seconds";
     params.memory_option = "--limit prepare-megabytes";
-    return sibling_run(&params);
+    return helper_run(&params);
 }

@@ -13,7 +13,7 @@ const HEAD = Array.from({ length: 16 }, (_, i) => [0.1 * Math.sin(i * Math.PI / 
 
 const corners = ({ min, max }) => Array.from({ length: 8 }, (_, i) => [0, 1, 2].map((axis) => (i >> axis & 1 ? max : min)[axis]));
 
-export class Lit {
+export class Highlights {
     constructor({ session, overlay, refresh }) {
         Object.assign(this, { session, overlay, refresh, assets: [], person: false });
         overlay.drawMore = () => this.draw();

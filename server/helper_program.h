@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Runs another program from this program's folder at a lower priority, in a cgroup of its own where possible (base/system/cgroup.h).
+   Thread: any, one at a time; blocks until the program ends. */
+#ifndef HELPER_PROGRAM_H
+#define HELPER_PROGRAM_H
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "base/log/log.h"
+
+enum {
+    HELPER_LENT = 3,
+    HELPER_PARTLY = 3 /* HELPER_LENT: descriptor under which the program gets a lent lock; HELPER_PARTLY: exit
+                                               status of plantcast-import if it imported only some models */
+};
+
+struct helper_params {
+    const char *const *arguments; /* arguments, ending with NULL; the first is the program's name */
+    bool (*stop)(void *arg);      /* callback, called several times a second; returns true if the program must end */
+    /* callback that receives the program's output piece by piece; NULL: the output goes to this process's stdout and stderr */
+    void (*say)(void *arg, const char *text);
+    void *arg; /* argument of both callbacks */
+    struct log *log;
+    /* receives the program's last line on stderr if it ended with HELPER_PARTLY (mem_free); NULL: that exit status counts as a failure */
+    char **remark;
+    bool notifies;       /* true: the program may report its progress to the service manager */
+    int lent;            /* descriptor of this process that the program gets as HELPER_LENT; 0: none */
+    int timeout_s;       /* seconds after which the program is told to end; 30 s later it is killed; 0: no limit */
+    size_t memory_bytes; /* memory limit in bytes, both of each process of the program and of all in its cgroup together; 0: no limit */
+    const char *timeout_option, *memory_option; /* names of the options that raise these limits, for messages to the user */
+};
+
+/* Runs the program. Returns NULL on success; otherwise one line (mem_free): the last line that the program wrote to stderr, or why it
+   was ended. */
+char *helper_run(const struct helper_params *params);
+
+struct quotas;
+/* Runs plantcast-prep with the limits of `quotas`. how: parameters for helper_run() without arguments and limits. Returns as
+   helper_run() does. */
+char *helper_prepare(const struct helper_params *how, const char *folder, const char *plant_path, const struct quotas *quotas);
+
+#endif
