@@ -56,18 +56,25 @@ struct openid {
 /* Main function of the thread that starts tasks; its argument is the struct openid. Returns once openid->stopping is set and no task
    runs. */
 void *openid_run(void *arg);
-/* Queues a job; takes ownership of its texts. The caller holds the lock. */
-void openid_add_job(struct openid *openid, struct openid_jobs *jobs, const struct openid_job *job);
-void openid_free_jobs(struct openid_jobs *jobs);
-/* Queues the revocation of a refresh token, which is copied, if the provider supports revocation. NULL is a no-op. The caller holds the
-   lock. */
-void openid_revoke_later(struct openid *openid, const char *refresh_token);
 /* Queues an answer; takes ownership of the text `why`. The caller holds the lock. */
 void openid_add_answer(struct openid *openid, const struct openid_job *job, enum openid_result result, const char *cookie, char *why);
 /* openid_record() writes an entry to the audit trail; openid_say_refused() also logs and counts the refusal. */
 void openid_record(struct openid *openid, const char *event, const char *result, const struct token_holder *holder, const char *from,
                    const char *what, const char *why);
 void openid_say_refused(struct openid *openid, const char *from, const char *why);
+
+/* --- openid_jobs.c; the caller holds the lock, but for openid_free_job() and openid_free_secret() --- */
+
+/* Queues a job; takes ownership of its texts. */
+void openid_add_job(struct openid *openid, struct openid_jobs *jobs, const struct openid_job *job);
+void openid_free_jobs(struct openid_jobs *jobs);
+/* Queues the revocation of a refresh token, which is copied, if the provider supports revocation. NULL is a no-op. */
+void openid_revoke_later(struct openid *openid, const char *refresh_token);
+/* Removes the oldest job, which the caller owns (openid_free_job). The queue must not be empty. */
+struct openid_job *openid_take_job(struct openid_jobs *jobs);
+void openid_free_job(struct openid_job *job);
+/* Overwrites the text before freeing it; accepts NULL. */
+void openid_free_secret(char *text);
 
 /* --- openid_provider.c; any thread, without the lock --- */
 

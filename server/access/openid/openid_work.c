@@ -60,65 +60,7 @@ static void tell_loop(struct openid *openid)
     openid->params.wake(openid->params.wake_arg);
 }
 
-/* --- jobs ----------------------------------------------------------------------------------------------------------------- */
-
-static void free_secret(char *text)
-{
-    if (text)
-        explicit_bzero(text, strlen(text));
-    mem_free(text);
-}
-
-static void free_job(struct openid_job *job)
-{
-    free_secret(job->code);
-    free_secret(job->revoke);
-    mem_free(job->from);
-    mem_free(job);
-}
-
-void openid_free_jobs(struct openid_jobs *jobs)
-{
-    for (struct openid_job *job = jobs->first, *next; job; job = next) {
-        next = job->next;
-        free_job(job);
-    }
-    *jobs = (struct openid_jobs){ .last = &jobs->first };
-}
-
-void openid_add_job(struct openid *openid, struct openid_jobs *jobs, const struct openid_job *job)
-{
-    struct openid_job *copy = mem_new(sizeof(*copy));
-    *copy = *job;
-    *jobs->last = copy;
-    jobs->last = &copy->next;
-    jobs->count++;
-    pthread_cond_broadcast(&openid->wake);
-}
-
-static struct openid_job *take_job(struct openid_jobs *jobs)
-{
-    struct openid_job *job = jobs->first;
-    jobs->first = job->next;
-    if (!jobs->first)
-        jobs->last = &jobs->first;
-    jobs->count--;
-    return job;
-}
-
-/* Drops the oldest queued revocation if too many wait because the provider accepts none; the token of the dropped one stays valid until
-   it expires. */
-void openid_revoke_later(struct openid *openid, const char *refresh_token)
-{
-    if (!refresh_token || !json_object_get(openid->metadata, "revocation_endpoint"))
-        return;
-    if (openid->revocations.count >= PEOPLE) {
-        free_job(take_job(&openid->revocations));
-        log_warn(openid->params.log,
-                 "openid: more than %d refresh tokens wait for revocation; the oldest is dropped, and stays valid to its end", PEOPLE);
-    }
-    openid_add_job(openid, &openid->revocations, &(struct openid_job){ .revoke = mem_strdup(refresh_token) });
-}
+/* --- log-ins ------------------------------------------------------------------------------------------------------------- */
 
 static void let_in(struct openid *openid, const struct openid_job *job, struct person *person, int64_t began_ns)
 {
@@ -135,7 +77,7 @@ static void let_in(struct openid *openid, const struct openid_job *job, struct p
     pthread_cond_broadcast(&openid->wake);
     pthread_mutex_unlock(&openid->lock);
     explicit_bzero(cookie, sizeof(cookie));
-    free_secret(left);
+    openid_free_secret(left);
     mem_free(person);
     openid_say(openid, NULL);
     if (good) {
@@ -167,13 +109,13 @@ static void do_code(struct task *task)
         pthread_mutex_unlock(&openid->lock);
     }
     openid->params.wake(openid->params.wake_arg);
-    free_job(task->job);
+    openid_free_job(task->job);
 }
 
 static void do_revoke(struct task *task)
 {
     openid_revoke(task->openid, task->job->revoke);
-    free_job(task->job);
+    openid_free_job(task->job);
 }
 
 /* --- rights --------------------------------------------------------------------------------------------------------------- */
@@ -255,9 +197,9 @@ static void do_check(struct task *task)
     settle(openid, task, rights, why);
     pthread_mutex_unlock(&openid->lock);
     mem_free(copy->sub);
-    free_secret(copy->refresh_token);
-    free_secret(copy->access_token);
-    free_secret(copy->id_token);
+    openid_free_secret(copy->refresh_token);
+    openid_free_secret(copy->access_token);
+    openid_free_secret(copy->id_token);
 }
 
 static void do_discover(struct task *task)
@@ -308,10 +250,10 @@ static struct task *take_task(struct openid *openid, int64_t *next_ns)
         copy_person(&task.person, person);
     } else if (openid->codes.first && may_start(openid, OPENID_TASK_CODE)) {
         task.kind = OPENID_TASK_CODE;
-        task.job = take_job(&openid->codes);
+        task.job = openid_take_job(&openid->codes);
     } else if (openid->revocations.first && may_start(openid, OPENID_TASK_REVOKE)) {
         task.kind = OPENID_TASK_REVOKE;
-        task.job = take_job(&openid->revocations);
+        task.job = openid_take_job(&openid->revocations);
     } else {
         *next_ns = person ? person->check_ns : INT64_MAX;
         if (looks && openid->discover_ns < *next_ns)
