@@ -117,7 +117,7 @@ static int read_options(int argc, char **argv, struct prep_options *options)
         case 't':
             options->tolerance_m = strtod(optarg, &end);
             if (end == optarg || *end || !(options->tolerance_m > 0 && options->tolerance_m < 1e6))
-                return wrong_use("--tolerance is a number of metres, not ", optarg);
+                return wrong_use("--tolerance: expected a number of metres, not ", optarg);
             break;
         case 'd':
             options->debug_view = true;
@@ -126,7 +126,7 @@ static int read_options(int argc, char **argv, struct prep_options *options)
         case 'm':
             memory_mb = strtol(optarg, &end, 10);
             if (end == optarg || *end || memory_mb < 1 || memory_mb > 1 << 24)
-                return wrong_use("--memory is a number of MB, not ", optarg);
+                return wrong_use("--memory: expected a number of MB, not ", optarg);
             options->memory_bytes = (size_t)memory_mb << 20;
             break;
         case 'a': options->asset = optarg; break;
@@ -134,11 +134,11 @@ static int read_options(int argc, char **argv, struct prep_options *options)
         case 'h': options->help = true; break;
         case 'r':
             if (strcmp(optarg, "json") != 0 && strcmp(optarg, "text") != 0)
-                return wrong_use("--report is text or json, not ", optarg);
+                return wrong_use("--report: expected text or json, not ", optarg);
             options->json = strcmp(optarg, "json") == 0;
             options->all = !options->json;
             break;
-        default: return wrong_use("", "the option is not known");
+        default: return wrong_use("", "unknown option");
         }
     }
     if (options->help)
@@ -148,7 +148,7 @@ static int read_options(int argc, char **argv, struct prep_options *options)
         optind++;
     }
     if (optind >= argc)
-        return wrong_use("", "no plant file is named");
+        return wrong_use("", "expected a plant file");
     options->plant = argv[optind++];
     if (options->diff && optind >= argc)
         return wrong_use("", "--diff needs two plants: the old one and the new one");
@@ -193,7 +193,7 @@ static bool say_early(const struct plant *plant, size_t memory_bytes)
             diag_copy(&errors, &diag.items[i]);
     diag_print(&errors, stderr);
     if (errors.count && fits)
-        fprintf(stderr, "plantcast-prep: the rest is prepared now\n");
+        fprintf(stderr, "plantcast-prep: preparing the remaining assets\n");
     fflush(stderr);
     diag_finish(&errors);
     diag_finish(&diag);

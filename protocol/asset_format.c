@@ -72,7 +72,7 @@ static bool counts_good(struct format_check *c)
         return wrong(c, "nothing to draw: %u vertices, %u indices, %u primitives, %u levels, %u materials", h->vertex_count, h->index_count,
                      h->primitive_count, h->level_count, h->material_count);
     if (h->index_count % 3 != 0)
-        return wrong(c, "%u indices are not whole triangles", h->index_count);
+        return wrong(c, "%u indices are not a multiple of 3", h->index_count);
     for (int axis = 0; axis < 3; axis++)
         if (!isfinite(h->origin_m[axis]))
             return wrong(c, "origin is not finite");
@@ -187,7 +187,7 @@ static bool levels_good(struct format_check *c)
     for (uint32_t i = 0; i < h->level_count; i++) {
         const struct asset_level *l = &v->levels[i];
         if (l->first_primitive != next || l->primitive_count == 0 || l->primitive_count > h->primitive_count - next)
-            return wrong(c, "level %u: primitives %u+%u, expected them to begin at %u of %u", i, l->first_primitive, l->primitive_count,
+            return wrong(c, "level %u: primitives %u+%u, expected a start at %u of %u", i, l->first_primitive, l->primitive_count,
                          next, h->primitive_count);
         if (l->vertex_count > vertices || (i == 0 && l->vertex_count != vertices))
             return wrong(c, "level %u: the first %u vertices, expected %s%u", i, l->vertex_count, i ? "at most " : "", vertices);

@@ -171,7 +171,7 @@ char *helper_run(const struct helper_params *params)
     else if (params->remark && WIFEXITED(status) && WEXITSTATUS(status) == HELPER_PARTLY)
         *params->remark = last_line(&helper.written);
     else if (WIFSIGNALED(status) && params->memory_bytes > 0)
-        why = mem_printf("%s crashed (%s); its limit of memory is %zu MB (%s)", name, strsignal(WTERMSIG(status)),
+        why = mem_printf("%s crashed (%s); its memory limit is %zu MB (%s)", name, strsignal(WTERMSIG(status)),
                          params->memory_bytes >> 20, params->memory_option);
     else if (WIFSIGNALED(status))
         why = mem_printf("%s crashed (%s)", name, strsignal(WTERMSIG(status)));

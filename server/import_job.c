@@ -205,7 +205,7 @@ static char *read_models(struct import_job *job, const struct import_order *orde
             add_export(&list, job, exports->at[i].name);
             models++;
         }
-    return models > 0 ? run(job, &list, IMPORT_READING, remark) : mem_strdup("there is no model yet");
+    return models > 0 ? run(job, &list, IMPORT_READING, remark) : mem_strdup("no model has been uploaded yet");
 }
 
 static void add_source(struct arguments *list, const struct import_source *source)
@@ -248,7 +248,7 @@ static char *match_tags(struct import_job *job, const struct import_order *order
         add_export(&list, job, tags);
         why = run(job, &list, IMPORT_MATCHING, NULL);
     } else if (!order->models) {
-        why = mem_strdup("there is no tag list yet");
+        why = mem_strdup("no tag list has been uploaded yet");
     }
     mem_free(decisions);
     return why;
@@ -268,7 +268,7 @@ char *import_job_run(struct import_job *job, const struct import_order *order, c
     char *why = NULL, *unread = NULL;
     /* an error: only plantcast match, which needs a tag list, writes the data source into a new plant file */
     if (order->anew && *order->source.host && !find_tags(&exports))
-        why = mem_printf("the plant's source %s would be lost: there is no tag list among the exports; add it first", order->source.host);
+        why = mem_printf("the plant's source %s would be lost: the exports have no tag list; add it first", order->source.host);
     else if (order->models)
         why = read_models(job, order, &exports, &unread);
     remember(job, &job->read);

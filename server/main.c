@@ -289,12 +289,15 @@ static int take_access_option(int option, struct access_params *access)
     case OPTION_OPENID: access->openid_path = optarg; return -1;
     case OPTION_NOTICE: access->notice_path = optarg; return -1;
     case OPTION_LOCK:
-        return parse_minutes(optarg, &access->lock_min) ? -1 : usage_error("--lock-after: not a number of minutes, up to 1440:", optarg);
+        return parse_minutes(optarg, &access->lock_min) ? -1 : usage_error("--lock-after: expected minutes, at most 1440, not", optarg);
     case OPTION_PROXY: access->behind_proxy = true; return -1;
     case OPTION_TRUST: access->trust_local = true; return -1;
-    case OPTION_HOST: return add_host(access, optarg) ? -1 : usage_error("--host: not a name without port, or one too many:", optarg);
-    case OPTION_ORIGIN: return add_origin(access, optarg) ? -1 : usage_error("--origin: not SCHEME://HOST[:PORT], or too many:", optarg);
-    case OPTION_LIMIT: return quotas_parse(&access->quotas, optarg) ? -1 : usage_error("--limit: no such limit, or out of range:", optarg);
+    case OPTION_HOST:
+        return add_host(access, optarg) ? -1 : usage_error("--host: expected a name without port (at most 16 names), not", optarg);
+    case OPTION_ORIGIN:
+        return add_origin(access, optarg) ? -1 : usage_error("--origin: expected SCHEME://HOST[:PORT] (at most 16), not", optarg);
+    case OPTION_LIMIT:
+        return quotas_parse(&access->quotas, optarg) ? -1 : usage_error("--limit: unknown limit, or value out of range:", optarg);
     default: /* getopt has printed the error */ print_usage(stderr); return USAGE;
     }
 }
@@ -312,7 +315,7 @@ static int take_audit_option(int option, struct server_params *params)
     case OPTION_AUDIT_KEY: audit->syslog_key = optarg; return -1;
     case OPTION_AUDIT_SIZE:
         if (!parse_int(optarg, 1, 1024, &megabytes))
-            return usage_error("--audit-size: not a number of megabytes from 1 to 1024:", optarg);
+            return usage_error("--audit-size: expected megabytes from 1 to 1024, not", optarg);
         audit->most_bytes = (size_t)megabytes << 20;
         return -1;
     default: return take_access_option(option, &params->access);
@@ -342,12 +345,13 @@ static bool add_core(struct server_params *params, const char *url)
 static int take_role_option(int option, struct server_params *params)
 {
     switch (option) {
-    case OPTION_ROLE: return parse_role(optarg, &params->role) ? -1 : usage_error("--role: all, core or render, not", optarg);
-    case OPTION_CORE: return add_core(params, optarg) ? -1 : usage_error("--core: not wss://HOST:PORT, or the fifth:", optarg);
-    case OPTION_AGENT: return parse_int(optarg, 1, 65535, &params->agent_port) ? -1 : usage_error("--agent-port: not a port", optarg);
+    case OPTION_ROLE: return parse_role(optarg, &params->role) ? -1 : usage_error("--role: expected all, core or render, not", optarg);
+    case OPTION_CORE: return add_core(params, optarg) ? -1 : usage_error("--core: expected wss://HOST:PORT (at most 4), not", optarg);
+    case OPTION_AGENT:
+        return parse_int(optarg, 1, 65535, &params->agent_port) ? -1 : usage_error("--agent-port: expected a port, not", optarg);
     case OPTION_CORE_TOKEN: params->core_token = optarg; return -1;
     case OPTION_CORE_CA: params->core_ca = optarg; return -1;
-    case OPTION_NODE: params->node = optarg; return tokens_name_valid(optarg) ? -1 : usage_error("--node: no such name:", optarg);
+    case OPTION_NODE: params->node = optarg; return tokens_name_valid(optarg) ? -1 : usage_error("--node: invalid name:", optarg);
     default: return take_audit_option(option, params);
     }
 }
@@ -363,7 +367,7 @@ static const char *role_wrong(const struct server_params *params)
     if (!params->core_count && (params->core_token || params->core_ca))
         return "--core-token-file and --core-ca belong to --core URL";
     if (render && params->imports)
-        return "--import is for the core: --role render brings no plant in";
+        return "--import is for the core: --role render does not import plants";
     return NULL;
 }
 
@@ -375,33 +379,34 @@ static int take_option(int option, struct server_params *params, int (**task)(co
     switch (option) {
     case OPTION_LISTEN:
         params->address = strcmp(optarg, "localhost") == 0 ? "127.0.0.1" : optarg;
-        return is_address(params->address) ? -1 : usage_error("--listen: not an IP address", optarg);
-    case OPTION_PORT: return parse_int(optarg, 0, 65535, &params->port) ? -1 : usage_error("--port: not a port", optarg);
+        return is_address(params->address) ? -1 : usage_error("--listen: expected an IP address, not", optarg);
+    case OPTION_PORT: return parse_int(optarg, 0, 65535, &params->port) ? -1 : usage_error("--port: expected a port, not", optarg);
     case OPTION_FIELD:
-        return parse_field(optarg, &params->per_fragment) ? -1 : usage_error("--field: vertices or per-fragment, not", optarg);
+        return parse_field(optarg, &params->per_fragment) ? -1 : usage_error("--field: expected vertices or per-fragment, not", optarg);
     case OPTION_GL: return gl_kind_parse(optarg, &params->gl) ? -1 : usage_error("--gl: unknown", optarg);
     case OPTION_GL_DEVICE:
         params->has_gl_device = true;
-        return gl_device_parse(optarg, &params->gl_device) ? -1 : usage_error("--gl-device: neither an index nor a PCI address", optarg);
+        return gl_device_parse(optarg, &params->gl_device) ? -1
+                                                           : usage_error("--gl-device: expected an index or a PCI address, not", optarg);
     case OPTION_LIST_GL: return gl_list_devices(stdout) > 0 ? GOOD : FAILED;
     case OPTION_H264: params->h264 = optarg; return -1;
     case OPTION_HISTORY: params->history = optarg; return -1;
     case OPTION_PREPARED: params->prepared = optarg; return -1;
     case OPTION_SIGNING_KEY: params->signing_key = optarg; return -1;
     case OPTION_WEB: params->web = optarg; return -1;
-    case OPTION_LEVEL: return parse_level(optarg, &params->log_level) ? -1 : usage_error("--log-level: unknown", optarg);
-    case OPTION_FORMAT: return parse_format(optarg, &params->log_format) ? -1 : usage_error("--log-format: unknown", optarg);
+    case OPTION_LEVEL: return parse_level(optarg, &params->log_level) ? -1 : usage_error("--log-level: unknown level", optarg);
+    case OPTION_FORMAT: return parse_format(optarg, &params->log_format) ? -1 : usage_error("--log-format: unknown format", optarg);
     case OPTION_MEMORY:
         if (!parse_int(optarg, MIN_MEMORY_MB, MAX_MEMORY_MB, &megabytes))
-            return usage_error("--memory: not a number of megabytes from 128 on:", optarg);
+            return usage_error("--memory: expected megabytes from 128 on, not", optarg);
         params->memory_bytes = (size_t)megabytes << 20;
         return -1;
     case OPTION_THREADS:
-        return parse_int(optarg, 0, 1024, &params->threads) ? -1 : usage_error("--threads: not a number of threads", optarg);
+        return parse_int(optarg, 0, 1024, &params->threads) ? -1 : usage_error("--threads: expected a number of threads, not", optarg);
     case OPTION_IMPORT:
         params->imports = true;
         params->imports_now = optarg && !strcmp(optarg, "now");
-        return !optarg || params->imports_now ? -1 : usage_error("--import: nothing or now, not", optarg);
+        return !optarg || params->imports_now ? -1 : usage_error("--import: expected --import or --import=now, not", optarg);
     case OPTION_CHECK: *task = server_check; return -1;
     case OPTION_PLAN: *task = server_dump_plan; return -1;
     case OPTION_VERSION: puts("plantcastd " PLANTCAST_VERSION LACKS); return GOOD;
@@ -425,7 +430,7 @@ int main(int argc, char **argv)
             return code;
     }
     if (optind + 1 != argc)
-        return usage_error("one plant file is expected, not", optind == argc ? "none" : argv[optind + 1]);
+        return usage_error("expected one plant file, not", optind == argc ? "none" : argv[optind + 1]);
     params.plant_path = argv[optind];
     if (task != server_run)
         return task(&params);
@@ -434,7 +439,7 @@ int main(int argc, char **argv)
     if (params.socket_fd >= 0 && handed_socket_find(params.socket_fd, handed, &params.port)) {
         params.address = handed;
     } else if (params.socket_fd != -1) {
-        fprintf(stderr, "plantcastd: one listening TCP socket is expected from the service manager\n");
+        fprintf(stderr, "plantcastd: expected one listening TCP socket from the service manager\n");
         return FAILED;
     }
     const char *why;

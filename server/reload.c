@@ -49,7 +49,9 @@ struct reload {
 void reload_count(struct counters *counters, const char *hash, bool in_force)
 {
     char *name = mem_printf("plantcast_configuration_info{hash=\"%s\"}", hash);
-    counter_set(counters_add(counters, name, "gauge", "1: the configuration in force, by the hash of plant file and tag list."), in_force);
+    counter_set(counters_add(counters, name, "gauge",
+                             "Always 1; the label is the hash of the active configuration (plant file and tag list)."),
+                in_force);
     mem_free(name);
 }
 
@@ -90,7 +92,7 @@ static void record(const struct reload *reload, bool good, const json_t *object)
 {
     const char *configuration = json_string_value(json_object_get(object, "configuration"));
     const char *error = json_string_value(json_array_get(json_object_get(object, "errors"), 0));
-    char *what = mem_printf("%sconfiguration %s is in force", reload->saving ? "tag list saved: " : "", configuration);
+    char *what = mem_printf("%sconfiguration %s is active", reload->saving ? "tag list saved: " : "", configuration);
     audit_say(reload->context->audit,
               &(struct audit_entry){
                   .event = "reload", .result = good ? "done" : "failed", .who = reload->by, .what = what, .why = error });
@@ -374,10 +376,10 @@ static void record_import(const struct reload *reload, const struct import_order
     audit_say(reload->context->audit, &(struct audit_entry){ .event = "import",
                                                              .result = why ? "failed" : "done",
                                                              .who = reload->by,
-                                                             .what = order->anew           ? "the plant was made anew from its exports"
+                                                             .what = order->anew           ? "the plant was created again from its exports"
                                                                      : order->models       ? "models were read, tags matched"
                                                                      : order->decides      ? "decisions about tags were taken"
-                                                                     : *order->source.host ? "a source was stated"
+                                                                     : *order->source.host ? "a source was set"
                                                                                            : "tags were matched",
                                                              .why = why });
 }
@@ -402,7 +404,7 @@ static void import_locked(struct reload *reload, struct import_order *order, int
     char *remark, *why = import_job_run(job, order, &remark);
     if (!why) {
         plant_import_set_phase(reload->import, IMPORT_LOADING);
-        why = reload_now(reload) ? NULL : mem_strdup("the plant cannot be put in force; the log says why");
+        why = reload_now(reload) ? NULL : mem_strdup("the plant cannot be activated; the log says why");
     }
     if (why)
         why = undo_import(reload, job, why);

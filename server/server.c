@@ -623,7 +623,7 @@ int server_check(const struct server_params *params)
         printf("%s: warning: --import: this kernel has %s\n", params->plant_path, lacks);
     if (plant_folder_unsettled(folder))
         diag_warning(&diag, params->plant_path, 0, 0,
-                     "an import that was killed has replaced a part of the files; the next start finishes it");
+                     "a killed import replaced some of the files; the next start completes it");
     mem_free(folder);
     if (plant) {
         models_check(plant, 0, &diag, stdout);

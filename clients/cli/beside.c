@@ -29,6 +29,6 @@ void run_film(int argc, char **argv)
     mem_free(line);
 #else
     (void)argc;
-    fprintf(stderr, "plantcast: %s: this program was built without H.264 (CODECS=jpeg), and so without films\n", argv[0]);
+    fprintf(stderr, "plantcast: %s: films need H.264, and this program was built without it (CODECS=jpeg)\n", argv[0]);
 #endif
 }

@@ -69,7 +69,7 @@ static bool take_statement(struct film *film, const struct text *body)
 {
     if (film_statements_add(film->statements, (const uint8_t *)body->at, body->length))
         return true;
-    fprintf(stderr, "plantcast: %s: a picture came without a signature: plantcastd --signing-key signs those of 256 pixels and more\n",
+    fprintf(stderr, "plantcast: %s: a picture has no signature: plantcastd --signing-key signs pictures of 256 pixels and more\n",
             film->options->from);
     return false;
 }
@@ -149,8 +149,8 @@ static bool make(struct film *film, picture_fn *picture, const json_t *stops)
     json_array_foreach(stops, i, stop) count += (double)pictures_of(film, stop);
     bool good = count <= MAX_PICTURES;
     if (!good)
-        fprintf(stderr, "plantcast: %.0f pictures would be made, and at most %d are; a greater --speed, or less time\n", count,
-                MAX_PICTURES);
+        fprintf(stderr, "plantcast: the film would have %.0f pictures; at most %d are possible: use a greater --speed or a shorter time\n",
+                count, MAX_PICTURES);
     if (good && !stops)
         good = shoot(film, picture, (long)count, count);
     for (i = 0; i < json_array_size(stops) && good; i++) {
@@ -220,7 +220,7 @@ int command_clip(int argc, char **argv)
     struct film film = { .options = &options, .said = "" };
     bool daemon = code < 0 && strstr(options.from, "://");
     if (code < 0 && options.is_signed && !daemon) {
-        fputs("plantcast: --signed: a daemon with --signing-key signs pictures: give its URL\n", stderr);
+        fputs("plantcast: --signed: only a daemon with --signing-key signs pictures: give its URL\n", stderr);
         code = 2;
     }
     if (code < 0)

@@ -144,14 +144,14 @@ static bool take_box(struct box_walk *walk, int rule, const uint8_t *type, const
         name[i] = type[i] > ' ' && type[i] < 0x7f ? (char)type[i] : '?';
     const char *place = *parent ? parent : "the file";
     if (rule == RULES)
-        return FAIL("it has a box that none of our films has: %s, in %s", name, place);
+        return FAIL("unexpected box %s in %s: Plantcast's films have none", name, place);
     if (walk->seen[rule])
-        return FAIL("its box %s is there twice in %s", name, place);
+        return FAIL("box %s occurs twice in %s", name, place);
     walk->seen[rule] = true;
     if (memcmp(type, "avcC", 4) == 0 && !has_two_sets(content, count))
-        return FAIL("its box avcC has more than one sequence and one picture parameter set");
+        return FAIL("box avcC has more than one sequence parameter set or picture parameter set");
     return !rules[rule].content || content_fits(walk, rules[rule].content, content, count) ||
-           FAIL("its box %s says something else than that of our films", name);
+           FAIL("box %s differs from that of Plantcast's films", name);
 }
 
 /* Reads the picture's size from the box avc1, the innermost one; all other boxes must agree with that size. */
@@ -177,11 +177,11 @@ static bool take_boxes(struct box_walk *walk, const char *parent, const uint8_t 
             return false;
         size_t children = rules[rule].children;
         if (children && (length < children || !take_boxes(walk, rules[rule].type, bytes + children, length - children)))
-            return length >= children ? false : FAIL("its box %s is damaged", rules[rule].type);
+            return length >= children ? false : FAIL("box %s is damaged", rules[rule].type);
         bytes += length;
         count -= length;
     }
-    return count == 0 || FAIL("there are bytes behind the last box in %s", parent);
+    return count == 0 || FAIL("bytes follow the last box in %s", parent);
 }
 
 static bool take_moov(struct box_walk *walk, FILE *file, uint64_t count)
@@ -193,7 +193,7 @@ static bool take_moov(struct box_walk *walk, FILE *file, uint64_t count)
         learn_size(walk, moov, count);
         good = take_boxes(walk, "moov", moov, count);
     } else {
-        good = FAIL("its box moov is cut, or too long");
+        good = FAIL("box moov is truncated or too long");
     }
     mem_free(moov);
     return good;
@@ -211,7 +211,7 @@ static bool take_outer(struct box_walk *walk, FILE *file, uint64_t *left)
         head_bytes = 2 * HEAD;
     }
     if (length < head_bytes || length > *left)
-        return FAIL("it is no whole film: a box is cut, or there are bytes behind the last one");
+        return FAIL("the film is incomplete: a box is truncated, or bytes follow the last one");
     *left -= length;
     length -= head_bytes;
     int rule = find_rule("", head + 4);
@@ -227,7 +227,7 @@ static bool has_all(const struct box_walk *walk)
     char *why = walk->why;
     for (int i = 0; i < RULES; i++)
         if (rules[i].required && !walk->seen[i])
-            return FAIL("its box %s is missing", rules[i].type);
+            return FAIL("box %s is missing", rules[i].type);
     return true;
 }
 
@@ -273,8 +273,8 @@ static bool is_plain_message(const uint8_t *unit, size_t count, char why[FILM_BO
         last = unit[i];
     }
     if (type != MESSAGE_TEXT && type != MESSAGE_RECOVERY)
-        return FAIL("it has a message of H.264 (SEI) that none of our films has: type %u", type);
-    return (content == length + 1 && last == 0x80) || FAIL("it has more than one message of H.264 (SEI) in one unit");
+        return FAIL("unexpected H.264 message (SEI) of type %u: Plantcast's films have none", type);
+    return (content == length + 1 && last == 0x80) || FAIL("one unit has more than one H.264 message (SEI)");
 }
 
 bool film_units_plain(const uint8_t *sample, size_t count, char why[FILM_BOXES_WHY_BYTES])
@@ -287,7 +287,7 @@ bool film_units_plain(const uint8_t *sample, size_t count, char why[FILM_BOXES_W
         if (type == UNIT_MESSAGE && !is_plain_message(sample + 4, length, why))
             return false;
         if (type != UNIT_SLICE && type != UNIT_SLICE_OF_KEY && type != UNIT_MESSAGE)
-            return FAIL("it has a unit of H.264 that none of our films has: type %d", type);
+            return FAIL("unexpected H.264 unit of type %d: Plantcast's films have none", type);
         sample += 4 + length;
         count -= 4 + length;
     }

@@ -69,7 +69,8 @@ bool film_statements_put(const struct film_statements *statements, struct video 
         video_set_text(video, FILM_KEY, base64);
         mem_free(base64);
     } else {
-        fprintf(stderr, "plantcast: the statements of all pictures are too long for one film: fewer pictures, or a shorter time\n");
+        fprintf(stderr,
+                "plantcast: the signed statements of all pictures are too long for one film: use fewer pictures or a shorter time\n");
     }
     mem_free(bytes);
     text_finish(&all);
@@ -97,7 +98,7 @@ static bool read_statements(struct film_reader *reader)
     const AVDictionaryEntry *entry = av_dict_get(reader->format->metadata, FILM_KEY, NULL, AV_DICT_MATCH_CASE);
     size_t length = entry ? strlen(entry->value) : 0;
     if (length < 4 || length % 4 || length > 2 * MAX_BYTES)
-        return FAIL("there are no statements in it, or the file is damaged");
+        return FAIL("the film has no signed statements, or is damaged");
     uint8_t *bytes = mem_array(length, 1);
     int count = EVP_DecodeBlock(bytes, (const unsigned char *)entry->value, (int)length);
     count -= (entry->value[length - 1] == '=') + (entry->value[length - 2] == '=');
@@ -115,7 +116,7 @@ static bool read_statements(struct film_reader *reader)
     reader->statements = status == Z_STREAM_END ? json_loadb(text.at, text.length, JSON_REJECT_DUPLICATES, NULL) : NULL;
     text_finish(&text);
     mem_free(bytes);
-    return json_is_array(reader->statements) || FAIL("its statements cannot be read");
+    return json_is_array(reader->statements) || FAIL("the film's signed statements cannot be read");
 }
 
 /* Opens a film and checks that it has one stream that every player shows unchanged. The decoder takes the description of colours from
@@ -126,23 +127,24 @@ static bool open_film(struct film_reader *reader, const char *path)
     if (!film_boxes_plain(path, &reader->size, reader->why))
         return false;
     if (avformat_open_input(&reader->format, path, NULL, NULL) < 0 || avformat_find_stream_info(reader->format, NULL) < 0)
-        return FAIL("it is no whole film");
+        return FAIL("the film is incomplete");
     const AVStream *stream = reader->format->nb_streams == 1 ? reader->format->streams[0] : NULL;
     if (!stream || stream->codecpar->codec_id != AV_CODEC_ID_H264)
-        return FAIL("it has more, or something else, in it than one film of H.264");
+        return FAIL("expected one H.264 stream and nothing else in the file");
     const AVCodec *decoder = avcodec_find_decoder(AV_CODEC_ID_H264);
     reader->codec = decoder ? avcodec_alloc_context3(decoder) : NULL;
     reader->packet = av_packet_alloc();
     reader->frame = av_frame_alloc();
     if (!reader->codec || !reader->packet || !reader->frame || avcodec_parameters_to_context(reader->codec, stream->codecpar) < 0)
-        return FAIL("there is no decoder for it");
+        return FAIL("this machine has no decoder for the film");
     reader->codec->thread_count = 1;
     reader->codec->color_primaries = AVCOL_PRI_UNSPECIFIED;
     reader->codec->color_trc = AVCOL_TRC_UNSPECIFIED;
     reader->codec->colorspace = AVCOL_SPC_UNSPECIFIED;
     reader->codec->color_range = AVCOL_RANGE_UNSPECIFIED;
     reader->codec->err_recognition = AV_EF_EXPLODE | AV_EF_BITSTREAM | AV_EF_BUFFER | AV_EF_CRCCHECK;
-    return (avcodec_open2(reader->codec, decoder, NULL) >= 0 || FAIL("there is no decoder for it")) && read_statements(reader);
+    return (avcodec_open2(reader->codec, decoder, NULL) >= 0 || FAIL("this machine has no decoder for the film")) &&
+           read_statements(reader);
 }
 
 static void close_film(struct film_reader *reader)
@@ -167,7 +169,7 @@ static bool next_picture(struct film_reader *reader)
             return FAIL("a picture cannot be decoded");
         status = reader->ended ? AVERROR_EOF : av_read_frame(reader->format, reader->packet);
         if (status < 0 && status != AVERROR_EOF)
-            return FAIL("it cannot be read to its end");
+            return FAIL("the film cannot be read to its end");
         reader->ended = status < 0;
         if (!reader->ended && !film_units_plain(reader->packet->data, (size_t)reader->packet->size, reader->why))
             return false;
@@ -187,12 +189,12 @@ static bool is_plain_picture(struct film_reader *reader)
         return FAIL("a picture is not as plantcast clip --signed encodes it");
     if (frame->color_primaries != AVCOL_PRI_BT709 || frame->color_trc != AVCOL_TRC_IEC61966_2_1 || frame->colorspace != AVCOL_SPC_RGB ||
         frame->color_range != AVCOL_RANGE_JPEG)
-        return FAIL("its stream of H.264 (VUI) describes other colours than ours: primaries %d, transfer %d, matrix %d, range %d",
+        return FAIL("its H.264 stream (VUI) describes other colours than Plantcast writes: primaries %d, transfer %d, matrix %d, range %d",
                     (int)frame->color_primaries, (int)frame->color_trc, (int)frame->colorspace, (int)frame->color_range);
     if (frame->sample_aspect_ratio.num != 0 && av_cmp_q(frame->sample_aspect_ratio, (AVRational){ 1, 1 }) != 0)
-        return FAIL("its stream of H.264 (VUI) says that pixels are not square");
+        return FAIL("its H.264 stream (VUI) says that pixels are not square");
     return (frame->width == reader->size.width_px && frame->height == reader->size.height_px) ||
-           FAIL("its box avc1 says another size than its pictures have");
+           FAIL("the size in box avc1 differs from the pictures' size");
 }
 
 /* Returns the picture's pixels as red, green, blue (mem_free), or NULL if players may show the picture differently. */
@@ -246,7 +248,7 @@ static bool takes_view(struct film_check *check, const json_t *statement)
     if (last && same_view(query, last))
         return true;
     if (last && !check->tour)
-        return FAIL("its view is another one than that of the first picture; of a tour, say --tour");
+        return FAIL("its view differs from that of the first picture (for a film of a tour, add --tour)");
     json_array_append_new(check->views, json_pack("{s:O,s:O}", "query", query, "at_us", json_object_get(statement, "at_us")));
     return true;
 }
@@ -259,17 +261,17 @@ static bool follows(struct film_check *check, const json_t *statement)
     struct film_reader *reader = &check->reader;
     int64_t at_us = json_integer_value(json_object_get(statement, "at_us")), pts = reader->frame->pts;
     if (at_us == 0)
-        return FAIL("it is not of the past");
+        return FAIL("it is not a picture of the past");
     for (size_t i = 0; i < sizeof(same) / sizeof(*same) && check->first; i++)
         if (!json_equal(json_object_get(statement, same[i]), json_object_get(check->first, same[i])))
-            return FAIL("its '%s' is another one than that of the first picture", same[i]);
+            return FAIL("its '%s' differs from that of the first picture", same[i]);
     if (!takes_view(check, statement))
         return false;
     int64_t step_us = at_us - check->at_us, pts_step = pts - check->pts;
     if (check->count > 0 && (step_us <= 0 || (check->step_us && llabs(step_us - check->step_us) > 1)))
-        return FAIL("a picture is missing before it, was moved, or put in");
+        return FAIL("the picture before it is missing, or pictures were moved or inserted");
     if (check->count > 0 && (pts_step <= 0 || (check->pts_step && pts_step != check->pts_step)))
-        return FAIL("it is not shown as long as the others");
+        return FAIL("it is shown for another duration than the others");
     check->step_us = check->count > 0 ? step_us : 0;
     check->pts_step = check->count > 0 ? pts_step : 0;
     check->at_us = at_us;
@@ -284,7 +286,7 @@ static bool verify_picture(struct film_check *check)
     const char *text = json_string_value(json_array_get(pair, 0)), *signature = json_string_value(json_array_get(pair, 1));
     uint8_t *rgb = pixels_of(reader);
     json_t *statement = NULL;
-    bool good = rgb && ((text && signature) || FAIL("there is no statement of it"));
+    bool good = rgb && ((text && signature) || FAIL("it has no signed statement"));
     good = good && (statement = signed_statement_verify(check->key, text, strlen(text), signature, reader->why));
     good = good && signed_statement_has_pixels(statement, rgb, reader->frame->width, reader->frame->height, reader->why);
     good = good && follows(check, statement);
@@ -337,8 +339,8 @@ int film_verify(const struct signing_key *key, const char *path, const struct re
     }
     good = good && !*reader->why;
     if (good && check.count != json_array_size(reader->statements))
-        good = FAIL("it has %zu pictures, and statements of %zu", check.count, json_array_size(reader->statements));
-    good = good && (check.count > 0 || FAIL("there is no picture in it"));
+        good = FAIL("the film has %zu pictures but signed statements of %zu", check.count, json_array_size(reader->statements));
+    good = good && (check.count > 0 || FAIL("the film has no picture"));
     if (good)
         print_film(&check, path);
     else

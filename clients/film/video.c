@@ -108,7 +108,7 @@ struct video *video_create(const char *path, int width_px, int height_px, double
     av_log_set_level(AV_LOG_ERROR);
     avformat_alloc_output_context2(&video->format, NULL, NULL, path);
     if (!video->format || video->format->oformat->video_codec == AV_CODEC_ID_NONE)
-        fprintf(stderr, "plantcast: %s: its name does not say a kind of film that is known; .mp4, .mkv and .mov do\n", path);
+        fprintf(stderr, "plantcast: %s: unknown kind of film; end the name with .mp4, .mkv or .mov\n", path);
     else if (open_codec(video, width_px, height_px, fps) && open_file(video))
         return video;
     video_finish(&video, false);

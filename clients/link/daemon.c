@@ -26,7 +26,7 @@ static bool read_token(void)
     if (good)
         snprintf(authorization, sizeof(authorization), "Bearer %.*s", (int)n, text);
     else
-        fprintf(stderr, "plantcast: %s: %s\n", token_path, error ? strerror(error) : "its first line is no token");
+        fprintf(stderr, "plantcast: %s: %s\n", token_path, error ? strerror(error) : "its first line is not a token");
     secret_forget(text);
     return good;
 }
@@ -110,7 +110,7 @@ bool daemon_url_parse(const char *text, struct daemon_url *url)
     if (good)
         strcpy(url->host, host);
     else
-        fprintf(stderr, "plantcast: '%s' is not http://HOST:PORT/ or https://HOST:PORT/, with a path where a proxy serves it below one\n",
+        fprintf(stderr, "plantcast: '%s' is not a URL such as https://HOST:PORT/ (plus the path of a proxy, where there is one)\n",
                 text);
     mem_free(copy);
     return good;
@@ -206,7 +206,7 @@ int daemon_get(const struct daemon_url *url, const char *path, struct text *body
     if (!exchange.status)
         fprintf(stderr, "plantcast: http%s://%s:%d%s: %s%s\n", url->tls ? "s" : "", url->host, url->port, whole,
                 exchange.why[0] ? exchange.why : "no answer",
-                strstr(exchange.why, "SSL") ? "; is its certificate trusted here? --ca FILE names one that is" : "");
+                strstr(exchange.why, "SSL") ? "; is its certificate trusted here? --ca FILE adds a trusted one" : "");
     if (context)
         lws_context_destroy(context);
     mem_free(whole);

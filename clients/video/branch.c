@@ -51,7 +51,7 @@ bool branch_begin(struct video_branch *branch)
     branch->prepare(branch, branch->pipeline);
     if (gst_element_set_state(branch->pipeline, GST_STATE_PLAYING) == GST_STATE_CHANGE_FAILURE) {
         if (!has_failed(branch))
-            fprintf(stderr, "plantcast-video: %s cannot begin\n", branch->name);
+            fprintf(stderr, "plantcast-video: %s cannot start\n", branch->name);
         gst_element_set_state(branch->pipeline, GST_STATE_NULL);
         gst_clear_object(&branch->pipeline);
         return false;
@@ -71,7 +71,7 @@ void branch_look(struct video_branch *branch)
     } else if (branch->text && !branch->pipeline && now_us > branch->again_us) {
         branch->again_us = now_us + WAIT_US;
         if (branch_begin(branch))
-            fprintf(stderr, "plantcast-video: %s: started again\n", branch->name);
+            fprintf(stderr, "plantcast-video: %s: restarted\n", branch->name);
     }
 }
 

@@ -82,7 +82,7 @@ static int read_readers(struct video_options *options, const char *path)
 static int read_url(struct video_options *options, int argc, char **argv)
 {
     if (argc != 2)
-        return wrong("the URL of one daemon is expected, as http://HOST:PORT/ (--help tells more)");
+        return wrong("expected the URL of one daemon, such as http://HOST:PORT/ (see --help)");
     GUri *uri = g_uri_parse(argv[1], G_URI_FLAGS_NONE, NULL);
     const char *scheme = uri ? g_uri_get_scheme(uri) : "";
     bool good = uri && (!strcmp(scheme, "http") || !strcmp(scheme, "https")) && g_uri_get_host(uri) && *g_uri_get_host(uri) &&
@@ -91,17 +91,17 @@ static int read_url(struct video_options *options, int argc, char **argv)
         options->url = g_strconcat(argv[1], g_str_has_suffix(argv[1], "/") ? "" : "/", NULL);
     if (uri)
         g_uri_unref(uri);
-    return good ? -1 : wrong("'%s' is not http://HOST:PORT/ or https://HOST:PORT/, with a path where a proxy serves it below one", argv[1]);
+    return good ? -1 : wrong("'%s' is not a URL such as https://HOST:PORT/ (plus the path of a proxy, where there is one)", argv[1]);
 }
 
 static int read_size(struct video_options *options, const char *text)
 {
     int n = 0;
     if (text && (sscanf(text, "%dx%d%n", &options->width_px, &options->height_px, &n) != 2 || text[n]))
-        return wrong("--size %s: expected WIDTHxHEIGHT, as 1920x1080", text);
+        return wrong("--size %s: expected WIDTHxHEIGHT, such as 1920x1080", text);
     if (options->width_px < MIN_PX || options->width_px > MAX_PX || options->height_px < MIN_HEIGHT_PX ||
         options->height_px > MAX_PX || options->width_px % 2 || options->height_px % 2)
-        return wrong("--size %dx%d: even numbers from %dx%d to %dx%d are expected", options->width_px, options->height_px, MIN_PX,
+        return wrong("--size %dx%d: expected even numbers from %dx%d to %dx%d", options->width_px, options->height_px, MIN_PX,
                      MIN_HEIGHT_PX, MAX_PX, MAX_PX);
     return -1;
 }
@@ -136,18 +136,18 @@ static int check_together(const struct video_options *options, bool open_readers
 {
     unsigned char address[16];
     if (options->view && options->query)
-        return wrong("--view and --query do not go together");
+        return wrong("--view and --query exclude each other");
     if (strcmp(options->language, "en") != 0 && strcmp(options->language, "ko") != 0 && strcmp(options->language, "de") != 0)
         return wrong("--language %s: expected en, ko or de", options->language);
     if (!options->rtsp_port && !options->srt_port)
-        return wrong("no output was asked for: --rtsp or --srt");
+        return wrong("no output: give --rtsp, --srt or both");
     if (inet_pton(AF_INET, options->listen, address) != 1 && inet_pton(AF_INET6, options->listen, address) != 1)
-        return wrong("--listen %s: expected an address, as 0.0.0.0 or ::", options->listen);
+        return wrong("--listen %s: expected an address such as 0.0.0.0 or ::", options->listen);
     if (!is_loopback(options->listen) && !options->user && !open_readers)
-        return wrong("--listen %s: anybody who reaches this address could watch; add --readers-file FILE, or --open-readers",
+        return wrong("--listen %s: everyone who reaches this address could watch; add --readers-file FILE, or --open-readers to allow that",
                      options->listen);
     if (options->user && open_readers)
-        return wrong("--readers-file and --open-readers do not go together");
+        return wrong("--readers-file and --open-readers exclude each other");
     return -1;
 }
 

@@ -16,7 +16,7 @@ void video_choose_language(const char *language)
 {
     overlay_language_find(language, &chosen);
     if (!text_face_has(overlay_word(chosen, WORD_NO_DATA)))
-        fprintf(stderr, "no installed font has the letters of --language %s: boxes stand in their place (package fonts-nanum)\n", language);
+        fprintf(stderr, "no installed font has the letters of --language %s: boxes are shown instead; install fonts-nanum\n", language);
 }
 
 enum language video_language(void)

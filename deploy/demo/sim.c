@@ -128,7 +128,7 @@ static int read_options(struct sim_options *options, int argc, char **argv)
     diag_print(&diag, stderr);
     diag_finish(&diag);
     if (status == EXIT_USAGE)
-        fprintf(stderr, "plantcast-sim --help says more\n");
+        fprintf(stderr, "see plantcast-sim --help\n");
     options->plant = optind < argc ? argv[optind] : NULL;
     return status;
 }
@@ -151,7 +151,7 @@ static bool open_port(struct sim_port *port, const char *address, int number, si
     int status = sim_port_open(port, address, number, take, arg);
     if (status)
         fprintf(stderr, "plantcast-sim: cannot listen on %s:%d: %s%s\n", address, number, strerror(-status),
-                status == -EADDRINUSE ? "; another plantcast-sim, perhaps: end it, or give the source another port" : "");
+                status == -EADDRINUSE ? "; if another plantcast-sim runs, stop it, or give the source another port" : "");
     return status == 0;
 }
 

@@ -68,7 +68,7 @@ static void do_with_tag(struct sim *sim, const struct sim_command *command, char
     if (tag >= 0 && sim->mqtt && sim_mqtt_has(sim->plant, (size_t)tag)) {
         do_with_published(sim, command, (size_t)tag, reply, bytes);
     } else if (tag < 0 || !sim_device_of(sim, &sim->plant->tags[tag], &unit)) {
-        snprintf(reply, bytes, "error: no tag %s", command->tag);
+        snprintf(reply, bytes, "error: unknown tag %s", command->tag);
     } else if (!strcmp(command->name, "set")) {
         set_tag(sim, (size_t)tag, command->value, reply, bytes);
     } else if (!strcmp(command->name, "get")) {

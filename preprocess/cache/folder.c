@@ -216,7 +216,7 @@ static char *manifest_text(const char *folder, const struct folder_entry *entrie
                                   "placement", placement, "tags", tags);
         json_t *missing = entries[i].missing ? json_string(entries[i].missing) : NULL;
         if (entries[i].missing)
-            json_object_set_new(asset, "missing", missing ? missing : json_string("it cannot be prepared"));
+            json_object_set_new(asset, "missing", missing ? missing : json_string("the folder cannot be used for preparing"));
         add_surface(asset, folder, entries[i].geometry_key);
         add_resolved(asset, folder, entries[i].key);
         json_array_append_new(assets, asset);

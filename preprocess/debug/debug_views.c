@@ -75,7 +75,7 @@ static bool find_distances(struct subject *subject, char *why)
 {
     const double(*chosen)[3] = (const double(*)[3])subject->places_m + subject->chosen;
     if (!surface_field_init(&subject->field, subject->surface, chosen, 1, NULL))
-        return wrong(why, "its distances cannot be computed");
+        return wrong(why, "the asset's distances cannot be computed");
     return true;
 }
 
@@ -87,7 +87,7 @@ static bool look_at(struct views *views, struct subject *subject, char *why)
     subject->surface = surface_create(views->log, views->workers, (const float(*)[3])g->positions_m, g->vertex_count, g->indices,
                                       g->index_count / 3, &(struct surface_params){ .tolerance_m = subject->params.tolerance_m });
     if (!subject->surface)
-        return wrong(why, "its surface cannot be made");
+        return wrong(why, "the asset's surface cannot be built");
     return subject->sensor_count == 0 || find_distances(subject, why);
 }
 
@@ -161,11 +161,11 @@ bool debug_views_write(struct log *log, struct workers *workers, const struct pl
     struct model_files models = { 0 };
     int tag = params->sensor ? plant_find_tag(plant, params->sensor) : 0;
     if (params->sensor && (tag < 0 || plant->tags[tag].asset < 0 || plant->tags[tag].group < 0)) {
-        diag_error(diag, plant->tags_path, tag < 0 ? 0 : plant->tags[tag].line, 0, "tag %s is no sensor of an asset", params->sensor);
+        diag_error(diag, plant->tags_path, tag < 0 ? 0 : plant->tags[tag].line, 0, "tag %s is not a sensor of an asset", params->sensor);
         return false;
     }
     if (mkdir(params->folder, 0777) != 0 && errno != EEXIST) {
-        diag_error(diag, plant->path, 0, 0, "%s: cannot be made: %s", params->folder, strerror(errno));
+        diag_error(diag, plant->path, 0, 0, "%s: cannot be created: %s", params->folder, strerror(errno));
         return false;
     }
     for (size_t i = 0; i < plant->asset_count; i++)

@@ -170,7 +170,7 @@ static void compare_sensor(struct diff *diff, struct asset_pair *pair, const str
     double place_m[2][3], surface_m[2][3];
     if (tag->column >= shape->sensor_count || isnan(shape->places_m[tag->column][0])) {
         const char *why = tag->column < shape->sensor_count ? shape->whys[tag->column] : NULL;
-        orphan(diff, tag->name, tag->asset, mem_strdup(why ? why : "its prepared file has no place for it"));
+        orphan(diff, tag->name, tag->asset, mem_strdup(why ? why : "the asset's prepared file does not have this sensor"));
         return;
     }
     struct diff_sensor found = { .tag = tag->name, .asset = tag->asset, .limit_m = pair->limit_m, .tolerance_m = pair->tolerance_m };
@@ -232,7 +232,7 @@ static void find_renamed(struct diff *diff, const struct asset_pair *pair, const
         if (guess)
             *guess = 0;
         size_t length = strlen(why);
-        snprintf(why + length, MODEL_WHY_BYTES - length, ": %s has its shape, in its place", name);
+        snprintf(why + length, MODEL_WHY_BYTES - length, ": %s has the same shape at the same place", name);
         return;
     }
 }
@@ -243,7 +243,7 @@ static void lose_sensors(struct diff *diff, const char *id, const char *why)
     for (size_t i = 0; i < diff->new_side.tag_count; i++) {
         const struct diff_side_tag *tag = &diff->new_side.tags[i];
         if (tag->is_sensor && strcmp(tag->asset, id) == 0)
-            orphan(diff, tag->name, tag->asset, mem_printf("its asset %s is not there: %s", id, why));
+            orphan(diff, tag->name, tag->asset, mem_printf("asset %s is missing: %s", id, why));
     }
 }
 
@@ -307,7 +307,7 @@ static void compare_tags(struct diff *diff)
     for (size_t i = 0; i < now->tag_count; i++) {
         const struct diff_side_tag *tag = &now->tags[i];
         if (*tag->asset && !tag->is_sensor && !find_asset(now, tag->asset))
-            orphan(diff, tag->name, tag->asset, mem_printf("its asset %s is not in the plant file", tag->asset));
+            orphan(diff, tag->name, tag->asset, mem_printf("asset %s is not in the plant file", tag->asset));
         if (tag->is_sensor && !diff_side_find_tag(before, tag->name)) {
             mem_grow(&diff->tags_added, &diff->added_room, diff->added_count + 1, sizeof(*diff->tags_added));
             diff->tags_added[diff->added_count++] = tag->name;

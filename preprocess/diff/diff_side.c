@@ -202,17 +202,17 @@ static bool open_folder(struct diff_side *side, struct diag *diag)
     for (size_t i = 0; good && i < json_array_size(entries); i++)
         good = take_entry(side, json_array_get(entries, i));
     if (side->manifest && !good)
-        diag_error(diag, path, 0, 0, "does not say where its assets stand and which sensors they have: run plantcast-prep again");
+        diag_error(diag, path, 0, 0, "lacks the places of assets and the names of sensors: run plantcast-prep again");
     mem_free(path);
     return good;
 }
 
 static bool shape_of_folder(struct diff_side *side, const struct diff_side_asset *asset, struct diff_side_shape *shape, char *why)
 {
-    char file_why[200] = "it is not there";
+    char file_why[200] = "is missing";
     *shape = (struct diff_side_shape){ 0 };
     if (folder_open(&shape->file, side->path, asset->key, file_why) != 1)
-        return wrong(why, "its prepared file: %s", file_why);
+        return wrong(why, "prepared file: %s", file_why);
     const struct asset_view *view = &shape->file.view;
     const struct asset_level *finest = &view->levels[0];
     memcpy(shape->origin_m, view->header->origin_m, sizeof(shape->origin_m));

@@ -121,7 +121,7 @@ bool node_primitives_find(struct node_primitives *parts, struct geometry *geomet
     if (triangles > MAX_TRIANGLES)
         return wrong(why, "%llu triangles are more than %llu", (unsigned long long)triangles, MAX_TRIANGLES);
     if (geometry->node_count == 0)
-        return wrong(why, model->node_count ? "no node is left" : "the scene has no node");
+        return wrong(why, model->node_count ? "no node is left to show" : "the scene has no node");
     if (triangles == 0)
         return no_triangles(geometry, params->nodes, why);
     qsort(parts->at, parts->count, sizeof(*parts->at), by_material);
@@ -197,7 +197,7 @@ static bool find_origin(struct geometry *geometry, const struct node_primitives 
     }
     if (size_m > COARSE_SIZE_M)
         median_of(parts, params, geometry->origin_m);
-    return size_m >= MIN_SIZE_M || wrong(why, "its size is %g m, less than %g m: is its unit right?", size_m, MIN_SIZE_M);
+    return size_m >= MIN_SIZE_M || wrong(why, "its size is %g m, less than %g m: is the model's unit right?", size_m, MIN_SIZE_M);
 }
 
 double (*geometry_node_boxes(const struct gltf_model *model, const struct geometry_params *params))[2][3]
@@ -240,7 +240,7 @@ static bool several_places(const struct gltf_model *model, const char *pattern, 
     char numbers[120] = "";
     for (size_t i = 0, length = 0; i < count && i < SHOWN_NODES; i++)
         length += (size_t)snprintf(numbers + length, sizeof(numbers) - length, "%s#%u", i ? ", " : "", model->nodes[found[i]].number);
-    return wrong(why, "the model has %zu nodes '%.200s', in different places (%s%s): name one of them by its number or its path", count,
+    return wrong(why, "the model has %zu nodes named '%.200s' at different places (%s%s): select one by its number or path", count,
                  pattern, numbers, count > SHOWN_NODES ? ", ..." : "");
 }
 

@@ -91,7 +91,8 @@ static bool read_outline(struct model_outline *outline, const char *glb, char wh
     if (outline->triangles > 0)
         return true;
     model_outline_finish(outline);
-    snprintf(why, CONVERSION_WHY_BYTES, "it has no triangles, so there is nothing to show: export surfaces, not only lines and points");
+    snprintf(why, CONVERSION_WHY_BYTES,
+             "the model has no triangles, so there is nothing to show: export surfaces, not only lines and points");
     return false;
 }
 

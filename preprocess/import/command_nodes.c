@@ -71,7 +71,7 @@ int command_nodes(int argc, char **argv)
         switch (option) {
         case 'g':
             if (list.grep || regcomp(&grep, optarg, REG_EXTENDED | REG_NOSUB | REG_ICASE) != 0) {
-                fprintf(stderr, "plantcast nodes: --grep %s: one regular expression is wanted\n", optarg);
+                fprintf(stderr, "plantcast nodes: --grep %s: expected one regular expression\n", optarg);
                 return 2;
             }
             list.grep = &grep;
@@ -79,7 +79,7 @@ int command_nodes(int argc, char **argv)
         case 'T':
             list.levels = (int)strtol(optarg, &end, 10);
             if (*end || list.levels < 1) {
-                fprintf(stderr, "plantcast nodes: --tree %s: a number of levels is wanted, at least 1\n", optarg);
+                fprintf(stderr, "plantcast nodes: --tree %s: expected a number of levels from 1 on\n", optarg);
                 return 2;
             }
             break;

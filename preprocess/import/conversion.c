@@ -71,7 +71,7 @@ static bool add_attributes(struct cad_model *model, const char *path, const stru
     if (!good)
         return fail(why, "%s: %s", path, reason);
     if (counts.elements == 0)
-        return fail(why, "%s: no elements (NEW ... END): this is no attribute file; give one of the two another name", path);
+        return fail(why, "%s: not an attribute file: it has no elements (NEW ... END). If it is something else, rename it", path);
     text_add(said, "attributes of %s: %zu elements, %zu of them in the model; %zu values\n",
              text_base_name(path), counts.elements, counts.matched, counts.attributes);
     encoding_say(said, "attributes", &counts.encoding);
@@ -85,7 +85,7 @@ static void say_counts(struct text *said, const struct rvm_counts *counts)
         text_add(said, "left out: %zu faces, %.1f m2, that lie on a neighbour's face and cannot be seen (--keep-covered keeps them)\n",
                  counts->covered_faces, counts->covered_m2);
     if (counts->unknown_chunks > 0)
-        text_add(said, "error\t%zu\tRVM: unknown chunks are left out, the first one is %s\n",
+        text_add(said, "error\t%zu\tRVM: unknown chunks were skipped, the first is %s\n",
                  counts->unknown_chunks, counts->unknown_chunk);
 }
 
@@ -164,7 +164,7 @@ static void say_empty_nodes(const struct gltf_model *model)
         if (!mesh || mesh->primitive_count > 0)
             continue;
         if (mesh->skipped_lines + mesh->skipped_points == 0)
-            printf("lost\t#%u\t%s\tnode\t\tits mesh has no triangles\n", node->number, node->name);
+            printf("lost\t#%u\t%s\tnode\t\tthe node's mesh has no triangles\n", node->number, node->name);
         else if (count++ < MAX_NAMED)
             text_add(&names, "%s%s", count > 1 ? ", " : "", *node->name ? node->name : "a node without a name");
     }
@@ -187,7 +187,7 @@ static int check(void *arg)
     if (good && reading->format->reader == FORMAT_GLTF)
         say_empty_nodes(&model);
     if (good && model.node_count == 0)
-        good = wrong(why, "there is nothing in it");
+        good = wrong(why, "the file is empty");
     if (!good)
         fprintf(stderr, "%s\n", why);
     return good ? 0 : 1;
@@ -293,7 +293,7 @@ static bool build_curved_solids(const struct model_reading *reading, const char 
 {
     char *program = import_format_program(import_format_of("x.step"));
     if (!program) {
-        text_add(said, "this Plantcast was built without Open CASCADE: pipes and curved solids are as web-ifc draws them\n");
+        text_add(said, "this Plantcast was built without Open CASCADE: pipes and curved solids have web-ifc's coarser shape\n");
         return true;
     }
     struct child_paths paths = { 0 };
@@ -305,7 +305,7 @@ static bool build_curved_solids(const struct model_reading *reading, const char 
     bool built = run(reading, &(struct child_params){ .argv = argv }, &paths, said, why);
     bool interrupted = !built && !strcmp(why, "interrupted");
     if (!built && !interrupted)
-        text_add(said, "error\t1\tOpen CASCADE: %s; pipes and curved solids are as web-ifc draws them\n", why);
+        text_add(said, "error\t1\tOpen CASCADE: %s; pipes and curved solids have web-ifc's coarser shape\n", why);
     mem_free(output);
     mem_free(chord);
     mem_free(program);
@@ -393,7 +393,7 @@ static bool take_output(const struct model_reading *reading, const char *glb, st
     if (lstat(reading->output, &st) != 0)
         return fail(why, "the %s reader wrote nothing", reading->format->name);
     if (!S_ISREG(st.st_mode) || st.st_nlink != 1)
-        return fail(why, "the %s reader wrote something that is not a file", reading->format->name);
+        return fail(why, "the %s reader's output is not a regular file", reading->format->name);
     struct child_paths paths = { 0 };
     child_paths_add(&paths, reading->output, CONFINE_READ);
     bool good = run(reading, &(struct child_params){ .call = check, .arg = (void *)(uintptr_t)reading }, &paths, said, why);
@@ -453,11 +453,11 @@ bool conversion_run(const char *path, const char *glb, const char *folder, const
     if (!format && dot && !strcasecmp(dot, ".ifcxml"))
         return fail(why, FORMAT_IFC_XML);
     if (!format)
-        return fail(why, "its ending is none that import reads (plantcast import --formats); `convert` in the plant file (PLANT.md) runs a "
-                         "program of yours");
+        return fail(
+            why, "unknown file ending (known: plantcast import --formats); `convert` in the plant file runs your own converter (PLANT.md)");
     if (params->units && !format->unitless)
-        return fail(why, "%s says itself what its units are: leave out --units", format->name);
+        return fail(why, "%s states its own units: leave out --units", format->name);
     if (params->up && !format->upless)
-        return fail(why, "%s says itself which axis is up: leave out --up", format->name);
+        return fail(why, "%s states its own up axis: leave out --up", format->name);
     return read_model(format, path, glb, folder, params, said, why);
 }

@@ -13,7 +13,7 @@
 
 #define BY_OCCT "plantcast-import-occt", NULL, "this Plantcast was built without OCCT: install libocct-data-exchange-dev and build again"
 #define BY_ASSIMP "plantcast-import-assimp", NULL, "this Plantcast was built without Assimp: install libassimp-dev and build again"
-#define BY_WEB_IFC "plantcast-import-ifc/ifc.mjs", "node", "it is read by Node.js with web-ifc: install nodejs and npm, and build again"
+#define BY_WEB_IFC "plantcast-import-ifc/ifc.mjs", "node", "IFC needs Node.js with web-ifc: install nodejs and npm, and build again"
 
 /* file endings of buffers and images that a glTF model may refer to */
 #define OF_GLTF ".bin .buffer .dat .png .jpg .jpeg .webp .ktx .ktx2 .basis .dds .gif .bmp .tga .tif .tiff .exr .hdr"

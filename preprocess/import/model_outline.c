@@ -128,7 +128,7 @@ void model_outline_summary(const struct model_outline *outline, struct text *out
     text_add(out, "%s nodes, %s unnamed", nodes, text_table_number(outline->unnamed).text);
     text_add(out, "; %s triangles", text_table_number(outline->triangles).text);
     if (!model_outline_extent(&outline->box, size, centre)) {
-        text_add(out, "; it shows nothing");
+        text_add(out, "; nothing in it can be shown");
         return;
     }
     text_add(out, "; %.1f x %.1f x %.1f m if metres, up y; %.0f m from the origin", size[0], size[1], size[2], vec_length(centre));

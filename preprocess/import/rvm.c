@@ -276,16 +276,16 @@ static bool read_chunks(struct rvm_reader *r)
         char id[5];
         size_t from = r->at;
         if (r->count - from < 16 || !chunk_id(r->bytes + from, id))
-            return fail(r, "no chunk begins here");
+            return fail(r, "expected a chunk here");
         if (!strcmp(id, "END:")) /* end here, because some files omit the header fields of this last chunk */
             return true;
         if (r->count - from < HEADER)
             return fail(r, "the file ends within chunk %s", id);
         uint32_t next = peek_word(r->bytes + from + 16);
         if (next > r->count)
-            return fail(r, "the file ends within chunk %s, which goes on to byte %u of %zu", id, next, r->count);
+            return fail(r, "the file ends within chunk %s, which should extend to byte %u of %zu", id, next, r->count);
         if (next < from + HEADER)
-            return fail(r, "chunk %s says that it ends at byte %u, before itself", id, next);
+            return fail(r, "chunk %s has an end before its start: byte %u", id, next);
         r->at = from + HEADER;
         r->chunk_end = next;
         if (!read_chunk(r, id, &ended))

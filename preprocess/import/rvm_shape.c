@@ -547,7 +547,7 @@ const char *rvm_shape_tessellate(const struct rvm_shape *shape, double chord_m, 
     if (!is_finite(shape))
         return "has numbers that are not finite";
     if (!frame_of(shape->to_plant, &frame))
-        return "has a place that is flat or not finite";
+        return "has a transformation that is singular or not finite";
     if (!has_extent(shape))
         return "has no extent";
     switch (shape->kind) {

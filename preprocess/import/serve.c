@@ -37,7 +37,7 @@ static int add_link(const char *exports, const char *file)
     if (!realpath(file, target))
         return fail_at(file, strerror(errno));
     if (!export_name_good(name))
-        return fail_at(file, "a file of this name cannot be taken");
+        return fail_at(file, "this file name is not allowed");
     char *link = mem_printf("%s/%s", exports, name);
     int status = 0;
     if (export_kind_of(name) == EXPORT_TAGS)

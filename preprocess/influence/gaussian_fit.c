@@ -58,8 +58,9 @@ static void read_rows(struct readings_table *table, struct csv *csv, const char 
                 table->left_out++;
         }
         if (csv->diag->errors == 0 && table->instants < MIN_INSTANTS)
-            diag_error(csv->diag, csv->path, 0, 0, "%zu lines have a number of all %zu sensors, %zu do not; at least %d are needed",
-                       table->instants, table->count, table->left_out, MIN_INSTANTS);
+            diag_error(csv->diag, csv->path, 0, 0,
+                       "%zu lines have numbers of all %zu sensors, %zu do not; at least %d complete lines are needed", table->instants,
+                       table->count, table->left_out, MIN_INSTANTS);
     }
     mem_free(columns);
 }
@@ -317,7 +318,7 @@ bool gaussian_fit(struct gaussian_params *params, const struct gaussian_data *da
     const size_t n = data->table->count;
     struct gaussian_fit fit;
     if (n < MIN_SENSORS) {
-        snprintf(why, 300, "%zu sensors on one asset: nothing can be fitted to fewer than %d; state range_m, noise and deviation", n,
+        snprintf(why, 300, "%zu sensors on one asset: a fit needs at least %d; state range_m, noise and deviation instead", n,
                  MIN_SENSORS);
         return false;
     }
@@ -330,9 +331,9 @@ bool gaussian_fit(struct gaussian_params *params, const struct gaussian_data *da
         good = try_one(&fit, logarithm(params->range_m), &trial);
     }
     if (!good)
-        snprintf(why, 300, "nothing could be fitted: see above");
+        snprintf(why, 300, "the fit failed: see the messages above");
     else if (!(fit.best.deviation > 0)) {
-        snprintf(why, 300, "nothing can be fitted: no two sensors on one body differ");
+        snprintf(why, 300, "the fit failed: no two sensors on one body ever differ");
         good = false;
     } else
         *params = fit.best;

@@ -71,17 +71,17 @@ static void print_list(const struct matching_run *run)
         printf(", separated by %s", separator == ',' ? "commas" : separator == ';' ? "semicolons" : separator == '\t' ? "tabs" : "bars");
     printf("; %zu tags\n", list->count);
     if (*list->encoding.other)
-        printf("%s: read as %s, but it may be %s: --encoding NAME says which\n", path, list->encoding.name,
+        printf("%s: read as %s, but may be %s: set --encoding NAME\n", path, list->encoding.name,
                list->encoding.other);
     else if (*list->encoding.name && strcmp(list->encoding.name, "UTF-8") != 0)
         printf("%s: read as %s\n", path, list->encoding.name);
     if (list->same > 0)
-        printf("%s: %zu rows repeat a tag word for word: taken once\n", path, list->same);
+        printf("%s: %zu rows are exact repetitions of a tag: each tag is used once\n", path, list->same);
     if (list->differing > 0)
-        printf("%s: %zu rows repeat a tag with other contents: the first counts: %s%s\n", path, list->differing, list->differing_lines,
-               list->differing > 5 ? ", ..." : "");
+        printf("%s: %zu rows repeat a tag with different contents: the first row is used: %s%s\n", path, list->differing,
+               list->differing_lines, list->differing > 5 ? ", ..." : "");
     if (list->renamed > 0)
-        printf("%s: %zu tags have the name of a tag in another folder: called by their path\n", path, list->renamed);
+        printf("%s: %zu tags share their name with a tag in another folder: named by their path instead\n", path, list->renamed);
     for (const char *line = list->remarks.at, *end; line && *line; line = *end ? end + 1 : end) {
         end = line + strcspn(line, "\n");
         printf("%s: %.*s\n", path, (int)(end - line), line);
@@ -91,7 +91,7 @@ static void print_list(const struct matching_run *run)
     if (list->control > 0)
         printf("%s: %zu control characters: read as blanks\n", path, list->control);
     if (list->damaged > 0)
-        printf("%s: %zu characters are not %s: shown as \xef\xbf\xbd\n", path, list->damaged,
+        printf("%s: %zu characters are not valid %s: shown as \xef\xbf\xbd\n", path, list->damaged,
                *list->encoding.name ? list->encoding.name : "text");
 }
 
@@ -104,11 +104,11 @@ static bool choose_equipment(struct matching_run *run)
     for (size_t i = 0; i < run->plant->tag_count; i++)
         if (run->plant->tags[i].asset >= 0)
             return fail_at(run->params->plant,
-                           "--equipment would replace its assets, but tags are on them; change the list of assets by hand");
+                           "--equipment would replace assets that have tags; edit the list of assets by hand");
     int count = equipment_choose(&run->site, run->params->equipment, run->params->equipment_count, &lines, why);
     char *text = count < 0 ? NULL : plant_edit_replace(run->plant_text, "assets", lines.at);
     if (count >= 0 && !text)
-        snprintf(why, sizeof(why), "its list of assets is not one item a line");
+        snprintf(why, sizeof(why), "the list of assets needs one item a line");
     struct plant *plant = text ? plant_trial_load(run->plant, text, NULL, "plantcast match") : NULL;
     text_finish(&lines);
     if (!text)
@@ -223,8 +223,8 @@ static bool find_source(struct matching_run *run)
     else if (params->modbus)
         run->source = (struct tag_source){ id ? id : "plc", true, params->address_base };
     else if (params->source || run->plant->source_count > 1)
-        return fail_at(params->plant,
-                       params->source ? "--source: it has no source of that id" : "it has several sources; say which by --source ID");
+        return fail_at(params->plant, params->source ? "--source: the plant has no source with this id"
+                                                     : "the plant has several sources; select one with --source ID");
     return true;
 }
 
@@ -319,16 +319,16 @@ static void add_group(const struct quantity *quantity, struct text *lines)
     text_add(lines, ", unit: ");
     plant_edit_add_quoted(lines, quantity->unit);
     text_add(lines, ", min: %.6g, max: %.6g } # %zu tags; ", known ? quantity->low : 0, known ? quantity->high : 100, quantity->tags);
-    text_add(lines, known ? "the range of their scaled limits" : "the range is a guess: none of them has scaled limits");
+    text_add(lines, known ? "the range of their scaled limits" : "the range is a guess: no tag of the group has scaled limits");
     if (quantity->blank > 0)
-        text_add(lines, "; %zu of them have no unit of their own", quantity->blank);
+        text_add(lines, "; %zu of them have no unit", quantity->blank);
     text_add(lines, "\n");
 }
 
 static bool take_text(struct matching_run *run, char *text)
 {
     if (!text)
-        return fail_at(run->params->plant, "its lists of groups and sources have to be one item a line");
+        return fail_at(run->params->plant, "the lists of groups and sources need one item a line");
     mem_free(run->new_text);
     run->new_text = text;
     return true;
@@ -368,7 +368,7 @@ static bool change_source(struct matching_run *run)
     regfree(&regex);
     mem_free(pattern);
     mem_free(line);
-    return good || fail_at(run->params->plant, "somebody wrote its source otherwise than --modbus does: change it there");
+    return good || fail_at(run->params->plant, "the source was edited by hand and --modbus cannot change it: edit it in the plant file");
 }
 
 static bool add_source(struct matching_run *run)
@@ -454,15 +454,15 @@ static void print_result(const struct matching_run *run, FILE *out)
     fprintf(out, run->by_hand > 0 ? "; %zu of them by hand\n" : "\n", run->by_hand);
     fprintf(out, "places: %zu at a node of their own, %zu assumed\n", run->own_nodes, run->assumed);
     if (run->left_out > 0)
-        fprintf(out, run->left_out == 1 ? "%zu tag is not in the tag list: it is a text, or has no address that %s can read\n"
-                                  : "%zu tags are not in the tag list: they are texts, or have no address that %s can read\n",
+        fprintf(out, run->left_out == 1 ? "%zu tag is not in the tag list: it is text, or has no address for %s\n"
+                                  : "%zu tags are not in the tag list: they are text, or have no address for %s\n",
                run->left_out,
                run->source.id ? run->source.id : "a source");
     if (run->left > 0)
         fprintf(out, "%zu tags are no longer in the list; decisions about them are kept: %s%s\n", run->left,
                 run->left_names.at, run->left > LEFT_NAMED ? ", ..." : "");
     if (!run->source.id)
-        fprintf(out, "the tag list has no addresses, since the plant has no source: add one with --modbus HOST\n");
+        fprintf(out, "the tag list has no addresses, because the plant has no source: add one with --modbus HOST\n");
     for (size_t i = 0; i < run->quantities.count; i++)
         if (run->quantities.at[i].is_new)
             fprintf(out, "group %s: %zu tag%s\n", run->quantities.at[i].id, run->quantities.at[i].tags,
@@ -602,7 +602,7 @@ static bool take_answer(struct matching_run *run, int file)
     }
     for (int i = good ? 1 : 0; i < (good ? 3 : 4); i++)
         mem_free(texts[i]);
-    return good || fail_at(run->params->tags, "the tag list reader left no answer");
+    return good || fail_at(run->params->tags, "the tag list reader ended without a result");
 }
 
 static void add_paths(const struct matching_run *run, struct child_paths *paths)

@@ -30,7 +30,7 @@ struct plant *plant_trial_load(const struct plant *plant, const char *text, cons
     else
         loaded = plant_load_without_models(path); /* models are not loaded, since they may not have been imported yet */
     if (status == 0 && !loaded)
-        fprintf(stderr, "%s: the plant that this makes is not valid; nothing was written\n", program);
+        fprintf(stderr, "%s: the resulting plant would be invalid; nothing was written\n", program);
     unlink(path);
     unlink(list);
     mem_free(changed);

@@ -285,7 +285,7 @@ static bool find_sheets(struct book *book, unzFile zip, char *why, size_t why_by
         read_part(&book->sheet, zip, "xl/_rels/workbook.xml.rels", relation_begins, nothing_ends, why, why_bytes) < 0)
         return false;
     if (book->too_many) {
-        snprintf(why, why_bytes, "more than %d sheets; save the sheet with the tags by itself", MAX_SHEETS);
+        snprintf(why, why_bytes, "more than %d sheets; save the sheet with the tags as a file of its own", MAX_SHEETS);
         return false;
     }
     for (int i = 0; i < MAX_SHEETS && book->count == i; i++) {

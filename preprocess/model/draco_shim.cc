@@ -48,13 +48,13 @@ bool claims_good(const char *bytes, size_t size, char *why)
     static_assert(sizeof(header) == 11, "packed as Draco writes it");
     buffer.Init(bytes, size);
     if (!buffer.Decode(&header, sizeof(header)) || memcmp(header.magic, "DRACO", 5) != 0)
-        return wrong(why, "%zu bytes without its mark", size);
+        return wrong(why, "%zu bytes without Draco's signature", size);
     if (header.major != 2 || header.minor != 2 || header.type != draco::TRIANGULAR_MESH || header.method > draco::MESH_EDGEBREAKER_ENCODING)
-        return wrong(why, "version %u.%u, type %u, method %u: only meshes of version 2.2 are read", header.major, header.minor, header.type,
-                     header.method);
+        return wrong(why, "version %u.%u, type %u, method %u: only meshes of version 2.2 are supported", header.major, header.minor,
+                     header.type, header.method);
     draco::GeometryMetadata metadata;
     if ((header.flags[1] & 128) && !draco::MetadataDecoder().DecodeGeometryMetadata(&buffer, &metadata))
-        return wrong(why, "its metadata is cut off");
+        return wrong(why, "the metadata is truncated");
     uint64_t first = 0, second = 0;
     bool edgebreaker = header.method == draco::MESH_EDGEBREAKER_ENCODING;
     if (edgebreaker)
@@ -64,8 +64,8 @@ bool claims_good(const char *bytes, size_t size, char *why)
     uint64_t triangles = edgebreaker ? second : first, vertices = edgebreaker ? first : second,
              most = FREE_TRIANGLES + TRIANGLES_PER_BYTE * size;
     if (triangles > most || vertices > 3 * most)
-        return wrong(why, "%zu bytes claim %llu vertices and %llu triangles", size, static_cast<unsigned long long>(vertices),
-                     static_cast<unsigned long long>(triangles));
+        return wrong(why, "%zu bytes cannot hold the stated %llu vertices and %llu triangles", size,
+                     static_cast<unsigned long long>(vertices), static_cast<unsigned long long>(triangles));
     return true;
 }
 

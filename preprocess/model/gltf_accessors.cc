@@ -55,7 +55,7 @@ byte_span view_span(const gltf_work &w, int number, uint64_t offset, uint64_t el
                     const std::string &what)
 {
     if (number < 0 || static_cast<size_t>(number) >= w.parsed.bufferViews.size())
-        refuse("%s: there is no bufferView %d", what.c_str(), number);
+        refuse("%s: bufferView %d does not exist", what.c_str(), number);
     const tinygltf::BufferView &view = w.parsed.bufferViews[static_cast<size_t>(number)];
     const document_bytes &buffer = w.document->buffers[view.buffer];
     uint64_t stride = strided && view.byteStride ? view.byteStride : element;
@@ -82,7 +82,7 @@ accessor::accessor(const gltf_work &w, int number, int width, const std::string 
     wanted = width ? width : has;
     size_t element = component_bytes(type) * static_cast<size_t>(has);
     if (component_bytes(type) == 0)
-        refuse("%s: component type %d is not of glTF 2.0", what.c_str(), type);
+        refuse("%s: component type %d does not exist in glTF 2.0", what.c_str(), type);
     if (has != wanted)
         refuse("%s: %d components, expected %d", what.c_str(), has, wanted);
     base = view_span(w, a.bufferView, a.byteOffset, element, a.count, true, what);
@@ -120,7 +120,7 @@ void accessor::get(size_t element, double *out) const
 void take_elements(gltf_work *w, uint64_t count, const std::string &what)
 {
     if (count > w->elements_left)
-        refuse("%s: %llu elements are more than a file of %zu bytes can mean", what.c_str(), static_cast<unsigned long long>(count),
+        refuse("%s: %llu elements are too many for a file of %zu bytes", what.c_str(), static_cast<unsigned long long>(count),
                w->document->total_bytes);
     w->elements_left -= count;
 }

@@ -83,9 +83,9 @@ uint32_t texture_of(gltf_work *w, int texture, bool srgb, std::string *why)
     int image = image_of(t);
     const document_image *from = image < 0 ? nullptr : &w->document->images[image];
     if (from && from->missing)
-        *why = std::string("its image is missing: ") + from->missing;
+        *why = std::string("the texture's image is missing: ") + from->missing;
     else if (!from || !is_readable(from->bytes))
-        *why = "its image is in no format that can be read (PNG, JPEG, WebP)";
+        *why = "the texture's image is not PNG, JPEG or WebP";
     if (!why->empty())
         return ASSET_NO_TEXTURE;
     bool repeat = t.sampler < 0 || w->parsed.samplers.at(static_cast<size_t>(t.sampler)).wrapS != TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
@@ -156,7 +156,7 @@ void read_material(gltf_work *w, const tinygltf::Material &from, asset_material 
     to->occlusion_strength = unit(from.occlusionTexture.strength);
     to->alpha_cutoff = finite(from.alphaCutoff, 0.5);
     if (from.alphaMode != "OPAQUE" && from.alphaMode != "MASK" && from.alphaMode != "BLEND")
-        refuse("%s: alphaMode '%.20s' is not of glTF 2.0", what.c_str(), from.alphaMode.c_str());
+        refuse("%s: alphaMode '%.20s' does not exist in glTF 2.0", what.c_str(), from.alphaMode.c_str());
     to->alpha = from.alphaMode == "MASK" ? ASSET_ALPHA_MASK : from.alphaMode == "BLEND" ? ASSET_ALPHA_BLEND : ASSET_ALPHA_OPAQUE;
     to->double_sided = from.doubleSided;
     read_textures(w, from, to, number, what);

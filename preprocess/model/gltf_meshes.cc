@@ -25,9 +25,9 @@ std::vector<uint32_t> read_indices(gltf_work *w, const tinygltf::Primitive &p, s
     int type = from.component_type();
     if (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE && type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
         type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT)
-        refuse("%s: indices: component type %d is no index", what.c_str(), type);
+        refuse("%s: indices: component type %d is not allowed for indices", what.c_str(), type);
     if (from.is_normalized())
-        refuse("%s: indices: normalized, which indices cannot be", what.c_str());
+        refuse("%s: indices: must not be normalized", what.c_str());
     if (from.width() != 1)
         refuse("%s: indices: %d components, expected 1", what.c_str(), from.width());
     take_elements(w, from.count(), what + ": indices");
@@ -47,7 +47,7 @@ std::vector<uint32_t> triangle_list(std::vector<uint32_t> in, int mode, const st
     std::vector<uint32_t> out;
     if (mode == TINYGLTF_MODE_TRIANGLES) {
         if (in.size() % 3 != 0)
-            refuse("%s: %zu indices are not whole triangles", what.c_str(), in.size());
+            refuse("%s: %zu indices are not a multiple of 3", what.c_str(), in.size());
         return in;
     }
     for (size_t i = 2; i < in.size(); i++) {
@@ -190,7 +190,7 @@ void check_morphing(const std::vector<double> &weights, const std::string &what)
 {
     for (double weight : weights)
         if (weight != 0)
-            refuse("%s: its shape is morphed, which is not supported", what.c_str());
+            refuse("%s: morph targets are not supported", what.c_str());
 }
 
 /* Reads a primitive. Returns false if it has no triangle to draw, for example because it consists of lines or points. */
@@ -202,7 +202,7 @@ bool read_primitive(gltf_work *w, const tinygltf::Primitive &p, gltf_primitive *
         return false;
     }
     if (mode < 0 || mode > TINYGLTF_MODE_TRIANGLE_FAN)
-        refuse("%s: mode %d is not of glTF 2.0", what.c_str(), mode);
+        refuse("%s: mode %d does not exist in glTF 2.0", what.c_str(), mode);
     auto position = p.attributes.find("POSITION");
     if (position == p.attributes.end())
         refuse("%s: has no POSITION", what.c_str());

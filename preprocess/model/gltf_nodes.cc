@@ -24,7 +24,7 @@ void check_rotation(gltf_work *w, const double q[4], const std::string &what)
 {
     double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
     if (!(length >= LEAST_ROTATION))
-        refuse("%s: its rotation [%g, %g, %g, %g] turns nowhere: its length is to be 1", what.c_str(), q[0], q[1], q[2], q[3]);
+        refuse("%s: its rotation [%g, %g, %g, %g] is not a unit quaternion", what.c_str(), q[0], q[1], q[2], q[3]);
     w->model->scaled_rotations += std::fabs(length - 1) > ROTATION_SLACK;
 }
 
@@ -32,7 +32,7 @@ void check_affine(double m[16], const std::string &what)
 {
     for (int i = 0; i < 16; i++)
         if (!std::isfinite(m[i]) || std::fabs(m[i]) > 1e15)
-            refuse("%s: its place is not finite, or beyond 1e15", what.c_str());
+            refuse("%s: its position is not finite or exceeds 1e15", what.c_str());
     for (int c = 0; c < 4; c++) {
         if (std::fabs(m[4 * c + 3] - (c == 3)) > 1e-6)
             refuse("%s: the last row of its matrix is not 0 0 0 1", what.c_str());
@@ -125,16 +125,16 @@ void walk(node_order *tree, int number, int parent, const double parent_world[16
 {
     std::string what = node_what(tree->w->parsed, number);
     if (tree->seen[static_cast<size_t>(number)])
-        refuse("%s is reached twice: a cycle, or two parents", what.c_str());
+        refuse("%s is part of a cycle or has two parents", what.c_str());
     if (depth > MAX_DEPTH)
         refuse("%s: nodes are nested deeper than %u levels", what.c_str(), MAX_DEPTH);
     tree->seen[static_cast<size_t>(number)] = 1;
     const tinygltf::Node &node = tree->w->parsed.nodes[static_cast<size_t>(number)];
     if (node.skin >= 0 && node.mesh >= 0)
-        refuse("%s: its mesh is bent by a skin, which is not supported", what.c_str());
+        refuse("%s: skinned meshes are not supported", what.c_str());
     for (double weight : node.weights)
         if (weight != 0)
-            refuse("%s: its mesh is morphed, which is not supported", what.c_str());
+            refuse("%s: morph targets are not supported", what.c_str());
     double local[16], world[16];
     local_of(tree->w, node, local, what);
     transform_multiply(parent_world, local, world);
@@ -176,7 +176,7 @@ void note_unreached(const node_order &tree)
         if (!tree.seen[i] && tree.w->parsed.nodes[i].mesh >= 0 && count++ == 0)
             first = node_what(tree.w->parsed, static_cast<int>(i));
     if (count > 0)
-        leave_out(tree.w, "not in the scene that the file shows first: " + std::to_string(count) +
+        leave_out(tree.w, "not in the file's default scene: " + std::to_string(count) +
                               (count > 1 ? " nodes with meshes, such as " : " node with a mesh, ") + first);
 }
 

@@ -80,7 +80,7 @@ static bool fill_with_zeros(struct document_work *work, const json_t *number, ui
         return true;
     uint64_t count = document_number(accessor, "count"), element = document_element_bytes(accessor, &component_type, &width);
     if (count > MAX_ZERO_BYTES || (*zeros += count * element) > MAX_ZERO_BYTES)
-        return wrong(work->why, "accessor %lld: %" PRIu64 " elements, but not a byte of them in the file",
+        return wrong(work->why, "accessor %lld: %" PRIu64 " elements, but no data in the file",
                      (long long)json_integer_value(number), count);
     unsigned char *own = mem_try_array(count * element + 1, 1);
     if (!own)
@@ -169,8 +169,8 @@ static void take_left_out(struct document_work *work)
         const char *name = json_string_value(json_array_get(required, i));
         if (name && model_rules_look(name))
             d->looks[d->look_count++] = mem_printf("the file requires %.100s%s", name,
-                                                   strcmp(name, specular) == 0 ? ": its diffuse colours are kept, its specular ones are not"
-                                                                               : ", which only changes how it looks");
+                                                   strcmp(name, specular) == 0 ? ": diffuse colours are kept, specular ones are ignored"
+                                                                               : ", which only affects its looks");
     }
     for (size_t i = 0; i < json_array_size(used); i++) {
         const char *name = json_string_value(json_array_get(used, i));

@@ -25,7 +25,7 @@ static bool take_attribute(struct document_work *work, const struct draco_mesh *
     json_t *attributes = json_object_get(primitive, "attributes"), *number = json_object_get(attributes, name);
     int component_type, width;
     if (!number)
-        return wrong(work->why, "%s: Draco holds %.40s, which the primitive does not have", what, name);
+        return wrong(work->why, "%s: the Draco data has %.40s, which the primitive does not have", what, name);
     json_t *accessor = json_copy(json_array_get(json_object_get(work->root, "accessors"), (size_t)json_integer_value(number)));
     size_t element = document_element_bytes(accessor, &component_type, &width), size = element * draco_mesh_vertex_count(mesh);
     unsigned char *own = element ? mem_try_array(size + 1, 1) : NULL;

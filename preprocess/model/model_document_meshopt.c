@@ -43,8 +43,8 @@ static bool shape_good(const struct meshopt_view *p, const char *what, char *why
     if ((p->filter == OCTAHEDRAL && p->stride != 4 && p->stride != 8) || (p->filter == QUATERNION && p->stride != 8))
         return wrong(why, "%s: EXT_meshopt_compression: filter %s on elements of %" PRIu64 " bytes", what, filters[p->filter], p->stride);
     if (p->count > UINT32_MAX || p->count * p->stride > (uint64_t)p->from.size * BYTES_PER_BYTE)
-        return wrong(why, "%s: EXT_meshopt_compression: %zu bytes claim %" PRIu64 " elements of %" PRIu64 " bytes", what, p->from.size,
-                     p->count, p->stride);
+        return wrong(why, "%s: EXT_meshopt_compression: %zu bytes cannot hold %" PRIu64 " elements of %" PRIu64 " bytes", what,
+                     p->from.size, p->count, p->stride);
     return true;
 }
 
@@ -85,7 +85,7 @@ static bool expand(struct document_work *work, const char *what, json_t *view, c
         return wrong(work->why, "%s: out of memory for %zu bytes", what, size);
     if (size > 0 && !decode(&p, own)) {
         mem_free(own);
-        return wrong(work->why, "%s: EXT_meshopt_compression: its %zu bytes are broken", what, p.from.size);
+        return wrong(work->why, "%s: EXT_meshopt_compression: its %zu bytes are damaged", what, p.from.size);
     }
     json_object_set_new(view, "buffer", json_integer((json_int_t)document_add_buffer(work, (struct document_bytes){ own, size, own })));
     json_object_set_new(view, "byteOffset", json_integer(0));

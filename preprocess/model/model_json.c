@@ -24,7 +24,7 @@ static bool glb_good(struct model_bytes file, struct model_bytes *json, struct m
     if (size > file.size)
         return wrong(why, "truncated GLB: %zu bytes of %u", file.size, size);
     if (size < 20 || memcmp(b + 16, "JSON", 4) != 0 || json_bytes > size - 20)
-        return wrong(why, "GLB: the first chunk is not JSON, or is cut off");
+        return wrong(why, "GLB: the first chunk is not JSON, or is truncated");
     *json = (struct model_bytes){ b + 20, json_bytes };
     size_t at = 20 + (size_t)json_bytes;
     while (!binary->at && size - at >= 8) { /* skip chunks of other types */

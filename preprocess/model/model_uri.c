@@ -54,7 +54,7 @@ static const char *find_inside(const char *folder, const char *name, char **real
     if (!*real)
         return errno == ENOENT ? "there is none" : strerror(errno);
     if (strncmp(*real, folder, length) != 0 || (*real)[length] != '/')
-        return "it leads out of the folder";
+        return "it leads out of the model's folder";
     if (stat(*real, &st) != 0 || !S_ISREG(st.st_mode))
         return "it is not a file";
     return NULL;
@@ -115,7 +115,7 @@ static unsigned char *base64_decode(const char *text, size_t *size, char *why)
     unsigned char *out = mem_try_array(length / 4 * 3 + 3, 1);
     unsigned bits = 0;
     if (!out || length % 4 == 1) {
-        wrong(why, out ? "data URI: %zu base64 digits are cut off" : "out of memory for %zu base64 digits", length);
+        wrong(why, out ? "data URI: %zu base64 digits are truncated" : "out of memory for %zu base64 digits", length);
         goto error;
     }
     for (size_t i = 0; i < length; i++) {
@@ -154,7 +154,7 @@ unsigned char *model_uri_read(const char *folder, const char *uri, size_t *size,
     if (percent_decode(name))
         bytes = read_inside(folder, uri, name, size, why);
     else
-        wrong(why, "'%.120s' is not a readable file inside the model's folder: it holds a byte 0", uri);
+        wrong(why, "'%.120s' is not a readable file inside the model's folder: the name contains a 0 byte", uri);
     mem_free(name);
     return bytes;
 }

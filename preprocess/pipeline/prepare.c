@@ -269,7 +269,7 @@ static void look_at_some(void *arg, size_t begin, size_t end)
         if (found == 1 && influence_is_wanted(run->prepare->plant, asset->sensors, asset->sensor_count) &&
             !influence_file_good(run->params->folder, asset->key)) {
             folder_close(&file);
-            snprintf(why, sizeof(why), "the influence of its sensors is missing or damaged");
+            snprintf(why, sizeof(why), "the influence of the asset's sensors is missing or damaged");
             found = -1;
         }
         if (found < 0)
@@ -559,7 +559,7 @@ bool prepare_run(struct prepare *prepare, struct log *log, struct workers *worke
         prepare->assets[i] =
             (struct prepare_asset){ .plant = &plant->assets[i], .wanted = !params->only || strcmp(plant->assets[i].id, params->only) == 0 };
     if (mkdir(params->folder, 0777) != 0 && errno != EEXIST)
-        fail(&run, plant->path, 0, "%s: cannot be made: %s", params->folder, strerror(errno));
+        fail(&run, plant->path, 0, "%s: cannot be created: %s", params->folder, strerror(errno));
     int lock = run.failed ? -1 : folder_lock(params->folder, log, params->stop);
     if (!run.failed) {
         model_cache_read(&run.known, params->folder);

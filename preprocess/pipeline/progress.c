@@ -11,7 +11,7 @@ void progress_begin(struct progress *progress, FILE *out, size_t total, size_t t
     *progress = (struct progress){ .out = out, .terminal = out && isatty(fileno(out)), .total = total, .there = there };
     progress->began_ns = progress->said_ns = now_ns;
     if (out && there < total)
-        fprintf(out, "%zu of %zu assets to prepare%s\n", total - there, total, there ? "; the others are there already" : "");
+        fprintf(out, "preparing %zu of %zu assets%s\n", total - there, total, there ? "; the others are up to date" : "");
 }
 
 void progress_expect(struct progress *progress, double work)

@@ -111,7 +111,7 @@ bool sensor_distances_find(struct sensor_distances *measured, struct log *log, s
                                            &(struct surface_params){ .tolerance_m = input->geometry.tolerance_m, .why = cause });
     int64_t made_ns = clock_mono_ns();
     if (!measured->surface || !solve(measured, input, g->index_count / 3, &report->kept_sensors))
-        return wrong(why, "its distances to %zu sensors cannot be computed: %s", input->sensor_count, cause);
+        return wrong(why, "the asset's distances to %zu sensors cannot be computed: %s", input->sensor_count, cause);
     drop_sensors(measured, workers, input);
     report->unreachable_vertices = unreachable(measured, g->vertex_count);
     report->surface_s = (double)(made_ns - start_ns) / NS_PER_S;

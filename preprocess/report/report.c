@@ -257,9 +257,9 @@ static void print_models(const struct text_report *report)
             continue;
         fprintf(report->out, "%s: read in %.2f s", model->path, model->parse_s);
         if (model->skipped_lines || model->skipped_points)
-            fprintf(report->out, "; passed over: %u primitives of lines and %u of points", model->skipped_lines, model->skipped_points);
+            fprintf(report->out, "; skipped: %u primitives of lines and %u of points", model->skipped_lines, model->skipped_points);
         if (model->scaled_rotations)
-            fprintf(report->out, "; %u rotations whose length is not 1, taken as if it were", model->scaled_rotations);
+            fprintf(report->out, "; %u rotations were normalised to length 1", model->scaled_rotations);
         if (model->left_out_textures)
             fprintf(report->out, "; left out: %u textures or looks", model->left_out_textures);
         fprintf(report->out, "\n");
@@ -310,7 +310,7 @@ static void print_summary(const struct text_report *report)
             prepare->plant->name, wanted, NUMBER(triangles), sensors, counts[PREPARE_BUILT], counts[PREPARE_UNCHANGED],
             counts[PREPARE_SHARED], counts[PREPARE_FAILED]);
     if (prepare->interrupted)
-        fprintf(report->out, "; interrupted: %zu are left, run it again to continue", counts[PREPARE_LEFT]);
+        fprintf(report->out, "; interrupted: %zu are left; run plantcast-prep again to continue", counts[PREPARE_LEFT]);
     if (prepare->removed)
         fprintf(report->out, "; %zu old files removed", prepare->removed);
     fprintf(report->out, "; %.1f s\n", prepare->seconds);
@@ -336,7 +336,7 @@ void report_text(const struct prepare *prepare, bool all, FILE *out)
     for (size_t i = 0; i < shown; i++)
         fprintf(out, "! %s: %s\n", concerns[i].asset->plant->id, concerns[i].text);
     if (shown < count)
-        fprintf(out, "... and %zu more to look at: --report text has all\n", count - shown);
+        fprintf(out, "... and %zu more warnings: --report text lists all\n", count - shown);
     print_summary(&report);
     report_concerns_free(concerns, count);
     mem_free(report.order);

@@ -57,7 +57,7 @@ static void add_numbers(struct concerns *concerns, const struct prepare_asset *a
     if (r->unreachable_vertices > r->surface.hidden_vertices) {
         double share = (double)r->unreachable_vertices / (double)(r->vertices ? r->vertices : 1);
         add(concerns, asset, 100 * (1 + share),
-            mem_printf("no sensor reaches %s of its %s vertices (%.1f %%); it is in %zu pieces",
+            mem_printf("no sensor reaches %s of its %s vertices (%.1f %%); its surface is in %zu pieces",
                        text_table_number(r->unreachable_vertices).text, text_table_number(r->vertices).text, 100 * share,
                        r->surface.components_after));
     }

@@ -26,12 +26,12 @@ bool access_allowed_at(const struct access_params *params, bool loopback, const 
     else if (params->behind_proxy && params->host_count == 0)
         *why = "--behind-proxy needs --host NAME: the host name in the proxy's address";
     else if (params->behind_proxy && params->trust_local)
-        *why = "--trust-local: with --behind-proxy everyone would look like somebody on this machine";
+        *why = "--trust-local excludes --behind-proxy: behind a proxy everyone seems to be on this machine";
     else if ((params->tls_cert_path != NULL) != (params->tls_key_path != NULL))
         *why = "--tls-cert and --tls-key belong together";
     else if (!loopback && !params->open_viewers && !(tls && params->tokens_path))
-        *why = "everyone who reaches that address could look in, and listen. Only loopback addresses are served without\n"
-               "TLS and tokens (--tls-cert, --tls-key and --tokens); --open-viewers serves pictures, and nothing else, to anyone";
+        *why = "everyone who reaches that address could watch and eavesdrop. Only loopback addresses are served without\nTLS and tokens "
+               "(--tls-cert, --tls-key and --tokens); --open-viewers serves pictures, and nothing else, to everyone";
     else
         return true;
     return false;

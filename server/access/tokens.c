@@ -169,21 +169,21 @@ int tokens_parse_line(const char *line, struct token_holder *out, const char **w
     if (role < ROLE_VIEWER && !role_is_node((enum role)role))
         *why = "the role is viewer, operator, engineer, renderer or standby";
     else if (count != 3 && count != WORDS)
-        *why = "ROLE NAME SHA-256 [until YYYY-MM-DD] [unattended] [views ID,... | display WALL:NUMBER] [plant PLANT] is expected";
+        *why = "expected ROLE NAME SHA-256 [until YYYY-MM-DD] [unattended] [views ID,... | display WALL:NUMBER] [plant PLANT]";
     else if (!views_good)
-        *why = "ids of views, with commas between them, are expected after `views`";
+        *why = "expected ids of views, separated by commas, after `views`";
     else if (!display_good)
-        *why = "WALL:NUMBER is expected after `display`";
+        *why = "expected WALL:NUMBER after `display`";
     else if ((limited || display) && role != ROLE_VIEWER)
         *why = "`views` and `display` limit viewers only";
     else if (!plant_good)
-        *why = "the name of a plant is expected after `plant`";
+        *why = "expected the name of a plant after `plant`";
     else if (!tokens_name_valid(words[1]))
         *why = "a name is made of letters, digits and -_.@";
     else if (!hex_read(words[2], out->hash, TOKEN_HASH_BYTES))
-        *why = "a SHA-256 is 64 hexadecimal digits";
+        *why = "expected a SHA-256 of 64 hexadecimal digits";
     else if (count == WORDS && (strcmp(words[3], "until") != 0 || !tokens_parse_day(words[4], &out->until_utc_ns)))
-        *why = "until YYYY-MM-DD is expected";
+        *why = "expected until YYYY-MM-DD";
     else {
         out->role = (enum role)role;
         strcpy(out->name, words[1]);
@@ -223,9 +223,9 @@ static const char *fault_of(const struct stat *st)
     if (!S_ISREG(st->st_mode))
         return "it is not a file";
     if (st->st_uid != 0 && st->st_uid != geteuid())
-        return "it belongs neither to root nor to the daemon's user";
+        return "its owner is neither root nor the daemon's user";
     if (st->st_mode & (S_IWGRP | S_IWOTH | S_IROTH))
-        return "others may read it, or write it: chmod 640 or less";
+        return "other users may read or write it: chmod 640 or stricter";
     return st->st_size > MAX_FILE_BYTES ? "it is too large" : NULL;
 }
 

@@ -383,7 +383,7 @@ const char *alarm_service_mirror(struct alarm_service *service, const struct ala
 {
     pthread_mutex_lock(&service->thread.lock);
     uint64_t before = alarms_number(service->alarms);
-    const char *why = alarms_mirror(service->alarms, list, count, whole) ? NULL : "an alarm that is not there";
+    const char *why = alarms_mirror(service->alarms, list, count, whole) ? NULL : "an unknown alarm";
     uint64_t number = alarms_number(service->alarms);
     keep_since(service, before);
     pthread_mutex_unlock(&service->thread.lock);

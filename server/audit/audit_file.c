@@ -35,7 +35,7 @@ static size_t find_end(struct audit_file *file, size_t bytes, char **finding)
         begin--;
     const char *why = NULL;
     if (end > 0 && !audit_chain_check(&file->chain, tail + begin, end - 1 - begin, true, &why))
-        *finding = mem_printf("%s: its last line: %s", file->path, why);
+        *finding = mem_printf("%s: the last line: %s", file->path, why);
     mem_free(tail);
     return bytes - window + end;
 }
@@ -52,7 +52,7 @@ static int find_chain(struct audit_file *file, char **finding)
     if (file->bytes == (size_t)st.st_size)
         return 0;
     if (!*finding)
-        *finding = mem_printf("%s: half a line of %zu bytes was at its end and is cut off", file->path, (size_t)st.st_size - file->bytes);
+        *finding = mem_printf("%s: removed an incomplete last line of %zu bytes", file->path, (size_t)st.st_size - file->bytes);
     return ftruncate(file->fd, (off_t)file->bytes) == 0 ? 0 : -errno;
 }
 
@@ -74,7 +74,7 @@ static void compare_head(struct audit_file *file, char **finding)
         (head.seq == file->chain.seq && !strcmp(head.hash, file->chain.hash)))
         return;
     if (!*finding && !is_rotated(file, &head))
-        *finding = mem_printf("%s: ends at line %" PRIu64 ", and it was written up to line %" PRIu64 ": lines were removed", file->path,
+        *finding = mem_printf("%s: ends at line %" PRIu64 ", but was written up to line %" PRIu64 ": lines were removed", file->path,
                               file->chain.seq, head.seq);
     file->chain = head;
 }
@@ -114,14 +114,14 @@ static int look_at_path(struct audit_file *file, char **finding)
     struct stat ours, there;
     bool open = file->fd >= 0 && fstat(file->fd, &ours) == 0, found = stat(file->path, &there) == 0;
     if (open && (size_t)ours.st_size != file->bytes) {
-        *finding = mem_printf("%s: has %lld bytes, and %zu were written: another program changed it", file->path, (long long)ours.st_size,
-                              file->bytes);
+        *finding = mem_printf("%s: has %lld bytes, but %zu were written: another program changed the file", file->path,
+                              (long long)ours.st_size, file->bytes);
         file->bytes = (size_t)ours.st_size;
     }
     if (open && found && ours.st_ino == there.st_ino && ours.st_dev == there.st_dev)
         return 0;
     if (open && ours.st_nlink == 0 && !*finding)
-        *finding = mem_printf("%s: was removed; %zu bytes of it are gone", file->path, file->bytes);
+        *finding = mem_printf("%s: was removed; %zu bytes are lost", file->path, file->bytes);
     if (open)
         close(file->fd);
     int error = open_fd(file);

@@ -57,7 +57,7 @@ static void disconnect(struct audit_syslog *syslog)
 static void say(struct audit_syslog *syslog, const char *why)
 {
     if (why && !syslog->failing)
-        log_event(syslog->params.log, LOG_ERROR, EVENT_AUDIT_NOT_SENT, "audit: %s cannot be reached: %s; lines wait, and are sent again",
+        log_event(syslog->params.log, LOG_ERROR, EVENT_AUDIT_NOT_SENT, "audit: %s cannot be reached: %s; lines are queued and sent later",
                   syslog->params.syslog, why);
     else if (!why && syslog->failing)
         log_info(syslog->params.log, "audit: %s accepts lines again", syslog->params.syslog);

@@ -131,7 +131,7 @@ static const char *take_rows(struct alarm_service *service, const json_t *rows)
     {
         struct journal_entry row;
         if (!read_row(one, &row))
-            return "a change of an alarm that cannot be one";
+            return "an invalid change of an alarm";
         alarm_service_mirror_row(service, &row);
     }
     return NULL;
@@ -143,12 +143,12 @@ const char *core_alarms_take(struct alarm_service *service, const json_t *messag
     size_t count = json_array_size(list);
     int64_t utc_ns;
     if (!json_is_array(list) || !get_ns(message, "utc", &utc_ns))
-        return "no message of alarms";
+        return "not a message of alarms";
     struct alarm *alarms = mem_array(count + 1, sizeof(*alarms));
     const char *why = NULL;
     for (size_t i = 0; i < count && !why; i++)
         if (!read_one(json_array_get(list, i), utc_ns, clock_mono_ns(), &alarms[i]))
-            why = "an alarm that cannot be one";
+            why = "an invalid alarm";
     if (!why)
         why = take_rows(service, json_object_get(message, "rows"));
     if (!why)

@@ -67,7 +67,7 @@ static bool fail(struct core_history *history, const char *path, const char *why
 static bool refused(struct core_history *history, const char *path, long status, const char *text)
 {
     char why[120];
-    snprintf(why, sizeof(why), "it answers %ld: %.*s", status, (int)strcspn(text, "\r\n"), text);
+    snprintf(why, sizeof(why), "the answer is status %ld: %.*s", status, (int)strcspn(text, "\r\n"), text);
     return fail(history, path, why);
 }
 
@@ -76,7 +76,7 @@ bool core_history_get(struct core_history *history, const char *path, struct tex
     struct core_peer peer;
     long status = 0;
     if (!core_link_peer(history->link, &peer))
-        return fail(history, path, "there is no connection to it");
+        return fail(history, path, "not connected to the core");
     char *url = mem_printf("%s%s", peer.url, path);
     struct http_request *request = &history->request;
     http_request_authorize(request, "", peer.authorization[0] ? peer.authorization : NULL);

@@ -65,15 +65,15 @@ const char *core_instant_read(const void *bytes, size_t count, int64_t *first_us
 {
     const uint8_t *at = bytes;
     if (count < CORE_INSTANT_HEAD_BYTES || memcmp(at, MAGIC, sizeof(MAGIC)) != 0)
-        return "no readings of an instant";
+        return "not a message of readings of an instant";
     size_t readings = get(at + 4, 4);
     *first_us = (int64_t)get(at + 8, 8);
     if (*first_us < 0 || count != CORE_INSTANT_HEAD_BYTES + readings * CORE_INSTANT_READING_BYTES)
-        return "its length is not that of its readings";
+        return "its length differs from that of its readings";
     if (snapshot && readings != snapshot->count)
-        return "not one reading for each tag";
+        return "the number of readings differs from the number of tags";
     for (size_t i = 0; snapshot && i < readings; i++)
         if (!read_one(at + CORE_INSTANT_HEAD_BYTES + i * CORE_INSTANT_READING_BYTES, &snapshot->readings[i]))
-            return "a reading that cannot be one";
+            return "an invalid reading";
     return NULL;
 }

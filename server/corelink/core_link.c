@@ -193,8 +193,8 @@ static void stay_to_vote(struct core_link *link, const char *why)
     link->votes = true;
     counter_inc(link->refused, 1);
     if (strcmp(text, said) != 0)
-        log_err(link->params.log, "core: %s: no readings: %s; it leads, and this core votes only", link->params.urls[link->turn.index],
-                text);
+        log_err(link->params.log, "core: %s: no readings: %s; the other core leads, and this core only votes",
+                link->params.urls[link->turn.index], text);
     memcpy(said, text, sizeof(text));
 }
 
@@ -202,9 +202,9 @@ static void on_refused(struct core_link *link, const json_t *message)
 {
     const char *why = json_string_value(json_object_get(message, "why"));
     if (link->params.keeper && json_is_true(json_object_get(message, "votes")))
-        stay_to_vote(link, why ? why : "it refuses us");
+        stay_to_vote(link, why ? why : "the core refuses this node");
     else
-        refuse(link, why ? why : "it refuses us");
+        refuse(link, why ? why : "the core refuses this node");
 }
 
 static struct core_identity own_identity(const struct core_link *link)
@@ -232,7 +232,7 @@ static void on_links(struct core_link *link, const json_t *message)
     const json_t *up = json_object_get(message, "up");
     int64_t now_ns = clock_mono_ns();
     if (json_array_size(up) != link->params.plant->source_count) {
-        refuse(link, "links: not one for each source");
+        refuse(link, "links: the number differs from the number of sources");
         return;
     }
     for (size_t i = 0; i < json_array_size(up); i++)
@@ -296,17 +296,17 @@ static void on_text(struct core_link *link)
     json_t *message = json_loadb(link->in.at, link->in.length, JSON_REJECT_DUPLICATES, NULL);
     const char *type = json_string_value(json_object_get(message, "type")), *why = NULL;
     if (!type)
-        refuse(link, "its message is not JSON");
+        refuse(link, "the message is not JSON");
     else if (!strcmp(type, "refused"))
         on_refused(link, message);
     else if (!strcmp(type, "standby"))
-        end(link, "this core stands by: another core leads, or none yet");
+        end(link, "this core is standby: another core leads, or none yet");
     else if (!strcmp(type, "core"))
         on_core(link, message);
     else if (!strcmp(type, "lease") && (link->taken || link->votes))
         on_lease(link, message);
     else if (!link->taken)
-        refuse(link, "it did not introduce itself first");
+        refuse(link, "the first message is not an introduction (hello)");
     else if (!strcmp(type, "told"))
         on_told(link, message);
     else if (!strcmp(type, "links"))
@@ -331,8 +331,8 @@ static void compare_clocks(struct core_link *link, int64_t core_utc_ns, int64_t 
     bool differ = llabs(ahead_ns) > CLOCKS_NS;
     counter_set(link->behind, ahead_ns / 1000);
     if (differ && !link->clock_said)
-        log_warn(link->params.log, "core: its clock is %.1f s %s this machine's: all times are the core's", (double)llabs(ahead_ns) / 1e9,
-                 ahead_ns > 0 ? "ahead of" : "behind");
+        log_warn(link->params.log, "core: the core's clock is %.1f s %s this machine's: all times shown are the core's",
+                 (double)llabs(ahead_ns) / 1e9, ahead_ns > 0 ? "ahead of" : "behind");
     link->clock_said = differ;
 }
 
@@ -367,7 +367,7 @@ static void on_bytes(struct core_link *link)
 {
     struct core_readings readings = { .at = link->readings, .least_ns = link->least_ns, .at_ns = link->readings_ns };
     int64_t now_ns = clock_mono_ns();
-    const char *why = !link->taken ? "it did not introduce itself first"
+    const char *why = !link->taken ? "the first message is not an introduction (hello)"
                                    : core_readings_read(&readings, link->params.plant->tag_count, link->in.at, link->in.length, now_ns);
     if (why) {
         refuse(link, why);
@@ -377,7 +377,7 @@ static void on_bytes(struct core_link *link)
     link->readings_ns = readings.at_ns;
     /* rejects readings that a slow network delayed or that arrived while this machine slept, because they are not current */
     if (readings.late_ns > CORE_SILENT_NS) {
-        end(link, "its readings come more than 2 s late");
+        end(link, "readings arrive more than 2 s late");
         return;
     }
     store_mirror(link->params.store, readings.at, readings.count, now_ns);
@@ -460,8 +460,8 @@ static void on_failure(struct core_link *link, const char *why)
     char text[WHY_BYTES];
     bool answered = why && strstr(why, "HS:"), untrusted = why && (strstr(why, "SSL") || strstr(why, "cert") || strstr(why, "tls="));
     snprintf(text, sizeof(text), "%s%s", why ? why : "no connection",
-             untrusted  ? ": is its certificate trusted (--core-ca), and of this name?"
-             : answered ? ": it does not take us; has it --role core, and is our token that of a renderer?"
+             untrusted  ? ": is the core's certificate trusted (--core-ca) and valid for this name?"
+             : answered ? ": the core refuses this node: does it run with --role core, and is this node's token that of a renderer?"
                         : "");
     if (answered || untrusted)
         refuse(link, text);
@@ -567,7 +567,7 @@ static bool resolve(struct core_link *link, const struct core_url *url, char add
         found = found->ai_next;
     bool good = status == 0 && getnameinfo(found->ai_addr, found->ai_addrlen, address, INET6_ADDRSTRLEN, NULL, 0, NI_NUMERICHOST) == 0;
     if (!good)
-        end(link, status == -ETIMEDOUT ? "its name is not resolved" : "there is no such host");
+        end(link, status == -ETIMEDOUT ? "the host name cannot be resolved" : "unknown host name");
     lookup_destroy(&lookup);
     return good;
 }
@@ -623,11 +623,11 @@ static void watch_silence(struct core_link *link)
 {
     int64_t now_ns = clock_mono_ns();
     if (!link->introduced && now_ns - link->begun_ns > CONNECT_NS)
-        end(link, "it does not answer");
+        end(link, "no answer");
     if (link->introduced && now_ns - link->heard_ns > CORE_SILENT_NS)
-        end(link, "it was silent for 2 s");
+        end(link, "nothing received for 2 s");
     if (link->is_up && now_ns - link->readings_ns > CORE_SILENT_NS)
-        end(link, "no readings came for 2 s");
+        end(link, "no readings received for 2 s");
 }
 
 /* Runs one connection to a core until it ends; link->why then has the reason. */
@@ -661,7 +661,7 @@ static void answer_waiting(struct core_link *link)
         if (client)
             arrive(link, client,
                    json_text(json_pack("{s:s,s:s,s:s}", "type", "error", "code", "core_lost", "text",
-                                       "the connection to the core was lost: check whether the action was done when it is back"),
+                                       "the connection to the core was lost: check when it is back whether the action was done"),
                              0));
     }
 }
@@ -727,7 +727,7 @@ static bool read_token(struct core_link *link)
     if (good)
         snprintf(link->authorization, sizeof(link->authorization), "Bearer %.*s", (int)n, text);
     else
-        log_err(link->params.log, "core: %s: %s", path, text ? "its first line is no token" : strerror(errno));
+        log_err(link->params.log, "core: %s: %s", path, text ? "its first line is not a token" : strerror(errno));
     mem_free(text);
     return good;
 }

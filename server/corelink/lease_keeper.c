@@ -312,8 +312,8 @@ static void tell(struct lease_keeper *keeper)
     }
     if (ends && !keeper->told_lost) {
         keeper->told_lost = true;
-        log_err(keeper->params.log, "lease: lost (%s); this core ends now, and stops polling",
-                lost ? "another core leads, or the row was edited" : "neither PostgreSQL nor a standby has confirmed it");
+        log_err(keeper->params.log, "lease: lost (%s); this core stops polling and exits now",
+                lost ? "another core leads, or the row was edited" : "neither PostgreSQL nor a standby has confirmed the lease");
         keeper->params.lost(keeper->params.arg);
     }
 }

@@ -35,7 +35,7 @@ static void start(j_compress_ptr codec) /* requires that `to` is set */
 static boolean need_room(j_compress_ptr codec)
 {
     struct jpeg_writer *writer = codec->client_data;
-    snprintf(writer->why, sizeof(writer->why), "larger than the room for it");
+    snprintf(writer->why, sizeof(writer->why), "larger than the buffer");
     longjmp(writer->failed, 1);
 }
 

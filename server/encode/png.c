@@ -66,7 +66,7 @@ static int png_send(struct encoder *encoder, struct frame *frame, const struct e
     if (status == 0 && frame->record)
         hash_pixels(frame, packed, encoder->ready->pixels_sha256);
     if (status)
-        log_err(encoder->log, "png %dx%d: %s", frame->width_px, frame->height_px, image.message[0] ? image.message : "no memory for it");
+        log_err(encoder->log, "png %dx%d: %s", frame->width_px, frame->height_px, image.message[0] ? image.message : "out of memory");
     mem_free(out);
     mem_free(packed);
     return status;

@@ -191,7 +191,7 @@ static const char *sensors_wrong(const struct plant *plant, const struct field_p
     if (params->show == SHOW_DISTANCE && params->sensor < 0)
         return "sensor: needed to show a distance";
     if (!field_params_placed(plant, params))
-        return "sensors: one has no place in the shown group";
+        return "sensors: a sensor has no place in the shown group";
     if (params->show == SHOW_DIFFERENCE && params->baseline == 0)
         return "baseline: needed to show a difference";
     for (size_t i = 0; i < params->override_count; i++) {
@@ -220,8 +220,7 @@ const char *field_params_wrong(const struct plant *plant, const struct field_par
     if ((unsigned)params->show > SHOW_BLIND)
         return "show: expected value, distance, difference, operator, uncertainty or blind";
     if (params->show == SHOW_UNCERTAINTY && params->interpolation != INTERPOLATION_GP)
-        return "show: uncertainty is that of 'gp', which is not prepared for the shown group or not chosen; name it in the group's "
-               "'prepare'";
+        return "show: uncertainty needs the interpolation 'gp'; choose it, and name it in the group's 'prepare'";
     if (params->show == SHOW_OPERATOR && params->interpolation == INTERPOLATION_FIN)
         return "interpolation: fin cannot show places between limits (show: operator)";
     const char *wrong = numbers_wrong(params);

@@ -169,7 +169,7 @@ static struct gl *egl_device_create(const struct gl_device *asked, bool software
             if (!load_client(impl->name, why))
                 return NULL;
         }
-    text_add(why, "; %s: none of %d devices is hardware that works", impl->name, devices.count);
+    text_add(why, "; %s: none of %d devices is working hardware", impl->name, devices.count);
     return NULL;
 }
 

@@ -97,7 +97,7 @@ int egl_devices_find(const struct egl_devices *devices, const struct gl_device *
     if (asked->index >= 0 && asked->index < devices->count)
         return asked->index;
     if (asked->index >= 0) {
-        text_add(why, "; %s: device %d asked for, there are %d (from 0)", name, asked->index, devices->count);
+        text_add(why, "; %s: device %d was requested, but there are only %d (counted from 0)", name, asked->index, devices->count);
         return -1;
     }
     for (int i = 0; i < devices->count; i++) {

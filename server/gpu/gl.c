@@ -134,7 +134,7 @@ struct gl *gl_create(struct log *log, enum gl_kind kind, const struct gl_device 
         living.count++;
     }
     pthread_mutex_unlock(&living.lock);
-    const char *reasons = why.length ? why.at : "; nothing to try";
+    const char *reasons = why.length ? why.at : "; nothing left to try";
     if (gl) {
         gl->log = log;
         read_capabilities(gl);

@@ -31,7 +31,7 @@ static bool sync_file(struct log *log, const char *path)
     int cause = errno;
     if (fd >= 0)
         close(fd);
-    return good || failed(log, path, "cannot be brought to the disk", strerror(cause));
+    return good || failed(log, path, "cannot be synchronised to disk", strerror(cause));
 }
 
 /* --- owner of a file --------------------------------------------------------------------------------------------------------- */
@@ -62,7 +62,7 @@ static const char *fault_of(const char *path, const struct stat *st)
         return strerror(errno);
     if (st->st_uid != folder.st_uid && st->st_uid != geteuid())
         return "its owner differs from the owner of its folder";
-    return st->st_nlink > 1 && st->st_uid != folder.st_uid ? "it has another name elsewhere" : NULL;
+    return st->st_nlink > 1 && st->st_uid != folder.st_uid ? "it has another hard link" : NULL;
 }
 
 /* Opens a file for reading. Returns -1 on failure (logged). */

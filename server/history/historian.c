@@ -242,7 +242,7 @@ static void take_events(struct historian *historian, const struct now *now, int6
 static void make_folder(struct historian *historian)
 {
     if (mkdir(historian->folder, 0777) != 0 && errno != EEXIST)
-        log_err(historian->log, "%s: cannot be made: %s", historian->folder, strerror(errno));
+        log_err(historian->log, "%s: cannot be created: %s", historian->folder, strerror(errno));
 }
 
 static struct month_file *open_month(struct historian *historian, int month, int *error)

@@ -78,10 +78,10 @@ static bool find_wide(struct history_import *import)
         known += import->tags[i] >= 0;
         if (import->tags[i] < 0 && (int)i != import->time)
             diag_warning(import->csv.diag, import->csv.path, header->cells[i].line, header->cells[i].column,
-                         "the plant has no tag '%.60s'; its column is passed over", header->cells[i].text);
+                         "the plant has no tag '%.60s'; its column is ignored", header->cells[i].text);
     }
     if (!known)
-        diag_error(import->csv.diag, import->csv.path, 1, 1, "no column is named as a tag of the plant is");
+        diag_error(import->csv.diag, import->csv.path, 1, 1, "no column has the name of a tag of the plant");
     return known > 0;
 }
 
@@ -93,7 +93,7 @@ static bool find_columns(struct history_import *import)
     import->unit = -1;
     import->time = find_time(import);
     if (import->time < 0) {
-        diag_error(import->csv.diag, import->csv.path, 1, 1, "a column 'Time' is needed");
+        diag_error(import->csv.diag, import->csv.path, 1, 1, "expected a column 'Time'");
         return false;
     }
     if (import->tag >= 0 && import->value >= 0) {
@@ -118,7 +118,7 @@ static bool take_time(struct history_import *import, int64_t after_us, int64_t *
         if (*text != '-' && (timestamp_parse(text, 0, t_us) || timestamp_parse_local(text, after_us, t_us)))
             return true;
         csv_error(&import->csv, import->time,
-                  "expected an instant such as 2026-11-20T10:00:00Z (without Z or an offset: one that clocks in %s showed), found '%.60s'",
+                  "expected an instant such as 2026-11-20T10:00:00Z (without Z or offset: local time in %s), found '%.60s'",
                   import->params->plant->time_zone ? import->params->plant->time_zone : "UTC", text);
         return false;
     }
@@ -126,7 +126,7 @@ static bool take_time(struct history_import *import, int64_t after_us, int64_t *
         *t_us = import->params->start_us + (int64_t)llround(count * (double)import->params->unit_us);
         return true;
     }
-    csv_error(&import->csv, import->time, "expected a number that counts from the start, found '%.60s'", text);
+    csv_error(&import->csv, import->time, "expected a number counted from --start, found '%.60s'", text);
     return false;
 }
 
@@ -251,7 +251,7 @@ static bool check_sample(struct history_import *import, void *arg, int tag, cons
     if (series->seen && point->t_us < series->last_us) {
         char text[TIMESTAMP_BYTES];
         timestamp_print(series->last_us, text);
-        csv_error(&import->csv, column, "%s: expected a time that is not before its last sample, %s", import->params->plant->tags[tag].name,
+        csv_error(&import->csv, column, "%s: expected a time not before its last sample, %s", import->params->plant->tags[tag].name,
                   text);
         return false;
     }

@@ -35,7 +35,7 @@ static bool take_alarm(const struct plant *plant, const json_t *pair, struct ala
     const char *tag = json_string_value(json_array_get(pair, 0)), *kind = json_string_value(json_array_get(pair, 1));
     char name[48];
     if (!tag || !kind || json_array_size(pair) != 2) {
-        message_fail(error, "bad_field", "alarms: a list of [tag, kind] expected, such as [\"TT-101\", \"HH\"]");
+        message_fail(error, "bad_field", "alarms: expected a list of [tag, kind], such as [\"TT-101\", \"HH\"]");
         return false;
     }
     request->kinds[request->count] = (uint8_t)alarm_kind_find(kind);
@@ -44,7 +44,7 @@ static bool take_alarm(const struct plant *plant, const json_t *pair, struct ala
         message_refuse_with(error, "bad_field", "alarms", strcmp(kind, "LINK") ? REFUSAL_NO_TAG : REFUSAL_NO_DEVICE, "name=%s",
                             quoted(tag, name));
     else if (!request->kinds[request->count])
-        message_fail(error, "bad_field", "alarms: LL, L, H, HH, ALM, BAD or LINK expected, found '%s'", quoted(kind, name));
+        message_fail(error, "bad_field", "alarms: expected LL, L, H, HH, ALM, BAD or LINK, found '%s'", quoted(kind, name));
     else
         return ++request->count;
     return false;
@@ -58,7 +58,7 @@ bool alarm_parse(const struct plant *plant, const json_t *o, struct message *out
     if (!need_seq(o, &out->seq, error) || !may_name(o, "action", names_action, &request->action, &given, error))
         return false;
     if (!given || json_array_size(alarms) == 0 || json_array_size(alarms) > ALARM_REQUEST_MOST) {
-        message_fail(error, "bad_field", "action, alarms: what to do, and a list of 1 to %d alarms expected", ALARM_REQUEST_MOST);
+        message_fail(error, "bad_field", "action, alarms: expected an action and a list of 1 to %d alarms", ALARM_REQUEST_MOST);
         return false;
     }
     shelve = request->action == ALARM_SHELVE;

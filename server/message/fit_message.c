@@ -48,7 +48,7 @@ static json_t *given_json(const json_t *list, struct message_error *error)
     size_t count = json_array_size(list);
     double n[7] = { 0 };
     if (count != 6 && count != 7) {
-        message_fail(error, "bad_field", "camera: ex,ey,ez,tx,ty,tz or ex,ey,ez,tx,ty,tz,fov expected");
+        message_fail(error, "bad_field", "camera: expected ex,ey,ez,tx,ty,tz or ex,ey,ez,tx,ty,tz,fov");
         return NULL;
     }
     for (size_t i = 0; i < count; i++)
@@ -127,7 +127,7 @@ bool camera_parse(const json_t *o, struct camera *out, struct message_error *err
     if (projection == PROJECTION_ORTHOGRAPHIC && !need_number(o, "height_m", 1e-5, PLANT_MAX_M, &out->height_m, error))
         return false;
     if (!camera_valid(out)) {
-        message_fail(error, "bad_field", "eye, target, up: eye must be apart from target, and up not along the view");
+        message_fail(error, "bad_field", "eye, target, up: eye must differ from target, and up must not be parallel to the view");
         return false;
     }
     return true;

@@ -55,7 +55,7 @@ bool need_number(const json_t *o, const char *name, double low, double high, dou
     if (!may_number(o, name, low, high, out, &given, error))
         return false;
     if (!given)
-        message_fail(error, "bad_field", "%s is missing: a number from %g to %g expected", name, low, high);
+        message_fail(error, "bad_field", "%s is missing: expected a number from %g to %g", name, low, high);
     return given;
 }
 
@@ -63,7 +63,7 @@ bool need_seq(const json_t *o, uint32_t *out, struct message_error *error)
 {
     const json_t *value = json_object_get(o, "seq");
     if (!json_is_integer(value) || json_integer_value(value) < 1 || json_integer_value(value) > UINT32_MAX) {
-        message_fail(error, "bad_field", "seq: a whole number from 1 to 4294967295 expected");
+        message_fail(error, "bad_field", "seq: expected a whole number from 1 to 4294967295");
         return false;
     }
     *out = (uint32_t)json_integer_value(value);
@@ -79,7 +79,7 @@ bool may_vector(const json_t *o, const char *name, double out[3], bool *given, s
         return true;
     for (size_t i = 0; i < 3; i++)
         if (json_array_size(array) != 3 || !in_range(json_array_get(array, i), -PLANT_MAX_M, PLANT_MAX_M)) {
-            message_fail(error, "bad_field", "%s: three numbers within +-%g expected", name, PLANT_MAX_M);
+            message_fail(error, "bad_field", "%s: expected three numbers within +-%g", name, PLANT_MAX_M);
             return false;
         }
     for (size_t i = 0; i < 3; i++)
@@ -93,7 +93,7 @@ bool need_vector(const json_t *o, const char *name, double out[3], struct messag
     if (!may_vector(o, name, out, &given, error))
         return false;
     if (!given)
-        message_fail(error, "bad_field", "%s is missing: three numbers expected", name);
+        message_fail(error, "bad_field", "%s is missing: expected three numbers", name);
     return given;
 }
 
@@ -113,7 +113,7 @@ bool may_text(const json_t *o, const char *name, char *out, size_t size, bool *g
     if (!value)
         return true;
     if (!text || !text[0] || json_string_length(value) >= size || strlen(text) != json_string_length(value) || !is_printable(text)) {
-        message_fail(error, "bad_field", "%s: a text of 1 to %zu characters without spaces expected", name, size - 1);
+        message_fail(error, "bad_field", "%s: expected a text of 1 to %zu characters without spaces", name, size - 1);
         return false;
     }
     strcpy(out, text);
@@ -134,7 +134,7 @@ bool may_name(const json_t *o, const char *name, const struct name *names, int *
     char list[120] = "";
     for (const struct name *n = names; n->text; n++)
         snprintf(list + strlen(list), sizeof(list) - strlen(list), "%s'%s'", n == names ? "" : ", ", n->text);
-    message_fail(error, "bad_field", "%s: one of %s expected", name, list);
+    message_fail(error, "bad_field", "%s: expected one of %s", name, list);
     return false;
 }
 
@@ -159,7 +159,7 @@ bool need_words(const json_t *o, const char *name, bool needed, char *out, size_
     if (good)
         snprintf(out, size, "%s", text ? text : "");
     else
-        message_fail(error, "bad_field", "%s: a text of %s%zu bytes, without control characters, expected", name,
+        message_fail(error, "bad_field", "%s: expected a text of %s%zu bytes without control characters", name,
                      needed ? "1 to " : "at most ", size - 1);
     return good;
 }

@@ -24,7 +24,7 @@ bool loop_check_parse(const struct plant *plant, const json_t *o, struct message
     else if (plant->tags[request->tag].source < 0)
         message_refuse_with(error, "bad_field", "tag", REFUSAL_COMPUTED, "tag=%s", quoted(tag, name));
     else if (fail && !json_is_boolean(fail))
-        message_fail(error, "bad_field", "fail: true or false expected");
+        message_fail(error, "bad_field", "fail: expected true or false");
     else
         return need_seq(o, &out->seq, error) && need_number(o, "expected", -1e30, 1e30, &request->expected, error) &&
                need_number(o, "tolerance", 0, 1e30, &request->tolerance, error) &&

@@ -22,7 +22,7 @@ static bool size_parse(const json_t *o, struct message *out, struct message_erro
     if (!need_number(o, "width", 16, VIEW_MAX_SIDE_PX, &w, error) || !need_number(o, "height", 16, VIEW_MAX_SIDE_PX, &h, error))
         return false;
     if (!view_size_valid(w, h)) {
-        message_fail(error, "bad_field", "width, height: whole numbers of pixels expected, at most %d together", VIEW_MAX_PIXELS);
+        message_fail(error, "bad_field", "width, height: expected whole numbers of pixels, at most %d in all", VIEW_MAX_PIXELS);
         return false;
     }
     out->width_px = (int)w;
@@ -69,7 +69,7 @@ static bool parse_codecs(const struct plant *plant, const json_t *o, struct mess
     }
     if (out->codecs.count > 0)
         return true;
-    message_fail(error, "bad_field", "codecs: a list with 'h264', 'jpeg' or 'png' in it expected");
+    message_fail(error, "bad_field", "codecs: expected a list with 'h264', 'jpeg' or 'png'");
     return false;
 }
 
@@ -97,7 +97,7 @@ static bool parse_time(const struct plant *plant, const json_t *o, struct messag
     out->time.at_us = (int64_t)at_us;
     if (at || has_speed)
         return true;
-    message_fail(error, "bad_field", "at_us: microseconds of UTC since 1970, or null for now, or a speed expected");
+    message_fail(error, "bad_field", "at_us: expected microseconds of UTC since 1970, null for now, or a speed");
     return false;
 }
 
@@ -116,7 +116,7 @@ static bool parse_sign(const struct plant *plant, const json_t *o, struct messag
     if (!take_signed(o, "frames", out, &given, error))
         return false;
     if (!given)
-        message_fail(error, "bad_field", "frames: 'none', 'refined' or 'all' expected");
+        message_fail(error, "bad_field", "frames: expected 'none', 'refined' or 'all'");
     return given;
 }
 
@@ -139,7 +139,7 @@ static bool parse_hello(const struct plant *plant, const json_t *o, struct messa
     if (!tile_parse(plant, o, out, error) || !take_signed(o, "signed", out, &given, error))
         return false;
     if (out->tile.display && !out->width_px) {
-        message_fail(error, "bad_field", "tile: width and height are needed");
+        message_fail(error, "bad_field", "tile: expected width and height too");
         return false;
     }
     out->tokens = json_is_true(json_object_get(o, "tokens"));
@@ -147,7 +147,7 @@ static bool parse_hello(const struct plant *plant, const json_t *o, struct messa
     out->has_camera = json_is_object(camera);
     out->has_params = json_is_object(params);
     if ((camera && !out->has_camera) || (params && !out->has_params)) {
-        message_fail(error, "bad_field", "camera, params: objects expected");
+        message_fail(error, "bad_field", "camera, params: expected objects");
         return false;
     }
     return (!out->has_camera || parse_camera(plant, camera, out, error)) && (!out->has_params || parse_params(plant, params, out, error));
@@ -173,7 +173,7 @@ static bool parse_visible(const struct plant *plant, const json_t *o, struct mes
     out->visible = json_is_true(visible);
     if (json_is_boolean(visible))
         return true;
-    message_fail(error, "bad_field", "visible: true or false expected");
+    message_fail(error, "bad_field", "visible: expected true or false");
     return false;
 }
 
@@ -184,7 +184,7 @@ static bool parse_ping(const struct plant *plant, const json_t *o, struct messag
     out->active = json_is_true(active);
     if (!active || json_is_boolean(active))
         return need_number(o, "t", -1e300, 1e300, &out->t, error);
-    message_fail(error, "bad_field", "active: true or false expected");
+    message_fail(error, "bad_field", "active: expected true or false");
     return false;
 }
 
@@ -199,7 +199,7 @@ static bool parse_pick(const struct plant *plant, const json_t *o, struct messag
     (void)plant;
     out->pick.has_camera = camera != NULL;
     if (camera && !json_is_object(camera)) {
-        message_fail(error, "bad_field", "camera: an object expected");
+        message_fail(error, "bad_field", "camera: expected an object");
         return false;
     }
     return need_seq(o, &out->seq, error) && need_number(o, "x", 0, VIEW_MAX_SIDE_PX, &out->pick.x_px, error) &&
@@ -213,7 +213,7 @@ static bool parse_follow(const struct plant *plant, const json_t *o, struct mess
     out->follow = json_is_integer(session) && json_integer_value(session) > 0 ? (uint64_t)json_integer_value(session) : 0;
     if (out->follow || json_is_null(session))
         return true;
-    message_fail(error, "bad_field", "session: the number of a session expected, or null");
+    message_fail(error, "bad_field", "session: expected the number of a session, or null");
     return false;
 }
 
@@ -221,7 +221,7 @@ static bool parse_lead(const struct plant *plant, const json_t *o, struct messag
 {
     if (parse_follow(plant, o, out, error) && out->follow)
         return true;
-    message_fail(error, "bad_field", "session: the number of a session expected");
+    message_fail(error, "bad_field", "session: expected the number of a session");
     return false;
 }
 
@@ -275,11 +275,11 @@ static bool parse_object(const struct plant *plant, const json_t *o, struct mess
     const char *type = json_string_value(json_object_get(o, "type"));
     char name[48];
     if (!json_is_object(o)) {
-        message_fail(error, "not_object", "a JSON object with a 'type' expected");
+        message_fail(error, "not_object", "expected a JSON object with a 'type'");
         return false;
     }
     if (!type) {
-        message_fail(error, "no_type", "the message has no 'type' that is a text");
+        message_fail(error, "no_type", "the message has no 'type', or one that is not text");
         return false;
     }
     for (size_t i = 0; i < sizeof(types) / sizeof(types[0]); i++) {

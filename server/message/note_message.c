@@ -36,7 +36,7 @@ bool note_parse(const struct plant *plant, const json_t *o, struct message *out,
     note->until_us = (int64_t)until_us;
     if ((note->tag >= 0) + (note->asset >= 0) + note->has_position == 1)
         return true;
-    message_fail(error, "bad_field", "tag, asset, position: one of them expected");
+    message_fail(error, "bad_field", "tag, asset, position: expected one of them");
     return false;
 }
 
@@ -48,7 +48,7 @@ bool remove_note_parse(const struct plant *plant, const json_t *o, struct messag
         !need_words(o, "name", false, out->note.name, sizeof(out->note.name), error))
         return false;
     if (!given)
-        message_fail(error, "bad_field", "id: that of a note expected");
+        message_fail(error, "bad_field", "id: expected the id of a note");
     return given;
 }
 

@@ -31,7 +31,7 @@ static bool parse_sensor(const struct plant *plant, const json_t *o, struct para
     if (json_is_null(value))
         return true;
     if (!json_is_string(value)) {
-        message_fail(error, "bad_field", "sensor: a tag or null expected");
+        message_fail(error, "bad_field", "sensor: expected a tag or null");
         return false;
     }
     out->field.sensor = find_tag(plant, "sensor", json_string_value(value), error);
@@ -55,11 +55,11 @@ static bool parse_override(const struct plant *plant, const char *tag, const jso
     if (override.tag < 0)
         return false;
     if (out->field.override_count == FIELD_OVERRIDES) {
-        message_fail(error, "bad_field", "sensors: at most %d expected", FIELD_OVERRIDES);
+        message_fail(error, "bad_field", "sensors: expected at most %d", FIELD_OVERRIDES);
         return false;
     }
     if (!json_is_object(value) && !json_is_null(value)) {
-        message_fail(error, "bad_field", "sensors: {\"strength\", \"decay\"} or null expected for each tag");
+        message_fail(error, "bad_field", "sensors: expected {\"strength\", \"decay\"} or null for each tag");
         return false;
     }
     if (!may_factor(value, "strength", &override.strength, error) || !may_factor(value, "decay", &override.decay, error))
@@ -77,7 +77,7 @@ static bool parse_sensors(const struct plant *plant, const json_t *o, struct par
     out->given |= GIVEN_SENSORS;
     out->only_these_sensors = json_is_null(all);
     if (!json_is_object(all) && !json_is_null(all)) {
-        message_fail(error, "bad_field", "sensors: an object of tags, or null expected");
+        message_fail(error, "bad_field", "sensors: expected an object of tags, or null");
         return false;
     }
     json_object_foreach(all, tag, value) if (!parse_override(plant, tag, value, out, error)) return false;
@@ -93,7 +93,7 @@ static bool take_name(const json_t *value, enum baseline_change what, struct par
         strcpy(out->baseline_name, name);
         return true;
     }
-    message_fail(error, "bad_field", "baseline: a name of 1 to %zu bytes, without control characters, other than 'now', expected",
+    message_fail(error, "bad_field", "baseline: expected a name of 1 to %zu bytes, without control characters, other than 'now'",
                  sizeof(out->baseline_name) - 1);
     return false;
 }
@@ -114,7 +114,7 @@ static bool parse_baseline(const json_t *o, struct params_change *out, struct me
     else if (remove && !set)
         return take_name(remove, BASELINE_REMOVE, out, error);
     else
-        message_fail(error, "bad_field", "baseline: a name, 'now', {\"set\": name}, {\"remove\": name} or null expected");
+        message_fail(error, "bad_field", "baseline: expected a name, 'now', {\"set\": name}, {\"remove\": name} or null");
     return out->baseline != BASELINE_STAYS;
 }
 
@@ -139,7 +139,7 @@ static bool apply_sensors(const struct params_change *change, struct field_param
     }
     for (size_t i = 0; i < change->field.override_count; i++)
         if (!field_params_override(field, change->field.overrides[i])) {
-            message_fail(error, "bad_field", "sensors: at most %d may be overridden together", FIELD_OVERRIDES);
+            message_fail(error, "bad_field", "sensors: at most %d may be overridden at a time", FIELD_OVERRIDES);
             return false;
         }
     return true;

@@ -18,7 +18,7 @@ bool split_parse(const struct plant *plant, const json_t *o, struct split_change
     if (out->mode == SPLIT_OFF)
         return true;
     if (!json_is_object(value)) {
-        message_fail(error, "bad_field", "split: parameters of the right half, or null expected");
+        message_fail(error, "bad_field", "split: expected parameters of the right half, or null");
         return false;
     }
     for (size_t i = 0; i < sizeof(common) / sizeof(*common); i++)

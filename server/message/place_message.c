@@ -30,7 +30,7 @@ static bool take_move(const struct plant *plant, const json_t *o, struct place_m
     out->tag = tag ? plant_find_tag(plant, tag) : -1;
     out->asset = asset ? plant_find_asset(plant, asset) : -1;
     if (!tag || !asset)
-        message_fail(error, "bad_field", "moves: objects with tag, asset and position expected");
+        message_fail(error, "bad_field", "moves: expected objects with tag, asset and position");
     else if (out->tag < 0)
         message_refuse_with(error, "bad_field", "moves", REFUSAL_NO_TAG, "name=%s", quoted(tag, name));
     else if (out->asset < 0)
@@ -46,7 +46,7 @@ bool place_parse(const struct plant *plant, const json_t *o, struct message *out
     if (!need_seq(o, &out->seq, error))
         return false;
     if (!json_is_array(moves) || json_array_size(moves) > PLACING_MOVES) {
-        message_fail(error, "bad_field", "moves: a list of at most %d expected", PLACING_MOVES);
+        message_fail(error, "bad_field", "moves: expected a list of at most %d", PLACING_MOVES);
         return false;
     }
     for (out->place.count = 0; out->place.count < json_array_size(moves); out->place.count++)
@@ -115,7 +115,7 @@ bool restore_tags_parse(const struct plant *plant, const json_t *o, struct messa
     const char *number = out->kept + n + 1;
     if (!strncmp(out->kept, base, n) && out->kept[n] == '.' && *number && strspn(number, "0123456789") == strlen(number))
         return true;
-    message_fail(error, "bad_field", "kept: a version of the tag list expected, such as %s.1", base);
+    message_fail(error, "bad_field", "kept: expected a version of the tag list, such as %s.1", base);
     return false;
 }
 

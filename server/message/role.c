@@ -42,7 +42,7 @@ bool role_may_send(enum role role, const struct message *message, struct message
     if (message->type == MESSAGE_PING)
         return true;
     if (role == ROLE_NOBODY) {
-        message_fail(error, "token_needed", "a token is needed: in hello, as `token`");
+        message_fail(error, "token_needed", "a token is required: send it in hello as `token`");
         return false;
     }
     if (role_is_node(role)) {
@@ -52,11 +52,11 @@ bool role_may_send(enum role role, const struct message *message, struct message
     if (message->type == MESSAGE_ALARM)
         return alarm_allowed(role, message, error);
     if (message->type == MESSAGE_DISPLAY && role < ROLE_VIEWER) {
-        message_fail(error, "not_allowed", "to be a wall's display takes a token");
+        message_fail(error, "not_allowed", "a wall's display needs a token");
         return false;
     }
     if (message->signed_frames && role < ROLE_VIEWER) {
-        message_fail(error, "not_allowed", "signed frames tell readings: they take a token");
+        message_fail(error, "not_allowed", "signed frames contain readings: they need a token");
         return false;
     }
     bool saves = message->type == MESSAGE_SAVE_TAGS || message->type == MESSAGE_ACCEPT_PLACES || message->type == MESSAGE_RESTORE_TAGS;

@@ -137,7 +137,7 @@ static bool add(struct view_address *out, const char *name, char *value, struct 
     else
         known = false;
     if (!good || !known)
-        message_fail(error, "bad_field", "the address of the view: %.40s: %s", name, known ? "it is wrong" : "a picture cannot show that");
+        message_fail(error, "bad_field", "address of the view: %.40s: %s", name, known ? "invalid" : "a picture cannot show this");
     return good && known;
 }
 

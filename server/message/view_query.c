@@ -284,7 +284,7 @@ static bool apply_at(const struct params_context *context, const json_t *o, stru
         return false;
     }
     if (at_us > context->now_us - HISTORY_SETTLED_US) {
-        message_fail(error, "bad_field", "at: the past begins 3 s ago; without it the picture is of now");
+        message_fail(error, "bad_field", "at: expected an instant at least 3 s ago; leave it out for a picture of now");
         return false;
     }
     view_set_instant(view, at_us, 0);
@@ -300,7 +300,7 @@ static bool apply(const struct params_context *context, enum role role, const js
     if (!may_number(o, "width", 16, VIEW_MAX_SIDE_PX, &w, NULL, error) || !may_number(o, "height", 16, VIEW_MAX_SIDE_PX, &h, NULL, error))
         return false;
     if (!view_size_valid(w, h)) {
-        message_fail(error, "bad_field", "width, height: whole numbers of pixels expected, at most %d together", VIEW_MAX_PIXELS);
+        message_fail(error, "bad_field", "width, height: expected whole numbers of pixels, at most %d in all", VIEW_MAX_PIXELS);
         return false;
     }
     view_default(context->scene, (int)w, (int)h, view);

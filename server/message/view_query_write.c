@@ -208,7 +208,8 @@ static bool is_said(const struct params_context *context, const struct view *vie
         good = view_equal(&read, view);
     }
     if (!good)
-        message_fail(error, "not_signed", "the view cannot be said in words%s%.100s", inner.code ? ": " : "", inner.code ? inner.text : "");
+        message_fail(error, "not_signed", "the view cannot be written as an address%s%.100s", inner.code ? ": " : "",
+                     inner.code ? inner.text : "");
     return good;
 }
 

@@ -15,7 +15,7 @@ static bool parse_id(const json_t *o, struct message *out, struct message_error 
         return false;
     if (named_view_id_valid(edit->id))
         return true;
-    message_fail(error, "bad_field", "id: letters, digits, '_', '-' and '.' expected");
+    message_fail(error, "bad_field", "id: expected letters, digits, '_', '-' and '.'");
     return false;
 }
 

@@ -11,7 +11,7 @@ static bool parse_set(const struct plant *plant, const json_t *o, const char *na
     const json_t *list = json_object_get(o, name);
     char quote[48];
     if (!json_is_array(list)) {
-        message_fail(error, "bad_field", "%s: a list of asset ids expected", name);
+        message_fail(error, "bad_field", "%s: expected a list of asset ids", name);
         return false;
     }
     for (size_t i = 0; i < json_array_size(list); i++) {
@@ -73,8 +73,8 @@ static bool parse_planes(const json_t *planes, struct clip *clip, struct message
         good = parse_plane(json_array_get(planes, i), clip->planes[i]);
     clip->plane_count = (int)count;
     if (!good)
-        message_fail(error, "bad_field", "clip.planes: 1 to %d of [nx, ny, nz, d] expected, with n p + d >= 0 where the plant stays",
-                     CLIP_MAX_PLANES);
+        message_fail(error, "bad_field",
+                     "clip.planes: expected 1 to %d of [nx, ny, nz, d], with n p + d >= 0 where the plant stays visible", CLIP_MAX_PLANES);
     return good;
 }
 
@@ -85,7 +85,7 @@ static bool parse_box(const json_t *box, struct clip *clip, struct message_error
         return false;
     for (int i = 0; i < 3; i++)
         if (!(min_m[i] < max_m[i])) {
-            message_fail(error, "bad_field", "clip.box: min below max expected, along each axis");
+            message_fail(error, "bad_field", "clip.box: expected min below max along each axis");
             return false;
         }
     clip_box(clip, min_m, max_m);
@@ -105,7 +105,7 @@ static bool parse_clip(const json_t *o, struct params_change *out, struct messag
         return parse_planes(planes, &out->visibility.clip, error);
     if (json_is_object(box) && !planes)
         return parse_box(box, &out->visibility.clip, error);
-    message_fail(error, "bad_field", "clip: {planes: [[nx, ny, nz, d], ...]}, {box: {min, max}} or null expected");
+    message_fail(error, "bad_field", "clip: expected {planes: [[nx, ny, nz, d], ...]}, {box: {min, max}} or null");
     return false;
 }
 

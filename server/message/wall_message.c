@@ -73,7 +73,7 @@ bool pair_parse(const struct plant *plant, const json_t *o, struct message *out,
         return false;
     if (strspn(digits, "0123456789") == sizeof(out->pair.digits) - 1)
         return true;
-    message_fail(error, "bad_field", "digits: the six that a display shows expected");
+    message_fail(error, "bad_field", "digits: expected the six digits that the display shows");
     return false;
 }
 

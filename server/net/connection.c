@@ -17,14 +17,14 @@ static const char SIGNED_IN[] = " (signed in)"; /* suffix added to a signed-in u
 static const struct http_refusal NO_HOST = { 400, "HTTP/1.1 requires the header Host\n" };
 static const struct http_refusal WRONG_HOST = { 403,
                                                 "the header Host has a name that this server does not accept; --host NAME allows it\n" };
-static const struct http_refusal LOCAL_ONLY = { 403, "this server answers to localhost, 127.0.0.1 and [::1] only\n" };
+static const struct http_refusal LOCAL_ONLY = { 403, "this server only accepts the hosts localhost, 127.0.0.1 and [::1]\n" };
 static const struct http_refusal PROXY = { 403, "the request came through a proxy; start the server with --behind-proxy to allow this\n" };
-static const struct http_refusal IN_QUERY = { 400, "a token does not belong in a URL, where logs and histories keep it: send it as "
+static const struct http_refusal IN_QUERY = { 400, "do not put a token into a URL, where logs and histories keep it: send it as "
                                                    "Authorization: Bearer, in the subprotocol list, or in hello\n" };
 static const struct http_refusal BAD_TOKEN = { 401, "this token is unknown or has expired\n" };
 static const struct http_refusal HELD = { 429, "too many wrong tokens came from this address; try again in 5 s\n" };
 static const struct http_refusal TOO_LONG = { 431, "a header is too long\n" };
-static const struct http_refusal TOO_MANY = { 503, "this address has as many connections as one may have; try again later\n" };
+static const struct http_refusal TOO_MANY = { 503, "this address has reached its limit of connections; try again later\n" };
 
 /* --- connections ------------------------------------------------------------------------------------------------------ */
 
@@ -220,18 +220,19 @@ static void record_login(struct server_context *server, const struct connection 
         server->logins_held++;
     if (login == LOGIN_HELD || login == LOGIN_GOOD)
         return;
-    audit_say(server->params.audit, &(struct audit_entry){ .event = "login",
-                                                           .result = good ? "done" : "refused",
-                                                           .who = holder->name[0] ? holder->name
-                                                                  : good          ? LOCAL
-                                                                                  : NULL,
-                                                           .role = known ? name_of(names_role, (int)holder->role) : NULL,
-                                                           .from = connection->address,
-                                                           .how = way,
-                                                           .why = good                         ? NULL
-                                                                  : known                      ? "its time is over"
-                                                                  : login == LOGIN_WRONG_SLOWS ? "unknown token; the address is slowed"
-                                                                                               : "unknown token" });
+    audit_say(server->params.audit,
+              &(struct audit_entry){ .event = "login",
+                                     .result = good ? "done" : "refused",
+                                     .who = holder->name[0] ? holder->name
+                                            : good          ? LOCAL
+                                                            : NULL,
+                                     .role = known ? name_of(names_role, (int)holder->role) : NULL,
+                                     .from = connection->address,
+                                     .how = way,
+                                     .why = good                         ? NULL
+                                            : known                      ? "it has expired"
+                                            : login == LOGIN_WRONG_SLOWS ? "unknown token; further tokens of this address are delayed"
+                                                                         : "unknown token" });
 }
 
 void connection_log_login(struct server_context *server, struct lws *wsi, const char *way, const struct token_holder *holder,
@@ -251,9 +252,9 @@ void connection_log_login(struct server_context *server, struct lws *wsi, const 
         return;
     counter_inc(server->counters.logins_wrong, 1);
     log_event(log, LOG_WARN, EVENT_LOGIN_REFUSED, "login from %s by %s: token %s, role %s: refused, %s (%d within a minute)",
-              connection->address, way, known ? holder->name : "(unknown)", role, known ? "its time is over" : "nobody's", failures);
+              connection->address, way, known ? holder->name : "(unknown)", role, known ? "it has expired" : "nobody's", failures);
     if (login == LOGIN_WRONG_SLOWS)
-        log_warn(log, "login from %s: slowed to one token in %d s until a minute passes without a wrong one", connection->address,
+        log_warn(log, "login from %s: limited to one token in %d s until a minute passes without a wrong one", connection->address,
                  LOGIN_WAIT_S);
 }
 

@@ -93,8 +93,8 @@ static void record_held(struct server_context *server, int64_t now_ns)
 {
     if ((!server->logins_held && !server->unasked) || now_ns - server->held_ns < RECORD_INTERVAL_NS)
         return;
-    record_sum(server, &server->logins_held, "tokens of slowed addresses were not looked at");
-    record_sum(server, &server->unasked, "answers of the identity provider belonged to no log-in, could not be looked at, or were errors");
+    record_sum(server, &server->logins_held, "tokens from rate-limited addresses were refused unchecked");
+    record_sum(server, &server->unasked, "answers of the identity provider belonged to no sign-in, could not be checked, or were errors");
     server->held_ns = now_ns;
 }
 
@@ -347,7 +347,7 @@ bool net_port_free(struct log *log, const char *address, int port)
                 listen(fd, 1) == 0;
     if (!good)
         log_err(log, "listen %s port %d: %s%s", address, port, strerror(errno),
-                errno == EADDRINUSE ? "; end the program that has it, or take another with --port" : "");
+                errno == EADDRINUSE ? "; stop the program that uses it, or choose another port with --port" : "");
     if (fd >= 0)
         close(fd);
     return good;
@@ -582,7 +582,7 @@ void net_run(struct net *net)
     net_unwatch_readings(net);
     finish_actions(net);
     streams_close(server);
-    renderers_close(server, "the core shuts down");
+    renderers_close(server, "the core is shutting down");
     server->goes_down = true;
     set_timer(net, clock_mono_ns() + GOODBYE_NS);
     for (int64_t end_ns = clock_mono_ns() + GOODBYE_NS;

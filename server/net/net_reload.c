@@ -57,7 +57,7 @@ void net_release_plant(struct net *net)
     if (server->picture_signer)
         picture_signer_settle(server->picture_signer);
     core_end_collect(server); /* takes the core's last answers */
-    renderers_close(server, "the core has another configuration from now on");
+    renderers_close(server, "the core has changed its configuration");
     net_unwatch_readings(net);
     history_queries_destroy(&server->history_queries);
     history_loader_destroy(&server->history_loader);

@@ -76,7 +76,7 @@ const char *renderers_refusal(const struct server_context *server, struct lws *w
     const struct connection *connection = connection_of(wsi);
     if (!server->params.is_core)
         return "this daemon is not a core: start it with --role core\n";
-    return role_is_node(connection->role) || is_local(connection) ? NULL : "this takes a token of the role renderer or standby\n";
+    return role_is_node(connection->role) || is_local(connection) ? NULL : "this needs a token of the role renderer or standby\n";
 }
 
 void renderers_make_key(struct server_context *server)
@@ -256,7 +256,7 @@ static bool send_message(struct renderer_peer *renderer, json_t *message)
 /* Tells the renderer that this core is only a standby, so that it looks for the leading core. Returns false if the connection is gone. */
 static bool send_standby(struct renderer_peer *renderer)
 {
-    renderer->close_text = "it stands by";
+    renderer->close_text = "it is standby";
     return send_message(renderer, json_pack("{s:s}", "type", "standby"));
 }
 
@@ -275,7 +275,7 @@ static bool send_refusal(struct renderer_peer *renderer)
 {
     bool votes = renderer->state == RENDERER_VOTES;
     renderer->refusal_sent = true;
-    renderer->close_text = votes ? NULL : "it is refused";
+    renderer->close_text = votes ? NULL : "it was refused";
     return send_message(renderer, json_pack("{s:s,s:s,s:b}", "type", "refused", "why", renderer->refusal, "votes", votes));
 }
 
@@ -362,7 +362,7 @@ static bool send_samples(const struct server_context *server, struct renderer_pe
     int count = core_samples_write(renderer->samples, &renderer->out);
     renderer->samples_sent = count < CORE_SAMPLES_AT_ONCE;
     if (count < 0)
-        log_err(server->params.log, "standby %s: disconnected: it read samples too slowly; it reads them from PostgreSQL instead",
+        log_err(server->params.log, "standby %s: disconnected: it read samples too slowly; it will read them from PostgreSQL instead",
                 renderer->name);
     return count < 0 ? false : count == 0 || send_out(renderer, LWS_WRITE_BINARY);
 }
@@ -454,7 +454,7 @@ static char *role_refusal(const struct renderer_peer *one)
     enum role role = one->stands_by ? ROLE_STANDBY : ROLE_RENDERER;
     if (connection->role == role || is_local(connection))
         return NULL;
-    return mem_printf("its token %s has the role %s, and a %s takes one of the role %s (plantcast token add FILE --role %s --name NAME)",
+    return mem_printf("its token %s has the role %s, but a %s needs one of the role %s (plantcast token add FILE --role %s --name NAME)",
                       connection->holder.name, name_of(names_role, (int)connection->role), name_of(names_role, (int)role),
                       name_of(names_role, (int)role), name_of(names_role, (int)role));
 }
@@ -467,12 +467,12 @@ static char *standby_refusal(const struct server_context *server, struct rendere
     if (!server->params.keeper)
         return mem_strdup("this core has no standby: it was started without --core");
     if (!strcmp(one->name, server->params.node_name))
-        return mem_printf("both cores have the name %.63s: --node names them", one->name);
+        return mem_printf("both cores have the name %.63s: give each its own with --node", one->name);
     for (const struct renderer_peer *other = server->renderers; other; other = other->next)
         if (other != one && (matches ? is_standby(other) : is_witness(other)))
-            return mem_printf("%.63s stands by already", other->name);
+            return mem_printf("%.63s is standby already", other->name);
     if (!id || !lease_name(one->lease, one->name, id))
-        return mem_printf("the standby %.63s has no id, or a too long one", one->name);
+        return mem_printf("the standby %.63s has no id, or one that is too long", one->name);
     return NULL;
 }
 
@@ -482,8 +482,8 @@ static void say_refusal(struct server_context *server, const struct renderer_pee
     char said[sizeof(server->renderer_refused)];
     bool votes = renderer->state == RENDERER_VOTES;
     snprintf(said, sizeof(said), "%s %s: refused: %s%s", renderer->stands_by ? "standby" : "renderer", renderer->name, renderer->refusal,
-             votes                 ? "; it is no standby, but its promises count"
-             : renderer->stands_by ? "; it is no standby"
+             votes                 ? "; it is not a standby, but its promises count"
+             : renderer->stands_by ? "; it is not a standby"
                                    : "");
     if (strcmp(said, server->renderer_refused) != 0)
         log_err(server->params.log, "%s", said);
@@ -558,8 +558,8 @@ static const char *verify_person(const struct server_context *server, const stru
     const char *id_token = json_string_value(json_object_get(message, "id_token"));
     *out = (struct token_holder){ .role = ROLE_NOBODY };
     if (token && server->tokens)
-        return !tokens_find(server->tokens, token, clock_utc_ns(), out) ? "the core does not let this token in (its --tokens file)"
-               : role_is_node(out->role)                                ? "a daemon's token does not allow user actions"
+        return !tokens_find(server->tokens, token, clock_utc_ns(), out) ? "the core does not accept this token (its --tokens file)"
+               : role_is_node(out->role)                                ? "a token of a daemon does not allow user actions"
                                                                         : NULL;
     if (id_token && server->openid) {
         const char *why = openid_vouch(server->openid, id_token, out);
@@ -570,7 +570,7 @@ static const char *verify_person(const struct server_context *server, const stru
         out->role = ROLE_ENGINEER;
         return NULL;
     }
-    return id_token ? "the core cannot tell who is signed in: it has no --openid"
+    return id_token ? "the core cannot identify the signed-in user: it has no --openid"
                     : "the core cannot verify the user: it needs a token or a sign-in";
 }
 
@@ -601,19 +601,19 @@ static const char *on_message(struct server_context *server, struct renderer_pee
     json_t *message = json_loadb(renderer->in.at, renderer->in.length, JSON_REJECT_DUPLICATES, NULL);
     const char *type = json_string_value(json_object_get(message, "type")), *why = NULL;
     if (!type)
-        why = "its message is not JSON";
+        why = "the message is not JSON";
     else if (!strcmp(type, "renderer") && renderer->state == RENDERER_NEW)
         introduce(server, renderer, message);
     else if (!strcmp(type, "promise") && is_witness(renderer) && server->params.keeper)
         lease_keeper_promised(server->params.keeper, renderer->lease, (uint64_t)json_integer_value(json_object_get(message, "number")));
     else if (renderer->state != RENDERER_TAKEN)
-        why = "it did not introduce itself first";
+        why = "the first message is not an introduction (hello)";
     else if (!strcmp(type, "act") && json_is_integer(json_object_get(message, "id")))
         act(server, renderer, message);
     else if (!strcmp(type, "pairing") && server->tokens)
         pairings_ask_for(server->params.plant.pairings, message, clock_mono_ns());
     json_decref(message);
-    return json_array_size(renderer->answers) > MAX_ANSWERS ? "it reads no answers" : why;
+    return json_array_size(renderer->answers) > MAX_ANSWERS ? "it does not read answers" : why;
 }
 
 /* Handles received bytes. Returns -1 if the connection must end. */

@@ -77,9 +77,9 @@ static void on_open(struct server_context *server, struct lws *wsi, struct strea
     stream->usage->sessions++;
     admission_join(&server->admission, &stream->usage->share);
     if (address_full)
-        session_close(stream->session, 1013, "full: this address has as many sessions as one may have; try again later");
+        session_close(stream->session, 1013, "full: this address has reached its limit of sessions; try again later");
     else if (server->stream_count > server->quotas->at[QUOTA_SESSIONS])
-        session_close(stream->session, 1013, "full: as many sessions as there may be; try again later");
+        session_close(stream->session, 1013, "full: the server has reached its limit of sessions; try again later");
     pump(server, stream);
     log_debug(server->params.log, "session %llu: opened", (unsigned long long)stream->session->id);
 }
@@ -229,7 +229,7 @@ static void watch_stall(struct server_context *server, struct stream *stream, in
     if (state != PACER_DEAD)
         return;
     counter_inc(server->counters.stalled, 1);
-    close_with(stream, STREAM_CLOSE_STALLED, "nothing was acknowledged for 15 s");
+    close_with(stream, STREAM_CLOSE_STALLED, "no frame was acknowledged for 15 s");
     /* closes the socket by a timeout, because it may not even accept the close frame */
     lws_set_timeout(stream->wsi, PENDING_TIMEOUT_CLOSE_SEND, LAST_WORDS_S);
 }
@@ -266,9 +266,9 @@ void streams_on_tick(struct server_context *server)
     for (struct stream *stream = server->streams; stream; stream = stream->next) {
         session_on_tick(stream->session, now_ns);
         if (is_drained(server, stream, now_ns))
-            session_close(stream->session, LWS_CLOSE_STATUS_GOINGAWAY, "this node is drained; retry after 0 s");
+            session_close(stream->session, LWS_CLOSE_STATUS_GOINGAWAY, "this node is being drained; retry after 0 s");
         if (stream->in_count > 0 && now_ns - stream->in_begin_ns > patience_ns)
-            session_close(stream->session, 1008, "half a message, and for too long no more of it");
+            session_close(stream->session, 1008, "an incomplete message timed out");
         count(server, stream);
         watch_stall(server, stream, now_ns);
         pump(server, stream);
@@ -292,9 +292,9 @@ void streams_close(struct server_context *server)
 {
     int back_s = server->start_s < BACK_MAX_S ? server->start_s : BACK_MAX_S;
     if (back_s > 0)
-        snprintf(server->goodbye, sizeof(server->goodbye), "the server goes down; retry after %d s", back_s);
+        snprintf(server->goodbye, sizeof(server->goodbye), "the server is stopping; retry after %d s", back_s);
     else
-        snprintf(server->goodbye, sizeof(server->goodbye), "the server goes down");
+        snprintf(server->goodbye, sizeof(server->goodbye), "the server is stopping");
     for (struct stream *stream = server->streams; stream; stream = stream->next)
         close_with(stream, LWS_CLOSE_STATUS_GOINGAWAY, server->goodbye);
 }
@@ -481,7 +481,7 @@ static void on_receive(struct server_context *server, struct stream *stream, con
         text_add_bytes(&stream->in, bytes, len);
     if (lws_remaining_packet_payload(stream->wsi) == 0 && lws_is_final_fragment(stream->wsi)) {
         if (is_whole && !lws_frame_is_binary(stream->wsi) && !is_utf8(&stream->in)) {
-            close_with(stream, LWS_CLOSE_STATUS_INVALID_PAYLOAD, "text that is not UTF-8");
+            close_with(stream, LWS_CLOSE_STATUS_INVALID_PAYLOAD, "a text message that is not UTF-8");
             lws_rx_flow_control(stream->wsi, 0);
             return;
         }

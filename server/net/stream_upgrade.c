@@ -52,7 +52,7 @@ int stream_check_upgrade(struct server_context *server, struct lws *wsi)
     if (core && (why = renderers_refusal(server, wsi)))
         return refuse(server, wsi, HTTP_STATUS_FORBIDDEN, why);
     if (!core && role_is_node(connection_of(wsi)->role))
-        return refuse(server, wsi, HTTP_STATUS_FORBIDDEN, "a daemon's token opens no stream\n");
+        return refuse(server, wsi, HTTP_STATUS_FORBIDDEN, "a token of a daemon cannot open a stream\n");
     if (!connection_header(wsi, WSI_TOKEN_PROTOCOL, list, sizeof(list)))
         return refuse(server, wsi, 431, "a header is too long\n");
     if ((core || list[0]) && !access_list_has(list, spoken))

@@ -136,7 +136,7 @@ static void on_end(void *arg, int recipient, const char *why)
         outbox_failed(notifier->outbox, recipient, now_us());
         counter_inc(notifier->counters[recipient].failed, 1);
         if (!notifier->failing[recipient])
-            log_err(log, "notify: %s cannot be reached: %s; messages wait, and are sent again", id, why);
+            log_err(log, "notify: %s cannot be reached: %s; messages are queued and sent later", id, why);
     } else {
         outbox_sent(notifier->outbox, recipient, now_us());
         save(notifier); /* saved immediately: if the daemon were killed before saving, the next one would send the message again */
@@ -269,7 +269,7 @@ struct notifier *notifier_start(const struct notifier_params *params)
     int error = notifier->delivery ? pthread_create(&notifier->thread, NULL, run, notifier) : 0;
     notifier->started = notifier->delivery && !error;
     if (error)
-        log_err(params->log, "notify: no thread: %s", strerror(error));
+        log_err(params->log, "notify: cannot start a thread: %s", strerror(error));
     if (!notifier->started)
         notifier_stop(&notifier);
     return notifier;

@@ -198,7 +198,7 @@ static void *run(void *arg)
         int64_t now_ns = clock_mono_ns();
         counter_set(publisher->up, 0);
         if (strcmp(why, publisher->said) != 0)
-            log_warn(publisher->params.log, "publish: %s:%d: nothing is published: %s", broker->hosts[0], broker->port, why);
+            log_warn(publisher->params.log, "publish: %s:%d: not publishing: %s", broker->hosts[0], broker->port, why);
         memcpy(publisher->said, why, sizeof(why));
         if (publisher->connected)
             backoff = (struct backoff){ 0 };
@@ -247,7 +247,7 @@ struct publisher *publisher_start(const struct publisher_params *params)
     int error = publisher->stop_fd < 0 ? errno : pthread_create(&publisher->thread, NULL, run, publisher);
     publisher->started = !error;
     if (error) {
-        log_err(params->log, "publish: no thread: %s", strerror(error));
+        log_err(params->log, "publish: cannot start a thread: %s", strerror(error));
         publisher_stop(&publisher);
     }
     return publisher;

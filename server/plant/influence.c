@@ -61,7 +61,7 @@ void plant_gp_check(struct yaml_reader *reader, const struct yaml_map *map, cons
     if (plant_prepares(group, INTERPOLATION_GP) && isnan(gp->range_m))
         yaml_error(
             reader, yaml_map_place(map, "gp"),
-            "group %s: gp needs 'gp: { range_m: ... }', how far one place says something about another, or 'fit', a file of readings",
+            "group %s: gp needs 'gp: { range_m: ... }' (correlation length in metres) or 'fit' (a file of readings)",
             group->id ? group->id : "");
 }
 

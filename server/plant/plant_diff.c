@@ -195,7 +195,7 @@ static void diff_sources(struct plant_diff *diff, const struct plant *before, co
 void plant_diff(const struct plant *before, const struct plant *after, struct plant_diff *out)
 {
     if (before->alarms != after->alarms)
-        say(out, "whose the alarms are has changed");
+        say(out, "`alarms` (display, mirror or local) has changed");
     diff_assets(out, before, after);
     diff_groups(out, before, after);
     diff_sources(out, before, after);

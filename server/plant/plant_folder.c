@@ -225,8 +225,8 @@ static char *say_holder(int fd)
     if (comm)
         fclose(comm);
     mem_free(path);
-    return pid > 0 ? mem_printf("%s (process %d) is at work in it", *name ? name : "another program", pid)
-                   : mem_strdup("another program is at work in it");
+    return pid > 0 ? mem_printf("%s (process %d) is using it", *name ? name : "another program", pid)
+                   : mem_strdup("another program is using it");
 }
 
 /* Opens the folder, or duplicates the descriptor of the parent process, which must refer to the same folder and hold its lock. Returns the
@@ -316,7 +316,7 @@ bool plant_folder_settle(const struct plant_folder_params *params, char **why)
         return true;
     }
     if (lock >= 0 && plant_folder_unsettled(params->folder)) {
-        *why = mem_strdup("an import was killed there, or is at work, and folders cannot be locked: run plantcast import or match again");
+        *why = mem_strdup("an import there was killed or still runs, and folders cannot be locked: run plantcast import or match again");
         return false;
     }
     return lock >= 0;

@@ -17,7 +17,7 @@ uint8_t *png_pixels(const uint8_t *png, size_t count, int64_t width_px, int64_t 
     }
     image.format = PNG_FORMAT_RGB;
     if (image.width != width_px || image.height != height_px) {
-        snprintf(why, PNG_WHY_BYTES, "the picture has another size than the statement says");
+        snprintf(why, PNG_WHY_BYTES, "the picture's size differs from the statement");
     } else if (!(pixels = mem_try_array(PNG_IMAGE_SIZE(image), 1))) {
         snprintf(why, PNG_WHY_BYTES, "the picture cannot be read: there is no memory for it");
     } else if (!png_image_finish_read(&image, NULL, pixels, 0, NULL)) {

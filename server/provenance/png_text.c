@@ -135,7 +135,7 @@ static bool is_plain_header(const struct png_chunk *chunk, char why[PNG_PLAIN_WH
     if (!is_header)
         return FAIL("its first chunk is not IHDR");
     return memcmp(chunk->data + 8, format, sizeof(format)) == 0 ||
-           FAIL("its chunk IHDR says another format than 8 bits of red, green and blue");
+           FAIL("chunk IHDR has another format than 8 bits of red, green and blue");
 }
 
 /* Returns the chunk's index in `plain`; PLAIN_CHUNKS: not in it. */
@@ -156,16 +156,16 @@ static bool takes_plain_chunk(const struct png_chunk *chunk, int *next, char why
 {
     int row = plain_row(chunk);
     if (row == PLAIN_CHUNKS)
-        return FAIL("it has a chunk that none of our pictures has: %c%c%c%c", printable(chunk->type[0]), printable(chunk->type[1]),
+        return FAIL("unexpected chunk %c%c%c%c: Plantcast's pictures have none", printable(chunk->type[0]), printable(chunk->type[1]),
                     printable(chunk->type[2]), printable(chunk->type[3]));
     bool again = row + 1 == *next && plain[row].repeats;
     if (row < *next && !again)
-        return FAIL("its chunk %.4s is there twice, or in another order than in our pictures", plain[row].type);
+        return FAIL("chunk %.4s occurs twice, or in another order than in Plantcast's pictures", plain[row].type);
     for (int i = *next; i < row; i++)
         if (plain[i].required)
-            return FAIL("its chunk %.4s is missing, or in another order than in our pictures", plain[i].type);
+            return FAIL("chunk %.4s is missing, or in another order than in Plantcast's pictures", plain[i].type);
     if (plain[row].bytes && (chunk->length != plain[row].length || memcmp(chunk->data, plain[row].bytes, chunk->length) != 0))
-        return FAIL("its chunk %.4s says something else than that of our pictures", plain[row].type);
+        return FAIL("chunk %.4s differs from that of Plantcast's pictures", plain[row].type);
     *next = row + 1;
     return true;
 }
@@ -176,22 +176,22 @@ bool png_is_plain(const uint8_t *png, size_t count, const char *const *keywords,
     size_t at = SIGNATURE;
     int texts = 0, next = 0;
     if (!is_png(png, count) || !next_chunk(png, count, &at, &chunk))
-        return FAIL("it is no whole PNG file");
+        return FAIL("the PNG file is incomplete");
     if (!is_plain_header(&chunk, why))
         return false;
     while (next_chunk(png, count, &at, &chunk)) {
         bool is_text = memcmp(chunk.type, "zTXt", 4) == 0;
         if (is_text && (texts == keyword_count || next > 0 || !has_keyword(chunk.data, chunk.length, keywords[texts])))
-            return FAIL("its chunk zTXt is there twice, or in another order than in our pictures");
+            return FAIL("chunk zTXt occurs twice, or in another order than in Plantcast's pictures");
         texts += is_text;
         if (!is_text && texts < keyword_count)
-            return FAIL("there is no %s in it, or not behind its header", keywords[texts]);
+            return FAIL("it has no %s, or not right after its header", keywords[texts]);
         if (!is_text && !takes_plain_chunk(&chunk, &next, why))
             return false;
         if (next == PLAIN_CHUNKS)
-            return at == count || FAIL("it is no whole PNG file: there are %zu bytes behind its last chunk", count - at);
+            return at == count || FAIL("the PNG file has %zu bytes after its last chunk", count - at);
     }
-    return FAIL("it is no whole PNG file: it is cut or damaged");
+    return FAIL("the PNG file is truncated or damaged");
 }
 
 char *png_text_find(const uint8_t *png, size_t count, const char *keyword, size_t max_bytes, size_t *out_length)

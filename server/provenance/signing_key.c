@@ -44,12 +44,12 @@ static struct signing_key *load(const char *path, bool is_private, char why[SIGN
     }
     struct signing_key *key = NULL;
     if (is_private && fstat(fileno(file), &info) == 0 && (info.st_mode & S_IROTH)) {
-        snprintf(why, SIGNING_KEY_WHY_BYTES, "%.180s: everybody may read it; chmod o-rwx", path);
+        snprintf(why, SIGNING_KEY_WHY_BYTES, "%.180s: all users may read it: chmod o-rwx", path);
     } else {
         key = mem_new(sizeof(*key));
         key->pair = (is_private ? PEM_read_PrivateKey : PEM_read_PUBKEY)(file, NULL, no_passphrase, NULL);
         if (!key->pair || EVP_PKEY_id(key->pair) != EVP_PKEY_ED25519 || !find_id(key)) {
-            snprintf(why, SIGNING_KEY_WHY_BYTES, "%.180s: no %s key of Ed25519 in PEM", path, is_private ? "private" : "public");
+            snprintf(why, SIGNING_KEY_WHY_BYTES, "%.180s: not a %s key (Ed25519, PEM)", path, is_private ? "private" : "public");
             signing_key_destroy(&key);
         }
     }

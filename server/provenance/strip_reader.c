@@ -196,7 +196,7 @@ bool strip_find(const struct strip_picture *picture, struct strip_found *found, 
 {
     memset(found, 0, sizeof(*found));
     if (!find_place(picture, found)) {
-        *why = "no legend strip is in it; draw it with --strip legend, and keep its lower edge";
+        *why = "it has no legend strip; draw it with --strip legend, and do not crop its lower edge";
         return false;
     }
     if (!read_code(picture, found)) {

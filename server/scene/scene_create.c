@@ -132,7 +132,7 @@ static bool recipe_fits(struct log *log, const struct plant *plant, uint64_t *ha
     }
     if (plant_recipe(asset, hashes[index]) == entry->recipe)
         return true;
-    log_err(log, "asset %s: %s, or its nodes, units, scale or up, are not what was prepared; run plantcast-prep %s", asset->id,
+    log_err(log, "asset %s: %s, or its nodes, units, scale or up, changed since it was prepared; run plantcast-prep %s", asset->id,
             asset->model, plant->path);
     return false;
 }
@@ -189,7 +189,8 @@ static void place_sensor(const struct scene_asset *asset, int column, int tag, s
    absence. */
 static bool create_missing(struct log *log, const struct scene *scene, struct scene_asset *asset, const struct manifest_entry *entry)
 {
-    log_warn(log, "asset %s is missing: %s; repair it and run plantcast-prep %s", asset->plant->id, entry->missing, scene->plant->path);
+    log_warn(log, "asset %s is missing: %s; repair the model and run plantcast-prep %s", asset->plant->id, entry->missing,
+             scene->plant->path);
     asset->missing = mem_strdup(entry->missing);
     asset->file = asset_stand_in();
     if (asset->file)
@@ -278,7 +279,7 @@ static bool find_file(struct file_uses *uses, const struct manifest *manifest, u
     asset->plant = &scene->plant->assets[index];
     const struct manifest_entry *entry = manifest_find(manifest, asset->plant->id);
     if (!entry) {
-        log_err(log, "asset %s: is not in %s; run plantcast-prep %s", asset->plant->id, manifest->path, scene->plant->path);
+        log_err(log, "asset %s is not in %s; run plantcast-prep %s", asset->plant->id, manifest->path, scene->plant->path);
         return false;
     }
     if (entry->missing)

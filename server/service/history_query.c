@@ -31,7 +31,7 @@ static bool take_tags(const struct plant *plant, const char *list, struct histor
             return false;
         }
         if (has_tag(query, tag)) {
-            message_fail(error, "bad_field", "tags: '%.60s' is named twice", name);
+            message_fail(error, "bad_field", "tags: '%.60s' is listed twice", name);
             return false;
         }
         query->tags[query->tag_count++] = tag;
@@ -75,7 +75,7 @@ static bool take(const struct plant *plant, const char *arg, int64_t now_us, str
         return take_points(value, query, error);
     if (n == 6 && !memcmp(arg, "format", n))
         return take_format(value, query, error);
-    message_fail(error, "unknown_field", "there is no argument '%.*s'; tags, from, to, points and format are", n < 60 ? (int)n : 60, arg);
+    message_fail(error, "unknown_field", "unknown argument '%.*s'; expected tags, from, to, points and format", n < 60 ? (int)n : 60, arg);
     return false;
 }
 
@@ -89,7 +89,7 @@ bool history_query_parse(const struct plant *plant, const char *const *args, siz
     if (query->from_us == INT64_MIN)
         query->from_us = query->to_us - INT64_C(3600000000);
     if (query->tag_count == 0)
-        message_fail(error, "bad_field", "tags: expected the names of tags, with commas between them");
+        message_fail(error, "bad_field", "tags: expected names of tags, separated by commas");
     else if (query->from_us >= query->to_us)
         message_fail(error, "bad_field", "from: expected an earlier instant than to");
     else
@@ -104,7 +104,7 @@ bool history_query_parse_gaps(const char *const *args, size_t count, int64_t now
     for (size_t i = 0; i < count; i++) {
         bool from = !strncmp(args[i], "from=", 5);
         if (!from && strncmp(args[i], "to=", 3) != 0) {
-            message_fail(error, "unknown_field", "there is no argument '%.60s'; from and to are", args[i]);
+            message_fail(error, "unknown_field", "unknown argument '%.60s'; expected from and to", args[i]);
             return false;
         }
         if (!message_take_time(from ? "from" : "to", strchr(args[i], '=') + 1, now_us, from ? &query->from_us : &query->to_us, error))

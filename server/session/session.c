@@ -287,8 +287,8 @@ bool session_may_be(struct session *session, const struct wall_place *place, str
     const struct token_holder *holder = &session->identity.holder;
     if (!holder->display || (holder->display == place->display && !strcmp(holder->wall, place->wall)))
         return true;
-    message_fail(error, "not_allowed", "this token is that of display %d of wall %s", holder->display, holder->wall);
-    session_close(session, 1008, "this token is that of another display");
+    message_fail(error, "not_allowed", "this token belongs to display %d of wall %s", holder->display, holder->wall);
+    session_close(session, 1008, "this token belongs to another display");
     return false;
 }
 
@@ -377,7 +377,7 @@ static bool act(struct session *session, const struct message *message, int64_t 
 static bool in_order(const struct session *session, const struct message *message, struct message_error *error)
 {
     if (message->type == MESSAGE_HELLO && session->hello) {
-        message_fail(error, "hello_again", "hello comes once; use resize, camera and params");
+        message_fail(error, "hello_again", "hello was sent before; use resize, camera and params");
         return false;
     }
     if (message->type != MESSAGE_HELLO && message->type != MESSAGE_PING && !session->hello) {
@@ -397,7 +397,7 @@ static bool hand_on(struct session *session, const struct message *message, cons
     if (!context->hand_on || !message_is_handed_on(message))
         return false;
     if (!context->hand_on(context->hand_on_arg, session, text)) {
-        message_fail(&error, "core_lost", "this was not done: the core cannot be reached");
+        message_fail(&error, "core_lost", "not done: the core cannot be reached");
         session_reply_error(session, &error);
     }
     return true;
@@ -408,7 +408,7 @@ void session_too_fast(struct session *session, int64_t count, const char *whose)
     struct message_error error = { 0 };
     if (session->rate.exceeded)
         return;
-    message_fail(&error, "too_fast", "%lld messages %swithin a second: the next are read after it", (long long)count, whose);
+    message_fail(&error, "too_fast", "%lld messages %swithin a second: the next are read a second later", (long long)count, whose);
     session->rate.exceeded = true;
     session_reply_error(session, &error);
 }
@@ -513,7 +513,7 @@ void session_on_tick(struct session *session, int64_t now_ns)
         session->settled_ns = session->heard_ns;
     tell_token(session, now_ns);
     if (!session->hello && now_ns - session->opened_ns >= session->context->quotas->at[QUOTA_PATIENCE_S] * NS_PER_S)
-        session_close(session, 1008, "no hello for too long");
+        session_close(session, 1008, "no hello within the time limit");
     if (session->rate.exceeded && may_be_read_again(session, now_ns))
         session->rate.exceeded = false;
     if (pacer_state(&session->delivery.pacer, now_ns) != PACER_FLOWS)

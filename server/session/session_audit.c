@@ -117,15 +117,16 @@ static char *accepted_what(const struct session *session, const struct message *
     char filter[400];
     assumed_filter_text(scene->plant, &message->accept, filter, sizeof(filter));
     mem_free(outcome);
-    return mem_printf("tag list: %zu assumed place%s accepted (%s); it is put in force", count, count == 1 ? "" : "s", filter);
+    return mem_printf("tag list: %zu assumed place%s accepted (%s); the list is being activated", count, count == 1 ? "" : "s", filter);
 }
 
 void session_record_save(const struct session *session, const struct message *message, size_t moved)
 {
     const char *plural = moved == 1 ? "" : "s";
-    char *what = message->type == MESSAGE_ACCEPT_PLACES  ? accepted_what(session, message)
-                 : message->type == MESSAGE_RESTORE_TAGS ? mem_printf("tag list: %s restored; it is put in force", message->kept)
-                                                         : mem_printf("tag list: %zu sensor%s placed; it is put in force", moved, plural);
+    char *what = message->type == MESSAGE_ACCEPT_PLACES ? accepted_what(session, message)
+                 : message->type == MESSAGE_RESTORE_TAGS
+                     ? mem_printf("tag list: %s restored; the list is being activated", message->kept)
+                     : mem_printf("tag list: %zu sensor%s placed; the list is being activated", moved, plural);
     record(session, "place", "done", what, NULL);
     mem_free(what);
 }

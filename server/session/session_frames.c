@@ -30,7 +30,7 @@ static void on_failure(struct session *session, const struct frame_request *requ
 {
     struct message_error error = { 0 };
     if (session->delivery.newest_number == 0) {
-        session_close(session, 1013, "no memory for another picture: try later, or a smaller one");
+        session_close(session, 1013, "out of memory for another picture: try later, or a smaller one");
         return;
     }
     session->demand.refined = REFINED_NOT;
@@ -251,7 +251,8 @@ bool session_choose_codec(struct session *session, const struct codec_list *code
             session->codec.signed_frames = SIGNED_NONE;
         return true;
     }
-    message_fail(error, "bad_field", "codecs: this server has jpeg and png%s", has_codec(session, WIRE_CODEC_H264) ? " and h264" : " only");
+    message_fail(error, "bad_field", "codecs: this server supports jpeg and png%s",
+                 has_codec(session, WIRE_CODEC_H264) ? " and h264" : " only");
     return false;
 }
 
@@ -267,7 +268,7 @@ bool session_choose_signed(struct session *session, enum signed_frames frames, s
         return false;
     }
     if (frames && !decodes(session, WIRE_CODEC_PNG)) {
-        message_fail(error, "bad_field", "signed: such frames are PNG, which has to be among codecs");
+        message_fail(error, "bad_field", "signed: signed frames are PNG: add png to codecs");
         return false;
     }
     session->demand.any |= session->codec.signed_frames != frames;

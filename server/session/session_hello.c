@@ -45,7 +45,7 @@ static bool identify(struct session *session, const struct message *message, int
     if (session->identity.role == ROLE_NOBODY)
         session_close(session, 1008, "a token is needed");
     else if (role_is_node(session->identity.role))
-        session_close(session, 1008, "a daemon's token opens no stream");
+        session_close(session, 1008, "a token of a daemon cannot open a stream");
     return false;
 }
 
@@ -72,7 +72,7 @@ static bool begin_tile(struct session *session, const struct message *message, s
 {
     const struct wall_place *place = &message->tile;
     if (session->identity.role < ROLE_ENGINEER && !session->identity.holder.display) {
-        message_fail(error, "not_allowed", "tile: it takes the token of display %d of wall %s, or the role engineer", place->display,
+        message_fail(error, "not_allowed", "tile: needs the token of display %d of wall %s, or the role engineer", place->display,
                      place->wall);
         return false;
     }
@@ -93,7 +93,7 @@ static bool begin_view(struct session *session, const struct message *message, c
                        struct message_error *error)
 {
     if (!resumed && (message->width_px == 0 || message->codecs.count == 0)) {
-        message_fail(error, "bad_field", "resume: there is no such view (any more); width, height and codecs are needed");
+        message_fail(error, "bad_field", "resume: unknown view, or no longer kept: send width, height and codecs");
         return false;
     }
     if (resumed) {
@@ -143,7 +143,7 @@ static void take_over(struct session *session, const struct resumed *resumed, co
 {
     resumes_forget(session->context->resumes, secret);
     if (resumed->live)
-        session_close(resumed->live, 1000, "a new connection has taken this view over");
+        session_close(resumed->live, 1000, "a new connection took over this view");
 }
 
 /* Finds the view to resume: by the secret if this daemon kept the view; otherwise from the signed view token, which any daemon may have

@@ -174,7 +174,7 @@ void session_take_plant(struct session *session, const char *carried)
     session_scope_begin(session);
     if (had_pictures != !session->scope.tags)
         /* the display now shows pictures and did not before, or the reverse; the client must connect again to get the right size */
-        session_close(session, 1012, "the display has other panes now");
+        session_close(session, 1012, "the panes of the display have changed");
     struct message_error error = { 0 };
     if (session->identity.holder.views[0] && !session_scope_view(session, session->scope.named, &session->view, &error))
         session_reply_error(session, &error);

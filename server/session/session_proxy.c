@@ -22,10 +22,10 @@ static void act_as(struct session *session, const struct session_person *person,
     if (!message_parse(session->context->plant, text, strlen(text), &message, &error)) {
         session_reply_error(session, &error);
     } else if (!message_is_handed_on(&message)) {
-        message_fail(&error, "not_allowed", "this is not done for a renderer");
+        message_fail(&error, "not_allowed", "not allowed for a renderer");
         session_reply_error(session, &error);
     } else if (person->refusal) {
-        message_fail(&error, "not_allowed", "this was not done: %s", person->refusal);
+        message_fail(&error, "not_allowed", "not done: %s", person->refusal);
         session_record_refusal(session, &error);
         session_reply_error(session, &error);
     } else {

@@ -82,7 +82,7 @@ void read_plan_text(struct text *out, const struct plant *plant, int source_inde
     const struct plant_source *source = &plant->sources[source_index];
     struct read_plan plan;
     if (strcmp(source->kind, "modbus") != 0) {
-        text_add(out, "source %s: %s, nothing to ask\n", source->id, source->kind);
+        text_add(out, "source %s: %s, nothing to read\n", source->id, source->kind);
         return;
     }
     read_plan_init(&plan, plant, source_index);

@@ -16,7 +16,7 @@
 #include "value/state_word.h"
 
 enum { MAX_BYTES = 512 * 1024 * 1024, LONG_CELLS = 5 };
-#define NO_TIME "%s:1: no column is the time: expected a name that ends in _ms, _s, _min or _h, or instants such as 2026-11-20T10:00:00Z"
+#define NO_TIME "%s:1: no time column: expected a name that ends in _ms, _s, _min or _h, or instants such as 2026-11-20T10:00:00Z"
 
 struct series_cell {
     const char *at;
@@ -175,7 +175,7 @@ static bool read_wide(struct series *series, struct series_lines *lines, size_t 
             continue;
         bool short_line = lines->count <= column || lines->count <= time_column;
         if (short_line || !tick(clock, &lines->cells[time_column], &time_s)) {
-            snprintf(why, 200, "%s:%d: expected a time that is not before the last", lines->path, lines->number);
+            snprintf(why, 200, "%s:%d: expected a time not before that of the line above", lines->path, lines->number);
             return false;
         }
         if (lines->cells[column].length == 0) /* no value at this time */
@@ -196,7 +196,7 @@ static bool read_long(struct series *series, struct series_lines *lines, struct 
     size_t entity = slash ? (size_t)(slash - series->name) : 0;
     do {
         if (lines->count < LONG_CELLS || !tick(clock, &lines->cells[0], &time_s)) {
-            snprintf(why, 200, "%s:%d: expected time in ms,type,entity,property,value, times not falling", lines->path, lines->number);
+            snprintf(why, 200, "%s:%d: expected time in ms,type,entity,property,value, in order of time", lines->path, lines->number);
             return false;
         }
         if (!slash || !is(&lines->cells[2], series->name, entity) || !is(&lines->cells[3], slash + 1, strlen(slash + 1)))
@@ -246,13 +246,13 @@ static bool read_values(struct series *series, struct series_lines *lines, const
         if (lines->count == 1 && lines->cells[0].length == 0)
             continue;
         if (lines->count <= header->time || lines->count <= header->tag || lines->count <= header->value) {
-            snprintf(why, 200, "%s:%d: expected as many cells as the first line has", lines->path, lines->number);
+            snprintf(why, 200, "%s:%d: expected as many cells as in the first line", lines->path, lines->number);
             return false;
         }
         if (!is(&lines->cells[header->tag], series->name, strlen(series->name)))
             continue;
         if (!tick(&own, &lines->cells[header->time], &time_s)) {
-            snprintf(why, 200, "%s:%d: expected a time that is not before the last of %s", lines->path, lines->number, series->name);
+            snprintf(why, 200, "%s:%d: expected a time not before the last one of %s", lines->path, lines->number, series->name);
             return false;
         }
         if (!value_of(&lines->cells[header->value], &value)) {
@@ -261,7 +261,7 @@ static bool read_values(struct series *series, struct series_lines *lines, const
         }
         const struct series_cell *unit = header->unit < lines->count ? &lines->cells[header->unit] : NULL;
         if (unit && series->unit && !is(unit, series->unit, strlen(series->unit))) {
-            snprintf(why, 200, "%s:%d: %s: expected the unit of the lines before, %s", lines->path, lines->number, series->name,
+            snprintf(why, 200, "%s:%d: %s: expected the same unit as in the lines before, %s", lines->path, lines->number, series->name,
                      series->unit);
             return false;
         }

@@ -137,12 +137,12 @@ static enum why judge(struct other *other, struct other_picture *about, char sai
     curl_easy_getinfo(other->request.handle, CURLINFO_RESPONSE_CODE, &status);
     enum why why = why_of_status(status);
     if (why != WHY_NONE) {
-        snprintf(said, 160, "it answers %ld: %.*s", status, (int)strcspn(text, "\r\n"), text);
+        snprintf(said, 160, "the answer is status %ld: %.*s", status, (int)strcspn(text, "\r\n"), text);
     } else if (!other_picture_read_header(other->header, about)) {
-        snprintf(said, 160, "it does not say how old its readings are, as servers of Plantcast do");
+        snprintf(said, 160, "the answer lacks the age of readings: not a Plantcast server");
         why = WHY_NO_PICTURE;
     } else if (!other_picture_is_png((const uint8_t *)text, body->length, plant->width_px, plant->height_px)) {
-        snprintf(said, 160, "its answer is not a PNG file of %d x %d", plant->width_px, plant->height_px);
+        snprintf(said, 160, "the answer is not a PNG file of %d x %d", plant->width_px, plant->height_px);
         why = WHY_NO_PICTURE;
     }
     return why;
@@ -200,7 +200,7 @@ static void on_end(struct other_plants *others, struct other *other, CURLcode co
     enum why why = why_of(code);
     snprintf(said, sizeof(said), "%s", http_request_why(&other->request, code));
     if (why == WHY_LARGE)
-        snprintf(said, sizeof(said), "it sends more than %d bytes", PICTURE_BYTES);
+        snprintf(said, sizeof(said), "the answer has more than %d bytes", PICTURE_BYTES);
     if (why == WHY_NONE)
         why = judge(other, &about, said);
     if (why == WHY_NONE)

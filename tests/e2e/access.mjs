@@ -66,7 +66,7 @@ test('plantcast token: makes, lists and revokes, and keeps only hashes', { skip 
     assert.equal(token('add', file, '--role', 'viewer', '--name', 'wall').code, 1);
     assert.equal(token('add', file, '--role', 'operator', '--name', 'guest', '--until', '2001-01-01').code, 0);
     assert.match(token('list', file).out,
-        /^viewer +wall {2}without end\noperator +guest {2}until [\d-]+T[\d:.]+Z {2}\(its time is over\)\n$/);
+        /^viewer +wall {2}without end\noperator +guest {2}until [\d-]+T[\d:.]+Z {2}\(expired\)\n$/);
     assert.equal(token('revoke', file, 'wall').code, 0);
     assert.equal(token('revoke', file, 'wall').code, 1);
     assert.match(token('list', file).out, /^operator +guest/);
@@ -135,7 +135,7 @@ walls:
         for (const query of ['view=left&group=pressure', 'view=left&hidden=', 'view=left&view=rest&camera=1,1,1,0,0,0', 'view=left&at=-1h'])
             await said(query, lobby, 400, /a query with view may also have width, height and language only/);
         await said('view=gone', lobby, 400, /the plant file has no such view/);
-        await said('view=page', lobby, 400, /unknown: a picture cannot show that/);
+        await said('view=page', lobby, 400, /unknown: a picture cannot show this/);
         await said('view=left&view=rest&width=320&height=200', lobby, 200, /PNG/); // the first view= argument counts
         for (const url of ['/api/v1/plant', '/api/v1/tags', '/api/v1/views', '/api/v1/alarms', '/metrics', '/api/v1/pick?x=1&y=1&view=left',
             '/api/v1/history?tags=TI-1&from=-1h', '/api/v1/notes', '/api/v1/alarms/journal', '/api/v1/proofs', '/api/v1/history/gaps'])
@@ -176,7 +176,7 @@ async function streamsOnlyItsViews(lobby, whole) {
         { type: 'look', seq: 5, named: 'rest' }, { type: 'look', seq: 5, named: 'left,flat' }])
         await refused(message, only);
     await refused({ type: 'look', seq: 6, named: 'gone' }, /the plant file has no view 'gone'/);
-    await refused({ type: 'look', seq: 6, named: 'page' }, /unknown: a picture cannot show that/);
+    await refused({ type: 'look', seq: 6, named: 'page' }, /unknown: a picture cannot show this/);
     client.say({ type: 'look', seq: 7, named: 'flat' });
     const shown = await client.text('camera');
     assert.deepEqual([shown.seq, shown.eye], [7, [0, -9, 2]]);
@@ -229,7 +229,7 @@ test('a session that is left alone is locked, but not that of a wall; and what i
     back.close();
     const start = (...args) => runProgram('plantcastd', [plant.file, '--port', '0', ...args]);
     assert.match(start('--lock-after', '15').err, /--lock-after needs --tokens/);
-    assert.match(start('--tokens', file, '--lock-after', 'soon').err, /not a number of minutes/);
+    assert.match(start('--tokens', file, '--lock-after', 'soon').err, /expected minutes/);
     assert.match(start('--notice', path('none')).err, /notice .*none: No such file/);
     writeFileSync(notice, Buffer.from([0xff, 0xfe]));
     assert.match(start('--notice', notice).err, /a text in UTF-8 is expected/);
@@ -242,12 +242,12 @@ test('a daemon does not start for others without TLS and tokens, nor with what i
     chmodSync(bad, 0o644);
     const cases = [
         [['--listen', '0.0.0.0'], /--open-viewers/], [['--listen', '0.0.0.0', '--tokens', tokensFile], /TLS and tokens/],
-        [['--tokens', bad], /others may read it/], [['--tokens', path('none')], /No such file/],
+        [['--tokens', bad], /other users may read/], [['--tokens', path('none')], /No such file/],
         [['--tls-cert', path('first.pem')], /belong together/],
         [['--tls-cert', path('first.pem'), '--tls-key', path('second.key')], /TLS: .*key/],
         [['--tls-cert', plant.file, '--tls-key', path('first.key')], /TLS: .*plant\.yaml/], [['--behind-proxy'], /needs a token/],
         [['--behind-proxy', '--tokens', tokensFile], /--host/],
-        [['--behind-proxy', '--host', 'x', '--tokens', tokensFile, '--trust-local'], /like somebody on this machine/],
+        [['--behind-proxy', '--host', 'x', '--tokens', tokensFile, '--trust-local'], /everyone seems to be on this machine/],
     ];
     for (const [args, why] of cases) {
         const result = start(...args);
@@ -283,7 +283,7 @@ test('each URL asks for its role', { skip }, async () => {
     for (const name of ['token', 'access_token', 'Authorization']) {
         const answer = await ask(`/api/v1/tags?${name}=${tokens.viewer}`);
         assert.equal(answer.status, 400);
-        assert.match(answer.body.toString(), /does not belong in a URL/);
+        assert.match(answer.body.toString(), /do not put a token into a URL/);
     }
 });
 

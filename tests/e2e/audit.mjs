@@ -157,20 +157,20 @@ test('a plant that is brought in: each file and each order, by whom, and what be
         await idle();
     }
     await post('/run', engineer, undefined, { Origin: 'http://elsewhere.example' });
-    await found('the last', (line) => line.result === 'refused' && line.why === 'pages of other sites may not do this');
-    const want = ['access refused operator-1 /api/v1/import/run: it takes the role engineer',
-        'import failed engineer-1 /api/v1/import/upload: a file of this name is not taken.*',
+    await found('the last', (line) => line.result === 'refused' && line.why === 'refused: the request comes from a page of another site');
+    const want = ['access refused operator-1 /api/v1/import/run: this needs the role engineer',
+        'import failed engineer-1 /api/v1/import/upload: this file name is not allowed.*',
         'import done engineer-1 /api/v1/import/upload x.glb',
         'import failed engineer-1 models were read, tags matched: plantcast import: .*/x.glb: JSON: .*',
         'import done engineer-1 /api/v1/import/remove x.glb', 'import done engineer-1 /api/v1/import/upload box.gltf',
-        'import done engineer-1 /api/v1/import/upload tags.csv', 'reload done engineer-1 configuration .* is in force',
-        'import done engineer-1 models were read, tags matched', 'reload done engineer-1 configuration .* is in force',
-        'import done engineer-1 tags were matched', 'reload done engineer-1 configuration .* is in force',
+        'import done engineer-1 /api/v1/import/upload tags.csv', 'reload done engineer-1 configuration .* is active',
+        'import done engineer-1 models were read, tags matched', 'reload done engineer-1 configuration .* is active',
+        'import done engineer-1 tags were matched', 'reload done engineer-1 configuration .* is active',
         'import done engineer-1 decisions about tags were taken',
-        'import failed engineer-1 a source was stated: plantcast match: .*: somebody wrote its source otherwise.*',
-        'reload done engineer-1 configuration .* is in force', 'import done engineer-1 the plant was made anew from its exports',
+        'import failed engineer-1 a source was set: plantcast match: .*: the source was edited by hand.*',
+        'reload done engineer-1 configuration .* is active', 'import done engineer-1 the plant was created again from its exports',
         'import failed engineer-1 /api/v1/import/run: units and mesh_units are .*', 'import done engineer-1 /api/v1/import/cancel',
-        'import refused engineer-1 /api/v1/import/run: pages of other sites may not do this'];
+        'import refused engineer-1 /api/v1/import/run: refused: the request comes from a page of another site'];
     const is = told();
     is.forEach((line, i) => assert.match(line, new RegExp(`^${want[i] ?? 'nothing more'}$`)));
     assert.equal(is.length, want.length);
@@ -201,7 +201,7 @@ test('thousands of wrong tokens: few lines, and others come in meanwhile', { ski
     assert.equal(refused, TRYING * EACH_TRIES);
     assert.ok(slowest < 5000, `${slowest} ms`);
     await found('the slowing', (line) => /slowed/.test(line.why ?? ''));
-    const held = await found('those not looked at', (line) => /tokens of slowed addresses were not looked at/.test(line.what ?? ''));
+    const held = await found('those not looked at', (line) => /tokens from rate-limited addresses were refused unchecked/.test(line.what ?? ''));
     assert.equal(held.result, 'refused');
     assert.ok(lines().length - before_ < 60, `${lines().length - before_} lines`);
 });
@@ -212,7 +212,7 @@ test('a changed byte and removed lines are found, also by the next start', { ski
     assert.match(verify().out, /: good: lines 1 to \d+ in 1 file/);
     const text = good.toString().replace('engineer-1', 'engineer-2');
     writeFileSync(trail, text);
-    assert.match(verify().err, /audit\.log:2: it was changed/);
+    assert.match(verify().err, /audit\.log:2: the line was changed/);
     const end = good.toString().trimEnd().split('\n');
     writeFileSync(trail, `${end.slice(0, -3).join('\n')}\n`);
     assert.match(verify().err, /the last 3 lines were removed/);

@@ -58,7 +58,7 @@ test('what was recorded comes back elsewhere, point by point', { skip }, async (
     assert.ok(Math.abs(Date.now() - stamp) < 60000);
     const drill = runProgram('plantcast', ['backup', '--verify', folder('one')]);
     assert.equal(drill.code, 0, drill.err);
-    assert.match(drill.out, /one: readings from \S+Z to \S+Z\n.*one: verified: restored aside, \d+ files as of /);
+    assert.match(drill.out, /one: readings from \S+Z to \S+Z\n.*one: verified: a trial restore of \d+ files as of /);
     assert.deepEqual(readdirSync(join(folder('one'), '..')).filter((name) => name.includes('verify')), [], 'nothing of it stays');
     mkdirSync(folder('elsewhere'));
     const other = join(folder('elsewhere'), 'other.yaml');
@@ -73,7 +73,7 @@ test('what was recorded comes back elsewhere, point by point', { skip }, async (
     assert.ok(was.length > 3000, `${was.length} points`);
     assert.deepEqual(is.slice(0, was.length - 20), was.slice(0, was.length - 20));
     const again = runProgram('plantcast', ['restore', folder('three'), other]);
-    assert.deepEqual([again.code, /in the way; nothing was restored/.test(again.err)], [1, true], again.err);
+    assert.deepEqual([again.code, /exists already; nothing was restored/.test(again.err)], [1, true], again.err);
 });
 
 test('the daemon never notices', { skip }, async () => {

@@ -49,7 +49,7 @@ for (const off_s of [HOUR_S, -HOUR_S])
         await nodes.plant.tell('set TI-1 20');
         const core = await startCore(`off${off_s}`, off_s), renderer = await nodes.renderer('far', core);
         const coreUs = () => (Date.now() + off_s * 1000) * 1000;
-        await renderer.program.line(new RegExp(`its clock is 3\\d{3}\\.\\d s ${off_s > 0 ? 'ahead of' : 'behind'} this machine's`));
+        await renderer.program.line(new RegExp(`the core's clock is 3\\d{3}\\.\\d s ${off_s > 0 ? 'ahead of' : 'behind'} this machine's`));
         assert.ok(Math.abs(await renderer.metric('plantcast_core_clock_ahead_seconds') - off_s) < 5);
         await until('readings', async () => (await renderer.tags())['TI-1'].quality_name === 'Good');
         await nodes.plant.tell('set TI-1 95.5');
@@ -92,5 +92,5 @@ for (const off_s of [HOUR_S, -HOUR_S])
         await close();
         await renderer.stop();
         await core.stop();
-        assert.equal(renderer.program.said.match(/its clock is/g).length, 1, 'it is said once');
+        assert.equal(renderer.program.said.match(/the core's clock is/g).length, 1, 'it is said once');
     });

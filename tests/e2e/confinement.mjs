@@ -121,7 +121,7 @@ test('plantcast-prep of the daemon ends at its limits of time and memory', { ski
         ['prepare-seconds=1', 'exec sleep 1000', /plantcast-prep was ended after 1 s \(--limit prepare-seconds\)/],
         ['prepare-megabytes=64', 'exec /usr/bin/python3 -c "print(len(bytes(1 << 28)))" 2>/dev/null', /plantcast-prep ended with status 1/],
         ['prepare-megabytes=64', 'echo out of memory >&2; kill -ABRT $$',
-            /plantcast-prep crashed \(Aborted\); its limit of memory is 64 MB \(--limit prepare-megabytes\)/]]) {
+            /plantcast-prep crashed \(Aborted\); its memory limit is 64 MB \(--limit prepare-megabytes\)/]]) {
         const plant = await TinyPlant.create(), bin = programs(folder, ESCAPE, 'plantcastd');
         try {
             assert.equal(plant.prepare().code, 0);

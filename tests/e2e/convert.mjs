@@ -71,7 +71,7 @@ test('what fails is one line, and leaves the model as it was', { skip }, () => w
     for (const [command, why, more] of [['echo first >&2; echo no licence >&2; exit 3', /could not be made: no licence/],
         ['kill -SEGV $$', /the command crashed \(SIGSEGV\)/],
         ['sleep 1000', /the command was ended after 1 s \(timeout_s\)/, ', timeout_s: 1'],
-        ['true', /its output \(\$2\): No such file/], ['echo x >"$2"', /its output \(\$2\): is no glTF/],
+        ['true', /its output \(\$2\): No such file/], ['echo x >"$2"', /its output \(\$2\): is not a glTF/],
         ["python3 -c 'import socket; socket.socket()'", /Operation not permitted/],
         ['echo x >"${1%/*}/other"', /cannot create .*other: Permission denied/],
         ['cat /etc/plantcast/tokens', /tokens: (Permission denied|No such file)/],
@@ -96,5 +96,5 @@ test('the plant file is checked', { skip }, () => withPlant(({ folder, write }) 
     const said = check();
     assert.match(said, /:4:\d+: error: .*command/);
     assert.match(said, /from: expected another file than model/);
-    assert.match(said, /model: '.*plate\.glb' is made twice \(first at line 3\)/);
+    assert.match(said, /model: '.*plate\.glb' is created twice \(first at line 3\)/);
 }));

@@ -140,11 +140,11 @@ test('another plant, another configuration, a wrong token and a daemon that is n
     };
     const wrong = [
         [start(other, '--core-token-file', nodes.rendererFile), /no readings: configuration: the renderer has \w{16}, this node \w{16}/],
-        [start(nodes.plant.file, '--core-token-file', nodes.viewerFile), /no readings: .*is our token that of a renderer/],
+        [start(nodes.plant.file, '--core-token-file', nodes.viewerFile), /no readings: .*is this node's token that of a renderer/],
     ];
     const alone = await nodes.start(['--port', '0', '--role', 'all', '--history', join(nodes.plant.folder, 'h2')]);
     wrong.push([new Program('plantcastd', [nodes.plant.file, '--role', 'render', '--port', '0', '--core', alone.url]),
-        /no readings: .*has it --role core/]);
+        /no readings: .*does it run with --role core/]);
     nodes.all.push({ program: wrong[2][0] });
     for (const [program, said] of wrong) {
         await program.line(said);
@@ -152,8 +152,8 @@ test('another plant, another configuration, a wrong token and a daemon that is n
     }
     await alone.stop();
     assert.match(core.program.said, /renderer .*: refused: configuration: the renderer has/);
-    for (const [bad, said] of [[['--role', 'renderer'], /--role: all, core or render/], [['--role', 'render'], /belong together/],
-        [['--core', 'ws://x:1'], /--core URL is for --role render/], [['--role', 'render', '--core', 'ftp://x'], /--core: not wss/]])
+    for (const [bad, said] of [[['--role', 'renderer'], /--role: expected all, core or render/], [['--role', 'render'], /belong together/],
+        [['--core', 'ws://x:1'], /--core URL is for --role render/], [['--role', 'render', '--core', 'ftp://x'], /--core: expected wss/]])
         assert.match(runProgram('plantcastd', [nodes.plant.file, ...bad]).err, said);
 });
 

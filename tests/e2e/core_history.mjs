@@ -163,7 +163,7 @@ test('without its core a renderer says that it has no history, once in its log; 
         assert.deepEqual([answer.status, Number(answer.headers.get('retry-after')) > 0], [503, true], one);
         assert.match(await answer.text(), /^history is unavailable: the core cannot be reached; try again\n$/, one);
     }
-    assert.ok(renderer.program.said.match(/history: the core: \/api\/v1\/history: there is no connection to it/g).length <= 2);
+    assert.ok(renderer.program.said.match(/history: the core: \/api\/v1\/history: not connected to the core/g).length <= 2);
     core = await nodes.core(port);
     await until('readings', async () => (await renderer.tags())['TI-1'].quality_name === 'Good');
     assert.deepEqual(await body(renderer, path), before_);

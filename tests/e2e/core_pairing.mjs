@@ -64,7 +64,7 @@ test('it is that display, at the renderer and at the core', options, async () =>
         const client = await asDevice(node);
         assert.equal(client.welcome.role, 'viewer');
         client.say({ type: 'display', wall: 'room', display: 2 });
-        assert.match((await client.text('error')).text, /this token is that of display 1 of wall room/);
+        assert.match((await client.text('error')).text, /this token belongs to display 1 of wall room/);
         client.close();
     }
 });

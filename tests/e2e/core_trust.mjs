@@ -123,7 +123,7 @@ test('a token that only the renderer\'s file has is not enough', options, async 
     client.say(ACK);
     const { code, text } = await client.text('error');
     assert.equal(code, 'not_allowed');
-    assert.match(text, /this was not done: the core does not let this token in/);
+    assert.match(text, /not done: the core does not accept this token/);
     client.close();
     await other.stop();
 });

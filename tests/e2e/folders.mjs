@@ -59,7 +59,7 @@ test('a backup is for its maker alone, and has the tag list from where it lies',
 test('what leads out of the folder is not copied, by whatever name', { skip }, () => {
     const names = ['proofs.csv', readdirSync(history).find((name) => /^history-.*sqlite$/.test(name)), '../tags.csv'];
     const ways = [[(path) => symlinkSync(secret, path), /symbolic link/],
-        [(path) => linkSync(secret, path), /another name elsewhere/],
+        [(path) => linkSync(secret, path), /another hard link/],
         [(path) => { writeFileSync(path, 'x'); chownSync(path, 1, 1); }, /owner differs from the owner of its folder/],
         [(path) => mkdirSync(path), /not a file/]];
     for (const name of names) {
@@ -86,7 +86,7 @@ test('restored files belong to whom their folder belongs to, and nothing is writ
     chownSync(state, NOBODY, NOBODY);
     symlinkSync(join(root, 'made-by-root'), join(state, 'tags.csv'));
     const restore = () => runProgram('plantcast', ['restore', join(root, 'one'), plant.file]);
-    assert.match(restore().err, /in the way/);
+    assert.match(restore().err, /exists already/);
     unlinkSync(join(state, 'tags.csv'));
     mkdirSync(join(root, 'elsewhere'));
     symlinkSync(join(root, 'elsewhere'), history);
@@ -116,12 +116,12 @@ test('token: neither through links, nor in a folder of somebody else', { skip },
     assert.equal(token('add', file, ...who).code, 0);
     assert.equal(rights(file), '600');
     chownSync(file, NOBODY, NOBODY);
-    assert.match(token('list', file).err, /neither to root nor to you/);
+    assert.match(token('list', file).err, /neither root nor you/);
     chownSync(file, 0, 0);
     chownSync(folder, NOBODY, NOBODY);
     assert.match(token('revoke', file, 'wall').err, /folder belongs to another user/);
     chownSync(folder, 0, 0);
     chmodSync(folder, 0o777);
-    assert.match(token('revoke', file, 'wall').err, /others may write/);
+    assert.match(token('revoke', file, 'wall').err, /writable by group or others/);
     assert.equal(readFileSync(secret, 'utf8'), 'root only\n');
 });

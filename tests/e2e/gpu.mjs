@@ -174,7 +174,7 @@ test('who finds no room on the GPU is refused and told why; all others keep thei
     late.say({ type: 'hello', width: 1920, height: 1080, codecs: ['jpeg'] });
     const { code, text } = await late.until('a refusal', (c) => c.closed, PATIENCE_MS);
     assert.equal(code, 1013);
-    assert.match(text, /^no memory for another picture/);
+    assert.match(text, /^out of memory for another picture/);
     assert.equal(late.frames.length, 0);
     assert.ok(await metric(plant, 'plantcast_render_failures_total') > failures);
     const count = moving.count();

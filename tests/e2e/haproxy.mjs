@@ -178,7 +178,7 @@ test('a drained node sends its sessions elsewhere, one after the other, and is a
     const lost = viewers.map(({ lostAt }) => (lostAt - began) / 1000);
     t.diagnostic(`${VIEWERS} sessions left from ${Math.min(...lost).toFixed(1)} to ${Math.max(...lost).toFixed(1)} s after it was said`);
     assert.ok(Math.max(...lost) - Math.min(...lost) > 4, `${lost}`);
-    assert.ok(viewers.every(({ reason }) => reason === 'this node is drained; retry after 0 s'));
+    assert.ok(viewers.every(({ reason }) => reason === 'this node is being drained; retry after 0 s'));
     assert.match((await proxy.servers()).r2.status, /^DOWN/);
 });
 

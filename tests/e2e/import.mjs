@@ -203,14 +203,14 @@ test('what cannot be read is one line, and leaves nothing behind', { skip: notBu
     const notFinite = Buffer.from(new Float32Array([0, 0, 0, NaN, 0, 0, 0, Infinity, 0]).buffer);
     cases.push(['empty.gltf', '', 'line 1'], ['text.glb', 'hello', 'line 1'],
         ['half.glb', Buffer.from('glTF\x02\0\0\0\0\x01\0\0', 'latin1'), 'GLB'],
-        ['cycle.gltf', gltf({ nodes: [{ children: [1] }, { children: [0] }] }), 'node 0 is reached twice'],
+        ['cycle.gltf', gltf({ nodes: [{ children: [1] }, { children: [0] }] }), 'node 0 is part of a cycle or has two parents'],
         ['deep.gltf', gltf({ nodes: Array.from({ length: 100000 }, (_, i) => (i < 99999 ? { children: [i + 1] } : {})) }), 'nested deeper'],
         ['nested.gltf', `{"asset":${'['.repeat(200000)}${']'.repeat(200000)}}`, 'nested deeper'],
         ['huge.gltf', corner(Buffer.alloc(36), 4000000000), '4000000000 elements are more'],
         ['nan.gltf', corner(notFinite, 3), 'element 1 is not finite'],
         ['wire.gltf', corner(Buffer.alloc(36), 3).replace('"POSITION":0}', '"POSITION":0},"mode":3'), 'has no triangles'],
         ['out.gltf', gltf({ scenes: [{ nodes: [] }], buffers: [{ byteLength: 4, uri: '../../../etc/passwd' }] }),
-            'leads out of the folder']);
+            'leads out of the model's folder']);
     for (const [name, bytes, why] of cases) {
         writeFileSync(join(folder, name), bytes);
         const said = run('plantcast', 'import', join(folder, name), '-o', out);

@@ -55,12 +55,12 @@ test('units and axis are guessed and said, or given', { skip }, () => withMateri
     writeFileSync(join(folder, 'a.stl'), stl(1000));
     const said = plantcast('import', join(folder, 'a.stl'), '-o', join(folder, 'plant'));
     assert.match(said.stdout,
-        /does not say its units: mm is taken, because it is 2000 long, which is then 2 m\. Is that right\?.*--units sets/);
-    assert.match(said.stdout, /does not say which axis is up: z is taken/);
+        /states no unit: mm is assumed, because its length of 2000 is then 2 m\. Is that right\?.*set --units/);
+    assert.match(said.stdout, /states no up axis: z is assumed/);
     const given = boxed(folder, 'b.stl', stl(10), '--units', 'ft', '--up', 'y');
     assert.ok(near(given.size, [6.096, 1.524, 3.048]), JSON.stringify(given.size));
     writeFileSync(join(folder, 'a.dae'), dae());
-    assert.match(plantcast('nodes', join(folder, 'a.dae'), '--units', 'mm').stderr, /COLLADA says itself what its units are/);
+    assert.match(plantcast('nodes', join(folder, 'a.dae'), '--units', 'mm').stderr, /COLLADA states its own units/);
 }));
 
 test('STL in capitals is read', { skip }, () => withMaterials((folder) => {
@@ -138,8 +138,8 @@ test('glTF: names of files with percent signs and accents, required looks, missi
         materials: [{ name: 'paint', pbrMetallicRoughness: { baseColorTexture: { index: 0 } } }] }));
     const { status, stdout, stderr } = plantcast('import', join(folder, 'look.gltf'), '-o', join(folder, 'plant'));
     assert.equal(status, 0, stderr);
-    assert.match(stdout, /left out: the file requires KHR_texture_basisu, which only changes how it looks/);
-    assert.match(stdout, /left out: material 0 'paint': its base colour texture: its image is missing: 'none\.png'/);
+    assert.match(stdout, /left out: the file requires KHR_texture_basisu, which only affects its looks/);
+    assert.match(stdout, /left out: material 0 'paint': its base colour texture: the texture's image is missing: 'none\.png'/);
     writeFileSync(join(folder, 'r.gltf'), gltf('a.bin', { extensionsRequired: ['CESIUM_RTC'] }));
     assert.match(plantcast('import', join(folder, 'r.gltf'), '-o', join(folder, 'other')).stderr,
         /requires the extension CESIUM_RTC, which is not supported/);
@@ -207,10 +207,10 @@ test('glTF: nodes without triangles, and nodes in no scene, are named', { skip }
         meshes: [mesh(4), mesh(1), mesh(0), mesh(4, 2)], accessors: [...JSON.parse(gltf('')).accessors,
             { bufferView: 1, componentType: 5123, count: 0, type: 'SCALAR' }], extensionsUsed: ['ACME_bent', 'KHR_materials_unlit'],
         nodes: [...['T-1', 'L-2', 'P-3', 'E-4'].map((name, i) => ({ name, mesh: i })), { name: 'S-5', mesh: 0 }] }));
-    assert.deepEqual(lost, [{ id: '#3', name: 'E-4', class: 'node', guid: '', why: 'its mesh has no triangles' }]);
+    assert.deepEqual(lost, [{ id: '#3', name: 'E-4', class: 'node', guid: '', why: 'the node\'s mesh has no triangles' }]);
     assert.match(out, /not shown: 2 nodes that are only lines or points: L-2, P-3\n/);
     assert.deepEqual(left_out, ['the file uses ACME_bent, which is not supported',
-        "not in the scene that the file shows first: 1 node with a mesh, node 4 'S-5'"]);
+        "not in the file's default scene: 1 node with a mesh, node 4 'S-5'"]);
 }));
 
 test('glTF: the diffuse colour of older materials, odd kinds of images, other chunks', { skip }, () => withMaterials((folder) => {
@@ -221,8 +221,8 @@ test('glTF: the diffuse colour of older materials, odd kinds of images, other ch
         images: ['image/jpg', 'application/octet-stream', ''].map((type) => ({ uri: `data:${type};base64,${png}` })),
         textures: [{ source: 0 }, { source: 1 }, { source: 2 }], materials: [0, 1, 2].map((index) =>
             old({ diffuseFactor: [1, 0, 0, 1], diffuseTexture: { index } })) }));
-    assert.deepEqual(left_out, ['the file requires KHR_materials_pbrSpecularGlossiness: its diffuse colours are kept, ' +
-        'its specular ones are not']);
+    assert.deepEqual(left_out, ['the file requires KHR_materials_pbrSpecularGlossiness: diffuse colours are kept, ' +
+        'specular ones are ignored']);
     const json = Buffer.from(JSON.stringify({ ...JSON.parse(gltf()), buffers: [{ byteLength: 42 }] }).padEnd(2000));
     const [first, bin, other] = [['JSON', json], ['BIN', triangle], ['ACME', Buffer.alloc(8)]];
     for (const [name, ...chunks] of [['after.glb', first, bin, other], ['between.glb', first, other, bin]])
@@ -328,7 +328,7 @@ test('broken files are read or refused in one line, and leave nothing behind', {
         assert.doesNotMatch(stderr, /bad_alloc/);
         if (status === 0) {
             if (/^nan|^far/.test(name))
-                assert.match(stdout, /left out: \d+ triangles whose corners are not finite/, name);
+                assert.match(stdout, /left out: \d+ triangles with corners that are not finite/, name);
             rmSync(join(folder, 'plant'), { recursive: true });
         } else {
             refused++;

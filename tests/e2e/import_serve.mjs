@@ -214,7 +214,7 @@ test('what goes wrong is one line, and the plant before stays', options, async (
         await fails(/plant\.dwg: /);
         assert.equal(served.read('plant.yaml'), before);
         await served.post('/remove?name=plant.dwg');
-        await fails(/there is no model yet/);
+        await fails(/no model has been uploaded yet/);
         await put('plant.gltf', boxes(['E-1', 'P-2']));
         await put('tags.csv', '\u0000\u0001');
         await fails(/tags\.csv/);
@@ -283,7 +283,7 @@ test('an import that fails or is cancelled once the new models are in place: the
             assert.notEqual(files()['plant.glb'], before['plant.glb'], 'the new model is in place');
             // No other Plantcast program changes the folder meanwhile; a program that does so without locking loses nothing.
             const other = spawnSync(join(BIN, 'plantcast'), ['match', served.folder, join(served.folder, 'exports/tags.csv')]);
-            assert.match(String(other.stderr), /^plantcast match: .*: plantcastd \(process \d+\) is at work in it\n$/);
+            assert.match(String(other.stderr), /^plantcast match: .*: plantcastd \(process \d+\) is using it\n$/);
             if (saves)
                 writeFileSync(join(served.folder, 'matches.csv'), 'mine\n');
             rmSync(wait);
@@ -304,7 +304,7 @@ test('an import that fails or is cancelled once the new models are in place: the
         await bring([...NAMES, 'X-3']);
         const { failed } = await served.idle();
         held.stdin.end();
-        assert.match(failed, /^the plant's folder .*: (flock|sh) \(process \d+\) is at work in it; try again when that is done$/);
+        assert.match(failed, /^the plant's folder .*: (flock|sh) \(process \d+\) is using it; try again when that is done$/);
         assert.deepEqual(files(), now);
         assert.equal(readdirSync(served.folder).filter((name) => /^\.(import|revision\.)/.test(name)).length, 0);
     } finally {
@@ -321,7 +321,7 @@ test('40 % of the rows are there twice, and one tag with control characters', op
     try {
         const state = await served.idle();
         assert.equal(state.failed, null, state.failed);
-        assert.match(state.said, /5 rows repeat a tag word for word: taken once/);
+        assert.match(state.said, /5 rows are exact repetitions of a tag: each tag is used once/);
         assert.match(state.said, /1 control characters: read as blanks/);
     } finally {
         await served.destroy();
@@ -590,13 +590,13 @@ test('a source: stated, values seen to arrive, corrected, kept when the plant is
         assert.equal((await own.post('/remove?name=tags.csv')).status, 200);
         const sources = /^sources:\n(  .*\n)+/m.exec(own.read('plant.yaml'))[0];
         await own.post('/run?what=anew');
-        assert.match((await own.idle()).failed, /source 127\.0\.0\.1 would be lost: there is no tag list among the exports; add it first/);
+        assert.match((await own.idle()).failed, /source 127\.0\.0\.1 would be lost: the exports have no tag list; add it first/);
         assert.ok(own.read('plant.yaml').includes(sources));
         assert.equal((await own.post('/upload?name=tags.csv', list)).status, 200);
         // A line that the user wrote is kept.
         writeFileSync(join(own.folder, 'plant.yaml'), own.read('plant.yaml').replace('CDAB }', 'CDAB, poll_ms: 2000 }'));
         await own.post(`/source?host=127.0.0.1&port=${wrongPort}&order=CDAB`);
-        assert.match((await own.idle()).failed, /somebody wrote its source otherwise than --modbus does: change it there/);
+        assert.match((await own.idle()).failed, /the source was edited by hand and --modbus cannot change it: edit it in the plant file/);
         assert.match(own.read('plant.yaml'), /poll_ms: 2000/);
         assert.deepEqual(seen.errors, []);
     } finally {

@@ -35,7 +35,7 @@ for (const { file, unit } of [{ file: 'skid_203.step', unit: 'millimetre' }, { f
         assert.equal(said.status, 0, said.stderr);
         assert.match(said.stdout, /4 parts in 11 places; chord error 1 mm; Z up/);
         assert.doesNotMatch(said.stdout, /damaged/);
-        assert.match(said.stdout, new RegExp(`its units are: ${unit}`, 'i'));
+        assert.match(said.stdout, new RegExp(`units: ${unit}`, 'i'));
         const glb = join(folder, 'plant', file.replace(/\.\w+$/, '.glb'));
         const { list } = JSON.parse(plantcast('nodes', glb, '--json').stdout);
         const stem = file.replace(/\.\w+$/, '');
@@ -66,7 +66,7 @@ test('a finer chord error has more triangles, Y up stands otherwise', { skip }, 
     assert.ok(near(coarse.size, [2, 1, 0.32]) && near(y.size, [2, 0.32, 1]), JSON.stringify([coarse.size, y.size]));
     const units = plantcast('nodes', join(folder, 'skid_203.step'), '--units', 'mm');
     assert.equal(units.status, 1);
-    assert.match(units.stderr, /STEP says itself what its units are/);
+    assert.match(units.stderr, /STEP states its own units/);
 }));
 
 for (const { file, unit } of [{ file: 'tree.igs', unit: 'millimetre' }, { file: 'inches.IGES', unit: 'inch' }])
@@ -74,7 +74,7 @@ for (const { file, unit } of [{ file: 'tree.igs', unit: 'millimetre' }, { file: 
         const said = plantcast('import', join(folder, file), '-o', join(folder, 'plant')), stem = file.replace(/\.\w+$/, '');
         assert.equal(said.status, 0, said.stderr);
         assert.match(said.stdout, /5 parts in 13 places; chord error 1 mm; Z up/);
-        assert.match(said.stdout, new RegExp(`its units are: ${unit}`));
+        assert.match(said.stdout, new RegExp(`units: ${unit}`));
         const glb = join(folder, 'plant', `${stem}.glb`), { list } = JSON.parse(plantcast('nodes', glb, '--json').stdout);
         assert.deepEqual(list.map(({ path }) => path.split('/').slice(1).join('/')).slice(1), ['Skid S-100', 'Skid S-100/Plate:1',
             ...['P-101A', 'P-101B/1'].flatMap((pump) => ['', '/Casing:1', '/Motor:1', '/Motor:1/Box']
@@ -152,8 +152,8 @@ test('parts in other files: names in other cases, of other folders, with escapes
         const { size, lost, errors, out } = imported(folder, 'line.stp');
         assert.match(out, /3 parts in 3 places/);
         assert.ok(near(size, [0.0234, 0.2902, 0.0902]), JSON.stringify(size));
-        assert.deepEqual(lost.map(({ name, why }) => [name, why]), [['Part 4', 'its shape is empty, or in a file that is missing']]);
-        assert.deepEqual(errors, [{ count: 1, text: 'the file gone.stp, which it refers to, is not in its folder' }]);
+        assert.deepEqual(lost.map(({ name, why }) => [name, why]), [['Part 4', 'the part\'s shape is empty, or in a missing file']]);
+        assert.deepEqual(errors, [{ count: 1, text: 'referenced file gone.stp is not in the model\'s folder' }]);
     }));
 
 // Each kind of statement is taken out once. What is then missing is named; Open CASCADE crashes at some kinds, which is one line, too.

@@ -94,7 +94,7 @@ for (const { plant, format, bring } of [
         console.log(`#   precision ${(100 * precision).toFixed(2)} %, recall ${(100 * recall).toFixed(2)} %${wrong}`);
         assert.ok(precision >= 0.995, 'precision');
         assert.ok(recall >= 0.9, 'recall');
-        assert.match(said.stdout, /rows repeat a tag word for word: taken once/);
+        assert.match(said.stdout, /rows are exact repetitions of a tag: each tag is used once/);
         good(run('plantcastd', '--check', join(out, 'plant.yaml')));
     }));
 
@@ -117,8 +117,8 @@ test('a list in a bad way: repeated rows, Korean, slashes, blanks, control chara
     const all = [...rows, ...rows, ...rows].map(([name, text], i) => `"${name}",${i === 6 ? 7 : 1},"${text}"`);
     writeFileSync(join(folder, 'export.csv'), ['Tag Name,Address,Description', ...all].join('\r\n'));
     const said = good(run('plantcast', 'match', folder, join(folder, 'export.csv'), '--equipment', 'level=2'));
-    assert.match(said.stdout, /7 rows repeat a tag word for word: taken once/);
-    assert.match(said.stdout, /1 rows repeat a tag with other contents: the first counts: P-102 A\/B_PT01 \(lines 3 and 8\)/);
+    assert.match(said.stdout, /7 rows are exact repetitions of a tag: each tag is used once/);
+    assert.match(said.stdout, /1 rows repeat a tag with different contents: the first row is used: P-102 A\/B_PT01 \(lines 3 and 8\)/);
     assert.match(said.stdout, /3 rows have no name: left out/);
     assert.match(said.stdout, /6 control characters: read as blanks/);
     const found = Object.fromEntries(table(join(folder, 'matches.csv')).map(({ Tag, Status, Asset }) => [Tag, `${Status} ${Asset}`]));
@@ -265,7 +265,7 @@ test('killed between two files, left over, at once, out of disk: a valid plant, 
         held.stdin.end();
         await ended;
         assert.equal(refused.status, 1);
-        assert.match(refused.stderr, /^plantcast match: [^\n]*first: (flock|sh) \(process \d+\) is at work in it\n$/);
+        assert.match(refused.stderr, /^plantcast match: [^\n]*first: (flock|sh) \(process \d+\) is using it\n$/);
         assert.deepEqual(filesOf(first), before);
         const elsewhere = join(folder, 'tags.csv');
         renameSync(join(first, 'tags.csv'), elsewhere);
@@ -377,7 +377,7 @@ test('from exports of two systems to a live picture', { skip: noData, timeout: 2
     const source = ['--modbus', `127.0.0.1:${tiny.modbusPort}`, '--byte-order', 'CDAB'];
     const said = good(run('plantcast', 'match', out, join(out, 'kepware.csv'), ...source));
     assert.match(said.stdout, /10 tags: 9 sure, 0 likely, 1 none/);
-    assert.match(said.stdout, /1 tag is not in the tag list: it is a text/);
+    assert.match(said.stdout, /1 tag is not in the tag list: it is text/);
     const rows = table(join(out, 'tags.csv'));
     assert.deepEqual(rows.map(({ 'Tag Name': name, Asset, Group, Place }) => [name, Asset, Group, Place].join(' ')), [
         'ART1105BA_TT01 -ART1105BA- temperature equipment', 'ART1105BA_TT02 -ART1105BA- temperature equipment',
@@ -432,7 +432,7 @@ test('from exports of two systems to a live picture', { skip: noData, timeout: 2
 test('what cannot be read is one line, and nothing is written', { skip: notBuilt }, () => inFolder((folder) => {
     boxPlant(folder, ['E-101']);
     const list = join(folder, 'export.csv'), before = readdirSync(folder);
-    for (const [text, why] of [['', 'no header'], ['a,b\n1,2\n', 'no header'], ['Tag Name\n"x\n', 'a quote does not end'],
+    for (const [text, why] of [['', 'no header'], ['a,b\n1,2\n', 'no header'], ['Tag Name\n"x\n', 'a quote is never closed'],
         ['PK\x03\x04', 'not a spreadsheet'], ['{"tags": [', 'not JSON'], ['['.repeat(200000), 'maximum parsing depth'],
         [`${'{"tags":'.repeat(100000)}1${'}'.repeat(100000)}`, 'maximum parsing depth'], [Buffer.alloc(5000), 'no header'],
         [`Tag Name${',a'.repeat(200000)}\n`, 'more than 1000 cells']]) {

@@ -118,7 +118,7 @@ test('JSON: by path, with the time and the quality that it states', options, asy
     await publisher.tell('line/temps', { left: { v: [1, 5] }, right: 21 }); // without a timestamp
     await until('TI-1', { quality_name: 'Bad_ConfigurationError' });
     await publisher.tell('line/temps', { left: { v: [1, 5] }, right: 21, meta: at(3600000) });
-    await plant.daemon.line(/line\/temps: its times are \d+\.\d s ahead of this machine's clock/);
+    await plant.daemon.line(/line\/temps: its timestamps are \d+\.\d s ahead of this machine's clock/);
     assert.ok((await until('TI-2', { ...good, value: 21 })).age_ms < 9000);
 });
 
@@ -149,8 +149,8 @@ test('a gateway that publishes what has changed: no tag gets the value of anothe
     await until('F1', { quality_name: 'Bad_TooManyMatches', value: null });
     await tell(['G.A1', 51]);
     await until('F1', { ...good, value: 51 });
-    await plant.daemon.line(/names itself G\.A2; address it by name/);
-    await plant.daemon.line(/gateway: no message has held the value of /);
+    await plant.daemon.line(/is named G\.A2; select it by name/);
+    await plant.daemon.line(/gateway: no message had the value of /);
     const { out } = runProgram('plantcast', ['tags', `http://127.0.0.1:${plant.plant.port}/`]);
     assert.match(out, /F9.*NoMatch/i);
 });
@@ -217,7 +217,7 @@ test('payloads that are none are refused by name, and nothing else suffers', opt
         await publisher.tell('plant/ti1', 20);
         await until('TI-1', good);
     }
-    await plant.daemon.line(/plant\/ti1: 4 bytes are refused: expected one number/);
+    await plant.daemon.line(/plant\/ti1: 4 bytes was refused: expected one number/);
     for (let i = 0; i < 300; i++)
         await publisher.tell('plant/ti1', 'warm', { qos: i === 299 ? 1 : 0 });
     for (const end = performance.now() + 60000; await metric('messages_total{source="broker",result="refused"}') < 308; await sleep(20))
@@ -259,10 +259,10 @@ test('what cannot be is said of the plant file', options, async () => {
             new RegExp(`tags\\.csv:2:6: error: Address: .*${why}`), path);
     assert.match(said('time: ts', TAGS.number), /time: has no meaning without payload: json/);
     assert.match(said('session: persistent', TAGS.number), /would look fresh[^]*needs client_id/);
-    assert.match(said('topic: "plant/+/{tag}"', TAGS.number), /topic: 'plant\/\+\/\{tag\}': \+ and # stand for many topics/);
+    assert.match(said('topic: "plant/+/{tag}"', TAGS.number), /topic: 'plant\/\+\/\{tag\}': \wildcards (+ and #) match many topics/);
     assert.match(said('topic: "plant/{name}"', TAGS.number), /expected \{tag\}, \{asset\}, \{group\} or \{address\}/);
     assert.match(said('qos: 1', TAGS.number), /tags\.csv:3:6: error: Address: '': expected a topic, or a key topic in the source/);
-    assert.match(said('topic: "a/{tag}"', [TAGS.json[0]]), /a path behind # has no meaning for payload: number/);
+    assert.match(said('topic: "a/{tag}"', [TAGS.json[0]]), /a path after # has no meaning for payload: number/);
     assert.match(said('topic: "a/{tag}", rebirth: yes', TAGS.number), /rebirth: has no meaning without payload: sparkplug/);
     assert.match(said('payload: sparkplug', ['TI-1,U100#TI-1,,,,,,,,,,,,,']), /expected GROUP\/NODE#METRIC or GROUP\/NODE\/DEVICE#METRIC/);
     assert.match(said('baud: 9600', TAGS.number), /baud: has no meaning for an mqtt source/);

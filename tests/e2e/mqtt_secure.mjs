@@ -81,7 +81,7 @@ test('user and password from a file, and a topic that is not for this user', opt
         plant.write(`login: ${path('login')}, protocol: ${protocol}`, ROWS);
         assert.equal(plant.plant.prepare().code, 0);
         await plant.plant.startDaemon();
-        await plant.daemon.line(/no readings \(the broker refuses: .*(not|Not) auth/);
+        await plant.daemon.line(/no readings \(the broker refused the connection: .*(not|Not) auth/);
         writeFileSync(path('login'), 'reader\r\nright\r\n');
         await plant.daemon.line(/source broker: .*: reading/);
         publisher = await broker.client({ username: 'boss', password: 'bossy' });

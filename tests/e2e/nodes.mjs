@@ -93,8 +93,8 @@ test('what is no model is one line', { skip }, () => {
     const cyclic = model([{ children: [1] }, { children: [0] }]);
     const deep = model(Array.from({ length: 600 }, (_, i) => ({ children: [i + 1] })));
     deep.nodes.push({});
-    for (const [content, why] of [['', 'no glTF'], ['{', 'no glTF'], [cyclic, 'no tree'], [deep, 'no tree'],
-        ['[' .repeat(100000), 'no glTF'], [JSON.stringify({ asset: { version: '1.0' } }), 'no glTF 2.0']]) {
+    for (const [content, why] of [['', 'not a glTF'], ['{', 'not a glTF'], [cyclic, 'not a tree'], [deep, 'not a tree'],
+        ['[' .repeat(100000), 'not a glTF'], [JSON.stringify({ asset: { version: '1.0' } }), 'not glTF 2.0']]) {
         const { status, stderr, stdout } = nodes(content);
         assert.equal(status, 1);
         assert.equal(stdout, '');

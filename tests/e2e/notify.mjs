@@ -257,7 +257,7 @@ notify:
         writeFileSync(plant.file, readFileSync(plant.file, 'utf8').replace('to: hook', 'to: nobody'));
         const checked = runProgram('plantcastd', ['--check', plant.file]);
         assert.equal(checked.code, 1);
-        assert.match(checked.err, /plant\.yaml:\d+:\d+: error: to: there is no recipient 'nobody'/);
+        assert.match(checked.err, /plant\.yaml:\d+:\d+: error: to: unknown recipient 'nobody'/);
     } finally {
         await hook.close();
         await plant.destroy();

@@ -155,12 +155,12 @@ test('answers that are not to be believed: each is refused by name, and nobody i
         ['alg none, with a signature', /not signed/, (claims, header) => { header.alg = 'none'; }],
         ['alg HS256', /not signed/, (claims, header) => { header.alg = 'HS256'; }],
         ['wrong audience', /another audience/, (claims) => { claims.aud = 'other'; }],
-        ['expired', /time is over/, (claims) => { claims.exp = now() - 120; }],
+        ['expired', /expired/, (claims) => { claims.exp = now() - 120; }],
         ['from the future', /another time/, (claims) => { claims.iat = now() + 300; }],
         ['wrong issuer', /another issuer/, (claims) => { claims.iss = 'https://evil.example'; }],
         ['wrong nonce', /nonce/, (claims) => { claims.nonce = 'other'; }],
         ['no nonce', /nonce/, (claims) => { delete claims.nonce; }],
-        ['an unknown key', /key that the provider does not have/, (claims, header) => { header.kid = 'other'; }],
+        ['an unknown key', /key that the provider does not publish/, (claims, header) => { header.kid = 'other'; }],
         ['a changed signature', /signature is wrong/, () => {}, () => 'AAAA'],
         ['no role', /none of the groups of kim has a role/, (claims) => { claims.groups = ['cleaners']; }],
         ['no groups', /none of the groups/, (claims) => { delete claims.groups; }],
@@ -182,7 +182,7 @@ test('a code, a state or a whole answer once more, another browser, another issu
     const back = await browser.begin();
     const stranger = await new Browser().get(back);
     assert.equal(stranger.status, 403, 'another browser');
-    assert.match(await stranger.text(), /no log-in of this browser waits/);
+    assert.match(await stranger.text(), /no sign-in of this browser waits/);
     assert.equal((await browser.get(back)).status, 303);
     const replayed = await browser.get(back);
     assert.equal(replayed.status, 403, 'replayed state');
@@ -193,7 +193,7 @@ test('a code, a state or a whole answer once more, another browser, another issu
     assert.match(await code.text(), /refuses the code: invalid_grant/);
     const other = await browser.begin();
     other.searchParams.set('iss', 'https://evil.example');
-    assert.match(await (await browser.get(other)).text(), /another issuer answers/);
+    assert.match(await (await browser.get(other)).text(), /the answer comes from another issuer/);
     const denied = await browser.begin();
     denied.searchParams.delete('code');
     denied.searchParams.set('error', 'access_denied');
@@ -313,7 +313,7 @@ test('foreign answers by thousands leave one line, and lock nobody out', { skip,
     };
     const [, , , , person] = await Promise.all([guess(), guess(), guess(), guess(), sleep(300).then(() => new Browser().signIn())]);
     assert.equal(person.status, 303);
-    await recorded('their sum', (line) => /^\d+ answers of the identity provider belonged to no log-in/.test(line.what ?? ''));
+    await recorded('their sum', (line) => /^\d+ answers of the identity provider belonged to no sign-in/.test(line.what ?? ''));
     assert.ok(refusals() - lines <= 2, String(refusals() - lines));
     const answer = await beginFrom('127.0.0.9');
     assert.equal((await answer('error=access_denied')).statusCode, 403, 'the address is not held');
@@ -329,7 +329,7 @@ test("a provider's own faults, and people who change their mind, slow nobody: th
             assert.equal((await (await beginFrom('127.0.0.7'))('code=x')).statusCode, 403, JSON.stringify(fault));
     }
     provider.fault = null;
-    assert.match(plant.daemon.said, /the provider refuses to be asked/);
+    assert.match(plant.daemon.said, /the provider refuses the request/);
     for (let i = 0; i < 20; i++)
         assert.equal((await (await beginFrom('127.0.0.7'))(`error=${errors[i % 2]}`)).statusCode, 403);
     assert.equal((await askFrom('127.0.0.7', '/api/v1/me', { Authorization: `Bearer ${token}` })).statusCode, 200);
@@ -467,7 +467,7 @@ test('who leaves all pages alone is signed out; a notice is there before', {
         await shoot(page, 'locked');
         await page.reload();
         await page.locator('#token .sign-in').waitFor({ timeout: 30000 });
-        await recorded('the lock', (line) => line.event === 'leave' && line.why === 'nobody was at the page');
+        await recorded('the lock', (line) => line.event === 'leave' && line.why === 'no activity at the page');
         await page.locator('#token .sign-in').click();
         await waitForPicture(page);
     } finally {

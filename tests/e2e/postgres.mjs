@@ -316,10 +316,10 @@ test('tables of another version are refused by name, and left alone', options, a
     server.ask(`CREATE SCHEMA plantcast AUTHORIZATION plantcast; SET ROLE plantcast; CREATE TABLE plantcast.version(version int);
         INSERT INTO plantcast.version VALUES (0)`);
     await plant.startDaemon();
-    await plant.daemon.line(/the tables in schema plantcast are of version 0, older than version 1 of this program; they are left alone/);
+    await plant.daemon.line(/the tables in schema plantcast have version 0, older than version 1 of this program; they are not used/);
     assert.equal(await metric('postgres_up'), 0);
     server.ask('UPDATE plantcast.version SET version = 2');
-    await plant.daemon.line(/the tables in schema plantcast are of version 2, newer than version 1 of this program/, 30000);
+    await plant.daemon.line(/the tables in schema plantcast have version 2, newer than version 1 of this program/, 30000);
     assert.deepEqual(server.ask("SELECT tablename FROM pg_tables WHERE schemaname = 'plantcast'"), [['version']]);
     server.ask('DROP SCHEMA plantcast CASCADE');
     await settled();
@@ -385,7 +385,7 @@ test('a password in the plant file, and a schema that is no name, are refused', 
     configure();
     const text = readFileSync(plant.file, 'utf8'), check = () => runProgram('plantcastd', ['--check', plant.file]);
     writeFileSync(plant.file, text.replace('postgresql://', 'postgresql://me:secret@'));
-    assert.match(check().err, /plant\.yaml:\d+:\d+: error: url: a password must not stand here; `login` names a file that has it/);
+    assert.match(check().err, /plant\.yaml:\d+:\d+: error: url: do not write a password here; name a file with it in `login`/);
     writeFileSync(plant.file, text.replace('login: login', 'schema: "a b"'));
     assert.match(check().err, /schema: expected lower-case letters, digits and _, found 'a b'/);
     writeFileSync(plant.file, text.replace(/postgresql:/, 'mysql:'));

@@ -110,7 +110,7 @@ test('another Plantcast shows it, with the same values, qualities and times', op
 
 test('a broker that is killed and comes back has all anew; who dies is offline', options, async () => {
     await broker.restart();
-    await plant.daemon.line(/publish: .*: nothing is published: /);
+    await plant.daemon.line(/publish: .*: not publishing: /);
     await listen();
     await until('all', () => heard[`${PREFIX}/state`] === 'online' && tag('TI-1').quality === 0 && heard[`${PREFIX}/alarms`]);
     await plant.daemon.stop('SIGKILL');

@@ -51,7 +51,7 @@ async function othersSeconds() {
 test('a tag is asked for once', options, async () => {
     const { status, body } = await get(plant.port, query(Array(64).fill('T-1').join(','), 100));
     assert.equal(status, 400);
-    assert.match(body.toString(), /'T-1' is named twice/);
+    assert.match(body.toString(), /'T-1' is listed twice/);
 });
 
 test('a long answer comes whole, in pieces', options, async () => {

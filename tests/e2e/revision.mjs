@@ -177,7 +177,7 @@ T6;temperature;second;TT-9;;;;;f
     boxes(model, [{ name: 'X', at: [100, 0, 0] }]);
     const other = run('plantcast', 'import', model, '-o', plant);
     assert.equal(other.status, 1);
-    assert.match(other.stderr, /nothing of this plant is in it/);
+    assert.match(other.stderr, /has no models of this plant/);
     // An additional model adds its assets.
     boxes(join(folder, 'n.gltf'), [{ name: 'G', at: [50, 0, 0] }, { name: 'A', at: [60, 0, 0] }]);
     good(run('plantcast', 'import', join(folder, 'n.gltf'), '-o', plant));

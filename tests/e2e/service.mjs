@@ -152,7 +152,7 @@ test('connections wait in the socket of the manager while the daemon is started 
         service.order('again');
         const closed = await client.wait('a close', (c) => c.closed);
         assert.equal(closed.code, 1001);
-        assert.match(closed.text, /^the server goes down; retry after \d+ s$/);
+        assert.match(closed.text, /^the server is stopping; retry after \d+ s$/);
         const answers = [];
         for (let i = 0; i < 20; i++) {
             answers.push(get(port, '/healthz'));

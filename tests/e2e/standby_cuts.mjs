@@ -93,9 +93,9 @@ test('a leader that was loaded anew goes on by the promise of a standby that was
     writeFileSync(two.file, text.replace('deadband_percent: 0', 'deadband_percent: 0.5'));
     core.program.child.kill('SIGHUP');
     await core.program.line(/reload: configuration/);
-    await other.program.line(/configuration: the renderer has .*votes only/);
+    await other.program.line(/configuration: the renderer has .*only votes/);
     await two.goesOn(t, core, 5);
-    assert.match(core.program.said, /standby .*: refused: configuration: .*; it is no standby, but its promises count/);
+    assert.match(core.program.said, /standby .*: refused: configuration: .*; it is not a standby, but its promises count/);
     other.program.child.kill('SIGHUP');
     await other.program.line(/reload: configuration/);
     for (const one of [core, other])
@@ -123,7 +123,7 @@ test('a leader is loaded anew while the database says nothing, and its standby a
 test('others of the names of both are told, and take nobody\'s place while the leader has no way to the database', options, async (t) => {
     const core = await two.leader(), other = two.other(core);
     await two.followed(core);
-    const more = [['three', '127.0.0.4', core, /another core with the name/], ['four', '127.0.0.5', other, /stands by already/]];
+    const more = [['three', '127.0.0.4', core, /another core with the name/], ['four', '127.0.0.5', other, /is standby already/]];
     const started = await Promise.all(more.map(async ([name, host, as, says]) => {
         const one = await two.makeCore(name, host);
         one.toOther = await two.network.link(core.port);
@@ -171,8 +171,8 @@ test('a standby of another version is named, shows nothing, votes, and takes ove
     };
     await other.program.stop('SIGKILL');
     await begin(other);
-    await other.program.line(new RegExp(`version: the renderer has ${newer.other}, this node ${newer.version}.*votes only`));
-    const noStandby = `refused: version: the renderer has ${newer.other}, .*; it is no standby, but its promises count`;
+    await other.program.line(new RegExp(`version: the renderer has ${newer.other}, this node ${newer.version}.*only votes`));
+    const noStandby = `refused: version: the renderer has ${newer.other}, .*; it is not a standby, but its promises count`;
     assert.match(core.program.said, new RegExp(noStandby));
     assert.ok(Object.values(await other.node.tags()).every(({ value }) => value === null));
     await until('its promise', async () => await core.node.metric('plantcast_core_standby_differs') === 1);

@@ -230,7 +230,7 @@ test('every token that is let in, or is not, is a line in the log; ten wrong one
     engineer.close();
     await plant.daemon.line(/token engineer-1/); // waits for this log line: the earlier ones exist by then, too
     assert.equal(lines(/login from 127\.0\.0\.1 by HTTP: token \(unknown\), role none: refused, nobody's \(\d within/g).length, 6);
-    assert.equal(lines(/by HTTP: token operator-1, role operator: refused, its time is over/g).length, 1);
+    assert.equal(lines(/by HTTP: token operator-1, role operator: refused, its expired/g).length, 1);
     assert.equal(lines(/by stream: token \(unknown\), role none: refused/g).length, 1);
     assert.equal(lines(/by stream: token engineer-1, role engineer: accepted/g).length, 1);
     assert.equal(lines(/by HTTP: token viewer-1, role viewer: accepted/g).length, 1);
@@ -292,7 +292,7 @@ test(ENDING, { skip, timeout: 60000 }, async () => {
     console.log(`# ${names.length} names:`, JSON.stringify(heads));
     assert.ok(said.every((text) => /^HTTP\/1\.[01] (200|400|403|408) /.test(text)), JSON.stringify(heads));
     assert.ok(heads[408] > 100);
-    assert.match(plant.daemon.said, /http: a request from 127\.0\.0\.1 ended: its head did not end within 2 s \(408\)/);
+    assert.match(plant.daemon.said, /http: a request from 127\.0\.0\.1 was ended: its headers were incomplete after 2 s \(408\)/);
     assert.match(await speak('GET /healthz HTTP/1.1\r\nHost: localhost\r\nX-Plant: 1\r\n\r\n'), /^HTTP\/1\.1 200/, 'an unknown name');
 });
 

@@ -64,7 +64,7 @@ test('the picture itself', { skip }, () => {
     assert.ok(spots.length > 20, `${spots.length} places`);
     const { out, code } = read('whole.png', [640, 5]);
     assert.match(out, /group temperature, 0 to 100 °C/);
-    assert.match(out, /640,5: no colour of the legend/);
+    assert.match(out, /640,5: this pixel's colour is not in the legend/);
     assert.equal(code, 1);
     const { read: share, held, error, width } = judge('whole.png');
     assert.ok(share > 0.9 && held > 0.97 && error < 0.4 && width < 6);
@@ -87,14 +87,14 @@ test('a screenshot: scaled, on a desktop, JPEG again', { skip }, () => {
 
 test('what has no strip, half of one, or is no picture', { skip }, () => {
     assert.equal(snapshot('bare.png').code, 0);
-    const refusals = [['bare.png', /no legend strip is in it/], ['plant.yaml', /neither a PNG nor a JPEG/], ['gone.png', /No such file/]];
+    const refusals = [['bare.png', /it has no legend strip/], ['plant.yaml', /neither a PNG nor a JPEG/], ['gone.png', /No such file/]];
     for (const [name, words] of refusals) {
         const { code, err } = read(name, [1, 1]);
         assert.notEqual(code, 0);
         assert.match(err, words);
     }
     ffmpeg('whole.png', 'cut.png', '-vf', 'crop=iw/2:ih:0:0');
-    assert.match(read('cut.png', [1, 1]).err, /no legend strip is in it/);
+    assert.match(read('cut.png', [1, 1]).err, /it has no legend strip/);
     ffmpeg('whole.png', 'small.png', '-vf', 'scale=iw/6:ih/6');
     assert.match(read('small.png', [1, 1]).err, /no legend strip|too damaged/);
     assert.equal(runProgram('plantcast', ['read', file('whole.png'), '1']).code, 2);

@@ -317,13 +317,13 @@ test('bad input: what is wrong is said', options, async () => {
     writeFileSync(join(folder, 'nameless'), 'password\n');
     for (const [args, code, said] of [
         [[], 2, /URL of one daemon/],
-        [[url], 2, /no output was asked for/],
-        [['ftp://127.0.0.1/', '--rtsp', '1'], 2, /is not http:/],
+        [[url], 2, /no output/],
+        [['ftp://127.0.0.1/', '--rtsp', '1'], 2, /is not a URL such as http/],
         [[url, '--rtsp', '99999'], 2, /--rtsp 99999: expected 0 to 65535/],
         [[url, '--rtsp', '8554', '--fps', '4'], 2, /--fps 4: expected 5 to 30/],
         [[url, '--rtsp', '8554', '--size', '641x360'], 2, /even numbers/],
-        [[url, '--rtsp', '8554', '--listen', '0.0.0.0'], 2, /anybody who reaches this address could watch/],
-        [[url, '--rtsp', '8554', '--view', 'a', '--query', 'b'], 2, /do not go together/],
+        [[url, '--rtsp', '8554', '--listen', '0.0.0.0'], 2, /everyone who reaches this address could watch/],
+        [[url, '--rtsp', '8554', '--view', 'a', '--query', 'b'], 2, /exclude each other/],
         [[url, '--rtsp', '8554', '--language', 'fr'], 2, /--language fr: expected en, ko or de/],
         [[url, '--rtsp', '8554', '--wall', 'b'], 2, /Unknown option --wall/],
         [[url, '--rtsp', '8554', '--ca', join(folder, 'none')], 1, /No such file/],

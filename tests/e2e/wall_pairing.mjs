@@ -77,9 +77,9 @@ test('a tile takes the token of its display: who only looks on can neither lead 
     for (const role of ['viewer', 'operator']) {
         const [error] = (await hello(tokens[role], 1)).texts;
         assert.deepEqual([error.type, error.code], ['error', 'not_allowed'], role);
-        assert.match(error.text, /tile: it takes the token of display 1 of wall tiled, or the role engineer/);
+        assert.match(error.text, /tile: needs the token of display 1 of wall tiled, or the role engineer/);
     }
-    assert.match((await hello(tokens.tile, 1)).texts[0].text, /this token is that of display 2 of wall tiled/);
+    assert.match((await hello(tokens.tile, 1)).texts[0].text, /this token belongs to display 2 of wall tiled/);
     const tile = await hello(tokens.tile, 2);
     await tile.until('the lead', () => tile.texts.some(({ type, leads }) => type === 'tiles' && leads));
     assert.deepEqual((await tile.text('tiles')).missing, [1]); // refused clients do not count as displays
@@ -136,9 +136,9 @@ test('it is that display only, as a viewer, also after a restart of the daemon',
     assert.equal((await get('api/v1/pair?wall=room&display=2', `Pairing ${secret}`)).status, 409);
     await wall.page.evaluate(() => globalThis.wall.session.post({ type: 'display', wall: 'room', display: 2 }));
     const end = Date.now() + 90000;
-    while (!/token is that of display 1/.test(audit()) && Date.now() < end)
+    while (!/token belongs to display 1/.test(audit()) && Date.now() < end)
         await new Promise((done) => setTimeout(done, 200));
-    assert.match(audit(), /refused.*this token is that of display 1 of wall room/);
+    assert.match(audit(), /refused.*this token belongs to display 1 of wall room/);
     await wall.page.reload();
     await wall.page.locator('.pane.alarms').waitFor({ timeout: 60000 });
 });
@@ -201,7 +201,7 @@ test('its secret reads nothing but its display, before it has said a word', opti
     assert.deepEqual(tiles.texts.filter(({ type }) => type === 'views' || type === 'notes').flatMap(({ list }) => list), []);
     for (const message of [{ type: 'pick', seq: 1, x: 1, y: 1 }, { type: 'time', at_us: 1 }, { type: 'follow', session: 1 }]) {
         tiles.say(message);
-        assert.match((await tiles.text('error')).text, /this token is that of display 2 of wall room/, message.type);
+        assert.match((await tiles.text('error')).text, /this token belongs to display 2 of wall room/, message.type);
     }
     await pictures.hello({ width: 640, height: 480 });
     // all tags, because an alarm may move the camera to any place of the plant
@@ -212,7 +212,7 @@ test('its secret reads nothing but its display, before it has said a word', opti
     pictures.close();
 
     await reload(TILES, PICTURE);
-    assert.deepEqual(await tiles.until('the end', ({ closed }) => closed), { code: 1012, text: 'the display has other panes now' });
+    assert.deepEqual(await tiles.until('the end', ({ closed }) => closed), { code: 1012, text: 'the panes of the display have changed' });
     const again = await displayClient(2, second, false);
     await again.hello({ width: 640, height: 480 });
     const larger = await again.frameWhere('a picture', () => true);

@@ -257,7 +257,7 @@ test('one that takes nothing is left out and told so, and comes back', options, 
 });
 
 test('what is no tile is refused by name', options, async () => {
-    for (const [tile, text] of [[{ wall: 'nowhere', display: 1 }, /no such wall/], [{ wall: 'seamless', display: 7 }, /no such display/],
+    for (const [tile, text] of [[{ wall: 'nowhere', display: 1 }, /unknown wall/], [{ wall: 'seamless', display: 7 }, /no such display/],
         [{ wall: 'framed', display: 5 }, /display 5 of wall framed is not one of its tiles/]]) {
         const client = await PlainClient.open(plant.port);
         client.say({ type: 'hello', width: WIDTH, height: HEIGHT, codecs: ['png'], tile });

@@ -226,7 +226,7 @@ static int ask_for_devices(void)
     if (dup2(fileno(said), STDERR_FILENO) < 0)
         return 1;
     struct log *log = log_create(LOG_INFO);
-    if (!is_refused(log, said, "999", "device 999 asked for, there are"))
+    if (!is_refused(log, said, "999", "device 999 was requested, but there are only"))
         return 2;
     if (!is_refused(log, said, "ffff:ff:1f.7", "devices is at PCI address ffff:ff:1f.7"))
         return 3;

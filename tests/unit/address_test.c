@@ -80,13 +80,13 @@ TEST(bad_addresses_are_explained)
         { "1!!40001", "expected 5 or 6 digits such as 40001" },
         { "40001.16", "expected a bit from 0 to 15 after the point" },
         { "40001.", "expected a bit from 0 to 15 after the point" },
-        { "00001.1", "a coil is one bit already" },
-        { "10001.1", "a discrete input is one bit already" },
+        { "00001.1", "a coil is a single bit" },
+        { "10001.1", "a discrete input is a single bit" },
         { "40001#XX", "expected #LL (ABCD), #BL (CDAB), #LB (BADC) or #BB (DCBA)" },
         { "40001#", "expected #LL (ABCD)" },
         { "40001#BL.3", "expected #LL (ABCD)" },
-        { "40001x", "nothing was expected after '40001', found 'x'" },
-        { "40001 ", "nothing was expected after '40001'" },
+        { "40001x", "expected nothing after '40001', found 'x'" },
+        { "40001 ", "expected nothing after '40001'" },
     };
     for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
         struct modbus_address got;

@@ -267,7 +267,7 @@ TEST(sections_out_of_bounds_are_refused)
     refused_sealed(&f, "section sensors");
     f = build(&good);
     f.header->index_count = 8;
-    refused_sealed(&f, "8 indices are not whole triangles");
+    refused_sealed(&f, "8 indices are not a multiple of 3");
     f = build(&good);
     f.header->vertex_count = 0;
     refused_sealed(&f, "nothing to draw");

@@ -158,7 +158,7 @@ TEST(test_lines_removed_and_moved)
     expect_good(path, 1, 3);
     expect_fault(path, &known, "before the known line 5");
     memset(third.hash, 'a', AUDIT_HASH_CHARS);
-    expect_fault(path, &third, "line 3 is not the one that --known has");
+    expect_fault(path, &third, "line 3 differs from the one in --known");
     mem_free(copy);
     mem_free(bytes);
     mem_free(head_path);
@@ -181,7 +181,7 @@ TEST(test_next_start)
     assert_non_null(strstr(finding, "lines were removed"));
     mem_free(finding);
     expect_fault(path, NULL, ":4: lines before it are missing");
-    /* half a line at the end, as a crash leaves it */
+    /* an incomplete last line at the end, as a crash leaves it */
     put(path, bytes, count - 10);
     char *head_path = mem_printf("%s.head", path);
     struct audit_chain fourth;
@@ -190,7 +190,7 @@ TEST(test_next_start)
     assert_true(audit_chain_check(&fourth, bytes + starts[3], starts[4] - starts[3] - 1, true, &why));
     audit_head_write(head_path, &fourth);
     finding = write_lines(path, 1, 1 << 20);
-    assert_non_null(strstr(finding, "half a line"));
+    assert_non_null(strstr(finding, "an incomplete last line"));
     mem_free(finding);
     expect_good(path, 1, 5);
     mem_free(head_path);
@@ -220,7 +220,7 @@ TEST(test_rotation)
     /* truncated by another program while it is open */
     assert_int_equal(truncate(path, 0), 0);
     assert_int_equal(audit_file_append(&file, &ENTRY, AT_US, &lines, &later), 0);
-    assert_non_null(strstr(later, "another program changed it"));
+    assert_non_null(strstr(later, "another program changed the file"));
     mem_free(later);
     expect_fault(path, NULL, "lines before it are missing");
     /* removed by another program while it is open */

@@ -147,7 +147,7 @@ TEST(many_warnings_alike_are_one)
     diag_print(&diag, out);
     fclose(out);
     assert_string_equal(printed, "a:1:1: warning: column 0\na:1:2: warning: column 1\na:1:3: warning: column 2\n"
-                                 "a:3:5: warning: 'T0' has no asset; 63 more are like this (line 4-62 220 222 224 226)\n"
+                                 "a:3:5: warning: 'T0' has no asset; 63 more like this (line 4-62 220 222 224 226)\n"
                                  "b:1: error: error 0\nb:2: error: error 1\nb:3: error: error 2\nb:4: error: error 3\n"
                                  "b:5: error: error 4\nb:9:5: warning: 'T99' has no asset\n");
     free(printed);
@@ -172,7 +172,7 @@ TEST(of_many_errors_alike_the_first_are_printed)
         lines += *at == '\n';
     assert_int_equal(lines, 21);
     assert_non_null(strstr(printed, "a:5:1: error: other\na:10:1: error: 'T0' is there twice\n"));
-    assert_non_null(strstr(printed, "a:29:1: error: 'T19' is there twice; 1980 more are like this (line 30-2009)\n"));
+    assert_non_null(strstr(printed, "a:29:1: error: 'T19' is there twice; 1980 more like this (line 30-2009)\n"));
     assert_int_equal(copy.errors, 2001);
     free(printed);
     diag_finish(&diag);

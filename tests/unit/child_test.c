@@ -205,7 +205,7 @@ TEST(test_each_abi_of_landlock_restricts_what_it_knows)
         assert_int_equal(confine_lacks_with(abi, true, lacks), abi < 6);
         assert_string_equal(lacks, expected);
         assert_true(confine_lacks_with(abi, false, lacks));
-        assert_non_null(strstr(lacks, "no seccomp: they can make any system call (needs CONFIG_SECCOMP_FILTER)"));
+        assert_non_null(strstr(lacks, "no seccomp: these programs can make any system call (needs CONFIG_SECCOMP_FILTER)"));
     }
     assert_int_equal(confine_ruleset_of(-1).files, 0); /* -1 is the kernel's answer where Landlock is absent or switched off */
 }

@@ -46,7 +46,7 @@ TEST(each_comes_to_the_bit)
     core_instant_write(&text, 0, NULL);
     assert_null(core_instant_read(text.at, text.length, &first_us, NULL));
     assert_int_equal(first_us, 0);
-    assert_string_equal(core_instant_read(text.at, text.length, &first_us, got), "not one reading for each tag");
+    assert_string_equal(core_instant_read(text.at, text.length, &first_us, got), "the number of readings differs from the number of tags");
     text_finish(&text);
     snapshot_destroy(&sent);
     snapshot_destroy(&got);

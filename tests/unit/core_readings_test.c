@@ -172,7 +172,7 @@ TEST(differences_have_names)
     }
     json_object_del(message, "plant");
     char *why = core_identity_difference(message, "core", &own);
-    assert_string_equal(why, "the core does not tell its plant");
+    assert_string_equal(why, "the core does not send its plant");
     mem_free(why);
     json_decref(message);
 }

@@ -68,15 +68,15 @@ TEST(nonsense_is_refused)
         assert_null(got);
     }
     text.at[8] = TAGS; /* of the first one's tag */
-    assert_string_equal(read_text(&text, &got, &count), "a sample that cannot be one");
+    assert_string_equal(read_text(&text, &got, &count), "an invalid sample");
     text.at[8] = 1;
     text.at[8 + 4 + 3] = (char)0x80; /* Bad, and with a value */
-    assert_string_equal(read_text(&text, &got, &count), "a sample that cannot be one");
+    assert_string_equal(read_text(&text, &got, &count), "an invalid sample");
     text.at[8 + 4 + 3] = 0;
     assert_null(read_text(&text, &got, &count));
     mem_free(got);
     memset(text.at + 4, 0xff, 4); /* four thousand million */
-    assert_string_equal(read_text(&text, &got, &count), "its length is not that of its samples");
+    assert_string_equal(read_text(&text, &got, &count), "its length differs from that of its samples");
     text_finish(&text);
 }
 

@@ -143,7 +143,7 @@ CASE(mistakes_have_a_place)
     open_text(f, "A,B\n1,2\n1,2,,4,5\n");
     assert_one_error(f, 3, 6, "cell 4, but the header has only 2 columns");
     open_text(f, "A,B, a\n");
-    assert_one_error(f, 1, 6, "column 'a' is there twice (first at column 1)");
+    assert_one_error(f, 1, 6, "column 'a' is listed twice (first at column 1)");
     open_text(f, "A,B\n1,x\xB0\xB0y\n");
     assert_one_error(f, 2, 4, "byte 0xB0 is not UTF-8 text");
     open_bytes(f, "A,B\n1,\0\n", 8);
@@ -160,10 +160,10 @@ CASE(what_is_no_table_is_said_once)
     static const struct {
         const char *begins, *says;
     } others[] = {
-        { "glTF\2\xFF\xFE\xFD\xFC\n\xFF\n\xFF\n\xFF\n", "is a model (GLB); a table (CSV) is wanted" },
-        { "ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('AUTOMOTIVE_DESIGN'));\n", "is a STEP file; a table (CSV) is wanted" },
+        { "glTF\2\xFF\xFE\xFD\xFC\n\xFF\n\xFF\n\xFF\n", "is a model (GLB); expected a table (CSV)" },
+        { "ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('AUTOMOTIVE_DESIGN'));\n", "is a STEP file; expected a table (CSV)" },
         { "ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('IFC4'));\n", "is an IFC model" },
-        { "PK\x03\x04\x14", "is a ZIP archive, or a document that is one (XLSX, DOCX, 3MF); a table (CSV) is wanted" },
+        { "PK\x03\x04\x14", "is a ZIP archive, or a document that is one (XLSX, DOCX, 3MF); expected a table (CSV)" },
         { "\xFE\xAA\n\xFE\xAA\n\xFE\xAA\n\xFE\xAA\n\xFE\xAA\n\xFE\xAA\n", "is not a text file; expected a table (CSV)" },
     };
     for (size_t i = 0; i < sizeof(others) / sizeof(*others); i++) {

@@ -136,7 +136,7 @@ static void check_assets(const json_t *root, bool exact)
         assert_float_equal(prep_case_number(asset_of(root, "TURNED", "moved"), "turned_deg"), 90, 1e-2);
     assert_float_equal(prep_case_number(changed, "apart_m"), 0.025, 1e-4); /* laid middle over middle */
     assert_non_null(strstr(json_string_value(json_object_get(asset_of(root, "GONE", "removed"), "why")),
-                           "no node's name matches 'GONE': 'VESSEL' has its shape, in its place"));
+                           "no node's name matches 'GONE': 'VESSEL' has the same shape at the same place"));
     asset_of(root, "DROPPED", "removed");
     asset_of(root, "ADDED", "added");
 }

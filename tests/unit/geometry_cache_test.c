@@ -381,7 +381,7 @@ CASE(without_room_the_old_file_stays)
     json_t *first = prepare_first(c);
     char *before = path_of(c, "kept", first), *columns = kept_file(c, ".columns");
     char *drafts = mem_printf("ls '%s'/kept | grep -q asset.*new", c->folder);
-    char *names_folder = mem_printf("grep -q 'cannot be written into %s/kept: File too large' '%s'/said", c->folder, c->folder);
+    char *names_folder = mem_printf("grep -q 'cannot be written to %s/kept: File too large' '%s'/said", c->folder, c->folder);
     size_t size = bytes_of(before);
     assert_true(size / 2 > bytes_of(columns));
     int status = prepare_limited(c, tags, size / 2, true);

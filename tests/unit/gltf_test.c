@@ -170,7 +170,7 @@ CASE(rotations_have_a_length)
     assert_float_equal(l->model.nodes[0].world[0], 0, 1e-12);
     assert_float_equal(l->model.nodes[0].world[1], 1, 1e-12);
     assert_float_equal(l->model.nodes[0].world[10], 1, 1e-12);
-    refused(l, TURNED("[0,0,0,0]"), "node 0 'valve': its rotation [0, 0, 0, 0] turns nowhere");
+    refused(l, TURNED("[0,0,0,0]"), "node 0 'valve': its rotation [0, 0, 0, 0] is not a unit quaternion");
     refused(l, TURNED("[0,0,1e-9,0]"), "node 0 'valve': its rotation");
 }
 
@@ -182,15 +182,16 @@ CASE(wrong_numbers_are_refused)
     refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":12},\"indices\":1}") ACCESSORS "}",
             "4 elements do not fit into bufferView 0");
     refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":13},\"indices\":1}") ACCESSORS "}", "elements are more than");
-    refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":14},\"indices\":1}") ACCESSORS "}", "there is no bufferView 7");
+    refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":14},\"indices\":1}") ACCESSORS "}", "bufferView 7 does not exist");
     refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":99},\"indices\":1}") ACCESSORS "}", "there is no accessor 99");
     refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":1},\"indices\":1}") ACCESSORS "}", "1 components, expected 3");
     refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":0,\"NORMAL\":15},\"indices\":1}") ACCESSORS "}",
             "NORMAL: 3 elements, positions have 4");
-    refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":0},\"indices\":0}") ACCESSORS "}", "is no index");
-    refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":0},\"indices\":16,\"mode\":5}") ACCESSORS "}", "indices: normalized");
+    refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":0},\"indices\":0}") ACCESSORS "}", "is not allowed for indices");
+    refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":0},\"indices\":16,\"mode\":5}") ACCESSORS "}",
+            "indices: must not be normalized");
     refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"NORMAL\":0},\"indices\":1}") ACCESSORS "}", "has no POSITION");
-    refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":0},\"indices\":2}") ACCESSORS "}", "4 indices are not whole triangles");
+    refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":0},\"indices\":2}") ACCESSORS "}", "4 indices are not a multiple of 3");
     refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":0},\"indices\":1,\"mode\":7}") ACCESSORS "}", "mode 7");
     refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":0},\"indices\":1,\"material\":3}") ACCESSORS "}",
             "there is no material 3");
@@ -201,12 +202,12 @@ CASE(wrong_trees_are_refused)
     refused(l,
             HEAD "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"children\":[1]},{\"name\":\"x\",\"children\":[0]}]," MESH(SQUARE) ACCESSORS
             "}",
-            "reached twice");
+            "is part of a cycle or has two parents");
     refused(l, HEAD "\"nodes\":[{\"children\":[1]},{\"children\":[0]}]," MESH(SQUARE) ACCESSORS "}", "a cycle");
     refused(l,
             HEAD "\"scenes\":[{\"nodes\":[0,1]}],\"nodes\":[{\"children\":[2]},{\"children\":[2]},{\"name\":\"shared\"}]," MESH(SQUARE)
                 ACCESSORS "}",
-            "node 2 'shared' is reached twice");
+            "node 2 'shared' is part of a cycle or has two parents");
     refused(l, HEAD "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"children\":[9]}]," MESH(SQUARE) ACCESSORS "}", "there is no node 9");
     refused(l, HEAD "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":4}]," MESH(SQUARE) ACCESSORS "}", "there is no mesh 4");
     struct text deep = { 0 };
@@ -404,7 +405,7 @@ CASE(a_name_that_is_there_several_times_is_refused)
     struct geometry_params params = { .unit_m = 1, .up = AXIS_Z };
     good(l, ALIKE);
     assert_false(geometry_node_place(&l->model, &params, "pump", place, why));
-    assert_string_equal(why, "the model has 3 nodes 'pump', in different places (#1, #2, #4): name one of them by its number or its path");
+    assert_string_equal(why, "the model has 3 nodes named 'pump' at different places (#1, #2, #4): select one by its number or path");
     assert_true(geometry_node_place(&l->model, &params, "#2", place, why));
     assert_float_equal(place[0], 10.5, 1e-9);
     assert_true(geometry_node_place(&l->model, &params, "south/pump", place, why));

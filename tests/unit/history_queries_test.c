@@ -77,7 +77,7 @@ CASE(queries_are_judged)
     static const struct {
         const char *args[3], *says;
     } bad[] = {
-        { { "from=-1h" }, "tags: expected the names" },
+        { { "from=-1h" }, "tags: expected names" },
         { { "tags=A \"1\",C" }, "tags: this plant has no tag “C”" },
         { { "tags=A \"1\"", "from=2026-10-25T02:30:00" }, "from: expected an instant" },
         { { "tags=A \"1\"", "to=x" }, "to: expected an instant" },
@@ -85,9 +85,9 @@ CASE(queries_are_judged)
         { { "tags=A \"1\"", "points=1" }, "points: expected a number from 2" },
         { { "tags=A \"1\"", "points=1e9" }, "points: expected a number from 2" },
         { { "tags=A \"1\"", "format=xml" }, "format: expected json or csv" },
-        { { "tags=A \"1\",A \"1\"" }, "is named twice" },
-        { { "tag=A \"1\"" }, "there is no argument 'tag'" },
-        { { "tags" }, "tags: expected the names" },
+        { { "tags=A \"1\",A \"1\"" }, "is listed twice" },
+        { { "tag=A \"1\"" }, "unknown argument 'tag'" },
+        { { "tags" }, "tags: expected names" },
     };
     struct history_query query;
     for (size_t i = 0; i < sizeof(bad) / sizeof(bad[0]); i++) {

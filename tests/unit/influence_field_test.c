@@ -433,7 +433,7 @@ CASE(test_uncertainty_depends_on_who_is_good)
     u.snapshot->readings[4].quality = QUALITY_GOOD;
     assert_true((double)look(&u, place_of(4))->value == at_sensor);
     u.params.interpolation = INTERPOLATION_SHEPARD;
-    assert_non_null(strstr(field_params_wrong(u.plant, &u.params), "uncertainty is that of 'gp'"));
+    assert_non_null(strstr(field_params_wrong(u.plant, &u.params), "uncertainty needs the interpolation 'gp'"));
     finish(&u);
 }
 
@@ -731,7 +731,7 @@ CASE(test_damaged_file)
             assert_int_equal(truncate(path, 100), 0);
         assert_false(use(&u, c));
         prep_case_expect(c, "$PLANT", 0);
-        prep_case_says(&c->err, "the influence of its sensors is missing or damaged");
+        prep_case_says(&c->err, "the influence of the asset's sensors is missing or damaged");
         assert_true(use(&u, c));
         finish(&u);
     }

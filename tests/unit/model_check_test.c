@@ -66,9 +66,9 @@ CASE(what_is_no_model_is_said_so)
     mem_free(temp_write_text(c->folder, "o.obj", "v 0 0 0\nv 1 0 0\n"));
     mem_free(temp_write(c->folder, "cut.glb", "glTF\2\0\0\0\0\1\0\0\0\1\0\0JSON{", 21));
     check(c, "  - { id: A, model: s.step }\n  - { id: B, model: o.obj }\n  - { id: C, model: cut.glb }\n", "[]", "Tag Name\n", NULL);
-    FOUND(c, { "plant.yaml", 3, 0, "s.step' is a STEP file; glTF 2.0 (.glb or .gltf) is wanted: export it so, or convert it" },
-          { "plant.yaml", 4, 0, "o.obj' is no glTF model; glTF 2.0 (.glb or .gltf) is wanted" },
-          { "plant.yaml", 5, 0, "cut.glb' is cut off: its JSON should have 256 bytes" });
+    FOUND(c, { "plant.yaml", 3, 0, "s.step' is a STEP file; expected glTF 2.0 (.glb or .gltf): export it as such, or convert it" },
+          { "plant.yaml", 4, 0, "o.obj' is not a glTF model; expected glTF 2.0 (.glb or .gltf)" },
+          { "plant.yaml", 5, 0, "cut.glb' is truncated: its JSON should have 256 bytes" });
 }
 
 TEST_WITH(what_no_memory_holds_is_refused, plant_case_set_up, plant_case_tear_down)
@@ -147,7 +147,7 @@ CASE(series_are_looked_up)
     check(c, assets, "[{ id: w, type: replay, file: wide.csv }, { id: l, type: replay, file: long.csv },\n"
                      "  { id: v, type: replay, file: values.csv }, { id: n, type: replay, file: none.csv }]",
           "Tag Name,Source,Address\nT1,w,TI_101\nT2,w,TI_103\nT3,l,pump/temp\nT4,l,pump/tmp\nT5,v,\nT6,v,\nT7,n,a\n", NULL);
-    FOUND(c, { "plant.yaml", 6, 0, "none.csv:1: no column is the time: expected a name that ends in _ms, _s, _min or _h" },
+    FOUND(c, { "plant.yaml", 6, 0, "none.csv:1: no time column: expected a name that ends in _ms, _s, _min or _h" },
           { "tags.csv", 3, 1, "wide.csv has no series 'TI_103'; did you mean 'TI_101'?" },
           { "tags.csv", 5, 1, "long.csv has no series 'pump/tmp'; did you mean 'pump/temp'?" },
           { "tags.csv", 7, 1, "values.csv has no series 'T6'; did you mean 'T5'?" });

@@ -192,8 +192,9 @@ CASE(why_there_are_no_distances_is_said)
     write_plates(c, 10, 1, (double[]){ 1, 1e-7 }, 1, here);
     prep_case_expect(c, "$PLANT", 1);
     prep_case_says(&c->err, "plant.yaml:3: error: asset A: ");
-    prep_case_says(&c->err, "model.glb: its distances to 1 sensors cannot be computed: none of 20 triangles has an area once places within "
-                            "1e-06 m are one");
+    prep_case_says(&c->err,
+                   "model.glb: the asset's distances to 1 sensors cannot be computed: none of 20 triangles has an area after points within "
+                   "1e-06 m are merged");
 }
 
 /* --- many times over -------------------------------------------------------------------------------------------------------- */

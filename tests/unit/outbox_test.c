@@ -406,7 +406,7 @@ CASE(a_mail_says_what_and_since_when)
     assert_int_equal(strncmp(subject, "[Werk Süd] P1 T0000 high high", strlen("[Werk Süd] P1 T0000 high high")), 0);
     assert_non_null(strstr(body, "P1  2026-11-18 12:06:40  T0000 high high, Kessel 1, heiß: raised at 95.5 degC (limit 90 degC); E-1, "
                                  "Tank farm\r\n"));
-    assert_non_null(strstr(body, "Times are of Europe/Berlin. https://p.example/\r\n"));
+    assert_non_null(strstr(body, "Time zone of all times: Europe/Berlin. https://p.example/\r\n"));
     char *json = notify_webhook_text(f->c->plant, &f->c->plant->notify->recipients[BOSS], &message);
     assert_non_null(strstr(json, "\"plant\":\"Werk Süd\""));
     assert_non_null(strstr(json, "\"raised\":\"2026-11-18T11:06:40.000Z\",\"value\":95.5,\"limit\":90.0,\"unit\":\"degC\""));

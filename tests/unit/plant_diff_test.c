@@ -42,7 +42,7 @@ CASE(each_difference_is_said)
     struct plant *after = load(c, YAML("  - { id: temp, unit: bar, min: 0, max: 120 }\n  - { id: flow, unit: m, min: 0, max: 1 }\n",
                                        "alarms: local\n"),
                                TAGS "NEW,40009,bar,\nB,40004,bar,\nA,40001,bar,95\n");
-    static const char *const wanted[] = { "whose the alarms are has changed", "group temp changed",   "group flow added",
+    static const char *const wanted[] = { "`alarms` (display, mirror or local) has changed", "group temp changed",   "group flow added",
                                           "tag GONE removed",                 "tag NEW added",        "tag B changed: address",
                                           "tag A: H 90 > 95" };
     assert_diff(c, before, after, wanted, 7);

@@ -145,14 +145,14 @@ CASE(nodes_are_a_pattern_or_a_list)
     char *unquoted = mem_printf("%s- id: A\n  model: m.glb\n  nodes: #12\n- id: B\n  model: m.glb\n  nodes: !motor\n", rest);
     plant_case_load(f, unquoted, "Tag Name\n");
     plant_case_assert_loaded(f, 2);
-    FOUND(f, { "plant.yaml", 7, 9, "nodes: has no value, so the whole model is taken" }, { "plant.yaml", 10, 10, "in quotes" });
+    FOUND(f, { "plant.yaml", 7, 9, "nodes: has no value, so the whole model is used" }, { "plant.yaml", 10, 10, "in quotes" });
     mem_free(unquoted);
     char *bad = mem_printf("%s- { id: A, model: m.glb, nodes: [] }\n- { id: B, model: m.glb, nodes: [P, ~] }\n"
                            "- { id: C, model: m.glb, nodes: { P: 1 } }\n- { id: D, model: m.glb, nodes: \"a\\nb\" }\n",
                            rest);
     plant_case_load(f, bad, "Tag Name\n");
     FOUND(f, { "plant.yaml", 5, 33, "expected at least one pattern" }, { "plant.yaml", 6, 37, "a node's name or a pattern" },
-          { "plant.yaml", 7, 33, "found a mapping" }, { "plant.yaml", 8, 33, "has a line break" });
+          { "plant.yaml", 7, 33, "found a mapping" }, { "plant.yaml", 8, 33, "contains a line break" });
     mem_free(bad);
 }
 
@@ -333,10 +333,11 @@ CASE(links_are_templates_of_addresses)
               "plant: { name: P }\nlinks:\n- { name: A, url: 'javascript:alert(1)' }\n- { name: B, url: 'https://{id}.example/' }\n"
               "- { name: C, url: 'https://a.example/{name}' }\n- { name: D, url: 'https:// a/' }\n- { url: 'http://a/' }\n"
               "- { name: F, of: pump, url: 'http:///x' }\n- { name: G, of: tag, url: 'http://a/{tag' }");
-    FOUND(f, { "plant.yaml", 3, 19, "neither with https:// nor" }, { "plant.yaml", 4, 19, "it names no server" },
-          { "plant.yaml", 5, 19, "in braces there may be {id}, {tag} and {area}" }, { "plant.yaml", 6, 19, "white space" },
+    FOUND(f, { "plant.yaml", 3, 19, "begins with https:// or http://" }, { "plant.yaml", 4, 19, "the address names no server" },
+          { "plant.yaml", 5, 19, "only {id}, {tag} and {area} are allowed in braces" }, { "plant.yaml", 6, 19, "white space" },
           { "plant.yaml", 7, 3, "a link needs the key 'name'" }, { "plant.yaml", 8, 18, "expected" },
-          { "plant.yaml", 8, 29, "it names no server" }, { "plant.yaml", 9, 28, "in braces there may be {name}, {asset} and {group}" });
+          { "plant.yaml", 8, 29, "the address names no server" },
+          { "plant.yaml", 9, 28, "only {name}, {asset} and {group} are allowed in braces" });
 }
 
 CASE(assets_have_properties_of_their_own)
@@ -354,7 +355,7 @@ CASE(assets_have_properties_of_their_own)
     assert_string_equal(asset->properties[2].name, "Länge");
     assert_int_equal(f->plant->assets[1].property_count, 0);
     load_with(f, 2, "assets: [{ id: E-1, model: m.glb, properties: { Maker: [a], A: 1, A: 2, '': x } }, { id: E-2, model: m.glb }]");
-    FOUND(f, { "plant.yaml", 2, 56, "Maker: expected text or a number" }, { "plant.yaml", 2, 67, "'A' is there twice" },
+    FOUND(f, { "plant.yaml", 2, 56, "Maker: expected text or a number" }, { "plant.yaml", 2, 67, "'A' is listed twice" },
           { "plant.yaml", 2, 73, "expected a name of 1 to 63 bytes" });
     load_with(f, 2, "assets: [{ id: E-1, model: m.glb, properties: [a] }, { id: E-2, model: m.glb }]");
     FOUND(f, { "plant.yaml", 2, 47, "properties: expected a mapping" });
@@ -401,7 +402,7 @@ CASE(wrong_types_are_named)
           { "plant.yaml", 3, 66, "limits: expected a mapping" });
     load_with(f, 3, "groups: [{ id: g, unit: K, min: 0, max: 1, breaks: [0.1, x, 0.5, 0.3], isolines: 5, scale: log }]");
     FOUND(f, { "plant.yaml", 3, 58, "breaks: expected a number, found 'x'" },
-          { "plant.yaml", 3, 66, "breaks: expected more than 0.5, which is before it, found 0.3" },
+          { "plant.yaml", 3, 66, "breaks: expected more than the preceding 0.5, found 0.3" },
           { "plant.yaml", 3, 82, "isolines: expected a list" },
           { "plant.yaml", 3, 92, "scale: a logarithmic one needs min above 0, found 0" });
 }
@@ -487,7 +488,7 @@ CASE(keys_without_meaning_are_errors)
           { "plant.yaml", 5, 53, "cannot be read" }, { "plant.yaml", 6, 48, "host: has no meaning for transport rtu" },
           { "plant.yaml", 6, 3, "a source needs the key 'device'" }, { "plant.yaml", 7, 32, "no.csv' cannot be read" },
           { "plant.yaml", 7, 46, "port: has no meaning for a replay" }, { "plant.yaml", 8, 42, "hosts: expected host or hosts, not both" },
-          { "plant.yaml", 8, 3, "h:502 is source a's too: the device gets two connections" },
+          { "plant.yaml", 8, 3, "h:502 is also used by source a: the device gets two connections" },
           { "plant.yaml", 8, 3, "h:502 is source b's too" },
           { "plant.yaml", 9, 33, "hosts: expected 1 to 4, found 5" }, { "plant.yaml", 11, 50, "device: '/dev/a' is source f's already" },
           { "plant.yaml", 12, 53, "heartbeat needs the key 'tag'" },
@@ -527,9 +528,9 @@ CASE(meaning_is_checked)
     load_with(f, 3, "groups: [{ id: g, unit: K, min: 0, max: 9, limits: { H: hot } }]");
     FOUND(f, { "plant.yaml", 3, 57, "H: expected a number, found 'hot'" });
     load_with(f, 2, "assets:\n- { id: A, model: m.glb }\n- { id: B, model: m.glb }\n- { model: m.glb, id: A }");
-    FOUND(f, { "plant.yaml", 5, 23, "id: asset 'A' is there twice (first at line 3)" });
+    FOUND(f, { "plant.yaml", 5, 23, "id: asset 'A' is listed twice (first at line 3)" });
     load_with(f, 4, "sources: [{ id: s, type: modbus, host: h }, { id: s, type: modbus, host: g }]");
-    FOUND(f, { "plant.yaml", 4, 51, "id: source 's' is there twice" },
+    FOUND(f, { "plant.yaml", 4, 51, "id: source 's' is listed twice" },
           { "tags.csv", 2, 1, "Source: expected the id of one of the 2 sources" });
     load_with(f, 2, "assets: [{ id: A, model: nowhere/x.glb }, { id: B, model: . }]");
     FOUND(f, { "plant.yaml", 2, 26, "nowhere/x.glb' cannot be read: No such file or directory" },
@@ -567,7 +568,7 @@ CASE(all_errors_come_at_once)
           { "plant.yaml", 3, 33, "min: expected less" },
           { "plant.yaml", 4, 49, "port: expected" }, { "tags.csv", 2, 4, "Address: '4'" },
           { "tags.csv", 2, 6, "'T1' has a group but no asset" },
-          { "tags.csv", 3, 1, "Tag Name: 'T1' is there twice (first at line 2)" },
+          { "tags.csv", 3, 1, "Tag Name: 'T1' is listed twice (first at line 2)" },
           { "tags.csv", 3, 10, "unknown group 'gg'; the plant file has no such id" },
           { "tags.csv", 3, 10, "'T1' has a group but no asset" });
     assert_int_equal(f->diag.errors, 9);
@@ -594,9 +595,9 @@ CASE(syntax_errors_have_a_place)
 CASE(keys_that_come_twice_are_named)
 {
     load_with(f, 1, "plant:\n  name: P\n  name: Q");
-    FOUND(f, { "plant.yaml", 3, 3, "key 'name' is there twice (first at line 2)" });
+    FOUND(f, { "plant.yaml", 3, 3, "key 'name' is listed twice (first at line 2)" });
     load_with(f, 5, "tags: tags.csv\nplant: { name: Q }");
-    FOUND(f, { "plant.yaml", 6, 1, "key 'plant' is there twice (first at line 1)" });
+    FOUND(f, { "plant.yaml", 6, 1, "key 'plant' is listed twice (first at line 1)" });
 }
 
 CASE(what_is_not_utf8_text_has_a_place)

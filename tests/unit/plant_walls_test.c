@@ -107,7 +107,7 @@ CASE(wrong_other_plants_are_said_at_their_place)
     load(c, "other_plants:\n- { id: a, url: \"ftp://h/\" }\n- { id: b, url: \"http://h/\", token_file: t }\n"
             "- { id: b, url: \"https://u:p@h/\" }\n- { id: c, url: \"https://h/?x\", every_s: 1, width: 100 }\n"
             "- { id: c d, url: \"https://h/\", view: a&b }\n- { url: \"https://h/\" }");
-    FOUND(c, { "plant.yaml", 7, 17, "url: it begins with another scheme" }, { "plant.yaml", 8, 42, "cannot be read" },
+    FOUND(c, { "plant.yaml", 7, 17, "url: the address begins with another scheme" }, { "plant.yaml", 8, 42, "cannot be read" },
           { "plant.yaml", 8, 42, "token_file: a token is sent over https" },
           { "plant.yaml", 9, 17, "do not write a password in the plant file" }, { "plant.yaml", 9, 9, "'b'" },
           { "plant.yaml", 10, 17, "without '?' and '#'" }, { "plant.yaml", 10, 42, "every_s" }, { "plant.yaml", 10, 52, "width" },
@@ -137,7 +137,7 @@ CASE(wrong_tiles_are_said_at_their_place)
           { "plant.yaml", 9, 18, "tile: expected 2 to 16 displays, found 5 columns and 4 rows" },
           { "plant.yaml", 10, 18, "tile: expected either views or a tour" }, { "plant.yaml", 11, 51, "bezel_mm" },
           { "plant.yaml", 12, 51, "bezel_mm: expected one number, or two" }, { "plant.yaml", 13, 3, "expected displays, or a tile" },
-          { "plant.yaml", 14, 18, "found 16 of it and 1 others" }, { "plant.yaml", 15, 47, "tour: expected one, found 2" },
+          { "plant.yaml", 14, 18, "found 16 of the tile and 1 others" }, { "plant.yaml", 15, 47, "tour: expected one, found 2" },
           { "plant.yaml", 16, 29, "columns" });
 }
 
@@ -155,14 +155,14 @@ CASE(what_is_wrong_is_said_at_its_place)
             "  - grid: [b b]\n    panes: [{ area: b, clock: yes, text: x }, { area: b, views: v }, { area: z, clock: yes, every_s: 9 },"
             " { area: b, tiles: [] }]");
     FOUND(c, { "plant.yaml", 7, 9, "id: expected letters, digits" }, { "plant.yaml", 8, 18, "a character that an address cannot have" },
-          { "plant.yaml", 9, 18, "it begins after the #" }, { "plant.yaml", 9, 9, "view 'v' is there twice (first at line 8)" },
+          { "plant.yaml", 9, 18, "it must not contain the # itself" }, { "plant.yaml", 9, 9, "view 'v' is listed twice (first at line 8)" },
           { "plant.yaml", 10, 3, "view" }, { "plant.yaml", 12, 22, "displays: expected at least one" }, { "plant.yaml", 14, 11, "inches" },
           { "plant.yaml", 15, 14, "a span such as" }, { "plant.yaml", 17, 12, "areas in lower case" },
           { "plant.yaml", 18, 13, "expected one of views, trend, alarms" }, { "plant.yaml", 18, 21, "the grid has no 'b'" },
-          { "plant.yaml", 20, 13, "expected one of views" }, { "plant.yaml", 20, 55, "'b' has two panes" },
-          { "plant.yaml", 20, 102, "only a pane of views has it" }, { "plant.yaml", 20, 78, "the grid has no 'z'" },
-          { "plant.yaml", 20, 125, "tiles: expected 1 to 16, found 0" }, { "plant.yaml", 20, 115, "'b' has two panes" },
-          { "plant.yaml", 13, 7, "wall 'r' is there twice" });
+          { "plant.yaml", 20, 13, "expected one of views" }, { "plant.yaml", 20, 55, "'b' is used by two panes" },
+          { "plant.yaml", 20, 102, "allowed only in a pane of views" }, { "plant.yaml", 20, 78, "the grid has no 'z'" },
+          { "plant.yaml", 20, 125, "tiles: expected 1 to 16, found 0" }, { "plant.yaml", 20, 115, "'b' is used by two panes" },
+          { "plant.yaml", 13, 7, "wall 'r' is listed twice" });
 }
 
 CASE(a_grid_is_made_of_rectangles)
@@ -191,8 +191,8 @@ CASE(what_tours_name_must_be_there)
             " { area: c, tour: [t, u] }]");
     FOUND(c, { "plant.yaml", 8, 7, "id: expected letters" }, { "plant.yaml", 9, 32, "dwell_s" },
           { "plant.yaml", 11, 10, "stops: expected at least one" }, { "plant.yaml", 13, 11, "view" },
-          { "plant.yaml", 14, 7, "tour 'u' is there twice (first at line 12)" },
-          { "plant.yaml", 20, 68, "every_s: only a pane of views has it" }, { "plant.yaml", 20, 90, "tour: expected one, found 2" });
+          { "plant.yaml", 14, 7, "tour 'u' is listed twice (first at line 12)" },
+          { "plant.yaml", 20, 68, "every_s: allowed only in a pane of views" }, { "plant.yaml", 20, 90, "tour: expected one, found 2" });
     load(c, "views: [{ id: all, view: x }]\ntours: [{ id: round, stops: [{ view: al }, { view: none }] }]\n"
             "walls:\n- id: r\n  displays:\n  - grid: [a]\n    panes: [{ area: a, tour: raund }]");
     FOUND(c, { "plant.yaml", 7, 38, "view: `views` has no 'al'; did you mean 'all'?" }, { "plant.yaml", 7, 52, "`views` has no 'none'" },

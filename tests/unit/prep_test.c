@@ -311,7 +311,7 @@ CASE(distances_are_printed)
     }
     assert_int_equal(lines, (ACROSS + 1) * (UP + 1));
     prep_case_expect(s, "distances $PLANT --asset B --sensor T1", 1);
-    prep_case_says(&s->err, "tag T1 is no sensor of asset B");
+    prep_case_says(&s->err, "tag T1 is not a sensor of asset B");
     prep_case_expect(s, "distances $PLANT --asset B --sensor T9", 1);
     prep_case_expect(s, "distances $PLANT --asset B", 2);
 }

@@ -207,7 +207,7 @@ TEST(tables_fit_what_is_in_them)
     }
     text_table_print(&table, 2, out);
     fclose(out);
-    assert_string_equal(text, "name       number\nK\xc3\xbchler  1,234,567\nP              12\n... and 1 more: --report text has all\n");
+    assert_string_equal(text, "name       number\nK\xc3\xbchler  1,234,567\nP              12\n... and 1 more: --report text lists all\n");
     text_table_finish(&table);
     assert_string_equal(text_table_number(0).text, "0");
     assert_string_equal(text_table_number(100).text, "100");
@@ -234,6 +234,6 @@ TEST(the_time_left_follows_the_work)
     assert_float_equal(progress_left_s(&progress, 6 * s), 0.03, 1e-9);
     progress_end(&progress);
     fclose(out);
-    assert_string_equal(text, "6 of 10 assets to prepare; the others are there already\n"
+    assert_string_equal(text, "preparing 6 of 10 assets; the others are up to date\n"
                               "6 of 10 assets, 0.4 a second, about 7 s left\n");
 }

@@ -158,7 +158,7 @@ CASE(a_terminal_shows_one_line)
     close(master);
     assert_int_equal(waitpid(pid, &status, 0), pid);
     assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 0);
-    prep_case_says(&seen, "40 of 40 assets to prepare");
+    prep_case_says(&seen, "preparing 40 of 40 assets");
     prep_case_says(&seen, "\r");
     prep_case_says(&seen, " of 40 assets, ");
     prep_case_says(&seen, " left\033[K");

@@ -260,7 +260,7 @@ CASE(what_was_not_prepared_is_refused)
     assert_refused(f, "asset B: ");
     asset->up = asset->up == AXIS_Y ? AXIS_Z : AXIS_Y;
     asset->unit_m = 0.001;
-    assert_refused(f, "units, scale or up, are not what was prepared; run plantcast-prep");
+    assert_refused(f, "units, scale or up, changed since it was prepared; run plantcast-prep");
     asset->unit_m = 1;
     asset->nodes = mem_strdup("E-*");
     assert_refused(f, "asset B: ");

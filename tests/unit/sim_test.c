@@ -315,7 +315,7 @@ TEST(bad_series)
 {
     const char *const texts[] = { "t_s,a\n0,1\n2,x\n", "t_s,a\n5,1\n4,1\n", "time,a\n0,1\n", "", "t_s,a\n0\n", "t_s,a\nnan,1\n" };
     const char *const wanted[] = {
-        ":3: a: expected a number", ":3: expected a time", ":1: no column is the time", "is empty", ":2: expected", ":2: expected"
+        ":3: a: expected a number", ":3: expected a time", ":1: no time column", "is empty", ":2: expected", ":2: expected"
     };
     for (int i = 0; i < 6; i++) {
         char why[200] = "", *path = write_file("bad.csv", texts[i]);

@@ -184,14 +184,14 @@ TEST(test_udt_kinds)
           "A/P/T", "", "", "{D}", 1, "have no value: A/P/T" },
         { "an unknown type", PROVIDER("", INSTANCE("P", "Pump", ",'tags':[" MEMBER("T", ",'engUnit':'bar'") "]")), "A/P/T", "bar", "",
           "", 1,
-          "1 instances are of a type that the export does not have; export the folder of types, too: A/P (Pump)" },
+          "1 instances have a type that is not in the export; export the folder of types too: A/P (Pump)" },
         { "a type within itself", PROVIDER(TYPE("L", "'tags':[" INSTANCE("I", "L", "") "," MEMBER("T", "") "]"), INSTANCE("P", "L", "")),
           "A/P/T",
-          "", "", "", 1, "1 instances are of a type that contains itself: left out below there: A/P/I (L)" },
+          "", "", "", 1, "1 instances have a type that contains itself: its inner copies are left out: A/P/I (L)" },
         { "types that are each other's parents",
           PROVIDER(TYPE("X", "'typeId':'Y','tags':[" MEMBER("T", ",'engUnit':'bar'") "]") "," TYPE("Y", "'typeId':'X'"), INSTANCE("P",
             "X", "")),
-          "A/P/T", "bar", "", "", 1, "contains itself: left out below there: A/P (X)" },
+          "A/P/T", "bar", "", "", 1, "contains itself: its inner copies are left out: A/P (X)" },
         { "types and instances in a list", "[" PUMP "," INSTANCE("P", "Pump", "") "]", "P/T", "°C", "120", "[PLC1]HR0", 1, NULL },
         { "arithmetic with precedence",
           PROVIDER(TYPE("Pump", "'parameters':{'N':{'value':3}},'tags':[" MEMBER("T", ",'opcItemPath':" BOUND("{N*10+2} {2+N*10} "
@@ -619,7 +619,7 @@ TEST(test_refused)
     static const struct {
         const char *text, *why;
     } cases[] = {
-        { "", "no header" },         { "a,b\n1,2\n", "no header" },         { "Tag,Unit\n\"TT-1,2\n", "line 2: a quote does not end" },
+        { "", "no header" },         { "a,b\n1,2\n", "no header" },         { "Tag,Unit\n\"TT-1,2\n", "line 2: a quote is never closed" },
         { "Tag,Unit\n", "no tags" }, { "PK\3\4rest", "not a spreadsheet" }, { "\xd0\xcf\x11\xe0", "save it as .xlsx" },
         { "[1, 2]", "no tags" },
         { "<Tags><Tag name=\"T1\"/></Tags>", "it is XML, which is not read" },

@@ -98,8 +98,9 @@ CASE(where_long_values_begin_is_never_guessed)
     plant_case_load(c, yaml_no_order,
                     "Tag Name,Address,Data Type\nA,7!400001#BL,Float\nB,300003#LL,QWord\nC,400009,Word\nD,hr:9#BL,Float\n");
     assert_null(c->plant);
-    FOUND(c, { "tags.csv", 2, 3, "float32 has 32 bits, so it must be said whether the first register is called 0 or 1" },
-          { "tags.csv", 3, 3, "by address_base in its source, or here by ir:2 (from 0, as on the wire; ir:3 if the first is called 0)" });
+    FOUND(c, { "tags.csv", 2, 3, "float32 has 32 bits, so state whether registers are counted from 0 or 1" },
+          { "tags.csv", 3, 3,
+            "by address_base in the source, or here by ir:2 (from 0, as on the wire; ir:3 if registers are counted from 0)" });
 }
 
 CASE(instruments_say_what_they_can_measure)
@@ -173,8 +174,8 @@ CASE(directions_are_tags)
           { "tags.csv", 2, 27, "Direction: expected one tag, a bearing in degrees, or three, the components along X, Y and Z, found" },
           { "tags.csv", 3, 27, "Direction: expected other tags than 'V' itself" },
           { "tags.csv", 4, 27, "Direction: unknown tag 'AA'" },
-          { "tags.csv", 5, 15, "Direction: 'A' needs a group, an asset and a place of its own, from where it points" },
-          { "tags.csv", 6, 33, "Direction: 'B' needs a group, an asset and a place" });
+          { "tags.csv", 5, 15, "Direction: 'A' needs a group, an asset and its own place, where the direction starts" },
+          { "tags.csv", 6, 33, "Direction: 'B' needs a group, an asset and its own place" });
 }
 
 CASE(references_are_looked_up)
@@ -213,7 +214,7 @@ CASE(addresses_and_types_are_checked)
           { "tags.csv", 6, 3, "Address: expected a bit such as 40001.0, since the type is Boolean" },
           { "tags.csv", 7, 9, "Data Type: expected Boolean, since '00001' is one bit, found 'Word'" },
           { "tags.csv", 8, 11, "Data Type: expected Boolean, since '40001.3' is one bit, found 'Short'" },
-          { "tags.csv", 9, 3, "int32 takes 2 registers, and the last one there is has the index 65535" },
+          { "tags.csv", 9, 3, "int32 needs 2 registers, but the last register is 65535" },
           { "tags.csv", 10, 3, "float64 takes 4 registers" });
     plant_case_load(c, yaml, "Tag Name,Data Type\nA,Word\n");
     FOUND(c, { "tags.csv", 1, 1, "the header has no column 'Address'" });
@@ -241,8 +242,8 @@ CASE(places_are_whole)
           { "tags.csv", 4, 23, "Y: expected a finite number, found 'nan'" }, { "tags.csv", 5, 25, "Z: expected a number, found 'abc'" },
           { "tags.csv", 6, 25, "Z: expected a number with a decimal point, found '3,5'" },
           { "tags.csv", 7, 25, "Z: expected a number from -10000000 to 10000000, found '2e7'" },
-          { "tags.csv", 8, 20, "Node has no effect, since X, Y, Z are given too" },
-          { "tags.csv", 9, 14, "'H' has a group but no asset, so it is in no field" });
+          { "tags.csv", 8, 20, "Node has no effect, because X, Y, Z are given" },
+          { "tags.csv", 9, 14, "'H' has a group but no asset, so no field uses it" });
     plant_case_load(c, yaml, "Tag Name,Address,Group,Asset\nA,40001,temp,E-101\n");
     FOUND(c, { "tags.csv", 2, 14, "'A' has a group and an asset but no place" });
 }
@@ -291,9 +292,9 @@ CASE(names_are_unique)
 {
     plant_case_load(c, yaml, "Address,Tag Name\n40001,A\n40002,B\n40003,A\n40004,\n40005,A\n");
     assert_null(c->plant);
-    FOUND(c, { "tags.csv", 4, 7, "Tag Name: 'A' is there twice (first at line 2)" },
+    FOUND(c, { "tags.csv", 4, 7, "Tag Name: 'A' is listed twice (first at line 2)" },
           { "tags.csv", 5, 7, "Tag Name: expected a name, found none" },
-          { "tags.csv", 6, 7, "Tag Name: 'A' is there twice (first at line 2)" });
+          { "tags.csv", 6, 7, "Tag Name: 'A' is listed twice (first at line 2)" });
     plant_case_load(c, yaml, "Name,Address\nA,40001\n");
     FOUND(c, { "tags.csv", 1, 1, "the header has no column 'Tag Name'" }, { "tags.csv", 1, 1, "unknown column 'Name' is ignored" });
 }
@@ -334,7 +335,7 @@ CASE(alarms_are_of_the_tag_else_of_the_group)
                     "B,40002,9,A,\n"
                     "C,10001,,,A HH\n");
     FOUND(c, { "tags.csv", 2, 9, "Priority: expected a whole number" }, { "tags.csv", 2, 13, "Suppressed By: there is no tag 'NONE'" },
-          { "tags.csv", 3, 9, "Priority: expected a number from 1 to 4" }, { "tags.csv", 3, 11, "Suppressed By: 'A' is no Boolean" },
+          { "tags.csv", 3, 9, "Priority: expected a number from 1 to 4" }, { "tags.csv", 3, 11, "Suppressed By: 'A' is not a Boolean" },
           { "tags.csv", 4, 11, "Mirrors has no effect" });
 }
 
@@ -359,8 +360,8 @@ CASE(bits_mirror_alarms)
                     "A2,10002,TI HH\n"
                     "A3,10003,TT LL\n"
                     "A4,10004,TT LL\n");
-    FOUND(c, { "tags.csv", 2, 10, "Mirrors: 'TT' is no Boolean" }, { "tags.csv", 3, 10, "Mirrors: expected a tag and LL" },
-          { "tags.csv", 4, 10, "Mirrors: there is no tag 'TI'" }, { "tags.csv", 6, 10, "'TT LL' is mirrored at line 5 already" });
+    FOUND(c, { "tags.csv", 2, 10, "Mirrors: 'TT' is not a Boolean" }, { "tags.csv", 3, 10, "Mirrors: expected a tag and LL" },
+          { "tags.csv", 4, 10, "Mirrors: there is no tag 'TI'" }, { "tags.csv", 6, 10, "'TT LL' is already mirrored at line 5" });
     mem_free(mirror);
 }
 

@@ -175,7 +175,7 @@ CASE(derived_tags_compute_as_rows_say)
                     "M,\"= mean([F], [G])\",,temp,A,0,0,0,°F\n"
                     "B,= [F] - [C],,,,,,,\n");
     plant_case_assert_loaded(c, 1);
-    FOUND(c, { "tags.csv", 6, 3, "Address: '= [F] - [C]' takes C in °C, as its row says, but F is in °F" });
+    FOUND(c, { "tags.csv", 6, 3, "Address: '= [F] - [C]' combines C in °C with F in °F" });
     struct store *store = store_create(c->plant);
     struct derived_state *derived = derived_create(c->plant);
     const struct sample samples[] = { { 0, 100, QUALITY_GOOD }, { 1, 50, QUALITY_GOOD }, { 2, 0, QUALITY_GOOD } };
@@ -195,7 +195,7 @@ CASE(what_cannot_be_converted_is_an_error_at_its_cell)
                     "Tag Name,Address,Group,Asset,X,Y,Z,Eng Units\n"
                     "A,hr:0,temp,A,0,0,0,bar\nB,hr:0,temp,A,0,0,0,degX\nC,hr:0,taken,A,0,0,0,bar\nD,hr:0,temp,A,0,0,0,°F\n");
     assert_null(c->plant);
-    FOUND(c, { "tags.csv", 2, 21, "'bar' (pressure that is not said to be absolute or gauge) cannot be converted to '°C' (temperature)" },
+    FOUND(c, { "tags.csv", 2, 21, "'bar' (pressure (absolute or gauge not stated)) cannot be converted to '°C' (temperature)" },
           { "tags.csv", 3, 21, "'degX' cannot be converted to '°C', the unit of its group, since it is not known; did you mean 'degC'?" });
     plant_case_load(c, yaml, "Tag Name,Address,Group,Asset,X,Y,Z,Eng Units,H,HH\nA,hr:0,temp,A,0,0,0,°F,,190\n");
     FOUND(c, { "tags.csv", 2, 25, "H of the group is 90, but HH is 87.7777778, in °C; expected LL < L < H < HH" });

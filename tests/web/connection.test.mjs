@@ -58,7 +58,7 @@ test('an open socket alone does not shorten the waits; a greeting does', () => {
     sockets[0].fail();
     clock.advance(500);
     sockets[1].accept();
-    sockets[1].fail(1001, 'the server goes down');
+    sockets[1].fail(1001, 'the server is stopping');
     assert.equal(waitOf(bench), 1000);
     assert.equal(connection.reason, 'The server shut down');
     clock.advance(1000);
@@ -72,7 +72,7 @@ test('a server that goes down says when to come back', () => {
     const bench = makeConnection(), { connection, sockets } = bench;
     connection.start();
     sockets[0].accept();
-    sockets[0].fail(1001, 'the server goes down; retry after 7 s');
+    sockets[0].fail(1001, 'the server is stopping; retry after 7 s');
     assert.equal(waitOf(bench), 7000);
 });
 
@@ -169,7 +169,7 @@ test('nothing is sent while it is not open, and stop is final', () => {
 });
 
 test('forty displays that lose the server at one moment come back staggered', () => {
-    for (const close of [[1006], [1001, 'the server goes down; retry after 1 s']]) {
+    for (const close of [[1006], [1001, 'the server is stopping; retry after 1 s']]) {
         const waits = Array.from({ length: 40 }, () => {
             const bench = makeConnection({ random: Math.random });
             bench.connection.spreadMs = SPREAD_MS;

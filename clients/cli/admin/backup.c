@@ -191,7 +191,7 @@ static bool back_up(struct backup_job *job, const struct plant *plant, const cha
     bool good = false;
     job->folder = part;
     if (is_ours(tags) || !strcmp(tags, PLANT_FILE) || !strcmp(tags, MANIFEST))
-        say(plant->tags_path, "something else in a backup has that name");
+        say(plant->tags_path, "the backup needs this name for another file");
     else if (access(out, F_OK) == 0)
         say(out, "is there already");
     else if (mkdir(part, 0700) != 0)
@@ -224,7 +224,7 @@ static json_t *read_manifest(const char *folder)
     bool good =
         json_integer_value(json_object_get(manifest, "version")) == MANIFEST_VERSION && json_is_array(json_object_get(manifest, "files"));
     if (!good)
-        say(path, text ? "is not a list of a backup that this program can read" : strerror(errno));
+        say(path, text ? "is not a backup's file list, or of a version that this program cannot read" : strerror(errno));
     if (!good && manifest) {
         json_decref(manifest);
         manifest = NULL;
@@ -263,7 +263,7 @@ static bool is_whole(struct backup_job *job)
 static bool is_free(const char *path)
 {
     struct stat st;
-    return lstat(path, &st) != 0 || say(path, "is in the way; nothing was restored");
+    return lstat(path, &st) != 0 || say(path, "exists already; nothing was restored: move it away or name another folder");
 }
 
 /* Returns the path to which a file of the backup is restored (mem_free). tags: path of the tag list as the plant file writes it; NULL:
@@ -397,7 +397,7 @@ static bool verify(struct backup_job *job)
     char *aside = mem_printf("%s.verify-XXXXXX", job->folder);
     bool good = manifest && is_whole(job) && (mkdtemp(aside) || say(aside, strerror(errno))) && verify_in(job, aside);
     if (good)
-        printf("%s: verified: restored aside, %zu files as of %s\n", job->folder, json_array_size(job->files),
+        printf("%s: verified: a trial restore of %zu files as of %s succeeded\n", job->folder, json_array_size(job->files),
                json_string_value(json_object_get(manifest, "made")));
     mem_free(aside);
     json_decref(manifest);

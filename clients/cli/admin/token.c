@@ -65,9 +65,9 @@ static const char *folder_fault(const char *path)
     if (stat(folder, &st) != 0)
         fault = strerror(errno);
     else if (is_foreign(&st))
-        fault = "its folder belongs to another user, who could replace the file; keep it in a folder of root";
+        fault = "its folder belongs to another user, who could replace the file; keep it in a folder that root owns";
     else if ((st.st_mode & S_IWOTH) && !(st.st_mode & S_ISVTX))
-        fault = "others may write its folder";
+        fault = "its folder is writable by group or others: chmod go-w";
     mem_free(folder);
     return fault;
 }
@@ -78,7 +78,7 @@ static const char *file_fault(const struct stat *st)
     if (!S_ISREG(st->st_mode))
         return "it is not a file";
     if (is_foreign(st))
-        return "it belongs neither to root nor to you; chown root";
+        return "its owner is neither root nor you: chown root";
     return st->st_size > MAX_FILE_BYTES ? "it is too large" : NULL;
 }
 
@@ -151,7 +151,7 @@ static int add(const char *path, struct token_holder *holder)
     if (has_name(old, holder->name)) {
         fail_at(path, "a token with this name exists; revoke it, or choose another name");
     } else if (!tokens_make(token)) {
-        fail_at(path, "this machine gives no random numbers");
+        fail_at(path, "this machine's random number generator failed");
     } else {
         tokens_hash(token, holder->hash);
         text_add(&text, "%s%s", old, *old && old[strlen(old) - 1] != '\n' ? "\n" : "");
@@ -175,7 +175,7 @@ static void print_holder(const struct token_holder *holder)
         snprintf(display, sizeof(display), "  display %s:%d", holder->wall, holder->display);
     printf("%-10s %s  %s%s%s%s%s%s%s%s%s\n", name_of(names_role, (int)holder->role), holder->name, *until ? "until " : "without end", until,
            holder->plant[0] ? "  plant " : "", holder->plant, holder->views[0] ? "  views " : "", holder->views, display,
-           holder->unattended ? "  unattended" : "", holder->until_utc_ns <= clock_utc_ns() ? "  (its time is over)" : "");
+           holder->unattended ? "  unattended" : "", holder->until_utc_ns <= clock_utc_ns() ? "  (expired)" : "");
 }
 
 static int list(const char *path)
@@ -256,7 +256,7 @@ int cmd_token(int argc, char **argv)
         }
         if (!take_option(option, &holder)) {
             if (option != '?')
-                fprintf(stderr, "plantcast: token: '%s' is not good there\n", optarg);
+                fprintf(stderr, "plantcast: token: '%s' is not a valid value here; see plantcast token --help\n", optarg);
             print_usage(stderr);
             return 2;
         }
@@ -264,7 +264,7 @@ int cmd_token(int argc, char **argv)
     const char *what = argv[optind], *path = what ? argv[optind + 1] : NULL;
     int count = argc - optind;
     if ((holder.views[0] || holder.display) && (holder.role != ROLE_VIEWER || (holder.views[0] && holder.display))) {
-        fprintf(stderr, "plantcast: token: --views and --display limit viewers only, one of them\n");
+        fprintf(stderr, "plantcast: token: --views and --display need the role viewer, and exclude each other\n");
         return 2;
     }
     if (count == 2 && !strcmp(what, "add") && holder.role != ROLE_NOBODY && holder.name[0])

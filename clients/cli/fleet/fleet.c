@@ -132,7 +132,7 @@ static int on_request(struct lws *wsi, struct fleet_answer *answer, const char *
     int status = body ? HTTP_STATUS_OK : may ? HTTP_STATUS_NOT_FOUND : HTTP_STATUS_FORBIDDEN;
     if (!body) {
         type = "text/plain; charset=utf-8";
-        body = mem_strdup(may ? "There is nothing here.\n" : "This name is not served here; see --host.\n");
+        body = mem_strdup(may ? "Not found.\n" : "This name is not served here; see --host.\n");
         answer->bytes = strlen(body);
     }
     answer->body = mem_array(LWS_PRE + answer->bytes + 1, 1);
@@ -216,7 +216,7 @@ static int serve(const struct fleet_file *file, const char *address, int port, c
         while (!atomic_load(&ending) && lws_service(context, 0) >= 0)
             continue;
     } else if (site.poll) {
-        fprintf(stderr, "plantcast: %s port %d cannot be listened on\n", address, port);
+        fprintf(stderr, "plantcast: cannot listen on %s port %d\n", address, port);
     }
     atomic_store(&serving, NULL);
     if (context)

@@ -31,14 +31,14 @@ static const char *wrong_with(const char *url)
 {
     const char *host = strstr(url, "://");
     if (strncasecmp(url, "http://", 7) != 0 && strncasecmp(url, "https://", 8) != 0)
-        return "it begins neither with https:// nor with http://";
+        return "expected an address that begins with https:// or http://";
     size_t length = strcspn(host + 3, "/?#");
     if (length == 0)
-        return "it names no server";
+        return "the address names no server";
     if (memchr(host + 3, '@', length))
         return "do not write a password here; let token_file name a file with a token";
     if (strpbrk(url, "?# \t\"<>"))
-        return "it is the address of the page, without ?, # and white space";
+        return "expected the page's address without ?, # and white space";
     return NULL;
 }
 
@@ -75,9 +75,9 @@ static void check_new(struct yaml_reader *reader, const struct yaml_map *map, co
 {
     for (const struct fleet_plant *other = file->plants; other < plant; other++) {
         if (plant->id && other->id && !strcmp(plant->id, other->id))
-            yaml_error(reader, yaml_map_place(map, "id"), "id: plant '%s' is there twice (first at line %d)", plant->id, other->line);
+            yaml_error(reader, yaml_map_place(map, "id"), "id: plant '%s' is listed twice (first at line %d)", plant->id, other->line);
         else if (plant->url && other->url && !strcmp(plant->url, other->url))
-            yaml_error(reader, yaml_map_place(map, "url"), "url: the plant at %s is there twice (first at line %d)", plant->url,
+            yaml_error(reader, yaml_map_place(map, "url"), "url: the plant at %s is listed twice (first at line %d)", plant->url,
                        other->line);
     }
 }
@@ -108,7 +108,7 @@ static void read_one(struct yaml_reader *reader, yaml_node_t *node, struct fleet
         mem_free(plant->url);
         plant->url = plain;
         if (plant->token_file && is_in_clear(plain))
-            yaml_error(reader, yaml_map_place(&map, "url"), "url: a token is sent by https:// only, or to this machine");
+            yaml_error(reader, yaml_map_place(&map, "url"), "url: tokens are sent only over https://, or to this machine");
     }
     if (!plant->name && plant->id)
         plant->name = mem_strdup(plant->id);

@@ -91,7 +91,7 @@ static bool print_value(const struct strip_picture *picture, const struct strip_
         return true;
     case STRIP_BELOW: printf("%d,%d: below %g%s%s\n", x, y, (double)strip->min, gap, strip->unit); return true;
     case STRIP_ABOVE: printf("%d,%d: above %g%s%s\n", x, y, (double)strip->max, gap, strip->unit); return true;
-    default: printf("%d,%d: no colour of the legend\n", x, y); return false;
+    default: printf("%d,%d: this pixel's colour is not in the legend\n", x, y); return false;
     }
 }
 

@@ -32,7 +32,7 @@ static bool same_configuration(const json_t *statement, const struct plant *plan
     const char *then = json_string_value(json_object_get(statement, "configuration"));
     if (then && !strcmp(then, plant->hash))
         return true;
-    printf("  DIFFERS: configuration: %s was %s, and is %s\n", plant->path, then ? then : "?", plant->hash);
+    printf("  DIFFERS: configuration: %s was %s, now %s\n", plant->path, then ? then : "?", plant->hash);
     return false;
 }
 
@@ -45,11 +45,11 @@ static bool same_assets(const json_t *statement, const struct scene *scene)
         const char *then = json_string_value(json_object_get(assets, scene->plant->assets[i].id));
         picture_asset_checksum(&scene->assets[i], checksum);
         if (strcmp(then ? then : "", checksum) != 0 && others++ == 0)
-            printf("  DIFFERS: the prepared file of asset %s was %s, and is %s\n", scene->plant->assets[i].id, then ? then : "not there",
+            printf("  DIFFERS: the prepared file of asset %s was %s, now %s\n", scene->plant->assets[i].id, then ? then : "not there",
                    *checksum ? checksum : "not there");
     }
     if (others > 1)
-        printf("  DIFFERS: those of %zu more assets\n", others - 1);
+        printf("  DIFFERS: prepared files of %zu more assets\n", others - 1);
     return others == 0;
 }
 
@@ -71,7 +71,7 @@ static bool same_as_recorded(struct offline_renderer *offline, const struct redr
     if (!offline_renderer_open_history(offline, &where))
         return false;
     if (us < offline->first_us || us > offline->last_us) {
-        printf("  DIFFERS: %s has nothing of that time\n", options->history);
+        printf("  DIFFERS: %s has no readings of that time\n", options->history);
         return false;
     }
     struct snapshot *then = snapshot_create(offline->plant->tag_count);
@@ -83,9 +83,9 @@ static bool same_as_recorded(struct offline_renderer *offline, const struct redr
             first = i + 1;
     }
     snapshot_destroy(&then);
-    printf("  %s%zu of %zu readings agree with what was recorded\n", same == count ? "" : "DIFFERS: ", same, count);
+    printf("  %s%zu of %zu readings agree with the recorded history\n", same == count ? "" : "DIFFERS: ", same, count);
     if (first)
-        printf("  the first that does not is %s\n", offline->plant->tags[first - 1].name);
+        printf("  the first that differs: %s\n", offline->plant->tags[first - 1].name);
     return same == count;
 }
 
@@ -108,7 +108,7 @@ static bool same_pixels(const struct frame *frame, const json_t *statement, cons
     bool fits = json_integer_value(json_object_get(statement, "width")) == frame->width_px &&
                 json_integer_value(json_object_get(statement, "height")) == frame->height_px;
     size_t agreeing = fits ? count_agreeing(frame, rgb) : 0;
-    printf("  %s%zu of %zu pixels agree within 1/255 with the picture drawn again\n", agreeing == all ? "" : "DIFFERS: ", agreeing, all);
+    printf("  %s%zu of %zu pixels of a picture drawn again agree within 1/255\n", agreeing == all ? "" : "DIFFERS: ", agreeing, all);
     return agreeing == all;
 }
 

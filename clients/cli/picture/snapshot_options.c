@@ -310,7 +310,7 @@ static int judge(const struct snapshot_options *options, bool clip, int left)
     if (options->is_signed && !strstr(options->out, ".mp4") && !strstr(options->out, ".mov"))
         return wrong(clip, "--signed: signatures are kept in .mp4 and .mov");
     if (clip && !options->tour && options->from_us >= options->to_us)
-        return wrong(clip, "--from is to be earlier than --to");
+        return wrong(clip, "--from must be earlier than --to");
     return -1;
 }
 
@@ -333,7 +333,7 @@ int snapshot_parse(int argc, char **argv, bool clip, struct snapshot_options *op
             (option < SHARED ? snapshot_add_arg(options, shared[option].name, optarg) : take_own(options, option, optarg)))
             continue;
         fprintf(stderr, "plantcast: --%s: %s%s%s; see plantcast %s --help\n", list[option].name, optarg ? "'" : "", optarg ? optarg : "",
-                belongs(clip, option) ? "' is not what is expected" : "' has no place here", argv[0]);
+                belongs(clip, option) ? "' is not valid" : "' is unexpected here", argv[0]);
         return 2;
     }
     int code = judge(options, clip, argc - optind);

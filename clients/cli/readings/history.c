@@ -140,7 +140,7 @@ static int run_import(const struct history_options *options, const struct plant 
     if (options->unit && (!options->start || !parse_unit(options->unit, &params.unit_us)))
         return wrong("--unit: expected ms, s, min or h, and --start, found", options->unit);
     if (options->longest_gap && !parse_span(options->longest_gap, &params.longest_gap_us))
-        return wrong("--longest-gap: expected a time such as 90s, 15min, 8h or 2d, found", options->longest_gap);
+        return wrong("--longest-gap: expected a duration such as 90s, 15min, 8h or 2d, found", options->longest_gap);
     if (options->encoding && !charset_resolve(options->encoding, encoding))
         return wrong("--encoding: expected a name that iconv --list shows, found", options->encoding);
     params.encoding = options->encoding ? encoding : NULL;
@@ -196,7 +196,7 @@ static int run_export(const struct history_options *options, const struct plant 
         int index = plant_find_tag(plant, tag);
         good = index >= 0;
         if (!good)
-            fprintf(stderr, "plantcast: %s: there is no tag '%s'\n", options->plant, tag);
+            fprintf(stderr, "plantcast: %s: the plant has no tag '%s'\n", options->plant, tag);
         good = good && export_tag(reader, &plant->tags[index], from_us, to_us, options->points, &was_buckets);
     }
     mem_free(names);

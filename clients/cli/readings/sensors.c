@@ -55,10 +55,10 @@ static void print_suggestions(const struct suggest_options *options, const struc
                 100 * s->unseen_before, 100 * s->unseen_after);
     }
     if (!options->csv && count < options->count)
-        printf("%zu of %zu: nothing is left to gain in '%s'\n", count, options->count, group->id);
+        printf("%zu of %zu: further sensors would gain nothing in '%s'\n", count, options->count, group->id);
     if (!options->csv)
-        printf("Blindness: 0 %% with a sensor everywhere, 100 %% where not even a hot spot of %g m as hot as the whole range (%g %s) is "
-               "seen.\n",
+        printf("Blindness: 0 %% with a sensor everywhere; 100 %% where sensors would miss even a hot spot of %g m across that spans the "
+               "whole range (%g %s).\n",
                group->hot_spot_m, group->max - group->min, group->unit);
 }
 
@@ -80,7 +80,8 @@ static int suggest_in(const struct suggest_options *options, const struct plant 
     if (count > 0)
         print_suggestions(options, scene, &plant->groups[group], list, count);
     else if (scene)
-        fprintf(stderr, "plantcast: %s: nothing to suggest: '%s' has no sensor there whose place is known, or sees all of it\n",
+        fprintf(stderr,
+                "plantcast: %s: nothing to suggest: '%s' has no sensor with a known place there, or its sensors cover all of the asset\n",
                 options->plant, plant->groups[group].id);
     workers_destroy(&workers);
     scene_destroy(&scene);

@@ -52,7 +52,7 @@ static void speak(struct viewer *viewer)
 {
     while (viewer->raw && raw_websocket_is_open(viewer->raw) && !viewer->done && viewer_has_output(viewer))
         if (viewer_send(viewer) < 0)
-            viewer_fail(viewer, "sending a message failed");
+            viewer_fail(viewer, "a message could not be sent");
 }
 
 static void on_messages(const struct load_generator *load, struct viewer *viewer)

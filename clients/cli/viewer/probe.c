@@ -157,7 +157,7 @@ int cmd_probe(int argc, char **argv)
         }
         if (!take_option(option, &probe)) {
             if (option != '?')
-                fprintf(stderr, "plantcast: probe: '%s' is not good there\n", optarg);
+                fprintf(stderr, "plantcast: probe: '%s' is not a valid value here; see plantcast probe --help\n", optarg);
             print_usage(stderr);
             return 2;
         }

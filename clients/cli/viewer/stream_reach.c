@@ -21,9 +21,9 @@ static int ask_why(const struct daemon_url *url, struct text *body, bool *reache
 static void print_blocked(int status, const char *text)
 {
     if (status == 426)
-        fprintf(stderr, "plantcast: the server answers over HTTP, but no WebSocket gets through. It says: %s", text);
+        fprintf(stderr, "plantcast: the server answers over HTTP, but does not accept a WebSocket. Its answer: %s", text);
     else
-        fprintf(stderr, "plantcast: something in front of the server answers /stream with %d itself; it must pass WebSockets on\n", status);
+        fprintf(stderr, "plantcast: a proxy in front of the server answered /stream with %d; it must forward WebSockets\n", status);
 }
 
 bool stream_is_blocked(const struct daemon_url *url)

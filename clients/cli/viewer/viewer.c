@@ -86,7 +86,7 @@ static void on_text(struct viewer *viewer)
         viewer->result.errors++;
         const char *text = json_string_value(json_object_get(o, "text"));
         if (!viewer->welcomed)
-            viewer_fail(viewer, text ? text : "an error without a text");
+            viewer_fail(viewer, text ? text : "an error message without text");
     }
     json_decref(o);
 }
@@ -174,7 +174,7 @@ static void on_frame(struct viewer *viewer)
         return;
     }
     if (viewer->in.length < WIRE_FRAME_HEADER_BYTES || !wire_get_frame(bytes, viewer->in_count, &frame)) {
-        viewer_fail(viewer, "a binary message is no frame of " WIRE_SUBPROTOCOL);
+        viewer_fail(viewer, "a binary message is not a frame of " WIRE_SUBPROTOCOL);
         return;
     }
     if (!viewer->params.blind && !decoder_decode(viewer->decoder, &frame, bytes + WIRE_FRAME_HEADER_BYTES)) {
@@ -223,7 +223,7 @@ void viewer_on_message(struct viewer *viewer, bool binary)
 static int on_receive(struct viewer *viewer, struct lws *wsi, const void *bytes, size_t count)
 {
     if (viewer->in.length + count > MAX_MESSAGE_BYTES) {
-        viewer_fail(viewer, "a message without end");
+        viewer_fail(viewer, "a message longer than the limit");
         return -1;
     }
     text_add_bytes(&viewer->in, bytes, count);

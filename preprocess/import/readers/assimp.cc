@@ -247,15 +247,15 @@ void root_matrix(const aiScene *scene, const format &from, const char *units, co
     if (!unit) {
         double longest = longest_side(scene);
         unit = longest > LONGEST_IN_METRES ? "mm" : "m";
-        printf("it does not say its units: %s is taken, because it is %.4g long, which is then %.4g m. Is that right? If not, --units "
-               "sets them (m, mm, cm, in, ft)\n",
+        printf("the file states no unit: %s is assumed, because its length of %.4g is then %.4g m. Is that right? If not, set --units (m, "
+               "mm, cm, in, ft)\n",
                unit, longest, longest * metres_of(unit));
         printf("unit\t%s\t%.9g\n", unit, longest);
     }
     const char *axis = strcmp(up, "-") != 0 ? up : from.up;
     if (!axis) {
         axis = strcmp(from.ending, ".obj") == 0 ? "y" : "z";
-        printf("it does not say which axis is up: %s is taken, as usual for %s; set it with --up\n", axis, from.ending);
+        printf("the file states no up axis: %s is assumed, as usual for %s; set it with --up\n", axis, from.ending);
     }
     double m = metres_of(unit) * (strcmp(from.ending, ".fbx") == 0 ? fbx_axes(scene, &axis) : 1);
     const double y_up[16] = { m, 0, 0, 0, 0, m, 0, 0, 0, 0, m, 0, 0, 0, 0, 1 },
@@ -348,7 +348,7 @@ void say_empty(assimp_reader *r, const aiNode *node)
         r->lines.push_back(name.empty() ? "a node without a name" : name);
     else
         printf("lost\t\t%s\tnode\t\t%s\n",
-               name.c_str(), types == 0 ? "its mesh has no triangles" : "no corners of its triangles are finite");
+               name.c_str(), types == 0 ? "the node's mesh has no triangles" : "none of its triangles has finite corners");
 }
 
 /* Returns the output mesh of a node, creating it if necessary, or -1 if the node has no triangles. */
@@ -407,7 +407,7 @@ void matrix_of(const aiNode *node, const transform &place, double matrix[16])
         for (unsigned column = 0; column < 4; column++) {
             matrix[4 * column + row] = place[row][column];
             if (!std::isfinite(matrix[4 * column + row]))
-                refuse("node '%.80s' has a place that is not finite", node->mName.C_Str());
+                refuse("node '%.80s': its position is not finite", node->mName.C_Str());
         }
 }
 
@@ -442,7 +442,7 @@ void add(assimp_reader *r, const aiNode *node, const transform &steps, int paren
     bool step = is_step(node) && node->mNumMeshes == 0;
     transform place = steps * transform_of(node);
     if (depth > MAX_DEPTH)
-        refuse("its nodes are nested deeper than %d levels", MAX_DEPTH);
+        refuse("nodes are nested deeper than %d levels", MAX_DEPTH);
     matrix_of(node, place, matrix);
     int number = parent;
     if (!made_up && !step) {
@@ -463,7 +463,7 @@ const format &format_of(const char *path)
     for (const format &known : formats)
         if (dot && !strcasecmp(known.ending, dot))
             return known;
-    refuse("its ending is none of those that are read");
+    refuse("unknown file ending");
 }
 
 /* Rejects an STL text file that is cut off, because Assimp would accept its beginning without a message. */
@@ -479,7 +479,7 @@ void check_end_of_stl(const char *path)
     read += fread(tail, 1, sizeof(tail) - 1, file);
     fclose(file);
     if (read > 0 && !strncasecmp(head, "solid", 5) && strcasestr(head, "facet") && !strcasestr(tail, "endsolid"))
-        refuse("it is cut off: it does not end with endsolid");
+        refuse("the file is truncated: it does not end with endsolid");
 }
 
 /* Prints the names of nodes that consist only of lines or points. */
@@ -549,11 +549,11 @@ void convert(const char *input, const char *output, const char *units, const cha
     if (!r.lines.empty())
         say_lines(r.lines);
     if (r.triangles == 0)
-        refuse("it contains no surface");
+        refuse("the file contains no surface");
     write_scene(&r.out, output, "");
     say_textures(scene);
     if (r.lost > 0)
-        printf("left out: %zu triangles whose corners are not finite\n", r.lost);
+        printf("left out: %zu triangles with corners that are not finite\n", r.lost);
 }
 
 } // namespace

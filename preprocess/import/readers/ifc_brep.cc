@@ -230,10 +230,10 @@ TopoDS_Shape brep_of(const ifc_model &in, const entity &item)
     std::istringstream text(writer.whole(item.id));
     STEPControl_Reader reader;
     if (reader.ReadStream("brep", text) != IFSelect_RetDone)
-        throw unsupported("its faces could not be read");
+        throw unsupported("the faces could not be read");
     Handle(Standard_Transient) root = reader.WS()->Model()->Value(reader.WS()->Model()->NextNumberForLabel("#8"));
     if (!reader.TransferEntity(root) || reader.NbShapes() < 1)
-        throw unsupported("its faces could not be built");
+        throw unsupported("the faces could not be built");
     TopoDS_Shape out = reader.OneShape();
     size_t faces = 0;
     for (TopExp_Explorer at(out, TopAbs_FACE); at.More(); at.Next())

@@ -83,7 +83,7 @@ std::vector<curve_piece> indexed(const ifc_model &in, const entity &curve)
         for (const value &index : indices) {
             double number = file::number(index);
             if (number < 1 || number > static_cast<double>(points.size()))
-                throw unsupported("an index is outside of its points");
+                throw unsupported("an index is outside the list of points");
             at.push_back(points[static_cast<size_t>(number) - 1]);
         }
         if (segment.text == "IFCARCINDEX" && at.size() == 3)
@@ -109,7 +109,7 @@ double trim_at(const ifc_model &in, const curve_piece &basis, const value &selec
         return onto.LowerDistanceParameter();
     }
     if (!parameter)
-        throw unsupported("a curve is trimmed by nothing");
+        throw unsupported("a trimmed curve lacks its trimming points");
     return file::number(*parameter) * per_unit;
 }
 
@@ -123,7 +123,7 @@ std::vector<curve_piece> trimmed_curve(const ifc_model &in, const entity &curve,
     if (from.is("IFCPOLYLINE") || from.is("IFCCOMPOSITECURVE") || from.is("IFCINDEXEDPOLYCURVE")) {
         bool whole = false;
         if (curve[1].list.empty() || curve[2].list.empty())
-            throw unsupported("a curve is trimmed by nothing");
+            throw unsupported("a trimmed curve lacks its trimming points");
         std::vector<curve_piece> out = trimmed(pieces_within(in, from, depth + 1), curve[1].list[0], curve[2].list[0], &whole);
         if (whole || !same)
             throw unsupported("a trimmed " + from.type);
@@ -202,7 +202,7 @@ curve_piece basis_of(const ifc_model &in, const entity &curve)
     if (curve.is("IFCELLIPSE")) {
         double a = in.length * file::number(curve[1]), b = in.length * file::number(curve[2]);
         if (a < b)
-            throw unsupported("an ellipse that is higher than wide");
+            throw unsupported("an ellipse whose second axis is longer than the first");
         Handle(Geom_Ellipse) ellipse = new Geom_Ellipse(gp::XOY(), a, b);
         ellipse->Transform(placement_of(in, curve[0]));
         return { ellipse, 0, turn, turn / in.angle };
@@ -217,7 +217,7 @@ curve_piece basis_of(const ifc_model &in, const entity &curve)
 std::vector<curve_piece> pieces_within(const ifc_model &in, const entity &curve, int depth)
 {
     if (depth > MAX_CHAIN)
-        throw unsupported("its curves refer to each other in a circle");
+        throw unsupported("curves refer to each other in a circle");
     if (curve.is("IFCPOLYLINE"))
         return polyline(in, curve[0]);
     if (curve.is("IFCINDEXEDPOLYCURVE"))

@@ -39,7 +39,7 @@ double unit_of(const file &in, const entity &unit, int depth)
         return si_prefix(unit[2]);
     entity factor = in.get(unit[3]); /* a conversion-based unit */
     if (depth > MAX_CHAIN)
-        throw unsupported("its units refer to each other in a circle");
+        throw unsupported("units refer to each other in a circle");
     return file::number(factor[0]) * unit_of(in, in.get(factor[1]), depth + 1);
 }
 
@@ -59,7 +59,7 @@ ifc_model model_of(const file &in, double chord_mm)
         }
     });
     if (!(out.length > 0) || !(out.angle > 0))
-        throw unsupported("its units are none");
+        throw unsupported("the file has no valid unit of length");
     return out;
 }
 
@@ -126,7 +126,7 @@ bool build(ifc_writer *w, const entity &item)
     } catch (const unsupported &e) {
         why = e.what();
     } catch (const std::out_of_range &) {
-        why = "it is incomplete";
+        why = "the file is truncated";
     }
     w->failed[item.id] = why;
     return false;
@@ -156,7 +156,7 @@ void collect(ifc_writer *w, const entity &representation, const gp_GTrsf &above,
 {
     const ifc_model &in = w->in;
     if (depth > MAX_CHAIN)
-        throw unsupported("its representations map each other in a circle");
+        throw unsupported("representations refer to each other in a circle");
     for (const value &reference : representation[3].list) {
         entity item = in.statements.get(reference);
         if (item.is("IFCMAPPEDITEM")) {
@@ -177,7 +177,7 @@ gp_Trsf object_placement(const ifc_model &in, const value &reference, int depth)
         return gp_Trsf();
     entity from = in.statements.get(reference);
     if (depth > MAX_CHAIN)
-        throw unsupported("its placements refer to each other in a circle");
+        throw unsupported("placements refer to each other in a circle");
     if (!from.is("IFCLOCALPLACEMENT"))
         throw unsupported(from.type);
     return object_placement(in, from[0], depth + 1) * placement_of(in, from[1]);

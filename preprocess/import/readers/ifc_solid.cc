@@ -116,7 +116,7 @@ TopoDS_Shape along_curve(const ifc_model &in, const entity &item)
     else
         frame = on_surface(in, in.statements.get(item[5]), pieces.front());
     if (whole)
-        printf("error\t1\tOpen CASCADE: #%d: its parameters are outside of its curve: the whole curve is taken\n", item.id);
+        printf("error\t1\tOpen CASCADE: #%d: its parameters lie outside its curve: using the whole curve\n", item.id);
     return placed(in, item[1], swept(profile_of(in, in.statements.get(item[0])), pieces, frame.x, frame.up));
 }
 
@@ -214,7 +214,7 @@ bool is_built(const std::string &type)
 TopoDS_Shape solid_of(const ifc_model &in, const entity &item, int depth)
 {
     if (depth > MAX_CHAIN)
-        throw unsupported("its solids refer to each other in a circle");
+        throw unsupported("solids refer to each other in a circle");
     if (item.is("IFCSWEPTDISKSOLID") || item.is("IFCSWEPTDISKSOLIDPOLYGONAL"))
         return disk_of(in, item);
     if (item.is("IFCADVANCEDBREP") || item.is("IFCADVANCEDBREPWITHVOIDS"))

@@ -164,7 +164,7 @@ TopoDS_Shape disk_of(const ifc_model &in, const entity &item)
         throw unsupported("a pipe without a wall");
     std::vector<curve_piece> pieces = trimmed(pieces_of(in, in.statements.get(item[0])), item[3], item[4], &whole);
     if (whole)
-        printf("error\t1\tOpen CASCADE: #%d: its parameters are outside of its curve: the whole curve is taken\n", item.id);
+        printf("error\t1\tOpen CASCADE: #%d: its parameters lie outside its curve: using the whole curve\n", item.id);
     if (fillet > 0) {
         std::vector<gp_Pnt> points = { pieces.front().start() };
         for (const curve_piece &part : pieces)

@@ -198,7 +198,7 @@ std::string reason_without_faces(const occt_reader *r, const TopoDS_Shape &shape
     if (!shape.IsNull() && TopExp_Explorer(shape, TopAbs_VERTEX).More())
         return "";
     bool missing = std::any_of(r->externals.begin(), r->externals.end(), [](const auto &each) { return !each.second.found; });
-    return missing ? "its shape is empty, or in a file that is missing" : "its shape is empty";
+    return missing ? "the part's shape is empty, or in a missing file" : "the part's shape is empty";
 }
 
 /* Prints a line about a part that lost some or all of its faces. */
@@ -262,7 +262,7 @@ void add(occt_reader *r, const TDF_Label &label, int parent, XCAFPrs_Style style
     static const double zero[3] = { 0, 0, 0 };
     TDF_Label product = label;
     if (depth > MAX_DEPTH)
-        refuse("its assembly is nested deeper than %d levels, or in a circle", MAX_DEPTH);
+        refuse("assemblies are nested deeper than %d levels, or in a circle", MAX_DEPTH);
     if (++r->nodes > MAX_NODES)
         refuse("more than %zu parts", MAX_NODES);
     if (XCAFDoc_ShapeTool::IsReference(label) && !XCAFDoc_ShapeTool::GetReferredShape(label, product))
@@ -308,7 +308,7 @@ std::string read_step(const char *path, const char *output, Handle(TDocStd_Docum
     step.SetNameMode(Standard_True);
     step.SetLayerMode(Standard_True);
     if (step.ReadFile(files.main.c_str()) != IFSelect_RetDone)
-        refuse("it is not a STEP file, or is truncated");
+        refuse("not a STEP file, or truncated");
     TColStd_SequenceOfAsciiString lengths, angles, solid_angles;
     step.ChangeReader().FileUnits(lengths, angles, solid_angles);
     bool transferred = step.Transfer(document);
@@ -323,10 +323,10 @@ std::string read_step(const char *path, const char *output, Handle(TDocStd_Docum
         remove(copy.c_str());
     for (const auto &each : files.externals)
         if (!each.second.found)
-            printf("error\t1\tthe file %s, which it refers to, is not in its folder\n", each.second.named.c_str());
+            printf("error\t1\treferenced file %s is not in the model's folder\n", each.second.named.c_str());
     *externals = files.externals;
     if (!transferred)
-        refuse("its shapes could not be read");
+        refuse("the shapes could not be read");
     std::string units;
     for (int i = 1; i <= lengths.Length(); i++)
         if (units.find(lengths.Value(i).ToCString()) == std::string::npos)
@@ -339,14 +339,14 @@ std::string read_iges(const char *path, Handle(TDocStd_Document) document, const
     IGESControl_Reader iges;
     Interface_Static::SetCVal("read.iges.sequence", "none");
     if (iges.ReadFile(path) != IFSelect_RetDone)
-        refuse("it is not an IGES file, or is truncated");
+        refuse("not an IGES file, or truncated");
     text_encoding encoding;
     encoding.choose(read_whole(path), asked, "");
     encoding.say();
     iges_tree_add(iges, document, encoding);
     occt_losses_say(iges.WS(), "");
     if (iges.NbShapes() < 1)
-        refuse("its shapes could not be read");
+        refuse("the shapes could not be read");
     return iges_units(iges);
 }
 
@@ -393,14 +393,14 @@ void convert(const char *input, const char *output, double chord_mm, bool y_up, 
         add(&r, free.Value(i), root, XCAFPrs_Style(), 0);
     say_lines(r);
     if (r.places == 0)
-        refuse("it contains no surface");
+        refuse("the file contains no surface");
     write_scene(&r.scene, output, ": a larger --chord makes it smaller");
     size_t made = 0;
     for (const auto &entry : r.parts)
         made += entry.second.mesh >= 0;
     printf("%zu parts in %zu places; chord error %g mm; %s up\n", made, r.places, chord_mm, y_up ? "Y" : "Z");
     if (!units.empty())
-        printf("its units are: %s\n", units.c_str());
+        printf("units: %s\n", units.c_str());
     if (r.skipped_faces > 0)
         printf("left out: %zu faces with corners that are not finite\n", r.skipped_faces);
 }
@@ -421,7 +421,7 @@ void convert_or_refuse(char **arguments)
     } catch (const std::exception &) {
         throw;
     } catch (...) {
-        refuse("its shapes could not be read");
+        refuse("the shapes could not be read");
     }
 }
 

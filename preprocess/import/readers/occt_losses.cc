@@ -231,8 +231,8 @@ void say_lost_places(const file_losses &of)
         if (product.IsNull() || has_shape(of, place) || !has_shape(of, product))
             continue;
         Handle(TCollection_HAsciiString) name = place->Name().IsNull() || place->Name()->IsEmpty() ? place->Id() : place->Name();
-        printf("lost\t%s\t%s%s\tplace\t\tthe file does not say where it is, or not in a form that is read\n", id_of(of, place).c_str(),
-               of.file.c_str(), name.IsNull() ? "" : one_line(name->ToCString()).c_str());
+        printf("lost\t%s\t%s%s\tplace\t\tthe file has no placement for the part, or in a form that is not supported\n",
+               id_of(of, place).c_str(), of.file.c_str(), name.IsNull() ? "" : one_line(name->ToCString()).c_str());
     }
 }
 

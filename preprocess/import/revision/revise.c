@@ -69,7 +69,7 @@ static int find_tags(struct revising *r)
     *slash = 0;
     bool beside = !strcmp(folder, path);
     if (!beside && access(*path ? path : "/", W_OK | X_OK) != 0)
-        return fail_at(r->plant->tags_path, "its folder cannot be written to");
+        return fail_at(r->plant->tags_path, "the folder is not writable");
     *slash = '/';
     r->tags_name = mem_strdup(beside ? slash + 1 : path);
     return 0;
@@ -268,7 +268,7 @@ int revise(const struct revise_params *params)
         if (status == 0 && !params->dry_run) {
             status = apply(&r);
             if (status == 0)
-                printf("%s/review.csv: %zu rows\n%s: %s; plantcast import --undo -o %s takes it back\n", params->folder,
+                printf("%s/review.csv: %zu rows\n%s: %s; to undo: plantcast import --undo -o %s\n", params->folder,
                        r.revision.row_count, r.plant_path, strcmp(r.plant_text, r.revision.plant_text) ? "written" : "unchanged",
                        params->folder);
         }
@@ -287,14 +287,14 @@ int revise_undo(const char *folder, bool forced, int lent)
         close(lock);
     }
     if (status == -EBUSY)
-        fprintf(stderr, "%s: %s: changed since the import: %s; --force undoes it all the same, and keeps these as NAME.undone\n", program,
+        fprintf(stderr, "%s: %s: changed since the import: %s; --force undoes it anyway and keeps these files as NAME.undone\n", program,
                 folder, changed.at);
     else if (status != 0)
         fail_at(folder, why                 ? why
                         : status == -ENOENT ? "there is nothing to undo"
                                             : strerror(-status));
     else
-        printf("%s: as before the last import: %s\n", folder, done.at ? done.at : "");
+        printf("%s: restored to the state before the last import: %s\n", folder, done.at ? done.at : "");
     text_finish(&changed);
     text_finish(&done);
     mem_free(why);

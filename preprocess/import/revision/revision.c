@@ -396,7 +396,7 @@ static bool something_stays(const struct planning *p)
         removed += p->assets[i].removed;
     if (removed < p->input->plant->asset_count)
         return true;
-    snprintf(p->why, MODEL_WHY_BYTES, "%s: nothing of this plant is in it", p->input->models[0].draft->file);
+    snprintf(p->why, MODEL_WHY_BYTES, "%s: has no models of this plant", p->input->models[0].draft->file);
     return false;
 }
 

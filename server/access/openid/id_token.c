@@ -77,17 +77,17 @@ static enum id_token_fault read_claims(const char *token, const json_t *jwks, js
     const char *alg = header ? cjose_header_get(header, CJOSE_HDR_ALG, NULL) : NULL;
     const char *kid = header ? cjose_header_get(header, CJOSE_HDR_KID, NULL) : NULL;
     enum id_token_fault fault = ID_TOKEN_BAD;
-    *why = "it is not signed, or not by an algorithm with a public key";
+    *why = "it is not signed, or not with a public-key algorithm";
     if (header && json_object_get(header, "crit"))
-        *why = "it wants something understood that is not known here";
+        *why = "it requires an extension (crit) that is not supported";
     else if (kty_of(alg)) {
         fault = verify(jws, jwks, alg, kid);
-        *why = fault == ID_TOKEN_NO_KEY ? "it is signed by a key that the provider does not have" : "its signature is wrong";
+        *why = fault == ID_TOKEN_NO_KEY ? "it is signed with a key that the provider does not publish" : "its signature is invalid";
     }
     if (fault == ID_TOKEN_GOOD && (!cjose_jws_get_plaintext(jws, &text, &count, NULL) ||
                                    !(*claims = json_loadb((char *)text, count, JSON_REJECT_DUPLICATES, NULL)))) {
         fault = ID_TOKEN_BAD;
-        *why = "its claims are no JSON";
+        *why = "its claims are not JSON";
     }
     cjose_jws_release(jws);
     return fault;
@@ -115,18 +115,18 @@ static const char *fault_of(const json_t *claims, const struct id_token_expected
     const json_t *exp = json_object_get(claims, "exp"), *iat = json_object_get(claims, "iat"), *nbf = json_object_get(claims, "nbf");
     double now_s = (double)expected->now_s, oldest_s = now_s - OLDEST_S - (double)expected->patience_s;
     if (!iss || strcmp(iss, expected->config->issuer) != 0)
-        return "another issuer made it";
+        return "it comes from another issuer";
     if (!is_for_us(claims, expected->config->client_id))
-        return "it is made for another audience";
+        return "it is meant for another audience";
     if (!sub || !*sub || (expected->sub && strcmp(sub, expected->sub) != 0))
-        return "its subject (sub) is missing or another user";
+        return "its subject (sub) is missing or differs";
     if (!json_is_number(exp) || now_s >= json_number_value(exp) + ID_TOKEN_SKEW_S + (double)expected->patience_s)
-        return "its time is over; do the clocks agree?";
+        return "it has expired; do the clocks agree?";
     if (!json_is_number(iat) || json_number_value(iat) > now_s + ID_TOKEN_SKEW_S || json_number_value(iat) < oldest_s ||
         (nbf && !(json_number_value(nbf) <= now_s + ID_TOKEN_SKEW_S)))
-        return "it was made at another time; do the clocks agree?";
+        return "its time of issue is implausible; do the clocks agree?";
     if (expected->nonce && (!nonce || strcmp(nonce, expected->nonce) != 0))
-        return "it answers another log-in (nonce)";
+        return "it belongs to another log-in (nonce)";
     return NULL;
 }
 

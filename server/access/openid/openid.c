@@ -48,7 +48,8 @@ char *openid_begin(struct openid *openid, const uint8_t address[16], const char 
     pthread_mutex_lock(&openid->lock);
     const char *endpoint = json_string_value(json_object_get(openid->metadata, "authorization_endpoint"));
     const struct sign_in *sign_in = endpoint ? sign_ins_begin(openid->table, address, path, now_ns) : NULL;
-    *why = endpoint ? "this machine gives no random numbers" : "the identity provider does not answer; a token still lets you in";
+    *why = endpoint ? "this machine's random number generator failed"
+                    : "the identity provider does not answer; you can still sign in with a token";
     if (sign_in) {
         strcpy(binding, sign_in->binding);
         url = authorization_url(openid->config, endpoint, sign_in);
@@ -97,9 +98,9 @@ enum openid_finish openid_finish(struct openid *openid, const struct openid_retu
         return OPENID_FOREIGN;
     }
     bool other = is_other_issuer(openid, brought->iss);
-    const char *why = other            ? "another issuer answers"
-                      : brought->error ? "the provider refuses it"
-                      : !brought->code ? "the provider gives no code"
+    const char *why = other            ? "the answer comes from another issuer"
+                      : brought->error ? "the provider refused the sign-in"
+                      : !brought->code ? "the provider sent no code"
                                        : NULL;
     if (why) {
         char *text = brought->error ? mem_printf("%s: %.80s", why, brought->error) : mem_strdup(why);
@@ -176,15 +177,15 @@ static const char *take_claims(const struct openid_config *config, const json_t 
     *out = (struct token_holder){ .signed_in = true, .until_utc_ns = made_s * NS_PER_S + (int64_t)(config->hours * 3600e9) };
     out->role = id_token_role(config, claims);
     if (!id_token_name(config, claims, out->name, sizeof(out->name)))
-        return "the ID token gives no name that can be shown";
+        return "the ID token has no name that can be displayed";
     if (clock_utc_ns() >= out->until_utc_ns)
-        return "the ID token is older than a log-in lasts; sign in again";
-    return out->role == ROLE_NOBODY ? "the ID token names no group that has a role at the core" : NULL;
+        return "the ID token is older than a session may last; sign in again";
+    return out->role == ROLE_NOBODY ? "none of the groups in the ID token has a role at the core" : NULL;
 }
 
 const char *openid_vouch(struct openid *openid, const char *id_token, struct token_holder *out)
 {
-    const char *why = "the core does not know the identity provider's keys yet";
+    const char *why = "the core does not have the identity provider's keys yet";
     json_t *claims = NULL;
     *out = (struct token_holder){ .role = ROLE_NOBODY };
     pthread_mutex_lock(&openid->lock);

@@ -37,12 +37,12 @@ static const char *fault_of(const struct openid_config *config, const struct ope
 {
     const char *issuer = json_string_value(json_object_get(reply->json, "issuer"));
     if (reply->status != 200 || !json_is_object(reply->json))
-        return "its configuration (/.well-known/openid-configuration) is not there";
+        return "its configuration (/.well-known/openid-configuration) is missing";
     if (!issuer || strcmp(issuer, config->issuer) != 0)
-        return "its configuration is another issuer's";
+        return "its configuration names another issuer";
     for (size_t i = 0; i < 3; i++)
         if (!json_is_string(json_object_get(reply->json, (const char *[]){ "authorization_endpoint", "token_endpoint", "jwks_uri" }[i])))
-            return "its configuration lacks an address";
+            return "its configuration lacks an endpoint";
     return NULL;
 }
 
@@ -81,7 +81,7 @@ static bool ask_keys(struct openid *openid)
         openid->jwks = json_incref(reply.json);
     }
     pthread_mutex_unlock(&openid->lock);
-    openid_say(openid, good ? NULL : reply.why[0] ? reply.why : "its keys are not there");
+    openid_say(openid, good ? NULL : reply.why[0] ? reply.why : "its keys are missing");
     openid_reply_finish(&reply);
     mem_free(url);
     return good;

@@ -42,7 +42,7 @@ static bool secret_in_form(struct openid *openid)
 static bool post(struct openid *openid, const char *endpoint, const struct text *form, struct openid_reply *reply)
 {
     char *url = openid_endpoint(openid, endpoint);
-    *reply = (struct openid_reply){ .why = "it has no such address" };
+    *reply = (struct openid_reply){ .why = "it has no such endpoint" };
     bool answered = url && openid_post(openid->config, url, form->at, secret_in_form(openid), &openid->stopping, reply);
     mem_free(url);
     return answered;
@@ -66,7 +66,7 @@ static struct person *make_person(struct openid *openid, json_t *claims, const j
     bool told;
     openid_complete(openid, claims, text_of(tokens, "access_token"), &told);
     if (!id_token_name(openid->config, claims, holder.name, sizeof(holder.name))) {
-        *why = mem_strdup("it gives no name that can be shown");
+        *why = mem_strdup("it has no name that can be displayed");
         return NULL;
     }
     holder.role = id_token_role(openid->config, claims);
@@ -88,7 +88,7 @@ static struct person *take_tokens(struct openid *openid, const struct openid_job
     json_t *claims = id_token ? openid_verify(openid, id_token, job->sign_in.nonce, NULL, &unsure, &fault) : NULL;
     struct person *person = claims ? make_person(openid, claims, tokens, why) : NULL;
     if (!claims)
-        *why = mem_printf("its ID token is not accepted: %s", fault);
+        *why = mem_printf("the ID token is not accepted: %s", fault);
     json_decref(claims);
     return person;
 }
@@ -118,7 +118,7 @@ struct person *openid_redeem(struct openid *openid, const struct openid_job *job
         *why = mem_printf("the provider does not answer: %s", reply.why);
     else if (reply.status != 200)
         *why = mem_printf("the provider refuses %s: %.80s (status %d)", *result == OPENID_GUESSED ? "the code" : "to be asked",
-                          error ? error : "it does not say why", reply.status);
+                          error ? error : "no reason given", reply.status);
     else
         person = take_tokens(openid, job, reply.json, why);
     if (!person && reply.status == 200) { /* the log-in failed, so the refresh token that came with it is revoked: it should not stay
@@ -138,15 +138,15 @@ static enum openid_rights take_claims(struct openid *openid, struct person *pers
 {
     bool told;
     if (!openid_complete(openid, claims, person->access_token, &told)) {
-        *why = "the provider does not tell of this person any more";
+        *why = "the provider no longer knows this user";
         return RIGHTS_GONE;
     }
     if (!told && !id_token_has_groups(openid->config, claims)) {
-        *why = "the provider does not tell groups";
+        *why = "the provider does not send groups";
         return RIGHTS_UNKNOWN;
     }
     person->holder.role = id_token_role(openid->config, claims);
-    *why = "none of the groups has a role here any more";
+    *why = "none of the user's groups has a role here any more";
     return person->holder.role == ROLE_NOBODY ? RIGHTS_GONE : RIGHTS_SAME;
 }
 
@@ -167,7 +167,7 @@ static enum openid_rights refresh(struct openid *openid, struct person *person, 
     *why = "the provider does not answer";
     if (answered && is_refusal(reply.status) && error && strcmp(error, "invalid_grant") != 0) {
         /* the provider refuses this server, not the person: the client secret may have expired */
-        *why = "the provider refuses to be asked";
+        *why = "the provider refuses the request";
     } else if (answered && is_refusal(reply.status)) {
         rights = RIGHTS_GONE;
         *why = "the provider ended the log-in";
@@ -195,7 +195,7 @@ static enum openid_rights ask_again(struct openid *openid, struct person *person
     *why = "the provider does not answer";
     if (over || !url) {
         rights = RIGHTS_GONE;
-        *why = "the provider gave no refresh token, and its access token is over";
+        *why = "the provider sent no refresh token, and the access token has expired";
     } else if (openid_get(openid->config, url, person->access_token, &openid->stopping, &reply) && is_refusal(reply.status)) {
         rights = RIGHTS_GONE;
         *why = "the provider ended the log-in";
@@ -211,7 +211,7 @@ static enum openid_rights ask_again(struct openid *openid, struct person *person
 enum openid_rights openid_check(struct openid *openid, struct person *person, const char **why)
 {
     if (clock_utc_ns() >= person->holder.until_utc_ns) {
-        *why = "the sign-in has reached its longest duration here";
+        *why = "the session has reached its maximum duration";
         return RIGHTS_GONE;
     }
     return person->refresh_token ? refresh(openid, person, why) : ask_again(openid, person, why);

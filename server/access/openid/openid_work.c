@@ -70,7 +70,7 @@ static void let_in(struct openid *openid, const struct openid_job *job, struct p
     person->active_ns = clock_mono_ns();
     pthread_mutex_lock(&openid->lock);
     bool good = sign_ins_add_person(openid->table, person, cookie, &left);
-    char *why = good ? NULL : mem_strdup("this machine gives no random numbers");
+    char *why = good ? NULL : mem_strdup("this machine's random number generator failed");
     openid_add_answer(openid, job, good ? OPENID_LET_IN : OPENID_AWAY, cookie, why);
     openid_revoke_later(openid, left);
     counter_set(openid->people, (int64_t)sign_ins_count(openid->table));
@@ -176,7 +176,7 @@ static void settle(struct openid *openid, struct task *task, enum openid_rights 
 static enum openid_rights ask_rights(struct openid *openid, struct person *copy, bool left_alone, const char **why)
 {
     if (left_alone) {
-        *why = "nobody was at the page";
+        *why = "no activity at the page";
         return RIGHTS_GONE;
     }
     return openid_knows(openid) || clock_utc_ns() >= copy->holder.until_utc_ns ? openid_check(openid, copy, why) : RIGHTS_UNKNOWN;

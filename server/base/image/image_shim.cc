@@ -130,7 +130,7 @@ bool claim_good(const OIIO::ImageSpec &spec, const char *format, size_t size, ch
     uint64_t values = static_cast<uint64_t>(spec.width) * static_cast<uint64_t>(spec.height) * static_cast<uint64_t>(spec.nchannels);
     /* WebP files are not checked, because WebP stores images of one colour in a few bytes */
     if (strcmp(format, "webp") != 0 && values > FREE_VALUES + VALUES_PER_BYTE * size)
-        return refuse(why, "%zu bytes claim %d x %d pixels", size, spec.width, spec.height);
+        return refuse(why, "%zu bytes cannot hold %d x %d pixels", size, spec.width, spec.height);
     return true;
 }
 
@@ -154,9 +154,9 @@ bool decode(struct image *image, const void *bytes, size_t size, uint32_t max_px
 {
     const char *format = format_of(static_cast<const unsigned char *>(bytes), size);
     if (!format)
-        return refuse(why, "%zu bytes are neither PNG, JPEG nor WebP", size);
+        return refuse(why, "%zu bytes are not PNG, JPEG or WebP", size);
     if (strcmp(format, "png") == 0 && !png_whole(static_cast<const unsigned char *>(bytes), size))
-        return refuse(why, "png: cut off, or not whole chunks in its %zu bytes", size);
+        return refuse(why, "png: truncated, or damaged chunks in its %zu bytes", size);
     OIIO::Filesystem::IOMemReader memory(const_cast<void *>(bytes), size);
     OIIO::ImageSpec hints, spec;
     hints.attribute("oiio:UnassociatedAlpha", 1);

@@ -217,8 +217,8 @@ bool confine_lacks_with(int abi, bool calls, char out[CONFINE_LACKS_BYTES])
     if (abi < ABI_SCOPES)
         used += (size_t)snprintf(out + used, CONFINE_LACKS_BYTES - used, " (needs Linux 6.12 with landlock in its list of LSMs)");
     if (!calls)
-        snprintf(out + used, CONFINE_LACKS_BYTES - used, "%sno seccomp: they can make any system call (needs CONFIG_SECCOMP_FILTER)",
-                 used ? "; " : "");
+        snprintf(out + used, CONFINE_LACKS_BYTES - used,
+                 "%sno seccomp: these programs can make any system call (needs CONFIG_SECCOMP_FILTER)", used ? "; " : "");
     return *out != 0;
 }
 

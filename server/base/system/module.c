@@ -24,7 +24,7 @@ static char *path_of(const char *name, char *why, size_t why_bytes)
             return path;
         mem_free(path);
     }
-    snprintf(why, why_bytes, "%s is missing: it is neither beside %s nor in ../lib/plantcast", name, end ? program : "the program");
+    snprintf(why, why_bytes, "%s is missing: neither next to %s nor in ../lib/plantcast", name, end ? program : "the program");
     return NULL;
 }
 
@@ -48,7 +48,7 @@ bool module_find(struct module *module, const char *name, void *function, char *
     void *library = module->library, *symbol = library ? dlsym(library, name) : NULL;
     pthread_mutex_unlock(&module->lock);
     if (library && !symbol)
-        snprintf(why, why_bytes, "%s is of another version: it has no %s", module->name, name);
+        snprintf(why, why_bytes, "%s has another version: it lacks %s", module->name, name);
     memcpy(function, &symbol, sizeof(symbol));
     return symbol != NULL;
 }

@@ -121,7 +121,7 @@ void diag_print(const struct diag *diag, FILE *out)
         group->shown++;
         print_item(sorted[i], out);
         if (is_many && group->shown == most) {
-            fprintf(out, "; %zu more are like this", group->count - most);
+            fprintf(out, "; %zu more like this", group->count - most);
             print_places(sorted, i, diag->count, out);
         }
         fputc('\n', out);

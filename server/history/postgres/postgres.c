@@ -523,7 +523,7 @@ struct postgres *postgres_start(const struct postgres_params *params)
     int error = postgres->stop_fd < 0 ? errno : pthread_create(&postgres->thread, NULL, run, postgres);
     postgres->started = !error;
     if (error) {
-        log_err(params->log, "history: no thread for PostgreSQL: %s", strerror(error));
+        log_err(params->log, "history: cannot start the thread for PostgreSQL: %s", strerror(error));
         postgres_stop(&postgres, NULL);
     }
     return postgres;

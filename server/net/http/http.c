@@ -23,7 +23,7 @@ static int alive(struct server_context *server, struct http_exchange *request)
 static int ready(struct server_context *server, struct http_exchange *request)
 {
     if (server->params.keeper && !core_end_leads(server))
-        return request_answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "this core stands by: another core leads, or none yet\n");
+        return request_answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "this core is standby: another core leads, or none yet\n");
     if (render_service_ready(server->params.plant.render_service))
         return request_answer_text(request, HTTP_STATUS_OK,
                                    !server->params.keeper           ? "ok\n"
@@ -48,7 +48,7 @@ static void log_without_upgrade(struct server_context *server, struct lws *wsi, 
         return;
     bool named = lws_hdr_copy(wsi, via, sizeof(via), WSI_TOKEN_HTTP_VIA) > 0;
     log_warn(server->params.log, "stream: a request from %s came without Upgrade: websocket%s%s%s%s; nginx needs: %s%s",
-             connection_of(wsi)->address, handshake ? ", and is a WebSocket's handshake: a proxy on the way removes it" : "",
+             connection_of(wsi)->address, handshake ? ", although it is a WebSocket handshake: a proxy on the way removed the header" : "",
              named ? " (Via: " : "", named ? quoted(via, shown) : "", named ? ")" : "", NGINX_LINES, more);
 }
 
@@ -153,10 +153,11 @@ static bool is_foreign_page(struct lws *wsi)
 }
 
 static const struct http_refusal NEED_TOKEN = { HTTP_STATUS_UNAUTHORIZED, "a token is needed: Authorization: Bearer TOKEN\n" };
-static const struct http_refusal NOT_FOR_YOU = { HTTP_STATUS_FORBIDDEN, "viewers get pictures only\n" };
-static const struct http_refusal NOT_IN_VIEWS = { HTTP_STATUS_FORBIDDEN, "this token is good for pictures of some views only\n" };
-static const struct http_refusal NOT_ON_DISPLAY = { HTTP_STATUS_FORBIDDEN, "this device is good for its display of a wall only\n" };
-static const struct http_refusal FOREIGN = { HTTP_STATUS_FORBIDDEN, "pages of other sites do not get this\n" };
+static const struct http_refusal NOT_FOR_YOU = { HTTP_STATUS_FORBIDDEN, "viewers may only get pictures\n" };
+static const struct http_refusal NOT_IN_VIEWS = { HTTP_STATUS_FORBIDDEN, "this token is valid only for pictures of some views\n" };
+static const struct http_refusal NOT_ON_DISPLAY = { HTTP_STATUS_FORBIDDEN,
+                                                    "this device's token is valid only for its display of a wall\n" };
+static const struct http_refusal FOREIGN = { HTTP_STATUS_FORBIDDEN, "refused: the request comes from a page of another site\n" };
 
 /* Answers a user who lacks the role engineer: 401 without a token, 403 with one. Returns the result for the libwebsockets callback. */
 static int refuse_others(struct http_exchange *request, enum role role)
@@ -171,13 +172,13 @@ static int serve_route(struct server_context *server, struct http_exchange *requ
     unsigned scope = holder->views[0] ? VIEWS : holder->display ? DISPLAY : 0;
     if (scope && routes[i].least > ROLE_NOBODY) {
         if (!(routes[i].narrowed & scope)) {
-            connection_record(server, request->wsi, "access", "refused", routes[i].path, "its token is good for less");
+            connection_record(server, request->wsi, "access", "refused", routes[i].path, "its token does not allow this");
             return refuse(request, scope == VIEWS ? &NOT_IN_VIEWS : &NOT_ON_DISPLAY);
         }
     } else if (role < routes[i].least && !(role_is_node(role) && (routes[i].narrowed & NODE))) {
         bool engineer = routes[i].least == ROLE_ENGINEER;
         connection_record(server, request->wsi, "access", "refused", routes[i].path,
-                          engineer ? "it takes the role engineer" : "pictures only");
+                          engineer ? "this needs the role engineer" : "pictures only");
         return engineer ? refuse_others(request, role) : refuse(request, role == ROLE_NOBODY ? &NEED_TOKEN : &NOT_FOR_YOU);
     }
     if (routes[i].least > ROLE_NOBODY && is_foreign_page(request->wsi))
@@ -190,7 +191,7 @@ static int serve_post(struct server_context *server, struct http_exchange *reque
     enum role role = connection_of(request->wsi)->role;
     request->close = true; /* closes the connection: the client may send a body that nobody will read */
     if (role < ROLE_ENGINEER) {
-        connection_record(server, request->wsi, "access", "refused", path, "it takes the role engineer");
+        connection_record(server, request->wsi, "access", "refused", path, "this needs the role engineer");
         return refuse_others(request, role);
     }
     if (is_foreign_page(request->wsi))
@@ -213,7 +214,7 @@ static int serve(struct server_context *server, struct http_exchange *request, c
     stuck_head_arrived(request->wsi);
     if (!get && !request->head && !post) {
         request->close = true; /* closes the connection: the client may send a body that nobody will read */
-        static const char text[] = "only GET and HEAD (POST: /api/v1/reload, /logout)\n";
+        static const char text[] = "only GET and HEAD are allowed (POST: /api/v1/reload, /logout)\n";
         return request_answer(request, HTTP_STATUS_METHOD_NOT_ALLOWED, HTTP_TEXT, mem_strdup(text), strlen(text), "allow:", "GET, HEAD");
     }
     if (!connection_identify(server, request->wsi, &refusal)) {

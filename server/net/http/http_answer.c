@@ -125,7 +125,7 @@ int request_answer(struct http_exchange *request, int status, const char *type, 
 {
     if (!may_hold(request, count)) {
         mem_free(body);
-        return request_answer_later(request, "too many unread answers; read them or try again\n");
+        return request_answer_later(request, "too many unread answers: read them, or try again later\n");
     }
     request_hold(request, body, count);
     if (!request_write_head(request, status, type, extra_name, extra))

@@ -21,7 +21,7 @@ static int await_history(struct server_context *server, struct http_exchange *re
     query->account = usage->share.account;
     if (server->question_count >= server->quotas->at[QUOTA_QUESTIONS] || !address_limits_may_ask(server->limits, usage) ||
         !history_queries_ask(server->history_queries, query))
-        return request_answer_later(request, "too much is being asked; try again\n");
+        return request_answer_later(request, "too many requests in progress; try again\n");
     request_await(server, request);
     request->asks = true;
     usage->questions++;
@@ -54,7 +54,7 @@ static int ask_recorded(struct server_context *server, struct http_exchange *req
                : history_query_parse(server->params.plant.scene->plant, args.list, args.count, now_us, &query, &error)))
         return request_answer_error(request, &error);
     if (!gaps && !may_read(server, request, &query))
-        return request_answer_text(request, HTTP_STATUS_FORBIDDEN, "this device's display shows no trend of that\n");
+        return request_answer_text(request, HTTP_STATUS_FORBIDDEN, "this device's display shows no trend of these tags\n");
     return await_history(server, request, &query);
 }
 
@@ -229,7 +229,7 @@ int api_views(struct server_context *server, struct http_exchange *request)
     struct message_error error = { 0 };
     struct args args;
     if (!request_args(request->wsi, &args, &error) || args.count > 1 || (args.count == 1 && strncmp(args.list[0], "id=", 3) != 0))
-        return request_answer_text(request, HTTP_STATUS_BAD_REQUEST, "expected nothing, or id=ID\n");
+        return request_answer_text(request, HTTP_STATUS_BAD_REQUEST, "expected no argument, or id=ID\n");
     return request_answer_json(request, reply_views_text(&server->session_context, args.count ? args.list[0] + 3 : NULL));
 }
 
@@ -291,7 +291,8 @@ static int pair(struct server_context *server, struct http_exchange *request, co
     if (now == PAIRING_FULL)
         return request_answer_later(request, "too many displays wait for pairing; try again\n");
     if (now == PAIRING_OTHER)
-        return request_answer_text(request, HTTP_STATUS_CONFLICT, "this secret is that of another display; make one for this display\n");
+        return request_answer_text(request, HTTP_STATUS_CONFLICT,
+                                   "this secret belongs to another display; make a new one for this display\n");
     if (now == PAIRING_DONE)
         return request_answer_json(request, mem_strdup("{\"paired\":true}"));
     return request_answer_json(request, mem_printf("{\"paired\":false,\"digits\":\"%s\",\"left_s\":%d}", digits, left_s));

@@ -17,7 +17,7 @@
 
 static const int64_t most_bytes = (int64_t)2 << 30, most_in_all = (int64_t)8 << 30, most_decisions = 16 << 20;
 enum { MAX_FILES = 64, MATCHES_BYTES = 32 << 20, MAX_UPLOADS = 4, SLOW_S = 20, SLOWEST_BPS = 10000 };
-static const char BUSY[] = "another import is under way; wait for its end, or cancel it\n";
+static const char BUSY[] = "another import is running; wait for its end, or cancel it\n";
 
 struct upload_body {
     struct export_upload *upload;
@@ -118,13 +118,13 @@ static int answer_file(struct http_exchange *request, const char *path, const ch
 int api_import_matches(struct server_context *server, struct http_exchange *request)
 {
     const struct plant_import *import = server->params.import;
-    return answer_file(request, import ? plant_import_matches(import) : NULL, "text/csv; charset=utf-8", "no tags were matched yet\n");
+    return answer_file(request, import ? plant_import_matches(import) : NULL, "text/csv; charset=utf-8", "no tags have been matched yet\n");
 }
 
 int api_import_report(struct server_context *server, struct http_exchange *request)
 {
     const struct plant_import *import = server->params.import;
-    return answer_file(request, import ? plant_import_report(import) : NULL, "application/json", "no models were read yet\n");
+    return answer_file(request, import ? plant_import_report(import) : NULL, "application/json", "no models have been read yet\n");
 }
 
 /* --- import orders ---------------------------------------------------------------------------------------------------- */
@@ -197,7 +197,7 @@ static int remove_file(struct server_context *server, struct http_exchange *requ
 {
     char name[256];
     if (!take_argument(args, "name", name, sizeof(name)) || !export_name_good(name))
-        return refuse_with(request, HTTP_STATUS_BAD_REQUEST, "this is not the name of an export\n");
+        return refuse_with(request, HTTP_STATUS_BAD_REQUEST, "no uploaded file has this name\n");
     int error = export_folder_remove(plant_import_exports(server->params.import), name);
     return error == 0 || error == -ENOENT ? answer_done(request, name) : fail_with(request, name, error);
 }
@@ -217,7 +217,7 @@ static bool has_room(const struct server_context *server, const char *folder, co
             others++;
         }
     export_list_finish(&list);
-    *text = others >= MAX_FILES ? "there are 64 files already; remove some\n" : "all files together are larger than 8 GB\n";
+    *text = others >= MAX_FILES ? "at most 64 files can be uploaded; remove some\n" : "all files together would be larger than 8 GB\n";
     return others < MAX_FILES && all <= most_in_all;
 }
 
@@ -227,12 +227,12 @@ static int begin_body(struct server_context *server, struct http_exchange *reque
     const char *folder = plant_import_exports(server->params.import), *why;
     int error;
     if (!connection_header(request->wsi, WSI_TOKEN_HTTP_CONTENT_LENGTH, length, sizeof(length)) || !*length)
-        return refuse_with(request, 411, "the length is not said\n");
+        return refuse_with(request, 411, "the header Content-Length is missing\n");
     int64_t bytes = strtoll(length, NULL, 10);
     if (bytes <= 0 || bytes > (decides ? most_decisions : most_bytes))
         return refuse_with(request, 413, bytes <= 0 ? "the file is empty\n" : "the file is larger than 2 GB\n");
     if (server->uploads >= MAX_UPLOADS)
-        return refuse_with(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "four files are on their way already; wait until one has come\n");
+        return refuse_with(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "four uploads are running; wait until one is complete\n");
     if (!decides && !has_room(server, folder, name, bytes, &why))
         return refuse_with(request, 413, why);
     struct export_upload *upload = export_upload_begin(folder, name, &error);
@@ -252,7 +252,7 @@ static int begin_upload(struct server_context *server, struct http_exchange *req
     char name[256];
     if (!take_argument(args, "name", name, sizeof(name)) || !export_name_good(name))
         return refuse_with(request, HTTP_STATUS_BAD_REQUEST,
-                           "a file of this name is not taken: at most 200 bytes, no slash, no control character, no dot in front\n");
+                           "this file name is not allowed: use at most 200 bytes, no slash, no control character and no dot in front\n");
     return begin_body(server, request, name, false);
 }
 
@@ -285,7 +285,7 @@ int import_take_body(struct server_context *server, struct http_exchange *reques
     strcpy(name, body->name);
     import_abandon_body(request);
     if (slow)
-        return refuse_with(request, 408, "the file comes too slowly: less than 10 kB/s\n");
+        return refuse_with(request, 408, "the upload is too slow: less than 10 kB/s\n");
     return fail_with(request, name, error);
 }
 
@@ -358,7 +358,7 @@ int import_post(struct server_context *server, struct http_exchange *request, co
     size_t i = find_post(path);
     request->step = posts[i].path;
     if (!request_may_change(server, request))
-        return refuse_with(request, HTTP_STATUS_FORBIDDEN, "pages of other sites may not do this\n");
+        return refuse_with(request, HTTP_STATUS_FORBIDDEN, "refused: the request comes from a page of another site\n");
     if (!request_args(request->wsi, &args, &error)) {
         record(request, "failed", error.text);
         return request_answer_error(request, &error);

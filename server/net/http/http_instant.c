@@ -33,7 +33,7 @@ int ask_instant(struct server_context *server, struct http_exchange *request)
         return answer(server, request, NULL);
     struct address_usage *usage = connection_of(request->wsi)->client;
     if (server->question_count >= server->quotas->at[QUOTA_QUESTIONS] || !address_limits_may_ask(server->limits, usage))
-        return request_answer_later(request, "too much is being asked; try again\n");
+        return request_answer_later(request, "too many requests in progress; try again\n");
     request_await(server, request);
     request->asks = request->asks_instant = true;
     usage->questions++;

@@ -22,7 +22,7 @@ static int find(const struct server_context *server, const struct http_exchange 
 static int refuse_unknown(struct http_exchange *request)
 {
     return request_answer_text(request, HTTP_STATUS_NOT_FOUND,
-                               "the plant file has no such plant in `other_plants`, or this display none\n");
+                               "the plant file has no such plant in `other_plants`, or this display does not show it\n");
 }
 
 int api_other_plants(struct server_context *server, struct http_exchange *request)
@@ -60,6 +60,6 @@ int ask_other_picture(struct server_context *server, struct http_exchange *reque
         return refuse_unknown(request);
     char *png = other_plants_picture(server->params.plant.other_plants, which, strtoll(number, NULL, 10), clock_mono_ns(), &bytes);
     if (!png)
-        return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "this picture is not shown any more\n");
+        return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "this picture is no longer shown\n");
     return request_answer(request, HTTP_STATUS_OK, "image/png", png, bytes, NULL, NULL);
 }

@@ -58,7 +58,7 @@ static int refuse_unasked(struct server_context *server, struct http_exchange *r
     server->unasked++;
     return why == OPENID_FULL ? request_answer_later(request, "too many sign-ins at once; sign in again from the page\n")
                               : request_answer_text(request, HTTP_STATUS_FORBIDDEN,
-                                                    "no log-in of this browser waits for this answer; sign in again from the page\n");
+                                                    "no sign-in of this browser waits for this answer; sign in again from the page\n");
 }
 
 static int refuse_held(struct server_context *server, struct http_exchange *request)
@@ -109,8 +109,7 @@ static void count_refused(struct server_context *server, const struct openid_ans
     counter_inc(server->counters.logins_wrong, 1);
     if (login_throttle_fail(server->login_throttle, answer->address, clock_mono_ns()) == LOGIN_WRONG_SLOWS)
         log_warn(server->params.log,
-                 "login by OpenID Connect: address slowed to one answer in %d s until a minute passes without a "
-                 "wrong one",
+                 "login by OpenID Connect: address limited to one answer in %d s until a minute passes without a wrong one",
                  LOGIN_WAIT_S);
 }
 
@@ -148,7 +147,7 @@ int ask_logout(struct server_context *server, struct http_exchange *request)
     char cookie[64];
     size_t size = sizeof(cookie);
     if (!request_may_change(server, request))
-        return request_answer_text(request, HTTP_STATUS_FORBIDDEN, "pages of other sites may not do this\n");
+        return request_answer_text(request, HTTP_STATUS_FORBIDDEN, "refused: the request comes from a page of another site\n");
     if (!server->openid)
         return request_answer_text(request, HTTP_STATUS_NOT_FOUND, NOT_HERE);
     const struct openid_config *config = openid_config_of(server->openid);

@@ -129,7 +129,7 @@ static bool may_ask(struct server_context *server, struct http_exchange *request
     const char *why = server->picture_count >= server->quotas->at[QUOTA_SNAPSHOTS] ? "too many pictures are being drawn; try again\n"
                       : address_limits_may_draw(server->limits, connection_of(request->wsi)->client)
                           ? NULL
-                          : "as many pictures are being made for this address as one may have; try again\n";
+                          : "this address has reached its limit of pictures in progress; try again\n";
     if (why)
         *result = request_answer_later(request, why);
     return !why;
@@ -217,7 +217,7 @@ static void answer_picture(struct server_context *server, struct http_exchange *
     }
     request_forget(server, request);
     int status = body ? request_answer(request, HTTP_STATUS_OK, "image/png", body, packet->count, "plantcast-frame:", values.at)
-                      : request_answer_text(request, HTTP_STATUS_INTERNAL_SERVER_ERROR, "the picture could not be made\n");
+                      : request_answer_text(request, HTTP_STATUS_INTERNAL_SERVER_ERROR, "the picture could not be drawn\n");
     request_answered(request, status);
     text_finish(&values);
 }

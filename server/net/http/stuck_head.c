@@ -40,7 +40,7 @@ void stuck_head_arrived(struct lws *wsi)
 /* Writes the answer 408 with a single attempt: bytes that the socket does not accept immediately are lost. */
 static void tell(struct lws *wsi)
 {
-    static const char body[] = "408 Request Timeout: the head of the request did not end. Is the name of a header cut off?\n";
+    static const char body[] = "408 Request Timeout: the request's headers are incomplete. Is the name of a header truncated?\n";
     char text[256];
     int length = snprintf(text, sizeof(text),
                           "HTTP/1.1 408 Request Timeout\r\ncontent-type: text/plain; charset=utf-8\r\ncontent-length: %zu\r\n"
@@ -60,7 +60,8 @@ static void note(struct server_context *server, struct lws *wsi)
     if (!log_pace_take(&server->stuck_heads, clock_mono_ns(), more))
         return;
     lws_get_peer_simple(wsi, address, sizeof(address));
-    log_warn(server->params.log, "http: a request from %s ended: its head did not end within %d s (408)%s", address, QUIET_MS / 1000, more);
+    log_warn(server->params.log, "http: a request from %s was ended: its headers were incomplete after %d s (408)%s", address,
+             QUIET_MS / 1000, more);
 }
 
 /* Returns whether a request line was read. Over TLS the bytes of the handshake count as received, too, so received bytes alone do not

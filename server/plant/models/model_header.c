@@ -40,14 +40,14 @@ static char *read_json_chunk(FILE *file, size_t *count, char *why, size_t why_by
 {
     unsigned char head[GLB_HEAD_BYTES];
     if (fread(head, 1, sizeof(head), file) != sizeof(head) || u32_of(head + 4) != 2 || memcmp(head + 16, "JSON", 4) != 0) {
-        snprintf(why, why_bytes, "is no GLB of version 2, or is cut off");
+        snprintf(why, why_bytes, "is not a GLB file of version 2, or is truncated");
         return NULL;
     }
     *count = u32_of(head + 12);
     char *json = *count <= MAX_JSON_BYTES ? mem_try_array(*count + 1, 1) : NULL;
     if (json && fread(json, 1, *count, file) == *count)
         return json;
-    snprintf(why, why_bytes, "is cut off: its JSON should have %zu bytes", *count);
+    snprintf(why, why_bytes, "is truncated: its JSON should have %zu bytes", *count);
     mem_free(json);
     return NULL;
 }
@@ -62,7 +62,7 @@ static bool is_glb(FILE *file)
 
 static json_t *read_json(const char *path, char *why, size_t why_bytes)
 {
-    static const char wanted[] = "glTF 2.0 (.glb or .gltf) is wanted: export it so, or convert it";
+    static const char wanted[] = "expected glTF 2.0 (.glb or .gltf): export it as such, or convert it";
     const char *kind = file_kind_of(path);
     size_t count = 0;
     json_error_t error;
@@ -83,9 +83,9 @@ static json_t *read_json(const char *path, char *why, size_t why_bytes)
     bool bom = count >= 3 && !memcmp(text, "\xEF\xBB\xBF", 3);
     json_t *root = json_loadb(text + 3 * bom, count - 3 * bom, 0, &error);
     if (!root && glb)
-        snprintf(why, why_bytes, "its JSON is wrong: line %d, column %d: %s", error.line, error.column, error.text);
+        snprintf(why, why_bytes, "has invalid JSON: line %d, column %d: %s", error.line, error.column, error.text);
     else if (!root)
-        snprintf(why, why_bytes, "is no glTF model; %s", wanted);
+        snprintf(why, why_bytes, "is not a glTF model; %s", wanted);
     mem_free(text);
     return root;
 }
@@ -196,7 +196,7 @@ static bool walk_node(struct header_walk *walk, const json_t *reference, int par
     const json_t *node = json_array_get(walk->nodes, number), *mesh_number = json_object_get(node, "mesh");
     const json_t *children = json_object_get(node, "children");
     if (!json_is_integer(reference) || !node || walk->seen[number] || depth > MAX_DEPTH)
-        return wrong(walk->why, walk->why_bytes, "its nodes are no tree: node %zu is not there, there twice or nested too deep", number);
+        return wrong(walk->why, walk->why_bytes, "its nodes are not a tree: node %zu is missing, listed twice or nested too deep", number);
     walk->seen[number] = true;
     const json_t *mesh = mesh_number ? json_array_get(walk->meshes, (size_t)json_integer_value(mesh_number)) : NULL;
     double local[16], world[16];
@@ -258,7 +258,7 @@ bool model_header_read(struct model_header *header, const char *path, char *why,
                                 .why_bytes = why_bytes };
     bool good = version && version[0] == '2';
     if (!good)
-        snprintf(why, why_bytes, "is no glTF 2.0: its asset.version is '%.20s'", version ? version : "");
+        snprintf(why, why_bytes, "is not glTF 2.0: its asset.version is '%.20s'", version ? version : "");
     walk.seen = mem_array(json_array_size(walk.nodes) + 1, sizeof(*walk.seen));
     good = good && walk_roots(&walk, root);
     mem_free(walk.seen);

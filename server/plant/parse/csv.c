@@ -155,7 +155,7 @@ static void check_header(struct csv *csv)
         while (cell->text[0] && strcasecmp(header->cells[first].text, cell->text) != 0)
             first++;
         if (cell->text[0] && first < i)
-            diag_error(csv->diag, csv->path, cell->line, cell->column, "column '%s' is there twice (first at column %d)", cell->text,
+            diag_error(csv->diag, csv->path, cell->line, cell->column, "column '%s' is listed twice (first at column %d)", cell->text,
                        header->cells[first].column);
     }
 }

@@ -66,12 +66,12 @@ static char *read_bytes(const char *path, const char *wanted, struct diag *diag,
 {
     const char *kind = file_kind_of(path);
     if (kind) {
-        diag_error(diag, path, 0, 0, "is %s; %s is wanted", kind, wanted);
+        diag_error(diag, path, 0, 0, "is %s; expected %s", kind, wanted);
         return NULL;
     }
     char *text = text_read_file(path, INPUT_MAX_BYTES, bytes);
     if (!text && errno == EFBIG)
-        diag_error(diag, path, 0, 0, "larger than %u MiB, which is the most that is read", INPUT_MAX_BYTES / (1024 * 1024));
+        diag_error(diag, path, 0, 0, "larger than the limit of %u MiB", INPUT_MAX_BYTES / (1024 * 1024));
     else if (!text)
         diag_error(diag, path, 0, 0, "cannot be read: %s", strerror(errno));
     return text;
@@ -119,7 +119,7 @@ char *input_read_foreign(const char *path, const char *wanted, const char *encod
     *bytes = decoded.length;
     *choice = decoded.encoding;
     if (decoded.damaged)
-        diag_warning(diag, path, 0, 0, "%zu characters mean nothing in %s; --encoding names another encoding", decoded.damaged,
+        diag_warning(diag, path, 0, 0, "%zu characters are invalid in %s; choose another encoding with --encoding", decoded.damaged,
                      choice->name);
     return check_text(decoded.utf8, *bytes, path, wanted, diag);
 }

@@ -36,7 +36,7 @@ static bool report_tabs(struct yaml_reader *reader, const char *text)
     for (const char *p = text; *p; line++) {
         size_t blanks = strspn(p, " "), all = strspn(p, " \t");
         if (all > blanks && !strchr("\r\n#", p[all])) {
-            yaml_error(reader, (struct text_position){ line, (int)blanks + 1 }, "tab in the indentation; YAML wants spaces");
+            yaml_error(reader, (struct text_position){ line, (int)blanks + 1 }, "tab in the indentation; YAML needs spaces");
             any = true;
         }
         p += strcspn(p, "\n");
@@ -54,7 +54,7 @@ static void report_syntax(struct yaml_reader *reader, const yaml_parser_t *parse
         return;
     const char *problem = parser->problem ? parser->problem : "out of memory";
     if (parser->context)
-        yaml_error(reader, place, "not YAML: %s, %s that begins at line %zu", problem, parser->context, parser->context_mark.line + 1);
+        yaml_error(reader, place, "invalid YAML: %s, %s that begins at line %zu", problem, parser->context, parser->context_mark.line + 1);
     else
         yaml_error(reader, place, "not YAML: %s", problem);
 }
@@ -198,7 +198,7 @@ static void read_text(struct yaml_reader *reader, const yaml_node_t *node, const
         return;
     }
     if (memchr(text, 0, node->data.scalar.length)) {
-        yaml_error(reader, yaml_place(node), "%s: has a 0 character in it", key->name);
+        yaml_error(reader, yaml_place(node), "%s: contains a NUL character", key->name);
         return;
     }
     mem_free(*out);
@@ -327,7 +327,7 @@ static void read_pair(struct yaml_reader *reader, const yaml_node_pair_t *pair, 
     if (!key->name) {
         report_unknown(reader, name, what, map->keys);
     } else if (place->line) {
-        yaml_error(reader, yaml_place(name), "key '%s' is there twice (first at line %d)", key->name, place->line);
+        yaml_error(reader, yaml_place(name), "key '%s' is listed twice (first at line %d)", key->name, place->line);
     } else {
         int errors = reader->diag->errors;
         *place = yaml_place(value);

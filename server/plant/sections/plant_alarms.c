@@ -97,7 +97,7 @@ void plant_alarms_read_row(struct tag_columns *columns, struct plant *plant, str
     keep_reference(columns, plant, COL_SUPPRESSED_BY, references);
     keep_reference(columns, plant, COL_MIRRORS, references);
     if (cell_given(columns, COL_MIRRORS) && plant->alarms != ALARMS_MIRROR)
-        cell_warning(columns, COL_MIRRORS, "Mirrors has no effect, since the plant file does not say `alarms: mirror`");
+        cell_warning(columns, COL_MIRRORS, "Mirrors has no effect, because the plant file lacks `alarms: mirror`");
 }
 
 /* --- references between rows ------------------------------------------------------------------------------------------------ */
@@ -110,7 +110,7 @@ static void resolve_suppression(struct plant *plant, struct diag *diag, const st
     if (by < 0)
         reference_error(reference, "Suppressed By: there is no tag '%.60s'", reference->text);
     else if (plant->tags[by].type != DATA_BIT)
-        reference_error(reference, "Suppressed By: '%.60s' is no Boolean", reference->text);
+        reference_error(reference, "Suppressed By: '%.60s' is not a Boolean", reference->text);
     plant->tags[reference->tag].suppressed_by = by;
 }
 
@@ -140,12 +140,12 @@ static void resolve_mirror(struct plant *plant, struct diag *diag, const struct 
     mirror->limit = kind < 0 ? LIMIT_COUNT : kind;
     mirror->tag = plant_find_tag(plant, text);
     if (kind < 0)
-        reference_error(reference, "Mirrors: expected a tag and LL, L, H, HH or ALM, perhaps with 'acknowledged' behind it, found '%.60s'",
+        reference_error(reference, "Mirrors: expected a tag and LL, L, H, HH or ALM, optionally followed by 'acknowledged', found '%.60s'",
                         reference->text);
     else if (mirror->tag < 0)
         reference_error(reference, "Mirrors: there is no tag '%.60s'", text);
     else if (plant->tags[reference->tag].type != DATA_BIT)
-        reference_error(reference, "Mirrors: '%.60s' is no Boolean", plant->tags[reference->tag].name);
+        reference_error(reference, "Mirrors: '%.60s' is not a Boolean", plant->tags[reference->tag].name);
     mem_free(text);
 }
 
@@ -157,7 +157,7 @@ static void check_mirrored_once(const struct plant *plant, struct diag *diag, co
             const struct plant_mirror *other = &plant->tags[references->at[k].tag].mirror;
             if (references->at[k].column == COL_MIRRORS && other->tag == one->tag && other->limit == one->limit &&
                 other->acknowledged == one->acknowledged)
-                reference_error(&references->at[i], "Mirrors: '%.60s' is mirrored at line %d already", references->at[i].text,
+                reference_error(&references->at[i], "Mirrors: '%.60s' is already mirrored at line %d", references->at[i].text,
                                 references->at[k].line);
         }
     }

@@ -13,7 +13,7 @@ static void check(struct yaml_reader *reader, const struct yaml_map *map, const 
         yaml_error(reader, yaml_map_place(map, "from"), "from: expected another file than model");
     for (const struct plant_conversion *other = plant->conversions; made->model && other < made; other++)
         if (other->model && !strcmp(other->model, made->model))
-            yaml_error(reader, yaml_map_place(map, "model"), "model: '%s' is made twice (first at line %d)", made->model, other->line);
+            yaml_error(reader, yaml_map_place(map, "model"), "model: '%s' is created twice (first at line %d)", made->model, other->line);
 }
 
 void plant_conversions_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant)

@@ -24,7 +24,7 @@ static void read_one(struct yaml_reader *reader, yaml_node_t *node, struct plant
     }
     char *path = *text == '/' ? mem_strdup(text) : mem_printf("%s/%s", plant->folder, text), *name = name_of(path);
     if (!strcmp(name, "sky") || plant_find_environment(plant, name) >= 0)
-        yaml_error(reader, yaml_place(node), "environment: the name '%s' is taken", name);
+        yaml_error(reader, yaml_place(node), "environment: the name '%s' is already used", name);
     else if (!image_load_float(&image, path, 16, why))
         yaml_error(reader, yaml_place(node), "environment: '%s': %s", path, why);
     else {

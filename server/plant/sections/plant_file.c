@@ -106,7 +106,7 @@ void plant_list_check_id(struct yaml_reader *reader, const struct yaml_map *map,
             continue;
         int line;
         memcpy(&line, thing + line_offset, sizeof(line));
-        yaml_error(reader, yaml_map_place(map, "id"), "id: %s '%s' is there twice (first at line %d)", what, id, line);
+        yaml_error(reader, yaml_map_place(map, "id"), "id: %s '%s' is listed twice (first at line %d)", what, id, line);
         break;
     }
 }
@@ -191,7 +191,7 @@ static void check_nodes(struct yaml_reader *reader, const struct yaml_map *map, 
     struct text_position at = yaml_map_place(map, "nodes");
     if (yaml_map_has(map, "nodes") && !asset->nodes && reader->diag->errors == errors)
         diag_warning(reader->diag, reader->path, at.line, at.column,
-                     "nodes: has no value, so the whole model is taken; patterns with # or ! stand in quotes, such as \"#12\"");
+                     "nodes: has no value, so the whole model is used; put patterns with # or ! in quotes, such as \"#12\"");
 }
 
 static void read_asset(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant, struct plant_asset *asset)
@@ -324,7 +324,7 @@ static void read_numbers(struct yaml_reader *reader, yaml_node_t *node, const ch
         if (!yaml_number(reader, item, name, -PLANT_MAX_VALUE, PLANT_MAX_VALUE, &number))
             continue;
         if (*count > 0 && number <= numbers[*count - 1])
-            yaml_error(reader, yaml_place(item), "%s: expected more than %.9g, which is before it, found %.9g", name, numbers[*count - 1],
+            yaml_error(reader, yaml_place(item), "%s: expected more than the preceding %.9g, found %.9g", name, numbers[*count - 1],
                        number);
         else
             numbers[(*count)++] = number;
@@ -397,7 +397,7 @@ static void read_group(struct yaml_reader *reader, yaml_node_t *node, struct pla
     if (yaml_map_good(&map, "min") && yaml_map_good(&map, "max") && group->min >= group->max)
         yaml_error(reader, yaml_map_place(&map, "min"), "min: expected less than max, which is %.9g, found %.9g", group->max, group->min);
     if (group->log && yaml_map_good(&map, "min") && !(group->min > 0))
-        yaml_error(reader, yaml_map_place(&map, "scale"), "scale: a logarithmic one needs min above 0, found %.9g", group->min);
+        yaml_error(reader, yaml_map_place(&map, "scale"), "scale: a logarithmic scale needs min above 0, found %.9g", group->min);
     plant_list_check_id(reader, &map, "group", plant->groups, plant->group_count, sizeof(*group), offsetof(struct plant_group, line));
 }
 

@@ -24,17 +24,17 @@ static const char *wrong_with(const char *url, bool of_tags)
     const char *const *known = of_tags ? of_tag : of_asset;
     size_t scheme = scheme_length(url), host = strcspn(url + scheme, "/?#{");
     if (scheme == 0)
-        return "it begins neither with https:// nor with http://";
+        return "expected an address that begins with https:// or http://";
     if (host == 0 || url[scheme + host] == '{')
-        return "it names no server";
+        return "the address names no server";
     for (const char *at = url; *at; at++) {
         if (isspace((unsigned char)*at) || iscntrl((unsigned char)*at))
-            return "there is white space in it";
+            return "white space is not allowed";
         bool put_in = false;
         for (size_t i = 0; *at == '{' && i < 3; i++)
             put_in |= !strncmp(at, known[i], strlen(known[i]));
         if (*at == '{' && !put_in)
-            return of_tags ? "in braces there may be {name}, {asset} and {group}" : "in braces there may be {id}, {tag} and {area}";
+            return of_tags ? "only {name}, {asset} and {group} are allowed in braces" : "only {id}, {tag} and {area} are allowed in braces";
     }
     return NULL;
 }

@@ -15,7 +15,7 @@ static void add_pattern(struct yaml_reader *reader, const yaml_node_t *node, str
         return;
     }
     if (strlen(text) != node->data.scalar.length || strchr(text, NODES_SEPARATOR)) {
-        yaml_error(reader, yaml_place(node), "nodes: has a line break or a 0 character in it");
+        yaml_error(reader, yaml_place(node), "nodes: contains a line break or a NUL character");
         return;
     }
     text_add(patterns, "%s%s", patterns->length ? (char[]){ NODES_SEPARATOR, 0 } : "", text);

@@ -105,7 +105,7 @@ struct recipient_record {
 static void check_token(struct yaml_reader *reader, const struct yaml_map *map, const struct notify_recipient *recipient)
 {
     if (recipient->token_file && recipient->kind == NOTIFY_EMAIL)
-        yaml_error(reader, yaml_map_place(map, "token_file"), "token_file: an e-mail needs none");
+        yaml_error(reader, yaml_map_place(map, "token_file"), "token_file: has no meaning for e-mail");
     else
         url_check_token(reader, map, recipient->url);
 }
@@ -175,7 +175,7 @@ static uint32_t read_to(struct yaml_reader *reader, yaml_node_t *node, const str
         while (k < notify->recipient_count && (!notify->recipients[k].id || strcmp(notify->recipients[k].id, names.at[i]) != 0))
             k++;
         if (k == notify->recipient_count)
-            yaml_error(reader, yaml_place(node), "to: there is no recipient '%.60s'", names.at[i]);
+            yaml_error(reader, yaml_place(node), "to: unknown recipient '%.60s'", names.at[i]);
         else
             to |= UINT32_C(1) << k;
     }
@@ -215,7 +215,7 @@ static void read_escalation(struct yaml_reader *reader, yaml_node_t *node, void 
         struct yaml_map map;
         bool good = yaml_map_read(reader, yaml_list_item(reader, node, i), "a step", keys, &step, &map) && yaml_map_good(&map, "after_min");
         if (good && i > 0 && step.step.after_min <= rule->rule.steps[i].after_min)
-            yaml_error(reader, yaml_map_place(&map, "after_min"), "after_min: expected more than %.9g, which is before it, found %.9g",
+            yaml_error(reader, yaml_map_place(&map, "after_min"), "after_min: expected more than the preceding %.9g, found %.9g",
                        rule->rule.steps[i].after_min, step.step.after_min);
         rule->rule.steps[1 + i] = step.step;
         rule->rule.step_count = (size_t)i + 2;

@@ -25,7 +25,7 @@ static void read_one(struct yaml_reader *reader, const yaml_node_t *name_node, c
     else if (strlen(text) > TEXT_BYTES)
         yaml_error(reader, yaml_place(node), "%s: expected at most %d bytes, found %zu", name, TEXT_BYTES, strlen(text));
     else if (is_taken(asset, name))
-        yaml_error(reader, yaml_place(name_node), "properties: '%s' is there twice", name);
+        yaml_error(reader, yaml_place(name_node), "properties: '%s' is listed twice", name);
     else if (!yaml_is_null(node))
         asset->properties[asset->property_count++] = (struct plant_property){ mem_strdup(name), mem_strdup(text) };
 }

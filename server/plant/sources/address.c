@@ -185,7 +185,7 @@ static bool read_bit(const char **p, struct modbus_address *out, char why[200])
         return false;
     }
     if (out->table == TABLE_COIL || out->table == TABLE_DISCRETE) {
-        snprintf(why, 200, "a %s is one bit already and has no .%ld", out->table == TABLE_COIL ? "coil" : "discrete input", bit);
+        snprintf(why, 200, "a %s is a single bit and cannot have .%ld", out->table == TABLE_COIL ? "coil" : "discrete input", bit);
         return false;
     }
     out->bit = (int)bit;
@@ -215,7 +215,7 @@ bool address_parse(const char *text, int address_base, struct modbus_address *ou
     if (!read_bit(&p, out, why) || !read_order(&p, out, why))
         return false;
     if (*p) {
-        snprintf(why, 200, "nothing was expected after '%.*s', found '%.40s'", p - text > 40 ? 40 : (int)(p - text), text, p);
+        snprintf(why, 200, "expected nothing after '%.*s', found '%.40s'", p - text > 40 ? 40 : (int)(p - text), text, p);
         return false;
     }
     return true;

@@ -151,7 +151,7 @@ static bool read_test(const char **at, struct json_path_test *out, char why[200]
         return false;
     skip_blanks(at);
     if (strncmp(*at, "==", 2) != 0)
-        return wrong(why, "expected == (no other comparison is supported)", *at);
+        return wrong(why, "expected == (the only supported comparison)", *at);
     *at += 2;
     skip_blanks(at);
     if (literal_first)

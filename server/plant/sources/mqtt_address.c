@@ -29,7 +29,7 @@ bool mqtt_template_check(const char *text, char why[200])
             return false;
         }
     if (strpbrk(text, "+#")) {
-        snprintf(why, 200, "+ and # stand for many topics; expected one of each tag");
+        snprintf(why, 200, "wildcards (+ and #) match many topics; expected one topic for each tag");
         return false;
     }
     return true;
@@ -56,7 +56,7 @@ static bool fill_template(const struct plant *plant, const struct plant_tag *tag
         }
         const char *text = field_text(plant, tag, address, field);
         if (!text) {
-            snprintf(why, 200, "the source's topic has %s, which this tag has not", field_names[field]);
+            snprintf(why, 200, "the source's topic has %s, which this tag lacks", field_names[field]);
             return false;
         }
         text_add(out, "%s", text);
@@ -84,7 +84,7 @@ static bool check_topic(const char *topic, bool sparkplug, char why[200])
     else if (strlen(topic) > MQTT_TOPIC_BYTES)
         snprintf(why, 200, "the topic has %zu bytes; expected at most %d", strlen(topic), MQTT_TOPIC_BYTES);
     else if (strpbrk(topic, "+#"))
-        snprintf(why, 200, "a topic with + or # would be many");
+        snprintf(why, 200, "wildcards (+ and #) match many topics; expected one topic");
     else if (sparkplug && !is_sparkplug(topic))
         snprintf(why, 200, "expected GROUP/NODE#METRIC or GROUP/NODE/DEVICE#METRIC");
     else
@@ -104,7 +104,7 @@ bool mqtt_address_resolve(const struct plant *plant, struct plant_tag *tag, char
     tag->path = mem_strdup(sharp && sharp[1] ? sharp + 1 : mqtt->payload == MQTT_SPARKPLUG ? tag->name : "");
     good = good && check_topic(tag->topic, mqtt->payload == MQTT_SPARKPLUG, why);
     if (good && *tag->path && mqtt->payload == MQTT_NUMBER) {
-        snprintf(why, 200, "a path behind # has no meaning for payload: number");
+        snprintf(why, 200, "a path after # has no meaning for payload: number");
         good = false;
     }
     if (good && *tag->path && mqtt->payload == MQTT_JSON)

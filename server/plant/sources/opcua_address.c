@@ -68,7 +68,7 @@ static char *read_namespace(const char **at, const char *of_source, char why[200
     const char *end = strchr(*at, ';');
     snprintf(why, 200, "%s", EXPECTED);
     if (!strncmp(*at, "ns=", 3)) {
-        snprintf(why, 200, "a number of a namespace may be another one after the next start of the server; expected nsu=URI; in its place");
+        snprintf(why, 200, "namespace numbers can change when the server restarts; write nsu=URI; instead");
         return NULL;
     }
     if (strncmp(*at, "nsu=", 4) != 0) {

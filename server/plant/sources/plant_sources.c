@@ -199,13 +199,14 @@ static void check_alone(struct yaml_reader *reader, const struct yaml_map *map, 
 {
     for (const struct plant_source *other = plant->sources; other < source; other++) {
         if (same_text(other->device, source->device))
-            yaml_error(reader, yaml_map_place(map, "device"), "device: '%s' is source %s's already; one source reads all units of a line",
-                       source->device, other->id ? other->id : "?");
+            yaml_error(reader, yaml_map_place(map, "device"),
+                       "device: '%s' is already used by source %s; one source reads all units of a line", source->device,
+                       other->id ? other->id : "?");
         for (int i = 0; i < source->host_count && way_of(source) == BY_SOCKET; i++)
             for (int k = 0; k < other->host_count; k++)
                 if (other->port == source->port && same_text(other->hosts[k], source->hosts[i]))
                     diag_warning(reader->diag, reader->path, map->place.line, map->place.column,
-                                 "%s:%d is source %s's too: the device gets two connections", source->hosts[i], source->port,
+                                 "%s:%d is also used by source %s: the device gets two connections", source->hosts[i], source->port,
                                  other->id ? other->id : "?");
     }
 }

@@ -26,16 +26,16 @@ static const char *wrong_with(const char *url, const char *plain, const char *se
 {
     size_t plain_length = strlen(plain), secure_length = strlen(secure);
     if (strncmp(url, secure, secure_length) != 0 && strncmp(url, plain, plain_length) != 0)
-        return "it begins with another scheme";
+        return "the address begins with another scheme";
     const char *host = host_of(url);
     size_t host_length = strcspn(host, "/?#");
     if (host_length == 0)
-        return "it names no server";
+        return "the address names no server";
     if (memchr(host, '@', host_length))
         return "do not write a password in the plant file; let password_file or token_file name a file with it";
     for (const char *at = url; *at; at++)
         if ((unsigned char)*at <= ' ' || *at == 127)
-            return "there is white space in it";
+            return "white space is not allowed";
     return NULL;
 }
 

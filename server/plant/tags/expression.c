@@ -201,7 +201,7 @@ static bool parse_arguments(struct expression_parser *parser, int function)
     if (next != ')')
         return fail(parser, "expected ) after the arguments of %s", functions[function].name);
     if (count < functions[function].least || count > functions[function].most)
-        return fail(parser, "another number of arguments is expected for %s", functions[function].name);
+        return fail(parser, "wrong number of arguments for %s", functions[function].name);
     parser->p++;
     return add(parser, (struct expression_step){ .operation = OP_FUNCTION, .index = function, .arguments = count });
 }

@@ -42,7 +42,7 @@ static void check_units(const struct tag_link *link, const struct plant *plant, 
         if (units_compare(one->own_unit, other->own_unit, &change) != UNITS_CONVERT)
             continue;
         diag_warning(diag, plant->tags_path, link->line, link->column,
-                     "Address: '%.60s' takes %.60s in %.20s, as its row says, but %.60s is in %.20s; the expression has to convert one",
+                     "Address: '%.60s' combines %.60s in %.20s with %.60s in %.20s; convert one of them in the expression",
                      tag->address, one->name, one->own_unit, other->name, other->own_unit);
         return;
     }

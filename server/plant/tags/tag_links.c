@@ -127,7 +127,7 @@ static void resolve_direction(const struct tag_link *link, struct plant *plant, 
         diag_error(diag, plant->tags_path, link->line, link->column, "Direction: expected other tags than '%.60s' itself", link->to);
     else if (tag->group < 0 || tag->asset < 0 || tag->place_assumed)
         diag_error(diag, plant->tags_path, link->line, link->column,
-                   "Direction: '%.60s' needs a group, an asset and a place of its own, from where it points", tag->name);
+                   "Direction: '%.60s' needs a group, an asset and its own place, where the direction starts", tag->name);
     else if (tag->direction_count < 3)
         tag->direction[tag->direction_count++] = to;
     if (tag->direction_count > 0)

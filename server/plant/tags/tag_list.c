@@ -92,11 +92,11 @@ static void read_place(struct tag_list *list)
     if (cell_given(columns, COL_NODE))
         tag->node = mem_strdup(cell_text(columns, COL_NODE));
     if (has_xyz && tag->node)
-        cell_warning(columns, COL_NODE, "Node has no effect, since X, Y, Z are given too");
+        cell_warning(columns, COL_NODE, "Node has no effect, because X, Y, Z are given");
     if (!cell_given(columns, COL_GROUP))
         return;
     if (!cell_given(columns, COL_ASSET))
-        cell_warning(columns, columns->at[COL_ASSET] >= 0 ? COL_ASSET : COL_GROUP, "'%.60s' has a group but no asset, so it is in no field",
+        cell_warning(columns, columns->at[COL_ASSET] >= 0 ? COL_ASSET : COL_GROUP, "'%.60s' has a group but no asset, so no field uses it",
                      tag->name);
     else if (!has_xyz && !tag->node && !tag->place_assumed)
         cell_error(columns, columns->at[COL_NODE] >= 0 ? COL_NODE : COL_ASSET,
@@ -253,7 +253,7 @@ static void check_duplicates(const struct plant *plant, struct diag *diag)
         if (strcmp(one->name, two->name) != 0)
             first = i;
         else if (*two->name)
-            diag_error(diag, plant->tags_path, two->line, two->column, "Tag Name: '%.60s' is there twice (first at line %d)", two->name,
+            diag_error(diag, plant->tags_path, two->line, two->column, "Tag Name: '%.60s' is listed twice (first at line %d)", two->name,
                        one->line);
     }
 }

@@ -99,8 +99,8 @@ static void check_base(struct tag_wire *wire, int registers)
     if (registers == 1 || !(*place >= '0' && *place <= '9') || tag->source < 0 || wire->plant->sources[tag->source].base_stated)
         return;
     cell_error(wire->columns, COL_ADDRESS,
-               "Address: '%.60s': %s has %d bits, so it must be said whether the first register is called 0 or 1: by address_base in its "
-               "source, or here by %s:%d (from 0, as on the wire; %s:%d if the first is called 0)",
+               "Address: '%.60s': %s has %d bits, so state whether registers are counted from 0 or 1: by address_base in the source, or "
+               "here by %s:%d (from 0, as on the wire; %s:%d if registers are counted from 0)",
                tag->address, data_type_name(tag->type), registers * 16, tag->table == TABLE_INPUT ? "ir" : "hr", tag->register_index,
                tag->table == TABLE_INPUT ? "ir" : "hr", tag->register_index + 1);
 }
@@ -159,7 +159,7 @@ static void read_address(struct tag_wire *wire)
     int registers = data_type_registers(tag->type);
     check_base(wire, registers);
     if (address.index + registers > 65536)
-        cell_error(wire->columns, COL_ADDRESS, "Address: '%.60s': %s takes %d registers, and the last one there is has the index 65535",
+        cell_error(wire->columns, COL_ADDRESS, "Address: '%.60s': %s needs %d registers, but the last register is 65535",
                    tag->address, data_type_name(tag->type), registers);
 }
 

@@ -20,7 +20,7 @@ enum quantity_kind {
 static const char *const kind_names[] = {
     [TEMPERATURE] = "temperature",
     [TEMPERATURE_DIFFERENCE] = "difference of temperatures",
-    [PRESSURE] = "pressure that is not said to be absolute or gauge",
+    [PRESSURE] = "pressure (absolute or gauge not stated)",
     [PRESSURE_ABSOLUTE] = "absolute pressure",
     [PRESSURE_GAUGE] = "gauge pressure",
     [VOLUME_FLOW] = "volume flow",

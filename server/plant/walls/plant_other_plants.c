@@ -14,7 +14,7 @@ static void check(struct yaml_reader *reader, const struct yaml_map *map, const 
     url_check(reader, map, "url", other->url, "http://", "https://");
     url_check_token(reader, map, other->url);
     if (other->url && strpbrk(other->url, "?#"))
-        yaml_error(reader, yaml_map_place(map, "url"), "url: expected that of the server alone, without '?' and '#'");
+        yaml_error(reader, yaml_map_place(map, "url"), "url: expected the server's address without '?' and '#'");
     if (other->id && !named_view_id_valid(other->id))
         yaml_error(reader, yaml_map_place(map, "id"), "id: expected letters, digits, '_', '-' and '.', found '%.60s'", other->id);
     if (other->view && !named_view_id_valid(other->view))

@@ -24,7 +24,7 @@ const char *named_view_address_wrong(const char *address)
     if (strlen(address) >= NAMED_VIEW_ADDRESS_BYTES)
         return "it is too long";
     if (address[0] == '#')
-        return "it begins after the #";
+        return "it must not contain the # itself";
     for (const char *at = address; *at; at++)
         if ((unsigned char)*at <= ' ' || (unsigned char)*at >= 127)
             return "it contains a character that an address cannot have";

@@ -173,9 +173,9 @@ static void read_pane(struct yaml_reader *reader, yaml_node_t *node, struct wall
         yaml_error(reader, yaml_map_place(&map, pane_kind_names[pane->kind]), "%s: expected one, found %zu", pane_kind_names[pane->kind],
                    pane->item_count);
     else if (pane->on_alarm && pane->kind != PANE_VIEWS && pane->kind != PANE_TOUR)
-        yaml_error(reader, yaml_map_place(&map, "on_alarm"), "on_alarm: only a pane of views has it");
+        yaml_error(reader, yaml_map_place(&map, "on_alarm"), "on_alarm: allowed only in a pane of views");
     else if (pane->kind != PANE_VIEWS && yaml_map_has(&map, "every_s"))
-        yaml_error(reader, yaml_map_place(&map, "every_s"), "every_s: only a pane of views has it");
+        yaml_error(reader, yaml_map_place(&map, "every_s"), "every_s: allowed only in a pane of views");
     if (!pane->area)
         return;
     if (!grid_has(display, pane->area))
@@ -184,7 +184,7 @@ static void read_pane(struct yaml_reader *reader, yaml_node_t *node, struct wall
     while (&display->panes[other] < pane && (!display->panes[other].area || strcmp(display->panes[other].area, pane->area) != 0))
         other++;
     if (&display->panes[other] < pane)
-        yaml_error(reader, yaml_map_place(&map, "area"), "area: '%.40s' has two panes", pane->area);
+        yaml_error(reader, yaml_map_place(&map, "area"), "area: '%.40s' is used by two panes", pane->area);
 }
 
 static void read_grid(struct yaml_reader *reader, yaml_node_t *node, void *record)
@@ -269,7 +269,7 @@ static void read_tile(struct yaml_reader *reader, yaml_node_t *node, void *recor
     if (good && tile->pane.kind == PANE_TOUR && tile->pane.item_count > 1)
         yaml_error(reader, yaml_map_place(&map, "tour"), "tour: expected one, found %zu", tile->pane.item_count);
     if (good && tile->pane.kind == PANE_TOUR && yaml_map_has(&map, "every_s"))
-        yaml_error(reader, yaml_map_place(&map, "every_s"), "every_s: a tour has its own times");
+        yaml_error(reader, yaml_map_place(&map, "every_s"), "every_s: not allowed with a tour, which has its own times");
     if (!good)
         tile->columns = tile->rows = 0;
 }
@@ -312,8 +312,8 @@ static void add_tiles(struct yaml_reader *reader, const struct yaml_map *map, st
     if (tiles == 0)
         return;
     if (tiles + others > WALL_DISPLAYS) {
-        yaml_error(reader, yaml_map_place(map, "tile"), "tile: expected at most %d displays of a wall, found %zu of it and %zu others",
-                   WALL_DISPLAYS, tiles, others);
+        yaml_error(reader, yaml_map_place(map, "tile"),
+                   "tile: expected at most %d displays of a wall, found %zu of the tile and %zu others", WALL_DISPLAYS, tiles, others);
         wall->tile.columns = wall->tile.rows = 0;
         return;
     }
@@ -384,8 +384,8 @@ static void check_items(const struct plant *plant, const struct wall_pane *pane,
                 continue;
             near = suggest_nearest(name, plant->views, plant->view_count, sizeof(*plant->views));
             diag_warning(diag, plant->path, pane->item_lines[i], pane->item_columns[i],
-                         "views: `views` has no '%.60s', unless it is saved in the page%s%s%s", name, near ? "; did you mean '" : "",
-                         near ? near : "", near ? "'?" : "");
+                         "views: `views` has no '%.60s' (a view saved in the page is also possible)%s%s%s", name,
+                         near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
         } else if (pane->kind == PANE_SNAPSHOT && other_plant_find(plant, name) < 0) {
             near = suggest_nearest(name, plant->other_plants, plant->other_plant_count, sizeof(*plant->other_plants));
             diag_error(diag, plant->path, pane->item_lines[i], pane->item_columns[i], "snapshot: `other_plants` has no '%.60s'%s%s%s", name,

@@ -67,7 +67,7 @@ static struct fields_entry *entry_create(struct fields *fields, int asset, const
     entry->shown = mem_try_array(count, sizeof(*entry->shown));
     fields->bytes += bytes;
     if (!entry->shown) {
-        log_err(fields->log, "field of asset %d: no room for %zu vertices; shown as no data", asset, count);
+        log_err(fields->log, "field of asset %d: out of GPU memory for %zu vertices; shown as no data", asset, count);
         entry_destroy(fields, entry);
         return NULL;
     }
@@ -84,7 +84,7 @@ static bool take_slice(struct fields *fields, struct fields_entry *entry)
         entry->slice = pool_take(fields->pool, entry->count);
     if (entry->slice)
         return true;
-    log_err(fields->log, "field of asset %d: no room for %zu vertices; shown as no data", entry->asset, entry->count);
+    log_err(fields->log, "field of asset %d: out of GPU memory for %zu vertices; shown as no data", entry->asset, entry->count);
     while (fields->entries[at] != entry)
         at++;
     fields->entries[at] = fields->entries[--fields->count];

@@ -84,9 +84,9 @@ const char *admission_refuses_pixels(const struct admission *admission, const st
 {
     const int64_t *most = admission->quotas->at;
     if (admission->pixels - before + pixels > most[QUOTA_PIXELS])
-        return "full: all views together have as many pixels as this server may draw; try later, or a smaller picture";
+        return "full: all views together have reached this server's limit of pixels; try later, or a smaller picture";
     if (share && !share->exempt_pixels && share->pixels - before + pixels > most[QUOTA_ADDRESS_PIXELS])
-        return "full: the views of this address together have as many pixels as those of one may have; try a smaller picture";
+        return "full: the views of this address have reached its limit of pixels; try a smaller picture";
     return NULL;
 }
 
@@ -177,6 +177,6 @@ const char *admission_refuses(const struct admission *admission, const struct ad
     if (slows_too_far(admission, share))
         return "full: one more moving view would make all of them too slow; try later";
     if (reads_too_late(admission, share))
-        return "full: readings are drawn too late already; try later";
+        return "full: readings are already drawn late; try later";
     return NULL;
 }

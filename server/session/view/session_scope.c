@@ -43,7 +43,7 @@ static bool read_view(const struct session *session, const struct named_view *na
     if (!view_named_read(&params, named->address, view->width_px, view->height_px, &read, error))
         return false;
     if (read.at_us) {
-        message_fail(error, "bad_field", "named: '%.48s' is of an instant, and a stream shows now", named->id);
+        message_fail(error, "bad_field", "named: view '%.48s' shows a past instant; a stream shows the present", named->id);
         return false;
     }
     const struct view before = *view;
@@ -84,9 +84,9 @@ bool session_scope_view(struct session *session, const char *id, struct view *vi
     if (first && session_look(session, first, view, error))
         return true;
     if (!first)
-        message_fail(error, "not_allowed", "this token is for the views %.150s, and the plant file has none of them",
+        message_fail(error, "not_allowed", "this token is for the views %.150s, but the plant file has none of them",
                      session->identity.holder.views);
-    session_close(session, 1008, "this token is for some views, of which this is none");
+    session_close(session, 1008, "this token is not valid for this view");
     return false;
 }
 
@@ -240,11 +240,11 @@ bool session_scope_allows(const struct session *session, const struct message *m
                                                   MESSAGE_VISIBLE, MESSAGE_KEY_FRAME, MESSAGE_PING,   MESSAGE_DISPLAY };
     const struct token_holder *holder = &session->identity.holder;
     if (holder->views[0] && !is_in(message->type, views, sizeof(views) / sizeof(views[0])))
-        message_fail(error, "not_allowed", "this token is for pictures of the views %.150s: hello or look names one", holder->views);
+        message_fail(error, "not_allowed", "this token is for pictures of the views %.150s: name one in hello or look", holder->views);
     else if (holder->display && !is_in(message->type, displays, sizeof(displays) / sizeof(displays[0])) &&
              /* a display with pictures sends picks to find a free side for an alarm's label */
              (message->type != MESSAGE_PICK || session->scope.tags))
-        message_fail(error, "not_allowed", "this token is that of display %d of wall %s and allows nothing else", holder->display,
+        message_fail(error, "not_allowed", "this token belongs to display %d of wall %s and allows nothing else", holder->display,
                      holder->wall);
     else
         return true;

@@ -63,7 +63,7 @@ static void on_topic_refused(void *arg, const char *topic)
 {
     struct mqtt_source *mqtt = arg;
     const struct mqtt_message message = { .topic = topic };
-    mqtt_refuse(mqtt, &message, "the broker does not let us subscribe");
+    mqtt_refuse(mqtt, &message, "the broker refused the subscription");
 }
 
 static void ask_rebirth(void *arg, const char *group, const char *node)

@@ -157,7 +157,7 @@ static bool use_tls(struct mqtt_client *client, char why[200])
     int status =
         mosquitto_tls_set(client->library, mqtt->ca, mqtt->ca ? NULL : SYSTEM_CERTIFICATES, mqtt->certificate, mqtt->key, no_passphrase);
     if (status != MOSQ_ERR_SUCCESS)
-        snprintf(why, 200, "the files of tls cannot be used: %s", mosquitto_strerror(status));
+        snprintf(why, 200, "tls: its files cannot be used: %s", mosquitto_strerror(status));
     return status == MOSQ_ERR_SUCCESS;
 }
 
@@ -257,7 +257,7 @@ static int explain(const struct mqtt_client *client, int status, int errno_then,
 {
     bool is_5 = client->source->mqtt.protocol == 5;
     if (client->refusal)
-        snprintf(why, 200, "the broker refuses: %s%s",
+        snprintf(why, 200, "the broker refused the connection: %s%s",
                  is_5 ? mosquitto_reason_string(client->refusal) : mosquitto_connack_string(client->refusal),
                  is_5 && (client->refusal == MQTT_RC_UNSUPPORTED_PROTOCOL_VERSION || client->refusal == 1) ? "; try protocol: 3.1.1" : "");
     else if (*client->said)

@@ -143,7 +143,7 @@ static enum mqtt_found refuse_selection(const struct json_selected *found, const
     char number[32];
     snprintf(number, sizeof(number), "%.15g", json_number_value(found->foreign));
     const char *name = json_is_string(found->foreign) ? json_string_value(found->foreign) : number;
-    snprintf(why, 200, "%.40s: the item at that position of %.40s names itself %.40s; address it by name, as [?@.id=='...']", tag, path,
+    snprintf(why, 200, "%.40s: the item at this position of %.40s is named %.40s; select it by name, such as [?@.id=='...']", tag, path,
              name);
     return refuse(out, QUALITY_BAD_NO_MATCH);
 }
@@ -158,7 +158,7 @@ enum mqtt_found mqtt_json_read(const json_t *root, const struct mqtt_reader *rea
     const json_t *time = mqtt->time ? select_stated(root, &found, mqtt->time, reader->tag) : NULL;
     const json_t *quality = mqtt->quality ? select_stated(root, &found, mqtt->quality, reader->tag) : NULL;
     if (mqtt->time && (!time || !read_time(time, &out->utc_ns))) {
-        snprintf(why, 200, "%.60s holds no time", mqtt->time);
+        snprintf(why, 200, "%.60s is not a time", mqtt->time);
         return refuse(out, QUALITY_BAD_CONFIGURATION);
     }
     if (mqtt->quality)
@@ -167,6 +167,6 @@ enum mqtt_found mqtt_json_read(const json_t *root, const struct mqtt_reader *rea
         out->quality = QUALITY_BAD_SENSOR_FAILURE;
     if (quality_is_bad(out->quality) || read_number(found.value, &out->value))
         return MQTT_FOUND;
-    snprintf(why, 200, "%.60s is no number", *reader->path ? reader->path : "the value");
+    snprintf(why, 200, "%.60s is not a number", *reader->path ? reader->path : "the value");
     return refuse(out, QUALITY_BAD_CONFIGURATION);
 }

@@ -243,9 +243,10 @@ static bool take_metric(struct sparkplug *sparkplug, const struct sparkplug_metr
         value.quality = QUALITY_BAD_SENSOR_FAILURE;
     bool good = type == born && (quality_is_bad(value.quality) || sparkplug_number(metric, type, &value.value));
     if (!good && type != born)
-        snprintf(why, 200, "metric %.60s was born as %s and is %s now", name, sparkplug_type_name(born), sparkplug_type_name(type));
+        snprintf(why, 200, "metric %.60s had type %s in the birth certificate, and now has %s", name, sparkplug_type_name(born),
+                 sparkplug_type_name(type));
     else if (!good)
-        snprintf(why, 200, "metric %.60s, of type %s, holds no number", name, sparkplug_type_name(type));
+        snprintf(why, 200, "metric %.60s has type %s, which is not a number", name, sparkplug_type_name(type));
     if (!good)
         value.quality = QUALITY_BAD_CONFIGURATION;
     write_value(sparkplug, tag, &value);
@@ -395,7 +396,7 @@ static bool refuse_unborn(struct sparkplug *sparkplug, struct sparkplug_node *no
     ask(sparkplug, node, sparkplug->params.writer->mono_ns);
     if (!node->told)
         log_warn(sparkplug->params.log, "source %s: %s/%s: values ignored: no birth certificate yet%s", sparkplug->params.source,
-                 node->group, node->name, sparkplug->params.rebirth ? "" : "; rebirth: yes would ask for it");
+                 node->group, node->name, sparkplug->params.rebirth ? "" : "; `rebirth: yes` requests it");
     node->told = true;
     snprintf(why, 200, "before its birth certificate");
     return false;
@@ -454,12 +455,12 @@ bool sparkplug_take(struct sparkplug *sparkplug, const struct mqtt_message *mess
 {
     struct sparkplug_payload payload;
     struct said said;
-    snprintf(why, 200, "no topic of Sparkplug B");
+    snprintf(why, 200, "not a topic of Sparkplug B");
     if (!read_topic(sparkplug, message->topic, &said))
         return false;
     if (said.verb == OTHER) /* commands sent by other hosts */
         return true;
-    snprintf(why, 200, "a message that the broker has kept says nothing of now");
+    snprintf(why, 200, "a retained message may be old");
     if (message->is_retained)
         return false;
     snprintf(why, 200, "too long");

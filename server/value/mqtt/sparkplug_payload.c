@@ -23,7 +23,7 @@ static const char *const type_names[] = { [TYPE_INT8] = "Int8",     [TYPE_INT16]
 
 const char *sparkplug_type_name(uint32_t type)
 {
-    return type > 0 && type < sizeof(type_names) / sizeof(*type_names) ? type_names[type] : "a type that is unknown";
+    return type > 0 && type < sizeof(type_names) / sizeof(*type_names) ? type_names[type] : "an unknown type";
 }
 
 /* --- memory ----------------------------------------------------------------------------------------------------------------- */
@@ -122,13 +122,13 @@ bool sparkplug_payload_read(const void *bytes, size_t count, struct sparkplug_pa
     struct sparkplug_metric *metrics = payload ? mem_try_array(payload->n_metrics + 1, sizeof(*metrics)) : NULL;
     *out = (struct sparkplug_payload){ .seq = -1 };
     if (!metrics) {
-        snprintf(why, 200, payload || left < MAX_UNPACKED_BYTES / 2 ? "too many metrics" : "no Sparkplug B payload");
+        snprintf(why, 200, payload || left < MAX_UNPACKED_BYTES / 2 ? "too many metrics" : "not a Sparkplug B payload");
         if (payload)
             sparkplug__payload__free_unpacked(payload, &allocator);
         return false;
     }
     if (payload->uuid && !strcmp(payload->uuid, "SPBV1.0_COMPRESSED")) {
-        snprintf(why, 200, "a payload that is compressed");
+        snprintf(why, 200, "a compressed payload");
         sparkplug__payload__free_unpacked(payload, &allocator);
         mem_free(metrics);
         return false;

@@ -43,7 +43,7 @@ static void report_skew(struct opcua_source *opcua, const UA_DataValue *value)
     if ((skew_ns < SKEW_NS && skew_ns > -SKEW_NS) || (opcua->skew_said_ns && now_ns - opcua->skew_said_ns < SKEW_SAID_NS))
         return;
     opcua->skew_said_ns = now_ns;
-    log_warn(opcua->base.log, "source %s: its times are %.1f s %s this machine's clock", opcua->base.config->id,
+    log_warn(opcua->base.log, "source %s: its timestamps are %.1f s %s this machine's clock", opcua->base.config->id,
              (double)(skew_ns > 0 ? skew_ns : -skew_ns) / 1e9, skew_ns > 0 ? "ahead of" : "behind");
 }
 
@@ -77,8 +77,8 @@ static void on_refused(void *arg, size_t index, uint32_t status, const char *why
         stamped_writer_add_bad(&opcua->writer, node->tags[i], status);
     stamped_writer_end(&opcua->writer);
     if (++opcua->refusals_said <= REFUSALS_SAID)
-        log_warn(opcua->base.log, "source %s: nsu=%.80s;%.80s is refused: %s%s", opcua->base.config->id, node->name_space, node->id, why,
-                 opcua->refusals_said == REFUSALS_SAID ? "; no more of them are named" : "");
+        log_warn(opcua->base.log, "source %s: nsu=%.80s;%.80s was refused: %s%s", opcua->base.config->id, node->name_space, node->id, why,
+                 opcua->refusals_said == REFUSALS_SAID ? "; further refusals are not logged" : "");
 }
 
 /* --- the link --------------------------------------------------------------------------------------------------------------- */

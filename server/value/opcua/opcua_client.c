@@ -32,7 +32,7 @@ static void on_silence(UA_Client *library)
 {
     struct opcua_client *client = UA_Client_getContext(library);
     client->lost = true;
-    snprintf(client->said, sizeof(client->said), "the server is silent");
+    snprintf(client->said, sizeof(client->said), "nothing received from the server");
 }
 
 static void on_subscription_silence(UA_Client *library, UA_UInt32 subscription, void *context)
@@ -150,12 +150,12 @@ static UA_EndpointDescription *choose(const struct opcua_client *client, UA_Endp
             best = &endpoints[i];
     }
     if (!best && any)
-        snprintf(why, 200, "the server takes no %s", client->source->login ? "user and password"
+        snprintf(why, 200, "the server does not accept %s", client->source->login ? "user and password"
                                                      : client->security.user_certificate.length > 0 ? "user by certificate"
                                                                                                      : "anonymous users");
     else if (!best)
         snprintf(why, 200, "none of the server's %zu endpoints has %s", count,
-                 wanted == OPCUA_NONE ? "security: none" : "a policy that may be used, with SignAndEncrypt");
+                 wanted == OPCUA_NONE ? "security: none" : "an allowed security policy with SignAndEncrypt");
     return best;
 }
 
@@ -232,7 +232,7 @@ static int discover_somewhere(struct opcua_client *client, int stop_fd, int64_t 
     struct lookup *lookup = lookup_start(client->host, client->source->port);
     int status = lookup_wait(lookup, stop_fd, deadline_mono_ns, &found);
     if (status < 0 && status != -ECANCELED)
-        snprintf(why, 200, "no address of %.100s is known", client->host);
+        snprintf(why, 200, "the host name %.100s cannot be resolved", client->host);
     for (const struct addrinfo *at = found; status == 0 && at; at = at->ai_next)
         left++;
     for (const struct addrinfo *at = found; left > 0; at = at->ai_next, left--) {

@@ -73,7 +73,7 @@ static bool read_pair(const char *certificate_path, const char *key_path, UA_Byt
     *out = read_certificate(file);
     BIO_free(file);
     if (!*out) {
-        snprintf(why, 200, "%.120s holds no certificate", certificate_path);
+        snprintf(why, 200, "%.120s has no certificate", certificate_path);
         return false;
     }
     int bytes = i2d_X509(*out, &der);
@@ -91,7 +91,7 @@ static bool read_pair(const char *certificate_path, const char *key_path, UA_Byt
     *key = taken(der, bytes);
     bool fits = pair && X509_check_private_key(*out, pair) == 1;
     if (!pair)
-        snprintf(why, 200, "%.120s holds no private key, or one with a passphrase", key_path);
+        snprintf(why, 200, "%.120s has no private key, or one with a passphrase", key_path);
     else if (!fits)
         snprintf(why, 200, "%.80s is not the key of %.80s", key_path, certificate_path);
     EVP_PKEY_free(pair);
@@ -121,7 +121,7 @@ static bool trust_file(struct opcua_security *security, const char *path, char w
     X509_CRL *crl = file && !certificate && BIO_reset(file) == 0 ? read_crl(file) : NULL;
     bool good = certificate || crl;
     if (file && !good)
-        snprintf(why, 200, "%.120s holds neither a certificate nor a revocation list", path);
+        snprintf(why, 200, "%.120s has neither a certificate nor a revocation list", path);
     if (certificate)
         X509_STORE_add_cert(security->trusted, certificate);
     if (crl) {
@@ -161,7 +161,7 @@ static bool trust_folder(struct opcua_security *security, const char *path, char
         mem_free(file);
     }
     if (good && count == 0)
-        snprintf(why, 200, "%.120s holds no certificate: no server is trusted", path);
+        snprintf(why, 200, "%.120s has no certificate: no server is trusted", path);
     if (folder)
         closedir(folder);
     return good && count > 0;
@@ -184,7 +184,7 @@ bool opcua_security_init(struct opcua_security *security, const struct plant_opc
         good = read_pair(config->user_certificate, config->user_key, &security->user_certificate, &security->user_key, &user, why);
     security->application_uri = good ? application_uri_of(ours) : NULL;
     if (good && !security->application_uri) {
-        snprintf(why, 200, "%.120s names no application (a URI among its alternative names)", config->certificate);
+        snprintf(why, 200, "%.120s has no application URI among its alternative names", config->certificate);
         good = false;
     }
     X509_free(ours);
@@ -258,7 +258,7 @@ UA_StatusCode opcua_security_check(const struct opcua_security *security, UA_Byt
     X509 *leaf = chain->length > 0 ? d2i_X509(NULL, &at, (long)chain->length) : NULL;
     STACK_OF(X509) *others = sk_X509_new_null();
     if (!leaf || !security->trusted) {
-        snprintf(why, 200, leaf ? "no server is trusted" : "the server shows no certificate");
+        snprintf(why, 200, leaf ? "no server is trusted (`trust` is empty)" : "the server sent no certificate");
         sk_X509_free(others);
         X509_free(leaf);
         ERR_clear_error();
@@ -360,6 +360,6 @@ bool opcua_security_apply(const struct opcua_security *security, const char *log
                              has_user ? security->user_certificate : security->certificate, has_user ? security->user_key : security->key,
                              false, config->logging);
     if (!good)
-        snprintf(why, 200, "our certificate or its key cannot be used");
+        snprintf(why, 200, "this client's certificate or key cannot be used");
     return good && log_in(security, login, config, why);
 }

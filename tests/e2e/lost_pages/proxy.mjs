@@ -70,7 +70,7 @@ test('nginx without the lines for WebSocket is named on the page, with these lin
                 await close();
             }
         }
-        await plant.daemon.line(/stream: a request from 127\.0\.0\.1 came without Upgrade: websocket, and is a WebSocket's handshake/);
+        await plant.daemon.line(/stream: a request from 127\.0\.0\.1 came without Upgrade: websocket, although it is a WebSocket handshake/);
         assert.equal(plant.daemon.said.match(/came without Upgrade/g).length, 1, 'one line a minute');
         const answer = await fetch(`http://127.0.0.1:${plant.port}/stream`);
         assert.equal(answer.status, 426);
@@ -78,7 +78,7 @@ test('nginx without the lines for WebSocket is named on the page, with these lin
         for (const args of [['ready', url], ['probe', url, '--seconds', '1'], ['probe', url, '--seconds', '1', '--blind']]) {
             const { code, err } = runProgram('plantcast', args);
             assert.equal(code, 1, err);
-            assert.match(err, /the server answers over HTTP, but no WebSocket gets through/);
+            assert.match(err, /the server answers over HTTP, but does not accept a WebSocket/);
             assert.match(err, LINES);
         }
         assert.equal(runProgram('plantcast', ['ready', `http://127.0.0.1:${plant.port}/`]).code, 0);
@@ -154,8 +154,8 @@ test('ready fails where /stream does, over http:// and https://, and names the p
     };
     for (const tls of [null, secure]) {
         for (const [answer, words] of [[{ line: '502 Bad Gateway', code: 502 }, /not ready: \/stream answers 502/],
-            [{ line: '200 OK', code: 200 }, /answers \/stream with 200 itself/],
-            [{ line: '400 Bad Request' }, /no WebSocket gets through/]]) {
+            [{ line: '200 OK', code: 200 }, /a proxy in front of the server answered \/stream with 200/],
+            [{ line: '400 Bad Request' }, /does not accept a WebSocket/]]) {
             const proxy = await startOther(answer, {}, tls), { code, err } = await ready(proxy);
             proxy.stop();
             assert.equal(code, 1, err);

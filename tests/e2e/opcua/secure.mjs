@@ -34,7 +34,7 @@ test('users: by password, by certificate, and refused by name', options, async (
     await until('TI-1', good);
     await plant.daemon.stop();
     await start(server.security());
-    await said(/no readings \(the server takes no anonymous users/);
+    await said(/no readings \(the server does not accept anonymous users/);
     await plant.daemon.stop();
     await start('security: none');
     await said(/no readings \(/);

@@ -83,7 +83,7 @@ async function profileWith(args, shape) {
     return context;
 }
 
-// Starts a browser that fills an X display of that size. clockMs: how far its clock is ahead.
+// Starts a browser that fills an X display of that size. clockMs: how far the core's clock is ahead.
 export async function browserOn(display, url, width, height, clockMs = 0) {
     const args = ['--kiosk', '--window-position=0,0', `--window-size=${width},${height}`];
     const context = await profileWith(args, { headless: false, viewport: null, env: { ...process.env, DISPLAY: display } });

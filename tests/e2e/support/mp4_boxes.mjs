@@ -41,7 +41,7 @@ function patched(path, at, hex) {
 }
 
 const TRAK = 'moov/trak', STBL = `${TRAK}/mdia/minf/stbl`, AVC1 = `${STBL}/stsd/avc1`;
-const else_ = (type) => `its box ${type} says something else`, none = (type) => `a box that none of our films has: ${type}`;
+const else_ = (type) => `box ${type} differs`, none = (type) => `unexpected box ${type}`;
 
 // Returns [what, bytes, why] for each alteration. Sample offsets are not adjusted: verification refuses the boxes first.
 export function alteredFilms(film) {
@@ -52,8 +52,8 @@ export function alteredFilms(film) {
         ['matrix of BT.709', alter(patched(`${AVC1}/colr`, 16, '0001')), else_('colr')],
         ['limited range', alter(patched(`${AVC1}/colr`, 18, '00')), else_('colr')],
         ['an ICC profile', alter(patched(`${AVC1}/colr`, 8, '70726f66')), else_('colr')],
-        ['no colours', alter(without(`${AVC1}/colr`)), 'its box colr is missing'],
-        ['colours twice', alter(beside(`${AVC1}/colr`, box('colr', '6e636c780009001000090080'))), 'its box colr is there twice'],
+        ['no colours', alter(without(`${AVC1}/colr`)), 'box colr is missing'],
+        ['colours twice', alter(beside(`${AVC1}/colr`, box('colr', '6e636c780009001000090080'))), 'box colr occurs twice'],
         ['long pixels', alter(into(AVC1, box('pasp', '0000000200000001'))), else_('pasp')],
         ['a clean aperture', alter(into(AVC1, box('clap', '00'.repeat(32)))), none('clap')],
         ['another gamma', alter(into(AVC1, box('gama', '00010000'))), none('gama')],
@@ -69,14 +69,14 @@ export function alteredFilms(film) {
             if (at === `${TRAK}/tkhd`)
                 one.writeUInt16BE(one.readUInt16BE(84) + 16, 84);
             return null;
-        }), 'its box avc1 says another size'],
+        }), 'the size in box avc1 differs'],
         ['a hidden track', alter(patched(`${TRAK}/tkhd`, 11, '00')), else_('tkhd')],
         ['played faster', alter(patched('moov/mvhd', 28, '00020000')), else_('mvhd')],
         ['blended', alter(patched(`${TRAK}/mdia/minf/vmhd`, 12, '0024ffff')), else_('vmhd')],
         ['two edits', alter((one, at) => (at === `${TRAK}/edts/elst`
             ? [box('elst', `0000000000000002${one.toString('hex', 16, 28)}${one.toString('hex', 16, 28)}`)] : null)), else_('elst')],
         ['a picture that stands still', alter(patched(`${TRAK}/edts/elst`, 24, '00000000')), else_('elst')],
-        ['another track', alter((one, at) => (at === TRAK ? [one, one] : null)), 'its box trak is there twice'],
+        ['another track', alter((one, at) => (at === TRAK ? [one, one] : null)), 'box trak occurs twice'],
         ['samples of another file', alter((one, at) => (at === `${TRAK}/mdia/minf/dinf`
             ? [box('dinf', '0000001c6472656600000000000000010000000c75726c2000000000')] : null)), else_('dref')],
         ['two kinds of samples', alter(patched(`${STBL}/stsd`, 12, '00000002')), else_('stsd')],
@@ -84,7 +84,7 @@ export function alteredFilms(film) {
         ['a picture of the cover', alter(into('moov/udta', box('covr', '00'))), none('covr')],
         ['pieces', alter(into('moov', box('mvex', ''))), none('mvex')],
         ['a piece behind', Buffer.concat([film, box('moof', '')]), none('moof')],
-        ['bytes behind', Buffer.concat([film, Buffer.from('more')]), 'bytes behind the last one'],
+        ['bytes behind', Buffer.concat([film, Buffer.from('more')]), 'bytes follow the last one'],
         ['a film within free space', alter((one, at) => (at === 'free' ? [box('free', '00')] : null)), else_('free')],
     ];
 }
