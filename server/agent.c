@@ -33,7 +33,7 @@ static int print_line(const struct agent_state *state, char *line, size_t size)
 {
     int free_percent = state->busy_percent < 99 ? 100 - state->busy_percent : 1;
     if (state->drains)
-        return snprintf(line, size, "down #it is drained\n");
+        return snprintf(line, size, "down #draining\n");
     return snprintf(line, size, "up %d%%\n", state->has_core ? free_percent : 1);
 }
 

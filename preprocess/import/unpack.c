@@ -73,13 +73,13 @@ static const char *copy(const struct archive_reading *from, FILE *to, size_t mos
     size_t total = 0;
     for (int count; (count = read_block(from, block)) != 0; total += (size_t)count) {
         if (count < 0)
-            return "its archive is broken";
+            return "the archive is damaged";
         if (total + (size_t)count > most)
-            return "its archive grows to more than 200 times its size";
+            return "the archive unpacks to more than 200 times its size";
         if (fwrite(block, 1, (size_t)count, to) != (size_t)count)
             return strerror(errno);
     }
-    return total > 0 ? NULL : "its archive is empty";
+    return total > 0 ? NULL : "the archive is empty";
 }
 
 /* Closes an archive. Returns whether its data was complete and matched the checksum. */
@@ -143,12 +143,12 @@ static const char *open_file(unzFile zip, const char *ending, struct text *said)
         }
     }
     if (count == 0)
-        return xml ? FORMAT_IFC_XML : "its archive holds no model";
+        return xml ? FORMAT_IFC_XML : "the archive contains no model";
     if (locked)
         return "its archive needs a password: pack it without one";
     if (count > 1)
         text_add(said, "left out: %zu other models of its archive; read is %s\n", count - 1, taken);
-    return unzLocateFile(zip, taken, 1) == UNZ_OK && unzOpenCurrentFile(zip) == UNZ_OK ? NULL : "its archive is broken";
+    return unzLocateFile(zip, taken, 1) == UNZ_OK && unzOpenCurrentFile(zip) == UNZ_OK ? NULL : "the archive is damaged";
 }
 
 bool unpack(const char *path, const char *output, struct text *said, char *why, size_t why_bytes)
@@ -162,14 +162,14 @@ bool unpack(const char *path, const char *output, struct text *said, char *why, 
     if (from.zip)
         reason = open_file(from.zip, ending_of(output), said);
     else if (!from.gzip || gzdirect(from.gzip))
-        reason = "it is neither a ZIP nor a gzip file";
+        reason = "not a ZIP or gzip file";
     FILE *to = reason ? NULL : fopen(output, "wb");
     if (!reason)
         reason = to ? copy(&from, to, most) : strerror(errno);
     if (to && fclose(to) != 0 && !reason)
         reason = strerror(errno);
     if (!finish(&from) && !reason)
-        reason = "its archive is broken: it is cut off, or its checksum is wrong";
+        reason = "the archive is damaged: truncated, or with a wrong checksum";
     if (reason)
         snprintf(why, why_bytes, "%s", reason);
     return !reason;

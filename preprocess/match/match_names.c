@@ -153,7 +153,7 @@ bool method_name_within(const struct matcher *matcher, const struct match_subjec
         return false;
     const char *what = out->candidates.nodes[0] >= 0 ? node_name(matcher, &out->candidates) : id_of(matcher, &out->candidates);
     snprintf(out->reason, sizeof(out->reason), "its %s has '%.60s' in it%s", in_name ? "name" : "path", what,
-             out->confidence < 0.9 ? ", but grown together with more" : "");
+             out->confidence < 0.9 ? ", but without a separator around it" : "");
     return true;
 }
 

@@ -168,7 +168,7 @@ bool method_number(const struct matcher *matcher, const struct match_subject *su
     snprintf(out->reason, sizeof(out->reason), "loop %.30s: equipment number %.30s%s", number->text, text,
              other_area   ? ", but the part before it is not that of the equipment"
              : same_width ? ""
-                          : ", written with another number of zeros");
+                          : ", with another number of leading zeros");
     return true;
 }
 

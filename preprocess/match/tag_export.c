@@ -176,7 +176,7 @@ static void read_studio(struct tag_export *list, const struct cell_table *table,
         mem_free(with);
     }
     if (comments > 0)
-        text_add(&list->remarks, "%zu comments describe elements of tags: they are no tags\n", comments);
+        text_add(&list->remarks, "%zu comments describe elements of tags and are skipped\n", comments);
 }
 
 /* --- lists whose first lines contain a row of column names ----------------------------------------------------------------------- */
@@ -382,7 +382,7 @@ static bool read_workbook(struct tag_export *list, const char *path, char *why, 
     if (good && book.sheets > 1)
         text_add(&list->remarks, "the list is sheet '%.60s' of %zu\n", book.name, book.sheets);
     if (good && book.others.length > 0)
-        text_add(&list->remarks, "other sheets have a header, too, and are not read: %s\n", book.others.at);
+        text_add(&list->remarks, "other sheets with a header are not read: %s\n", book.others.at);
     table_finish(&book.best);
     text_finish(&book.others);
     mem_free(book.name);

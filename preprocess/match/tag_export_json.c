@@ -489,8 +489,8 @@ bool tag_export_read_json(struct tag_export *list, const char *text, size_t leng
     reader.types = json_object();
     index_types(&reader, root, "", 0);
     add_node(&reader, &(struct layered_node){ { root }, 1 }, NULL, "", 0);
-    say(list, &reader.unknown, "instances are of a type that the export does not have; export the folder of types, too");
-    say(list, &reader.circular, "instances are of a type that contains itself: left out below there");
+    say(list, &reader.unknown, "instances have a type that is not in the export; export the folder of types too");
+    say(list, &reader.circular, "instances have a type that contains itself: its inner copies are left out");
     say(list, &reader.unresolved, "addresses refer to parameters that have no value");
     say(list, &reader.without, "units, ranges and descriptions are bound to something without a value: left out");
     if (reader.too_deep || reader.too_many)

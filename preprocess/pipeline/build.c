@@ -431,7 +431,7 @@ static void *make_file(void *arg, size_t bytes)
     struct build *build = arg;
     int status = folder_draft(&build->output->file, build->input->folder, build->input->key, bytes);
     if (status != 0)
-        wrong(build->why, "its file of %zu bytes cannot be written into %s: %s", bytes, build->input->folder, strerror(-status));
+        wrong(build->why, "the asset's file of %zu bytes cannot be written to %s: %s", bytes, build->input->folder, strerror(-status));
     return build->output->file.bytes;
 }
 
@@ -475,14 +475,14 @@ static bool lay_out(struct build *build, const struct clusters *clusters)
     memcpy(parts.origin_m, g->origin_m, sizeof(parts.origin_m));
     size_t size;
     /* error text in case asset_build() fails for lack of memory; a later failure overwrites it */
-    wrong(build->why, "out of memory for its file");
+    wrong(build->why, "out of memory for the asset's file");
     void *bytes = asset_build(&parts, &size);
     if (bytes && build->write_error)
-        return wrong(build->why, "its distances cannot be written into %s: %s", input->folder, strerror(build->write_error));
+        return wrong(build->why, "the asset's distances cannot be written to %s: %s", input->folder, strerror(build->write_error));
     if (!bytes)
         return false;
     /* check the file as a reader would, because an invalid file must not be written */
-    return asset_view_fresh(&output->view, bytes, size, view_why) || wrong(build->why, "its file would be wrong: %s", view_why);
+    return asset_view_fresh(&output->view, bytes, size, view_why) || wrong(build->why, "the asset's file would be invalid: %s", view_why);
 }
 
 static bool build_file(struct build *build)

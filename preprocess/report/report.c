@@ -73,7 +73,7 @@ static void print_assets(const struct text_report *report)
         text_table_add(&table, "%s", r->skipped_points ? NUMBER(r->skipped_points) : "");
         text_table_add(&table, "%.2f", asset->seconds);
     }
-    print(report, "Assets (added: vertices that preparing added; repeated: triangles there twice; lines, points: primitives passed over)",
+    print(report, "Assets (added: vertices that preparing added; repeated: duplicate triangles; lines, points: primitives skipped)",
           &table);
 }
 
@@ -108,7 +108,9 @@ static void print_surfaces(const struct text_report *report)
         else
             text_table_add(&table, "%.2f", 100 * s->heat_disagreement);
     }
-    print(report, "Surfaces of assets with sensors, before > after bridging (differ: the two ways to find distances; -: not compared)",
+    print(report,
+          "Surfaces of assets with sensors, before > after bridging (differ: largest relative difference between the two distance methods; "
+          "-: not compared)",
           &table);
 }
 
@@ -140,8 +142,8 @@ static void print_clouds(const struct text_report *report)
     }
     if (any)
         print(report,
-              "Distances by the heat method on a point cloud (differ: from ours, of the largest; reached alone: through what is thin; ours "
-              "differ: from the heat method on the mesh)",
+              "Distances by the heat method on a point cloud (differ: from exact distances; reached alone: only the point cloud gets "
+              "there, through thin walls; ours differ: from the heat method on the mesh)",
               &table);
     else
         text_table_finish(&table);
@@ -172,7 +174,7 @@ static void print_levels(const struct text_report *report)
         }
     }
     print(report,
-          "Levels of detail, before and after splitting (edges left though the field errs by more than a step of colour: by so many steps)",
+          "Levels of detail, before and after splitting (edges left: edges whose error still exceeds one step of colour, and by how much)",
           &table);
 }
 
@@ -204,7 +206,7 @@ static void print_times(const struct text_report *report)
         else
             text_table_add(&table, "%s", "");
     }
-    print(report, "Seconds by stage, when it was built; some stages run side by side", &table);
+    print(report, "Seconds by stage of each build; some stages run in parallel", &table);
 }
 
 struct shown_sensor {

@@ -103,8 +103,8 @@ static void add_powers(struct concerns *concerns, const struct prepare *prepare,
         }
         if (sensors > 1 && group->interpolation == INTERPOLATION_SHEPARD && group->power >= HIGH_POWER)
             add(concerns, asset, 1 + steps / 255,
-                mem_printf("along its surface, '%s' may err by up to %.0f steps of colour (1/255 of the range): power %g makes that of "
-                           "distances that are true to %.1f %%",
+                mem_printf("along its surface, '%s' may err by up to %.0f steps of colour (1/255 of the range): with power %g, distance "
+                           "errors of %.1f %% cause this",
                            group->id, steps, group->power, 100 * DISTANCE_ERROR));
     }
 }

@@ -333,7 +333,7 @@ test('two that write for one plant: the second is refused; and takes over when t
     const first = plant.daemon, port = plant.port;
     configure({ keep: true, folder: 'other' });
     await plant.startDaemon();
-    await plant.daemon.line(/another Plantcast writes for plant 'Two boxes' there/);
+    await plant.daemon.line(/another daemon already writes plant 'Two boxes'/);
     assert.equal(await metric('postgres_up'), 0);
     assert.ok(port !== plant.port);
     await first.stop();

@@ -85,7 +85,7 @@ CASE(test_by_name)
     expect(f, "E101_TIC_01", "", MATCH_SURE, "E-101", "its name has 'E-101' in it");
     expect(f, "Plant/e_101/PT-7", "", MATCH_SURE, "E-101", "its name has 'E-101' in it");
     expect(f, "P-205-A.PV", "", MATCH_SURE, "P-205A", "has its name");
-    expect(f, "E-101-B_TT01", "", MATCH_LIKELY, "E-101", "grown together");
+    expect(f, "E-101-B_TT01", "", MATCH_LIKELY, "E-101", "without a separator");
     expect(f, "TT_Radiator-583216", "", MATCH_SURE, "M_Radiator:25:583216", "number and other parts");
     expect(f, "ART11O5BA-TT01", "", MATCH_SURE, "-ART1105BA-", "O for 0");
     expect(f, "ARTT1105BA.TT01", "", MATCH_SURE, "-ART1105BA-", "");

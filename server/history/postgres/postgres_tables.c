@@ -92,7 +92,7 @@ bool postgres_tables_open(struct postgres_tables *tables, struct postgres_link *
     int64_t locked = ask_number(link, lock, NULL);
     mem_free(lock);
     if (locked == 0)
-        snprintf(why, POSTGRES_WHY_BYTES, "another Plantcast writes for plant '%s' there", plant->name);
+        snprintf(why, POSTGRES_WHY_BYTES, "another daemon already writes plant '%s' to this database", plant->name);
     return locked > 0;
 }
 

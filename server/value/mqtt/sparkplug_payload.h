@@ -43,7 +43,7 @@ void sparkplug_payload_finish(struct sparkplug_payload *payload);
 /* Reads a metric's value as `type`: the metric's own type, or the type in its birth certificate if it states none. Returns false if the
  * value is not a number. */
 bool sparkplug_number(const struct sparkplug_metric *metric, uint32_t type, double *out);
-/* Returns the name of a type, such as "Int32"; "a type that is unknown" for a number that is no type. */
+/* Returns the name of a type, such as "Int32"; "an unknown type" for a number that is no type. */
 const char *sparkplug_type_name(uint32_t type);
 /* Returns the session number (bdSeq) in a birth or death certificate; -1: it has none. */
 int64_t sparkplug_bd_seq(const struct sparkplug_payload *payload);
