@@ -55,7 +55,7 @@ byte_span view_span(const gltf_work &w, int number, uint64_t offset, uint64_t el
                     const std::string &what)
 {
     if (number < 0 || static_cast<size_t>(number) >= w.parsed.bufferViews.size())
-        refuse("%s: bufferView %d does not exist", what.c_str(), number);
+        refuse("%s: there is no bufferView %d", what.c_str(), number);
     const tinygltf::BufferView &view = w.parsed.bufferViews[static_cast<size_t>(number)];
     const document_bytes &buffer = w.document->buffers[view.buffer];
     uint64_t stride = strided && view.byteStride ? view.byteStride : element;

@@ -172,7 +172,7 @@ static bool index_good(const struct rule_check *c, const char *path, const json_
     if (!whole(value, &index))
         return object_wrong(c, "%s is not a whole number", path);
     if (index < 0 || (target && (size_t)index >= json_array_size(json_object_get(c->root, target))) || index > INT32_MAX)
-        return object_wrong(c, "%s: %s %lld does not exist", path, target ? one_of(target) : "such number:", (long long)index);
+        return object_wrong(c, "%s: there is no %s %lld", path, target ? one_of(target) : "such number:", (long long)index);
     return true;
 }
 

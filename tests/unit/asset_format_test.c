@@ -333,7 +333,7 @@ TEST(wrong_primitives_and_levels_are_refused)
     refused_sealed(&f, "level 0: the first 3 vertices, expected 4");
     f = build(&good);
     ((struct asset_level *)part(&f, ASSET_LEVELS))[1].first_primitive = 0;
-    refused_sealed(&f, "level 1: primitives 0+1, expected them to begin at 1 of 2");
+    refused_sealed(&f, "level 1: primitives 0+1, expected a start at 1 of 2");
     f = build(&good);
     ((struct asset_level *)part(&f, ASSET_LEVELS))[1].primitive_count = UINT32_MAX;
     refused_sealed(&f, "level 1: primitives");

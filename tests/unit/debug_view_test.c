@@ -275,6 +275,6 @@ CASE(colors_follow_the_distance)
     prep_case_expect(c, "$PLANT --debug-view --sensor T-NONE", 1);
     prep_case_says(&c->err, "tag T-NONE is not a sensor");
     prep_case_expect(c, "$PLANT --debug-view=/proc/no/such --asset APART", 1);
-    prep_case_says(&c->err, "cannot be made");
+    prep_case_says(&c->err, "cannot be created");
     prep_case_expect(c, "$PLANT --sensor T-GAP", 2);
 }

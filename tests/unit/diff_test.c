@@ -157,8 +157,8 @@ static void check_tags(const json_t *root)
     assert_true(json_is_true(json_object_get(changed, "moved")));
     assert_true(json_is_false(json_object_get(below, "moved")));
     assert_orphan(root, "T-MOVED", "m from the surface");
-    assert_orphan(root, "T-GONE", "its asset GONE is not there: no node's name matches");
-    assert_orphan(root, "T-DROPPED", "its asset DROPPED is not in the plant file");
+    assert_orphan(root, "T-GONE", "asset GONE is missing: no node's name matches");
+    assert_orphan(root, "T-DROPPED", "asset DROPPED is not in the plant file");
     assert_orphan(root, "T-NODE", "the model has no node 'TT-2'");
     assert_int_equal(json_array_size(json_object_get(root, "orphans")), 4);
 }

@@ -182,7 +182,7 @@ CASE(wrong_numbers_are_refused)
     refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":12},\"indices\":1}") ACCESSORS "}",
             "4 elements do not fit into bufferView 0");
     refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":13},\"indices\":1}") ACCESSORS "}", "elements are more than");
-    refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":14},\"indices\":1}") ACCESSORS "}", "bufferView 7 does not exist");
+    refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":14},\"indices\":1}") ACCESSORS "}", "there is no bufferView 7");
     refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":99},\"indices\":1}") ACCESSORS "}", "there is no accessor 99");
     refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":1},\"indices\":1}") ACCESSORS "}", "1 components, expected 3");
     refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":0,\"NORMAL\":15},\"indices\":1}") ACCESSORS "}",

@@ -309,8 +309,8 @@ CASE(surroundings_are_read)
     assert_int_equal(plant_find_environment(f->plant, "sky"), 0);
     assert_int_equal(plant_find_environment(f->plant, "yard"), -1);
     load_with(f, 1, "plant: { name: P }\nenvironment: [hall.hdr, none.hdr, ./hall.hdr, sky.hdr, yard.exr, 3.5, {}]");
-    FOUND(f, { "plant.yaml", 2, 25, "none.hdr" }, { "plant.yaml", 2, 35, "the name 'hall' is taken" },
-          { "plant.yaml", 2, 47, "the name 'sky' is taken" }, { "plant.yaml", 2, 56, "yard.exr" }, { "plant.yaml", 2, 66, "3.5" },
+    FOUND(f, { "plant.yaml", 2, 25, "none.hdr" }, { "plant.yaml", 2, 35, "the name 'hall' is already used" },
+          { "plant.yaml", 2, 47, "the name 'sky' is already used" }, { "plant.yaml", 2, 56, "yard.exr" }, { "plant.yaml", 2, 66, "3.5" },
           { "plant.yaml", 2, 71, "environment: expected the path of a picture, found" });
     mem_free(one);
     mem_free(two);
@@ -404,7 +404,7 @@ CASE(wrong_types_are_named)
     FOUND(f, { "plant.yaml", 3, 58, "breaks: expected a number, found 'x'" },
           { "plant.yaml", 3, 66, "breaks: expected more than the preceding 0.5, found 0.3" },
           { "plant.yaml", 3, 82, "isolines: expected a list" },
-          { "plant.yaml", 3, 92, "scale: a logarithmic one needs min above 0, found 0" });
+          { "plant.yaml", 3, 92, "scale: a logarithmic scale needs min above 0, found 0" });
 }
 
 CASE(bad_choices_list_the_allowed)
@@ -489,8 +489,8 @@ CASE(keys_without_meaning_are_errors)
           { "plant.yaml", 6, 3, "a source needs the key 'device'" }, { "plant.yaml", 7, 32, "no.csv' cannot be read" },
           { "plant.yaml", 7, 46, "port: has no meaning for a replay" }, { "plant.yaml", 8, 42, "hosts: expected host or hosts, not both" },
           { "plant.yaml", 8, 3, "h:502 is also used by source a: the device gets two connections" },
-          { "plant.yaml", 8, 3, "h:502 is source b's too" },
-          { "plant.yaml", 9, 33, "hosts: expected 1 to 4, found 5" }, { "plant.yaml", 11, 50, "device: '/dev/a' is source f's already" },
+          { "plant.yaml", 8, 3, "h:502 is also used by source b" },
+          { "plant.yaml", 9, 33, "hosts: expected 1 to 4, found 5" }, { "plant.yaml", 11, 50, "device: '/dev/a' is already used by source f" },
           { "plant.yaml", 12, 53, "heartbeat needs the key 'tag'" },
           { "plant.yaml", 12, 66, "longest_s: expected a number from 0.1 to 86400" });
 }
@@ -579,15 +579,15 @@ CASE(all_errors_come_at_once)
 CASE(syntax_errors_have_a_place)
 {
     load_with(f, 2, "assets: [{ id: A, model: m.glb }");
-    FOUND(f, { "plant.yaml", 3, 1, "not YAML: did not find expected ',' or ']', while parsing a flow sequence that begins at line 2" });
+    FOUND(f, { "plant.yaml", 3, 1, "invalid YAML: did not find expected ',' or ']', while parsing a flow sequence that begins at line 2" });
     load_with(f, 1, "plant: { name: 'P }");
-    FOUND(f, { "plant.yaml", 6, 1, "not YAML: found unexpected end of stream" });
+    FOUND(f, { "plant.yaml", 6, 1, "invalid YAML: found unexpected end of stream" });
     load_with(f, 1, "plant: { name: *P }");
-    FOUND(f, { "plant.yaml", 1, 16, "not YAML: found undefined alias" });
+    FOUND(f, { "plant.yaml", 1, 16, "invalid YAML: found undefined alias" });
     load_with(f, 1, "plant:\n\tname: P\n\ttime_zone: UTC");
     FOUND(f, { "plant.yaml", 2, 1, "tab in the indentation" }, { "plant.yaml", 3, 1, "tab in the indentation" });
     load_with(f, 1, "plant: { name: P\x01 }");
-    FOUND(f, { "plant.yaml", 1, 17, "not YAML: control characters are not allowed" });
+    FOUND(f, { "plant.yaml", 1, 17, "invalid YAML: control characters are not allowed" });
     load_with(f, 5, "tags: tags.csv\n---\nplant: 1");
     FOUND(f, { "plant.yaml", 7, 1, "a second document begins here" });
 }
@@ -646,11 +646,11 @@ CASE(files_that_cannot_be_read_are_named)
     assert_int_equal(truncate(path, 64 * 1024 * 1024 + 1), 0);
     f->plant = plant_load(f->path, &f->diag);
     assert_null(f->plant);
-    FOUND(f, { "tags.csv", 0, 0, "larger than 64 MiB" });
+    FOUND(f, { "tags.csv", 0, 0, "larger than the limit of 64 MiB" });
     assert_int_equal(truncate(f->path, 64 * 1024 * 1024 + 1), 0);
     plant_case_forget(f);
     f->plant = plant_load(f->path, &f->diag);
-    FOUND(f, { "plant.yaml", 0, 0, "larger than 64 MiB" });
+    FOUND(f, { "plant.yaml", 0, 0, "larger than the limit of 64 MiB" });
     mem_free(path);
 }
 

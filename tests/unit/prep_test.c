@@ -473,7 +473,7 @@ CASE(what_is_wrong_is_said_with_its_place)
     prep_case_expect(s, "$PLANT --memory 100", 1);
     prep_case_says(&s->err, "plant.yaml: error: 0.00 million triangles are too many: 0.10 GB of memory hold 0.00 million.");
     prep_case_expect(s, "$PLANT --output /proc/no/such/place", 1);
-    prep_case_says(&s->err, "cannot be made");
+    prep_case_says(&s->err, "cannot be created");
 }
 
 CASE(wrong_use_is_told_from_wrong_input)

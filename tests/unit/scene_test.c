@@ -234,7 +234,7 @@ CASE(broken_files_are_refused)
 CASE(broken_manifests_are_refused)
 {
     static const char *const cases[][2] = {
-        { "{\"format\": 2, \"assets\": [{\"id\": \"A\", \"file\": \"1.asset\", \"recipe\": \"1\"}]}", "asset B: is not in" },
+        { "{\"format\": 2, \"assets\": [{\"id\": \"A\", \"file\": \"1.asset\", \"recipe\": \"1\"}]}", "asset B is not in" },
         { "{\"format\": 1, \"assets\": []}", "expected format 2" },
         { "{\"format\": 2}", "expected a list of assets" },
         { "{\"format\": 2, \"assets\": [{\"id\": \"A\", \"file\": \"../1.asset\"}]}", "expected an id, the name of a file" },

@@ -294,7 +294,7 @@ CASE(tests_can_fail_and_pause_it)
 CASE(control_says_what_is_wrong)
 {
     start(s);
-    assert_string_equal(control(s, "set nobody 1"), "error: no tag nobody");
+    assert_string_equal(control(s, "set nobody 1"), "error: unknown tag nobody");
     assert_string_equal(control(s, "set int16 much"), "error: much is not a number");
     assert_string_equal(control(s, "set int16 nan"), "error: the data type of int16 cannot hold nan");
     assert_string_equal(control(s, "dance"), "error: unknown command dance");

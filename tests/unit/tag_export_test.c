@@ -623,7 +623,7 @@ TEST(test_refused)
         { "Tag,Unit\n", "no tags" }, { "PK\3\4rest", "not a spreadsheet" }, { "\xd0\xcf\x11\xe0", "save it as .xlsx" },
         { "[1, 2]", "no tags" },
         { "<Tags><Tag name=\"T1\"/></Tags>", "it is XML, which is not read" },
-        { "{\"tags\":[{\"name\":\"P\",\"tagType\":\"UdtInstance\",\"typeId\":\"Pump\"}]}", "no tags in it: 1 instances are of a" },
+        { "{\"tags\":[{\"name\":\"P\",\"tagType\":\"UdtInstance\",\"typeId\":\"Pump\"}]}", "no tags in it: 1 instances have a type" },
     };
     struct tag_export list;
     for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {

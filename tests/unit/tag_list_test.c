@@ -215,7 +215,7 @@ CASE(addresses_and_types_are_checked)
           { "tags.csv", 7, 9, "Data Type: expected Boolean, since '00001' is one bit, found 'Word'" },
           { "tags.csv", 8, 11, "Data Type: expected Boolean, since '40001.3' is one bit, found 'Short'" },
           { "tags.csv", 9, 3, "int32 needs 2 registers, but the last register is 65535" },
-          { "tags.csv", 10, 3, "float64 takes 4 registers" });
+          { "tags.csv", 10, 3, "float64 needs 4 registers" });
     plant_case_load(c, yaml, "Tag Name,Data Type\nA,Word\n");
     FOUND(c, { "tags.csv", 1, 1, "the header has no column 'Address'" });
     plant_case_load(c, yaml_no_source, "Tag Name\nA\n"); /* a plant without sources shows values that arrive by other means */

@@ -56,7 +56,7 @@ static void report_syntax(struct yaml_reader *reader, const yaml_parser_t *parse
     if (parser->context)
         yaml_error(reader, place, "invalid YAML: %s, %s that begins at line %zu", problem, parser->context, parser->context_mark.line + 1);
     else
-        yaml_error(reader, place, "not YAML: %s", problem);
+        yaml_error(reader, place, "invalid YAML: %s", problem);
 }
 
 static void report_second_document(struct yaml_reader *reader, yaml_parser_t *parser, const char *text)
