@@ -116,7 +116,7 @@ test('what is loaded when it is needed, and is missing or damaged, is named', { 
         assert.match(err, why);
     };
     refused(await runIn(bin, ...film(url)), /bin\/plantcast-film: No such file/);
-    refused(await probe(), /h264: plantcast-h264\.so is missing: it is neither beside \S+\/bin\/plantcast nor in \.\.\/lib\/plantcast/);
+    refused(await probe(), /h264: plantcast-h264\.so is missing: neither next to \S+\/bin\/plantcast nor in \.\.\/lib\/plantcast/);
     writeFileSync(join(modules, H264), 'no program');
     refused(await probe(), /lib\/plantcast\/plantcast-h264\.so cannot be loaded: .*(too short|invalid ELF)/);
     copyFileSync(join(BIN, H264), join(modules, H264));

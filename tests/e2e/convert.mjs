@@ -68,7 +68,7 @@ test('a model is made when it must be, and only then', { skip }, () => withPlant
 }));
 
 test('what fails is one line, and leaves the model as it was', { skip }, () => withPlant(({ folder, write, prep }) => {
-    for (const [command, why, more] of [['echo first >&2; echo no licence >&2; exit 3', /could not be made: no licence/],
+    for (const [command, why, more] of [['echo first >&2; echo no licence >&2; exit 3', /could not be created: no licence/],
         ['kill -SEGV $$', /the command crashed \(SIGSEGV\)/],
         ['sleep 1000', /the command was ended after 1 s \(timeout_s\)/, ', timeout_s: 1'],
         ['true', /its output \(\$2\): No such file/], ['echo x >"$2"', /its output \(\$2\): is not a glTF/],

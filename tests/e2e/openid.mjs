@@ -161,7 +161,7 @@ test('answers that are not to be believed: each is refused by name, and nobody i
         ['wrong nonce', /nonce/, (claims) => { claims.nonce = 'other'; }],
         ['no nonce', /nonce/, (claims) => { delete claims.nonce; }],
         ['an unknown key', /key that the provider does not publish/, (claims, header) => { header.kid = 'other'; }],
-        ['a changed signature', /signature is wrong/, () => {}, () => 'AAAA'],
+        ['a changed signature', /signature is invalid/, () => {}, () => 'AAAA'],
         ['no role', /none of the groups of kim has a role/, (claims) => { claims.groups = ['cleaners']; }],
         ['no groups', /none of the groups/, (claims) => { delete claims.groups; }],
     ];

@@ -370,7 +370,7 @@ test('a film is good picture by picture; one that was changed, cut or made anew 
         assert.match(told.err, why);
     };
     const other = runProgram('plantcast', ['verify', film, '--key', path('other.pub')]);
-    assert.match(other.err, /picture 1: it was signed by another key/);
+    assert.match(other.err, /picture 1: it was signed with another key/);
     const anew = (name, ...how) => {
         const { status, stderr } = spawnSync('ffmpeg', ['-v', 'error', '-y', '-i', film, '-map_metadata', '0', '-movflags',
             'use_metadata_tags', ...how, path(name)], { encoding: 'utf8' });
