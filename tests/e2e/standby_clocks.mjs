@@ -58,7 +58,8 @@ for (const off_s of [HOUR_S, -HOUR_S])
             await two.leader();
             await two.start('two');
             await two.followed(one);
-            await other.program.line(new RegExp(`the core's clock is 3[56]\\d\\d\\.\\d s ${off_s > 0 ? 'behind' : 'ahead of'} this machine's`));
+            const side = off_s > 0 ? 'behind' : 'ahead of';
+    await other.program.line(new RegExp(`the core's clock is 3[56]\\d\\d\\.\\d s ${side} this machine's`));
             await until('the alarm at the standby', async () => (await alarm(other.node))?.state === 'unacknowledged');
             const anna = await one.node.client({}, { token: two.nodes.tokens.operator });
             anna.say({ type: 'alarm', seq: 1, action: 'acknowledge', alarms: [['TI-1', 'H']] });

@@ -489,8 +489,8 @@ CASE(keys_without_meaning_are_errors)
           { "plant.yaml", 6, 3, "a source needs the key 'device'" }, { "plant.yaml", 7, 32, "no.csv' cannot be read" },
           { "plant.yaml", 7, 46, "port: has no meaning for a replay" }, { "plant.yaml", 8, 42, "hosts: expected host or hosts, not both" },
           { "plant.yaml", 8, 3, "h:502 is also used by source a: the device gets two connections" },
-          { "plant.yaml", 8, 3, "h:502 is also used by source b" },
-          { "plant.yaml", 9, 33, "hosts: expected 1 to 4, found 5" }, { "plant.yaml", 11, 50, "device: '/dev/a' is already used by source f" },
+          { "plant.yaml", 8, 3, "h:502 is also used by source b" }, { "plant.yaml", 9, 33, "hosts: expected 1 to 4, found 5" },
+          { "plant.yaml", 11, 50, "device: '/dev/a' is already used by source f" },
           { "plant.yaml", 12, 53, "heartbeat needs the key 'tag'" },
           { "plant.yaml", 12, 66, "longest_s: expected a number from 0.1 to 86400" });
 }
