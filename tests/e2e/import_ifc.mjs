@@ -7,6 +7,7 @@ import { join } from 'node:path';
 import { test } from 'node:test';
 import { inFolder } from './support/folders.mjs';
 import { ifcOf, KINDS } from './support/ifc_kinds.mjs';
+import { OPENINGS, UNCUT } from './support/ifc_opening_kinds.mjs';
 import { ifc } from './support/ifc_sample.mjs';
 import { volumeOf } from './support/glb_volume.mjs';
 import { secondReader } from './support/second_ifc_reader.mjs';
@@ -88,6 +89,31 @@ test('every kind of shape has the volume and size that geometry gives, area and 
         }
     console.log(`# ${right} of ${right + wrong.length} cases of ${KINDS.length} kinds are right, ${compared} compared with a second one`);
     assert.ok(!second || compared > 40, `${compared} cases compared`);
+    assert.ok(!hasOcct || wrong.length === 0, wrong.join('\n'));
+}));
+
+test('every kind of opening is cut by web-ifc or Open CASCADE, or named', { skip }, () => inFolder((folder) => {
+    const wrong = [], imported = (lines, type) => {
+        const path = join(folder, 'opening.ifc'), plant = join(folder, 'plant');
+        writeFileSync(path, ifcOf('IFC4', lines, type));
+        const { status, stdout, stderr } = plantcast(['import', path, '-o', plant]);
+        assert.equal(status, 0, stderr);
+        const { volume } = volumeOf(join(plant, 'opening.glb'));
+        rmSync(plant, { recursive: true });
+        return { mm3: volume * 1e9, stdout };
+    };
+    for (const [name, lines, mm3, type] of OPENINGS) {
+        const { mm3: found, stdout } = imported(lines, type);
+        console.log(`# ${name}: ${(found / mm3 * 100).toFixed(1)} % of the volume`);
+        if (Math.abs(found / mm3 - 1) > 0.016 || /is not cut|error/.test(stdout.replaceAll('web-ifc: [GetRefArgument()]', '')))
+            wrong.push(`${name}: ${found} of ${mm3}: ${stdout}`);
+    }
+    for (const [name, lines, why] of UNCUT) {
+        const { stdout } = imported(lines);
+        assert.match(stdout, /IFC4: 1 elements with a shape, 0 lost, 0 storeys, 0 openings cut/, name);
+        assert.match(stdout, new RegExp(`error: the opening #\\d+ O-6 is not cut from #\\d+ K-1: ${why}`), name);
+    }
+    console.log(`# ${OPENINGS.length - wrong.length} of ${OPENINGS.length} kinds are cut, ${UNCUT.length} of ${UNCUT.length} others named`);
     assert.ok(!hasOcct || wrong.length === 0, wrong.join('\n'));
 }));
 

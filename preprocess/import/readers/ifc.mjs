@@ -8,6 +8,7 @@ import { basename, dirname, extname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { GlbWriter, relativeTo } from './glb_writer.mjs';
 import { collectErrors, findDamaged, findLosses } from './ifc_losses.mjs';
+import { openingLines, uncutOpenings } from './ifc_openings.mjs';
 import { readSolids, takeSolids } from './ifc_solids.mjs';
 
 const CORNERS = 24; // corners of a full circle
@@ -128,7 +129,7 @@ function meshOf(glb, geometries, parts, name) {
 
 // Copies all geometry while web-ifc streams its meshes, because it is not available afterwards.
 function readGeometry(api, id, model) {
-    const shown = new Map(), known = new Map();
+    const shown = new Map(), known = new Map(), cutters = new Map();
     const copy = (geometryId) => {
         const geometry = api.GetGeometry(id, geometryId);
         const vertices = api.GetVertexArray(geometry.GetVertexData(), geometry.GetVertexDataSize()).slice();
@@ -136,9 +137,7 @@ function readGeometry(api, id, model) {
         geometry.delete?.();
         return { vertices, corners };
     };
-    api.StreamAllMeshes(id, (mesh) => {
-        if (NOT_SHOWN.has(model.classOf(mesh.expressID)))
-            return;
+    const take = (to) => (mesh) => {
         const parts = [];
         for (let i = 0; i < mesh.geometries.size(); i++) {
             const { color, geometryExpressID, flatTransformation } = mesh.geometries.get(i), place = Array.from(flatTransformation);
@@ -149,9 +148,15 @@ function readGeometry(api, id, model) {
             parts.push({ color: { ...color }, geometryExpressID, flatTransformation: place });
         }
         if (parts.length > 0)
-            shown.set(mesh.expressID, parts);
-    });
-    return { shown, known, geometries: { of: (geometryId) => known.get(geometryId), made: new Map() } };
+            to.set(mesh.expressID, parts);
+    };
+    const takeShown = take(shown);
+    api.StreamAllMeshes(id, (mesh) => NOT_SHOWN.has(model.classOf(mesh.expressID)) || takeShown(mesh));
+    const openings = [];
+    model.relate(webIfc.IFCRELVOIDSELEMENT, 'RelatingBuildingElement', 'RelatedOpeningElement', (_, opening) => openings.push(opening));
+    if (openings.length > 0)
+        api.StreamMeshes(id, [...new Set(openings)], take(cutters)); // StreamAllMeshes() leaves openings out
+    return { shown, known, cutters, geometries: { of: (geometryId) => known.get(geometryId), made: new Map() } };
 }
 
 function addTree(glb, model, { shown, geometries }, root) {
@@ -229,20 +234,24 @@ async function main([input, output, , , , encoding]) {
     const glb = new GlbWriter('plantcast-import, web-ifc');
     const root = glb.addNode(-1, basename(input, extname(input)), null);
     const geometry = readGeometry(api, id, model), solids = readSolids(join(dirname(output), 'solids.glb'));
-    takeSolids(model, solids, geometry, { styledItem: webIfc.IFCSTYLEDITEM, voids: webIfc.IFCRELVOIDSELEMENT });
+    const findUncut = () => uncutOpenings(model, webIfc.IFCRELVOIDSELEMENT, geometry, solids);
+    const wrong = new Set(solids.elements.size > 0 ? findUncut().flatMap(({ elements }) => elements) : []);
+    takeSolids(model, solids, geometry, { styledItem: webIfc.IFCSTYLEDITEM, voids: webIfc.IFCRELVOIDSELEMENT }, wrong);
+    const uncut = findUncut();
     const { drawn, storeys } = addTree(glb, model, geometry, root);
     errors.stop();
     const isShown = (element) => drawn.has(element) || NOT_SHOWN.has(model.classOf(element));
-    const { lost, lines, ids } = findLosses(model, webIfc.IFCPRODUCT, isShown, solids.failed);
-    askForSolids(join(dirname(output), 'asked.txt'), [...ids, ...findDamaged(model, webIfc.IFCPRODUCT, errors.at())]);
+    const { lost, lines, ids, drawn: drawnInstead } = findLosses(model, webIfc.IFCPRODUCT, isShown, solids.failed);
+    askForSolids(join(dirname(output), 'asked.txt'), [...ids, ...findDamaged(model, webIfc.IFCPRODUCT, errors.at()),
+        ...uncut.flatMap(({ opening, elements }) => [opening, ...elements])]);
     if (drawn.size > 0)
         writeFileSync(output, glb.finished());
-    const openings = [...model.ofType(webIfc.IFCRELVOIDSELEMENT)].length;
+    const openings = [...model.ofType(webIfc.IFCRELVOIDSELEMENT)].length - uncut.length;
     process.stdout.write([`${schema}: ${drawn.size} elements with a shape, ${lost.length} lost, ${storeys} storeys, ${openings} openings ` +
         `cut; ${solids.elements.size} elements by Open CASCADE; of the others circles have ${CORNERS} corners (--chord does not apply)`,
     ...lines.length > 0 ? [`not shown: ${lines.length} elements that are only lines or points: ${lines.slice(0, MAX_NAMED).join(', ')}${
         lines.length > MAX_NAMED ? ', ...' : ''}`.replace(/[\t\n]/g, ' ')] : [],
-    ...lost, ...solids.said, ...errors.lines(model, solids), ''].join('\n'));
+    ...lost, ...openingLines(model, uncut), ...drawnInstead, ...errors.lines(model, solids), ''].join('\n'));
     if (drawn.size === 0)
         throw new Error(`there is no surface in it${lost.length > 0 ? `: ${lost.length} elements have no triangles, such as ` +
             lost[0].split('\t').slice(1).join(', ') : ''}`);

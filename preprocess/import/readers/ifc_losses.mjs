@@ -3,7 +3,7 @@
 const LINES = /Curve|Polyline|IfcLine|Circle|Ellipse|Point|Text|Annotation|GeometricSet|BoundingBox|Vertex|Edge|Alignment/;
 const REFERENCE = 5; // web-ifc's type code of values that refer to a statement
 // Formats a record in the format of findings.h.
-const fields = (...values) => values.map((value) => String(value).replace(/\s+/g, ' ').trim()).join('\t');
+export const fields = (...values) => values.map((value) => String(value).replace(/\s+/g, ' ').trim()).join('\t');
 const MAX_IDS = 20; // maximum number of statement ids listed per kind of error
 
 // Returns the ids of the given statements and of all statements that they refer to, directly or indirectly.
@@ -77,10 +77,11 @@ export function findDamaged(model, product, errors) {
     });
 }
 
-// Returns { lost, lines, ids }: `lost`: a report line (format: findings.h) for each element that has a shape but no triangles; `lines`:
-// names of elements that consist only of lines and points; `ids`: statement ids of the lost elements.
+// Returns { lost, lines, ids, drawn }, of which `lost` and `drawn` are report lines (format: findings.h). lost: elements that have a shape
+// but no triangles. lines: names of elements that consist only of lines and points. ids: statement ids of the lost elements. drawn: items
+// that Open CASCADE cannot build and web-ifc draws.
 export function findLosses(model, product, isShown, failed) {
-    const lost = [], lines = [], ids = [];
+    const lost = [], lines = [], ids = [], named = new Set();
     for (const id of model.ofType(product)) {
         const line = model.line(id), shape = line?.Representation?.value;
         if (!shape || isShown(id))
@@ -93,7 +94,10 @@ export function findLosses(model, product, isShown, failed) {
         const reason = [id, ...items].map((item) => failed.get(item)).find(Boolean);
         const why = items.length === 0 ? 'its representation is empty' : kinds.join(', ') + (reason ? `: ${reason}` : '');
         ids.push(id);
+        items.forEach((item) => named.add(item));
         lost.push(fields('lost', `#${id}`, model.nameOf(id) ?? '', model.classOf(id), line.GlobalId?.value ?? 'no GUID', why));
     }
-    return { lost, lines, ids };
+    const drawn = [...failed].filter(([id]) => !named.has(id) && !model.line(id)?.GlobalId).map(([id, reason]) =>
+        fields('error', 1, `Open CASCADE cannot build #${id} ${model.classOf(id)} (${reason}): it is shown as web-ifc draws it`));
+    return { lost, lines, ids, drawn };
 }

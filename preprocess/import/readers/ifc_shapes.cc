@@ -2,7 +2,11 @@
 /* Finds the items to build by following products to their representations, and tessellates each item once. */
 #include "preprocess/import/readers/ifc_shapes.hh"
 
+#include <BRepAlgoAPI_Cut.hxx>
+#include <BRepBuilderAPI_GTransform.hxx>
+#include <BRepBuilderAPI_Transform.hxx>
 #include <Standard_Failure.hxx>
+#include <TopExp_Explorer.hxx>
 #include <cmath>
 #include <fstream>
 #include <set>
@@ -78,6 +82,7 @@ struct ifc_writer {
     std::map<int, ifc_part> parts; /* built items, by statement id */
     /* by statement id of an item or element that could not be built, and so is left to web-ifc: the reason */
     std::map<int, std::string> failed;
+    std::map<int, std::vector<int>> openings; /* ids of openings, by the element from which they are cut */
     std::set<int> asked; /* ids of elements that web-ifc cannot build, or only in part */
     size_t elements = 0;
 };
@@ -112,14 +117,12 @@ ifc_part add_mesh(ifc_writer *w, const TopoDS_Shape &shape, int id)
     return out;
 }
 
-/* Builds and tessellates an item, unless that was done before. Returns false if the item could not be built; reports the reason once. */
-bool build(ifc_writer *w, const entity &item)
+/* Calls f(). If it throws, keeps the reason for the statement `id` and returns false. */
+template <typename function> bool attempt(ifc_writer *w, int id, const function &f)
 {
     std::string why;
-    if (w->parts.count(item.id) > 0 || w->failed.count(item.id) > 0)
-        return w->parts.count(item.id) > 0;
     try {
-        w->parts[item.id] = add_mesh(w, solid_of(w->in, item, 0), item.id);
+        f();
         return true;
     } catch (const Standard_Failure &e) {
         why = e.GetMessageString()[0] ? e.GetMessageString() : e.DynamicType()->Name();
@@ -128,11 +131,19 @@ bool build(ifc_writer *w, const entity &item)
     } catch (const std::out_of_range &) {
         why = "the file is truncated";
     }
-    w->failed[item.id] = why;
+    w->failed[id] = why;
     return false;
 }
 
-/* --- elements */
+/* Builds and tessellates an item, unless that was done before. Returns false if the item could not be built; reports the reason once. */
+bool build(ifc_writer *w, const entity &item)
+{
+    if (w->parts.count(item.id) > 0 || w->failed.count(item.id) > 0)
+        return w->parts.count(item.id) > 0;
+    return attempt(w, item.id, [&] { w->parts[item.id] = add_mesh(w, solid_of(w->in, item, 0), item.id); });
+}
+
+/* --- items */
 
 /* Returns whether an item, or an operand of a boolean item, is of a type that this program always builds (is_built()). */
 bool wanted(const ifc_model &in, const entity &item, int depth)
@@ -211,26 +222,106 @@ bool is_body(const entity &representation)
     return representation.is("IFCSHAPEREPRESENTATION");
 }
 
-void add_element(ifc_writer *w, const entity &product)
+/* Collects the items that show the body of a product. Returns whether no item is left to web-ifc. */
+bool collect_all(ifc_writer *w, const entity &product, bool all, std::vector<placed_item> *out)
 {
-    static const double zero[3] = { 0, 0, 0 };
-    std::vector<placed_item> items;
     bool whole = true;
     entity shape = w->in.statements.get(product[REPRESENTATION]);
     for (const value &reference : shape[2].list) {
         entity representation = w->in.statements.get(reference);
         if (is_body(representation))
-            collect(w, representation, gp_GTrsf(), 0, w->asked.count(product.id) > 0, &items, &whole);
+            collect(w, representation, gp_GTrsf(), 0, all, out, &whole);
     }
+    return whole;
+}
+
+/* --- openings */
+
+TopoDS_Shape shape_at(const ifc_model &in, int item, const gp_GTrsf &place)
+{
+    TopoDS_Shape shape = solid_of(in, in.statements.get(item), 0);
+    if (place.Form() == gp_Other)
+        return BRepBuilderAPI_GTransform(shape, place, Standard_True).Shape();
+    return BRepBuilderAPI_Transform(shape, place.Trsf(), Standard_True).Shape();
+}
+
+/* Cuts all openings of an element from each of its items, and gives each item the mesh that remains; an item of which nothing remains is
+ * removed. */
+void cut_openings(ifc_writer *w, const entity &product, std::vector<placed_item> *items, std::map<int, ifc_part> *meshes)
+{
+    const ifc_model &in = w->in;
+    std::vector<TopoDS_Shape> cutters;
+    gp_Trsf to_element = object_placement(in, product[PLACEMENT], 0).Inverted();
+    for (int id : w->openings[product.id]) {
+        entity opening = in.statements.get(id);
+        std::vector<placed_item> parts;
+        gp_GTrsf place(to_element * object_placement(in, opening[PLACEMENT], 0));
+        if (!collect_all(w, opening, true, &parts))
+            throw unsupported("its opening #" + std::to_string(id) + " cannot be built");
+        for (const placed_item &part : parts)
+            cutters.push_back(shape_at(in, part.id, place * part.place));
+    }
+    std::vector<placed_item> left;
+    for (const placed_item &item : *items) {
+        TopoDS_Shape shape = shape_at(in, item.id, item.place);
+        for (const TopoDS_Shape &cutter : cutters) {
+            BRepAlgoAPI_Cut cut(shape, cutter);
+            if (!cut.IsDone() || cut.Shape().IsNull())
+                throw unsupported("its openings cannot be cut");
+            shape = cut.Shape();
+        }
+        if (!TopExp_Explorer(shape, TopAbs_FACE).More())
+            continue;
+        (*meshes)[item.id] = add_mesh(w, shape, item.id);
+        left.push_back({ item.id, gp_GTrsf() });
+    }
+    *items = left;
+}
+
+/* Finds the openings of each element. Those of an element without a shape are cut from the elements that it consists of. */
+std::map<int, std::vector<int>> find_openings(const file &in)
+{
+    std::map<int, std::vector<int>> openings, consists_of;
+    in.each([&](int id, const std::string &type) {
+        if (type != "IFCRELVOIDSELEMENT" && type != "IFCRELAGGREGATES")
+            return;
+        try {
+            entity relation = in.get(id);
+            if (type == "IFCRELVOIDSELEMENT")
+                openings[relation[4].id].push_back(relation[5].id);
+            for (const value &part : relation[5].list)
+                consists_of[relation[4].id].push_back(part.id);
+        } catch (const unsupported &) { /* web-ifc reports damaged statements */
+        }
+    });
+    std::map<int, std::vector<int>> out = openings;
+    for (const auto &entry : openings)
+        for (int part : consists_of[entry.first])
+            out[part].insert(out[part].end(), entry.second.begin(), entry.second.end());
+    return out;
+}
+
+/* --- elements */
+
+void add_element(ifc_writer *w, const entity &product)
+{
+    static const double zero[3] = { 0, 0, 0 };
+    std::vector<placed_item> items;
+    std::map<int, ifc_part> meshes;
+    bool asked = w->asked.count(product.id) > 0, whole = collect_all(w, product, asked, &items), cut = false;
     if (items.empty())
         return;
+    if (asked && whole && w->openings.count(product.id) > 0)
+        cut = attempt(w, product.id, [&] { cut_openings(w, product, &items, &meshes); });
     double matrix[16];
     matrix_of(gp_GTrsf(object_placement(w->in, product[PLACEMENT], 0)), 1e-3, true, zero, matrix);
     int node = glb_scene_add_node(w->scene, -1, ("#" + std::to_string(product.id)).c_str(), -1, matrix);
     if (whole)
         glb_scene_set_property(w->scene, node, "whole", "yes");
+    if (cut)
+        glb_scene_set_property(w->scene, node, "cut", "yes");
     for (const placed_item &item : items) {
-        const ifc_part &from = w->parts[item.id];
+        const ifc_part &from = cut ? meshes[item.id] : w->parts[item.id];
         matrix_of(item.place, 1, false, from.origin, matrix);
         glb_scene_add_node(w->scene, node, ("#" + std::to_string(item.id)).c_str(), from.mesh, matrix);
     }
@@ -265,7 +356,8 @@ void ifc_shapes_write(const char *input, const char *output, double chord_mm, co
     if (elements.empty() && !ifc::has_any(statements))
         return;
     ifc::ifc_model in = ifc::model_of(statements, chord_mm);
-    ifc::ifc_writer w = { in, glb_scene_create("plantcast-import, Open CASCADE"), {}, {}, elements };
+    ifc::ifc_writer w = { in, glb_scene_create("plantcast-import, Open CASCADE"), {}, {}, {}, elements };
+    w.openings = elements.empty() ? w.openings : ifc::find_openings(statements);
     statements.each([&](int id, const std::string &) {
         try {
             if (!statements.is_rooted(id))

@@ -2,6 +2,7 @@
 // Merges solids of an IFC file that Open CASCADE built (ifc_shapes.hh) with the geometry that web-ifc built for all other items.
 import { existsSync, readFileSync } from 'node:fs';
 import { multiplied } from './glb_writer.mjs';
+import { voidedElements } from './ifc_openings.mjs';
 
 const HEAD = 20, CHUNK_HEAD = 8, GREY = { x: 0.6, y: 0.6, z: 0.6, w: 1 };
 
@@ -35,7 +36,7 @@ export function readSolids(path) {
         if (name === 'failed')
             Object.entries(extras).forEach(([item, reason]) => failed.set(number(item), reason));
         else
-            elements.set(number(name), { whole: extras.whole === 'yes', parts: children.map((child) => {
+            elements.set(number(name), { whole: extras.whole === 'yes', cut: extras.cut === 'yes', parts: children.map((child) => {
                 const part = json.nodes[child];
                 return { item: number(part.name), geometry: geometries[part.mesh], place: multiplied(matrix, part.matrix) };
             }) });
@@ -61,23 +62,21 @@ function styles(model, type) {
 }
 
 // Replaces web-ifc's geometry of an item by the solid that Open CASCADE built. An element with openings keeps web-ifc's geometry, if it has
-// any, because only web-ifc cuts the openings out. Sets solids.said to report lines (format: findings.h) about problems.
-export function takeSolids(model, solids, { shown, known }, { styledItem, voids }) {
-    const colorOf = styles(model, styledItem), cut = new Set();
-    model.relate(voids, 'RelatingBuildingElement', 'RelatedOpeningElement', (element) => cut.add(element));
-    solids.said = [];
-    for (const [element, { whole, parts }] of solids.elements) {
+// any, unless web-ifc did not cut them (`wrong`: ids of such elements) and Open CASCADE did.
+export function takeSolids(model, solids, { shown, known }, { styledItem, voids }, wrong) {
+    const colorOf = styles(model, styledItem), voided = new Set();
+    model.relate(voids, 'RelatingBuildingElement', 'RelatedOpeningElement', (host) =>
+        voidedElements(model, host).forEach((element) => voided.add(element)));
+    for (const [element, { whole, cut, parts }] of solids.elements) {
         const drawn = shown.get(element) ?? [], built = new Set(parts.map(({ item }) => item));
-        if (drawn.length > 0 && cut.has(element))
+        if (drawn.length > 0 && voided.has(element) && !(cut && wrong.has(element)))
             continue;
-        if (cut.has(element))
-            solids.said.push(`error\t1\tOpen CASCADE: #${element}: its openings are not cut`);
         const others = whole ? [] : drawn.filter(({ geometryExpressID }) => !built.has(geometryExpressID));
         shown.set(element, [...others, ...parts.map(({ item, geometry, place }) => {
-            const same = drawn.find(({ geometryExpressID }) => geometryExpressID === item);
+            const same = drawn.find(({ geometryExpressID }) => geometryExpressID === item), id = `solid ${cut ? `${element} ` : ''}${item}`;
             const color = same?.color ?? colorOf(item) ?? drawn[0]?.color ?? GREY;
-            known.set(`solid ${item}`, geometry);
-            return { color, geometryExpressID: `solid ${item}`, flatTransformation: place };
+            known.set(id, geometry);
+            return { color, geometryExpressID: id, flatTransformation: place };
         })]);
     }
 }

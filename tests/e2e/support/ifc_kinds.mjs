@@ -28,7 +28,7 @@ export function ifcOf(schema, lines, type = 'SweptSolid') {
         ''].join('\n');
 }
 
-const point = (name, ...at) => [name, `IFCCARTESIANPOINT((${at.map((v) => v.toFixed(6)).join(',')}))`];
+export const point = (name, ...at) => [name, `IFCCARTESIANPOINT((${at.map((v) => v.toFixed(6)).join(',')}))`];
 const rectangle = ['profile', 'IFCRECTANGLEPROFILEDEF(.AREA.,$,$,200.,100.)'];
 const corner = [point('a', 0, 0, 0), point('b', 1750, 0, 0), point('c', 1750, 1500, 0)];
 const twoLines = [...corner, ['first', 'IFCPOLYLINE((#{a},#{b}))'], ['second', 'IFCPOLYLINE((#{b},#{c}))'],
