@@ -118,8 +118,8 @@ size_t visibility_buffer_bytes(const struct visibility_buffer *buffer);
 struct resolve_paint {        /* colours, patterns and isolines of a frame */
     const uint32_t *colormap; /* COLORMAP_ROWS x COLORMAP_COLUMNS texels */
     float pattern_px;         /* cell size of patterns */
-    float line_px;            /* width of isolines; 0: there are none */
-    const float *nearest;     /* COLORMAP_PLACES entries, from struct shaded_colormap */
+    float line_px;            /* width of isolines in pixels; 0: there are none */
+    const float *nearest;     /* from struct shaded_colormap: for each position on the scale, the nearest one that has an isoline */
 };
 
 /* Adds a triangle to the band's list, unless it equals the triangle added last. Returns its index in the list. Runs on a worker. */
@@ -133,7 +133,7 @@ bool visibility_buffer_settle(struct visibility_buffer *buffer, struct workers *
 void resolve_read(struct visibility_buffer *buffer, const struct frame_context *context, struct workers *workers);
 /* Stores the slopes of the triangle that visibility_add_triangle() added last. weights: from soft_weights(). Runs on a worker. */
 void visibility_add_slopes(struct visibility_band *band, const double weights[3][3]);
-/* Colours `count` bands from `first` on. */
+/* Colours `count` bands (groups of pixel rows), from the band with index `first` on. */
 void resolve_colors(const struct visibility_buffer *buffer, const struct resolve_paint *paint, struct workers *workers, int first,
                     int count, struct frame *frame);
 
