@@ -12,24 +12,15 @@
 #include "clients/link/decoder.h"
 #include "deploy/demo/sim_values.h"
 #include "encode/encoder.h"
-#include "render/renderer.h"
 #include "render/split_view.h"
-#include "scene/scene_create.h"
+#include "tests/support/demo_scene.h"
 #include "tests/support/measure.h"
 #include "value/quality.h"
 
-#define DEMO "build/demo/plant.yaml"
 enum { ORBIT = 30, UPDATES = 5, TAGS = 60 };
 
 struct codec_bench {
-    struct log *log;
-    struct plant *plant;
-    struct scene *scene;
-    struct workers *workers;
-    struct field *field;
-    struct snapshot *snapshot;
-    struct gl *gl;
-    struct renderer *renderer;
+    struct demo_scene demo;
     struct sim_values *values;
 };
 
@@ -37,7 +28,7 @@ static bool values_init(struct codec_bench *bench)
 {
     struct diag diag = { 0 };
     struct sim_map map = { 0 };
-    bench->values = sim_values_create(bench->plant, &map, true, &diag);
+    bench->values = sim_values_create(bench->demo.plant, &map, true, &diag);
     diag_print(&diag, stderr);
     diag_finish(&diag);
     return bench->values != NULL;
@@ -47,51 +38,16 @@ static bool values_init(struct codec_bench *bench)
 static void read_tags(struct codec_bench *bench, int group, bool all)
 {
     int left = TAGS;
-    bench->snapshot->taken_mono_ns = clock_mono_ns();
-    bench->snapshot->taken_utc_ns = clock_utc_ns();
-    for (size_t i = 0; i < bench->plant->tag_count; i++) {
-        struct reading *reading = &bench->snapshot->readings[i];
-        if (!all && (bench->plant->tags[i].group != group || left-- <= 0))
+    bench->demo.snapshot->taken_mono_ns = clock_mono_ns();
+    bench->demo.snapshot->taken_utc_ns = clock_utc_ns();
+    for (size_t i = 0; i < bench->demo.plant->tag_count; i++) {
+        struct reading *reading = &bench->demo.snapshot->readings[i];
+        if (!all && (bench->demo.plant->tags[i].group != group || left-- <= 0))
             continue;
         reading->value = sim_values_at(bench->values, i);
         reading->quality = QUALITY_GOOD;
         reading->changes++;
     }
-}
-
-static bool bench_init(struct codec_bench *bench)
-{
-    struct diag diag = { 0 };
-    bench->log = log_create(LOG_ERROR);
-    bench->plant = plant_load(DEMO, &diag);
-    diag_finish(&diag);
-    if (!bench->plant || !values_init(bench))
-        return false;
-    char *folder = plant_prepared_folder(bench->plant);
-    bench->scene = scene_create(bench->log, bench->plant, folder);
-    mem_free(folder);
-    if (!bench->scene)
-        return false;
-    bench->snapshot = snapshot_create(bench->plant->tag_count);
-    bench->workers = workers_create(0);
-    bench->field = field_create(bench->workers, bench->scene);
-    bench->gl = gl_create(bench->log, GL_AUTO, NULL);
-    if (bench->gl)
-        bench->renderer = renderer_create(bench->log, bench->gl, bench->scene, bench->field);
-    return bench->renderer != NULL;
-}
-
-static void bench_finish(struct codec_bench *bench)
-{
-    renderer_destroy(&bench->renderer);
-    gl_destroy(&bench->gl);
-    field_destroy(&bench->field);
-    workers_destroy(&bench->workers);
-    snapshot_destroy(&bench->snapshot);
-    sim_values_destroy(&bench->values);
-    scene_destroy(&bench->scene);
-    plant_destroy(&bench->plant);
-    log_destroy(&bench->log);
 }
 
 static void print_row(const char *name, double value, const char *unit)
@@ -165,7 +121,7 @@ static void forget(struct measured measured[CODECS])
 
 static struct frame *draw(struct codec_bench *bench, const struct view *view)
 {
-    struct frame *frame = split_view_draw_now(bench->renderer, view, bench->snapshot);
+    struct frame *frame = split_view_draw_now(bench->demo.renderer, view, bench->demo.snapshot);
     if (!frame)
         abort();
     return frame;
@@ -174,7 +130,7 @@ static struct frame *draw(struct codec_bench *bench, const struct view *view)
 static void measure_orbit(struct codec_bench *bench, struct measured measured[CODECS])
 {
     struct view view;
-    view_default(bench->scene, 1920, 1080, &view);
+    view_default(bench->demo.scene, 1920, 1080, &view);
     double dx = view.camera.eye_m[0] - view.camera.target_m[0], dy = view.camera.eye_m[1] - view.camera.target_m[1];
     for (int i = 0; i < ORBIT; i++) {
         double angle = i * M_PI / 180;
@@ -193,7 +149,7 @@ static void measure_orbit(struct codec_bench *bench, struct measured measured[CO
 static void measure_updates(struct codec_bench *bench, struct measured measured[CODECS])
 {
     struct view view;
-    view_default(bench->scene, 1920, 1080, &view);
+    view_default(bench->demo.scene, 1920, 1080, &view);
     view.tier = TIER_REFINED;
     for (int i = 0; i < UPDATES + 1; i++) {
         struct frame *frame = draw(bench, &view);
@@ -229,8 +185,8 @@ static void measure(struct codec_bench *bench)
 {
     struct measured measured[CODECS] = { { 0 } };
     for (int c = 0; c < CODECS; c++)
-        if (encoder_works(bench->log, codecs[c], ENCODER_H264_LIBRARY)) {
-            measured[c].encoder = encoder_create(bench->log, codecs[c], ENCODER_H264_LIBRARY);
+        if (encoder_works(bench->demo.log, codecs[c], ENCODER_H264_LIBRARY)) {
+            measured[c].encoder = encoder_create(bench->demo.log, codecs[c], ENCODER_H264_LIBRARY);
             measured[c].decoder = decoder_create();
         }
     for (int i = 0; i < 60; i++)
@@ -250,15 +206,16 @@ static void measure(struct codec_bench *bench)
 int main(void)
 {
     struct codec_bench bench = { 0 };
-    if (access(DEMO, R_OK) != 0) {
+    if (access(DEMO_SCENE_PLANT, R_OK) != 0) {
         printf("{\"name\": \"encode_jpeg_1080p_orbit_ms\", \"value\": null, \"p95\": null, \"unit\": \"ms\", \"why\": \"%s is not "
                "prepared\"}\n",
-               DEMO);
+               DEMO_SCENE_PLANT);
         return 0;
     }
-    bool good = bench_init(&bench);
+    bool good = demo_scene_open(&bench.demo) && values_init(&bench);
     if (good)
         measure(&bench);
-    bench_finish(&bench);
+    sim_values_destroy(&bench.values);
+    demo_scene_close(&bench.demo);
     return good ? 0 : 1;
 }

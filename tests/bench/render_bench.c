@@ -8,25 +8,12 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
-#include "render/renderer.h"
-#include "scene/scene_create.h"
+#include "tests/support/demo_scene.h"
 #include "tests/support/measure.h"
 #include "tests/support/planned.h"
 #include "value/quality.h"
 
-#define DEMO "build/demo/plant.yaml"
 enum { MOVING_ROUNDS = 40, STILL_ROUNDS = 8, MOST_ROUNDS = 40 };
-
-struct render_bench {
-    struct log *log;
-    struct plant *plant;
-    struct scene *scene;
-    struct workers *workers;
-    struct field *field;
-    struct snapshot *snapshot;
-    struct gl *gl;
-    struct renderer *renderer;
-};
 
 /* goal: at most; 0: none. */
 static void print_row(const char *name, double *values, int count, double goal)
@@ -59,45 +46,10 @@ static void fill(struct snapshot *snapshot, const struct plant *plant)
     }
 }
 
-static bool bench_init(struct render_bench *bench)
-{
-    struct diag diag = { 0 };
-    bench->log = log_create(LOG_ERROR);
-    bench->plant = plant_load(DEMO, &diag);
-    diag_finish(&diag);
-    if (!bench->plant)
-        return false;
-    char *folder = plant_prepared_folder(bench->plant);
-    bench->scene = scene_create(bench->log, bench->plant, folder);
-    mem_free(folder);
-    if (!bench->scene)
-        return false;
-    bench->snapshot = snapshot_create(bench->plant->tag_count);
-    fill(bench->snapshot, bench->plant);
-    bench->workers = workers_create(0);
-    bench->field = field_create(bench->workers, bench->scene);
-    bench->gl = gl_create(bench->log, GL_AUTO, NULL);
-    if (bench->gl)
-        bench->renderer = renderer_create(bench->log, bench->gl, bench->scene, bench->field);
-    return bench->renderer != NULL;
-}
-
-static void bench_finish(struct render_bench *bench)
-{
-    renderer_destroy(&bench->renderer);
-    gl_destroy(&bench->gl);
-    field_destroy(&bench->field);
-    workers_destroy(&bench->workers);
-    snapshot_destroy(&bench->snapshot);
-    scene_destroy(&bench->scene);
-    plant_destroy(&bench->plant);
-    log_destroy(&bench->log);
-}
-
 enum dress { PLAIN, LINED, BANDED, LOGARITHMIC, LIMITS, CUT, ORTHOGRAPHIC, GHOSTS, GLOSSY };
 enum { GHOST_COUNT = 5 };
 
-static void put_on(const struct render_bench *bench, enum dress dress, struct view *view)
+static void put_on(const struct demo_scene *bench, enum dress dress, struct view *view)
 {
     double range = view->range_max - view->range_min;
     for (int i = 1; dress == LINED && i < 10; i++)
@@ -127,7 +79,7 @@ static void put_on(const struct render_bench *bench, enum dress dress, struct vi
 }
 
 /* Measures the plant's own view with the camera moved slightly each time: frames of a still camera would only be recoloured. */
-static void measure(struct render_bench *bench, enum tier tier, enum dress dress, const char *time_name, const char *work_name, int rounds)
+static void measure(struct demo_scene *bench, enum tier tier, enum dress dress, const char *time_name, const char *work_name, int rounds)
 {
     struct view view;
     double time_ms[MOST_ROUNDS], work_ms[MOST_ROUNDS];
@@ -150,7 +102,7 @@ static void measure(struct render_bench *bench, enum tier tier, enum dress dress
     print_row(work_name, work_ms, rounds, 0);
 }
 
-static void measure_all(struct render_bench *bench, enum tier tier, int rounds)
+static void measure_all(struct demo_scene *bench, enum tier tier, int rounds)
 {
     static const char *const names[] = { "", "lines_", "bands_", "log_", "operator_", "cut_", "orthographic_", "ghosts_", "glossy_" };
     for (enum dress dress = PLAIN; dress <= GLOSSY; dress++) {
@@ -163,7 +115,7 @@ static void measure_all(struct render_bench *bench, enum tier tier, int rounds)
 }
 
 /* Measures a frame with a still camera after one reading changed. */
-static void measure_recolour(struct render_bench *bench)
+static void measure_recolour(struct demo_scene *bench)
 {
     struct view view;
     double time_ms[MOVING_ROUNDS], work_ms[MOVING_ROUNDS];
@@ -190,7 +142,7 @@ static void measure_recolour(struct render_bench *bench)
 }
 
 /* Draws a refined frame in steps of 10 ms and measures the total time and the longest step, during which other clients wait. */
-static void measure_steps(struct render_bench *bench)
+static void measure_steps(struct demo_scene *bench)
 {
     struct view view;
     double work_ms[STILL_ROUNDS], longest_ms[STILL_ROUNDS] = { 0 }, longest_work_ms[STILL_ROUNDS] = { 0 };
@@ -224,7 +176,7 @@ static void measure_steps(struct render_bench *bench)
 }
 
 /* Measures recolouring under a still camera after one or all readings changed, without the time of the field itself. */
-static void measure_again(struct render_bench *bench, enum dress dress, bool all, double goal, const char *time_name, const char *work_name)
+static void measure_again(struct demo_scene *bench, enum dress dress, bool all, double goal, const char *time_name, const char *work_name)
 {
     struct view view;
     double time_ms[MOST_ROUNDS], work_ms[MOST_ROUNDS];
@@ -253,13 +205,14 @@ static void measure_again(struct render_bench *bench, enum dress dress, bool all
 
 int main(void)
 {
-    struct render_bench bench = { 0 };
-    if (access(DEMO, R_OK) != 0) {
-        fprintf(stderr, "render_bench: %s is not there: run `make demo` first\n", DEMO);
-        print_why(DEMO " is not prepared");
+    struct demo_scene bench = { 0 };
+    if (access(DEMO_SCENE_PLANT, R_OK) != 0) {
+        fprintf(stderr, "render_bench: %s is not there: run `make demo` first\n", DEMO_SCENE_PLANT);
+        print_why(DEMO_SCENE_PLANT " is not prepared");
         return 0;
     }
-    if (bench_init(&bench)) {
+    if (demo_scene_open(&bench)) {
+        fill(bench.snapshot, bench.plant);
         measure_all(&bench, TIER_PREVIEW, MOVING_ROUNDS);
         measure_recolour(&bench);
         measure_all(&bench, TIER_REFINED, STILL_ROUNDS);
@@ -271,6 +224,6 @@ int main(void)
     } else {
         print_why("the demo plant could not be opened or drawn; the log says why");
     }
-    bench_finish(&bench);
+    demo_scene_close(&bench);
     return 0;
 }
