@@ -243,4 +243,31 @@ test('an imported gap, blanks and state words are no data, in pictures, readings
         join(plant.folder, 'gap.png'), '--size', '320x180', '--fit', 'TI-1', '--pick', '160,90']).out).value;
     for (const source of [`${url}/`, plant.file])
         assert.deepEqual([pick(source, 65), pick(source, day)], [12, null], source);
+
+    // A gap that is stated to be none is a line, everywhere.
+    const bring = (name, list, ...more) => {
+        writeFileSync(file, `Time,${name}\n${list.map(([s, value]) => `${from + s},${value}`).join('\n')}\n`);
+        const brought = runProgram('plantcast', ['history', 'import', plant.file, file, ...more]);
+        assert.equal(brought.code, 0, brought.err);
+        return brought.out;
+    };
+    const told = async (tag, first, last) => (await (await fetch(
+        `${url}/api/v1/history?tags=${tag}&from=${from + first}&to=${from + last}&points=1000`)).json()).series[0].points;
+    assert.match(bring('TI-1', rows, '--longest-gap', '3d'), /samples of 1 tag/);
+    const late = day + 3600, middle = 12 + 68 * (late - 70) / (2 * day - 70);
+    for (const source of [`${url}/`, plant.file])
+        assert.ok(Math.abs(pick(source, late) - middle) < 0.5, `${source}: ${pick(source, late)}, not ${middle}`);
+    const joined = await told('TI-1', day, day + 60); // the points before and after
+    assert.deepEqual(joined.map(([, value, quality]) => [value, quality]), [[12, 0], [80, 0]]);
+
+    // Its Stale s, 1 s, is shorter than ten times the spacing: 3 s without a sample are no data.
+    const steps = Array.from({ length: 20 }, (_, i) => [i / 2 + (i > 9 ? 3 : 0), 50]);
+    assert.match(bring('TI-2', steps), /Gaps without data: 1 \(longer than 1 s\)/);
+    assert.ok((await told('TI-2', 0, 12)).some(([us, , quality]) => us === (from + 4.5) * 1e6 + 1 && quality === 0x80310000), 'the API');
+    const stale = runProgram('plantcast', ['history', 'export', plant.file, '--tags', 'TI-2', '--from', String(from), '--to',
+        String(from + 12), '--points', '1000000']);
+    assert.equal(stale.out.match(/TI-2,[^,]*,,0x80310000/g).length, 1, stale.out);
+    const at = (s) => JSON.parse(runProgram('plantcast', ['snapshot', plant.file, '--at', String(from + s), '-o',
+        join(plant.folder, 'gap.png'), '--size', '320x180', '--fit', 'TI-2', '--pick', '160,90']).out);
+    assert.deepEqual([Math.round(at(4).value), at(6).value], [50, null]);
 });
