@@ -158,7 +158,9 @@ test('FBX, COLLADA and OBJ: shapes that are not read are named', { skip }, () =>
     const nurbs = fbx().replace('    Model: 200', '    Geometry: 101, "Geometry::Shell", "NurbsSurface" {\n        Form: "Open"\n    }\n' +
         '    Model: 201, "Model::Tank shell", "NurbsSurface" {\n        Version: 232\n    }\n    Model: 200')
         .replace('    C: "OO",200,0', '    C: "OO",200,0\n    C: "OO",201,0\n    C: "OO",101,201');
-    const fbxTexts = read(folder, 'a.fbx', nurbs).errors.map(({ text }) => text);
+    const { errors: fbxErrors, lost: fbxLost } = read(folder, 'a.fbx', nurbs), fbxTexts = fbxErrors.map(({ text }) => text);
+    assert.deepEqual(fbxLost, [{ id: '', name: 'Tank shell', class: 'model', guid: '',
+        why: 'NURBS and patches are not read: export it as polygons' }]);
     assert.ok(fbxTexts.includes('Assimp: FBX-DOM failed to read source object for incoming Model link, ignoring'), fbxTexts.join('; '));
     const hull = '<geometry id="h" name="Hull"><convex_mesh convex_hull_of="#g"/></geometry></library_geometries>';
     const { lost, errors } = read(folder, 'b.dae', dae().replace('</library_geometries>', hull).replace('</visual_scene>',

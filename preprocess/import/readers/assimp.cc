@@ -152,6 +152,13 @@ struct files : Assimp::DefaultIOSystem {
         const char *dot = strrchr(path, '.');
         Assimp::IOStream *file = DefaultIOSystem::Open(path, mode);
         bool obj = dot && !strcasecmp(dot, ".obj"), stl = dot && !strcasecmp(dot, ".stl"), dae = dot && !strcasecmp(dot, ".dae");
+        if (file && !searched && dot && !strcasecmp(dot, ".fbx")) {
+            std::string bytes(file->FileSize(), 0);
+            bytes.resize(bytes.empty() ? 0 : file->Read(&bytes[0], 1, bytes.size()));
+            file->Seek(0, aiOrigin_SET);
+            searched = true;
+            assimp_losses_of_fbx(bytes);
+        }
         if (!file || (!obj && !dae && !stl && !(dot && !strcasecmp(dot, ".mtl"))))
             return file;
         std::string text(file->FileSize(), 0);

@@ -23,4 +23,7 @@ void assimp_losses_of_obj(const std::string &text);
 /* Prints the geometries of a COLLADA file that have no polygons: convex hulls, splines, boundary representations. */
 void assimp_losses_of_dae(const std::string &text);
 
+/* Prints the NURBS and patches of an FBX file, by the names of their models. */
+void assimp_losses_of_fbx(const std::string &bytes);
+
 #endif

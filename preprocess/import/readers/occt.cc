@@ -3,6 +3,8 @@
  * assembly tree becomes nodes; each part is tessellated once and shared by its placements. For IFC files, this program builds some solids
  * only (ifc_shapes.hh), and UNITS is the path of a list of elements. Prints report lines (format: findings.h). On failure the last line on
  * stderr is the reason. */
+#include <BRepBndLib.hxx>
+#include <Bnd_Box.hxx>
 #include <IGESControl_Reader.hxx>
 #include <Interface_Static.hxx>
 #include <Message.hxx>
@@ -48,6 +50,7 @@ namespace
 /* maximum number of output nodes; assemblies that contain others several times can have exponentially many */
 constexpr size_t MAX_NODES = 2'000'000;
 constexpr size_t MOST_NAMED = 20;
+constexpr double CHORDS_PER_MODEL = 100; /* the chord error is at most this part of a model, so that tiny models keep their shape */
 constexpr double ANGLE_RAD = 0.5; /* largest angle in radians between neighbouring facets, where the chord error would allow more */
 const double PLAIN[4] = { 0.35, 0.35, 0.35, 1 };
 
@@ -368,6 +371,16 @@ void root_matrix(bool y_up, double out[16])
     memcpy(out, y_up ? as_is : z_up, sizeof(z_up));
 }
 
+/* Returns the diagonal of the box around all shapes; infinity if they have no box. */
+double longest_mm(const occt_reader &r, const TDF_LabelSequence &shapes)
+{
+    Bnd_Box box;
+    for (int i = 1; i <= shapes.Length(); i++)
+        BRepBndLib::Add(r.shapes->GetShape(shapes.Value(i)), box, Standard_False);
+    double diagonal = box.IsVoid() || box.IsOpen() ? 0 : std::sqrt(box.SquareExtent());
+    return diagonal > 0 ? diagonal : INFINITY;
+}
+
 void convert(const char *input, const char *output, double chord_mm, bool y_up, const char *asked)
 {
     Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_Printer));
@@ -383,12 +396,12 @@ void convert(const char *input, const char *output, double chord_mm, bool y_up, 
     r.colors = XCAFDoc_DocumentTool::ColorTool(document->Main());
     r.layers = XCAFDoc_DocumentTool::LayerTool(document->Main());
     r.scene = glb_scene_create("plantcast-import, Open CASCADE");
-    r.chord_mm = chord_mm;
     double matrix[16];
     root_matrix(y_up, matrix);
     int root = glb_scene_add_node(r.scene, -1, stem.c_str(), -1, matrix);
     TDF_LabelSequence free;
     r.shapes->GetFreeShapes(free);
+    r.chord_mm = chord_mm = std::fmin(chord_mm, longest_mm(r, free) / CHORDS_PER_MODEL);
     for (int i = 1; i <= free.Length(); i++)
         add(&r, free.Value(i), root, XCAFPrs_Style(), 0);
     say_lines(r);
