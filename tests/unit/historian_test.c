@@ -233,6 +233,7 @@ static void read_series(struct historian_setup *s, const char *name, int tag, st
     int64_t now_us = clock_utc_ns() / 1000;
     char *folder = temp_path(s->folder, name);
     struct history_reader *reader = history_reader_create(s->log, folder);
+    history_series_finish(series); /* of the last call */
     int error = history_series(reader, s->tags[tag].name, now_us - 7200 * US_PER_S, now_us + 7200 * US_PER_S, 10000, series);
     assert_int_equal(error, 0);
     history_reader_destroy(&reader);
