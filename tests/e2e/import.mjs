@@ -210,7 +210,7 @@ test('what cannot be read is one line, and leaves nothing behind', { skip: notBu
         ['nan.gltf', corner(notFinite, 3), 'element 1 is not finite'],
         ['wire.gltf', corner(Buffer.alloc(36), 3).replace('"POSITION":0}', '"POSITION":0},"mode":3'), 'has no triangles'],
         ['out.gltf', gltf({ scenes: [{ nodes: [] }], buffers: [{ byteLength: 4, uri: '../../../etc/passwd' }] }),
-            'leads out of the model's folder']);
+            "leads out of the model's folder"]);
     for (const [name, bytes, why] of cases) {
         writeFileSync(join(folder, name), bytes);
         const said = run('plantcast', 'import', join(folder, name), '-o', out);
