@@ -37,26 +37,26 @@ static const struct cli_command {
     const char *name, *help;
     int (*run)(int argc, char **argv);
 } commands[] = {
-    { "snapshot", "draw one picture as PNG, from a plant file or by a daemon", cmd_snapshot },
-    { "clip", "make a film of recorded history as MP4", cmd_clip },
-    { "import", "convert CAD exports into a plant's folder: models, names, attributes, plant file", cmd_import },
-    { "nodes", "list the nodes of a model, with sizes and properties", cmd_import },
+    { "snapshot", "draw one picture of a plant as PNG, from a plant file or through a running daemon", cmd_snapshot },
+    { "clip", "make a film (MP4) of recorded readings", cmd_clip },
+    { "import", "convert CAD exports into the folder of a plant: models, names, attributes and plant file", cmd_import },
+    { "nodes", "list the nodes (parts) of a CAD model with their sizes and properties", cmd_import },
     { "match", "match a control system's tag list to the equipment of an imported plant", cmd_match },
-    { "probe", "put load on a daemon and print its latencies", cmd_probe },
-    { "tags", "print the tags of a daemon with their values", cmd_tags },
-    { "init", "create an instance of the service plantcastd@NAME, with a certificate and first tokens", cmd_init },
-    { "ready", "check whether a daemon is ready (exit status)", cmd_ready },
-    { "drain", "move the sessions of a daemon on this machine to other nodes", cmd_drain },
-    { "reload", "reload the plant of a daemon on this machine, and print the result", cmd_reload },
-    { "history", "import or export a plant's history", cmd_history },
-    { "backup", "back up history, journal and configuration of a plant, while its daemon runs or not", cmd_backup },
-    { "restore", "restore a backup", cmd_restore },
-    { "fleet", "serve one page and one /metrics for the servers of many plants", cmd_fleet },
-    { "token", "create, list and revoke tokens of users and programs", cmd_token },
-    { "sensors", "suggest places for more sensors, detect drift, accept assumed places", cmd_sensors },
-    { "verify", "verify a signed picture or film, and draw it again", cmd_verify },
-    { "read", "read the value at a pixel of a picture with a legend strip (PNG, JPEG, screenshot)", cmd_read },
-    { "audit", "verify an audit trail", cmd_audit },
+    { "probe", "load a daemon with many sessions and print frame rates and latencies", cmd_probe },
+    { "tags", "print the tags that a daemon serves, with their present values", cmd_tags },
+    { "init", "set up the systemd service plantcastd@NAME with a certificate and first tokens", cmd_init },
+    { "ready", "check whether a daemon serves pictures; the exit status is the answer", cmd_ready },
+    { "drain", "move all user sessions of a daemon on this machine to other daemons", cmd_drain },
+    { "reload", "let a daemon on this machine reload its plant file and tag list, and print the result", cmd_reload },
+    { "history", "add readings to the recorded history of a plant, or export them as CSV", cmd_history },
+    { "backup", "back up history, alarm journal, plant file and tag list of a plant; its daemon may run", cmd_backup },
+    { "restore", "restore a backup that `plantcast backup` made", cmd_restore },
+    { "fleet", "serve one overview page and one /metrics for the daemons of many plants", cmd_fleet },
+    { "token", "create, list and revoke the tokens with which users and programs sign in", cmd_token },
+    { "sensors", "suggest where more sensors help, detect sensors that drift, accept assumed positions", cmd_sensors },
+    { "verify", "check the signature of a picture or film, and compare the picture with a new drawing", cmd_verify },
+    { "read", "read the value at a pixel of a picture with a legend strip, also of a screenshot", cmd_read },
+    { "audit", "check whether an audit trail was altered", cmd_audit },
 };
 enum { COMMANDS = sizeof(commands) / sizeof(commands[0]) };
 
@@ -66,8 +66,8 @@ static void print_usage(FILE *out)
     for (int i = 0; i < COMMANDS; i++)
         fprintf(out, "  %-10s %s\n", commands[i].name, commands[i].help);
     fputs("\nOptions of every command that connects to a daemon (http:// or https://):\n"
-          "  --token-file FILE   file whose first line is the token (see `plantcast token`)\n"
-          "  --ca FILE           trusted certificates (PEM), in addition to the system's\n",
+          "  --token-file FILE   file whose first line is the token with which to sign in (see `plantcast token`)\n"
+          "  --ca FILE           certificates (PEM) to trust in addition to those of the system\n",
           out);
 }
 

@@ -12,13 +12,15 @@
 
 static void print_usage(FILE *out)
 {
-    fputs("usage: plantcast audit verify FILE [--known NUMBER:HASH]\n"
+    fputs("usage: plantcast audit verify FILE [--known LINE:HASH]\n"
           "\n"
-          "Verifies the audit trail that plantcastd --audit FILE writes, and the full files next to it. Each line has a hash of its\n"
-          "text and of the line before, which reveals changed, removed or added lines. FILE.head reveals removed last lines.\n"
-          "An intruder who can rewrite all of these is revealed by a number and hash kept elsewhere (journal or syslog server):\n"
+          "Checks that nobody altered the audit trail that plantcastd --audit FILE writes, and its older files.\n"
+          "Each line has a hash of itself and the line before: changed, removed and added lines are detected.\n"
+          "FILE.head holds the hash of the last line: removed last lines are detected.\n"
+          "An intruder who rewrites all these files is detected by a hash that is kept elsewhere:\n"
           "\n"
-          "  --known NUMBER:HASH   the trail must contain this line\n",
+          "  --known LINE:HASH   line number and hash noted earlier (the journal and the syslog server have\n"
+          "                      them); proves that nothing up to that line was replaced\n",
           out);
 }
 
@@ -49,7 +51,7 @@ int cmd_audit(int argc, char **argv)
         }
         if (option != 'k' || !audit_head_parse(optarg, &known)) {
             if (option == 'k')
-                fprintf(stderr, "plantcast: --known: NUMBER:HASH is expected\n");
+                fprintf(stderr, "plantcast: --known: LINE:HASH is expected\n");
             print_usage(stderr);
             return 2;
         }

@@ -44,16 +44,19 @@ static void print_usage(FILE *out)
           "       plantcast backup --verify FOLDER\n"
           "       plantcast restore FOLDER PLANT.yaml [--history DIR]\n"
           "\n"
-          "backup copies history, alarm journal, loop check records, plant file and tag list into a new folder that only its owner\n"
-          "can read. The daemon may run: each database is copied as of one moment. Models are not included. Symbolic links are not\n"
-          "followed, and files whose owner is not that of their folder are skipped, also when run as root.\n"
+          "backup creates FOLDER with a copy of history, alarm journal, loop checks, plant file and tag list.\n"
+          "Only the owner can read FOLDER. The daemon may run: the copy of each database is consistent.\n"
+          "Models are not copied. Symbolic links are not followed.\n"
+          "A file is skipped if its owner is not the owner of its folder, also when root runs the command.\n"
           "\n"
-          "--verify restores a backup into a temporary folder next to it, compares all files and checks each database.\n"
+          "--verify restores a backup into a temporary folder, compares all files and checks each database.\n"
           "\n"
-          "restore checks a backup and then writes the plant file to PLANT.yaml, and tag list and history where the plant file says.\n"
-          "Run by root, each file gets the owner of its folder. If a file exists already, nothing is restored.\n"
+          "restore checks a backup, then writes the plant file to PLANT.yaml, and tag list and history to the\n"
+          "places that the plant file names. If root runs it, each file gets the owner of its folder.\n"
+          "If one of these files exists already, nothing is restored.\n"
           "\n"
-          "  --history DIR    folder of the history (default: the one that the plant file names, else next to it)\n",
+          "  --history DIR    folder of recorded readings (default: the one that the plant file names, else\n"
+          "                   next to the plant file)\n",
           out);
 }
 

@@ -20,10 +20,11 @@ static void print_usage(FILE *out)
 {
     fputs("usage: plantcast drain PID [--wait SECONDS]\n"
           "\n"
-          "Sends SIGUSR1 to the daemon with this process ID: it moves its sessions to other nodes, one after another, within 12 s.\n"
-          "Returns when all are moved or the daemon has ended. For preStop of a container and ExecStop= of a systemd unit.\n"
+          "Tells the daemon with process ID PID (by SIGUSR1) to move its sessions to other daemons, in 12 s.\n"
+          "Returns when all sessions are moved or the daemon has ended.\n"
+          "Made for preStop of a container and ExecStop= of a systemd unit.\n"
           "\n"
-          "  --wait SECONDS  wait at most this long; 0: do not wait (default: 13)\n",
+          "  --wait SECONDS  longest time to wait until all sessions are moved; 0: do not wait (default: 13)\n",
           out);
 }
 

@@ -10,8 +10,9 @@
 static const char usage[] =
     "usage: plantcast ready URL\n"
     "\n"
-    "Checks that the daemon at URL (http://HOST:PORT/ or https://) serves pictures, and that a WebSocket can be opened, which\n"
-    "a reverse proxy may block. If not, prints the reason. Exit status: 0 ready, 1 not ready.\n";
+    "Checks that the daemon at URL (http://HOST:PORT/ or https://HOST:PORT/) serves pictures,\n"
+    "and that a WebSocket can be opened, which a reverse proxy in between may block.\n"
+    "If the daemon is not ready, prints the reason. Exit status: 0 ready, 1 not ready.\n";
 
 int cmd_ready(int argc, char **argv)
 {

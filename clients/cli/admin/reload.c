@@ -20,12 +20,13 @@ static void print_usage(FILE *out)
 {
     fputs("usage: plantcast reload PID [--runtime DIR] [--timeout SECONDS]\n"
           "\n"
-          "Sends SIGHUP to the daemon with this process ID and waits until it has reloaded plant file and tag list. If the daemon\n"
-          "rejects them, prints the reasons; the daemon keeps the old ones. For ExecReload= of a systemd unit; over the network use\n"
-          "POST /api/v1/reload.\n"
+          "Tells the daemon with process ID PID (by SIGHUP) to reload plant file and tag list, and waits.\n"
+          "If the daemon rejects the files, prints the reasons; the daemon continues with the old ones.\n"
+          "Made for ExecReload= of a systemd unit. From another machine, use POST /api/v1/reload.\n"
           "\n"
-          "  --runtime DIR      RUNTIME_DIRECTORY of the daemon (default: that of the environment)\n"
-          "  --timeout SECONDS  wait at most this long (default: 600)\n"
+          "  --runtime DIR      folder in which the daemon reports the result: its RUNTIME_DIRECTORY (default:\n"
+          "                     this command's RUNTIME_DIRECTORY)\n"
+          "  --timeout SECONDS  longest time to wait for the result (default: 600)\n"
           "Exit status: 0 reloaded, 1 rejected.\n",
           out);
 }

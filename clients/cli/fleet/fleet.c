@@ -37,14 +37,18 @@ static void print_usage(FILE *out)
     fputs("usage: plantcast fleet FLEET.yaml [--check]\n"
           "       plantcast fleet FLEET.yaml --serve [--address ADDRESS] [--port PORT] [--host NAME]\n"
           "\n"
-          "Serves one page and one /metrics for the servers of many plants: a small picture of each, alarms by priority, lost\n"
-          "connections, version, certificate, disk and last backup. A plant that does not answer is shown with the time since when.\n"
-          "The page has no sign-in: put a reverse proxy in front that decides who may see it. INSTALL.md describes FLEET.yaml.\n"
+          "Serves one overview page and one /metrics for the daemons of many plants.\n"
+          "The page shows for each plant a small picture, alarms by priority and lost field devices,\n"
+          "and of each daemon the version, certificate, disk space and last backup.\n"
+          "If a plant does not answer, the page shows since when.\n"
+          "The page has no sign-in: put a reverse proxy in front that decides who may see it.\n"
+          "INSTALL.md describes FLEET.yaml.\n"
           "\n"
-          "  --check            check FLEET.yaml only\n"
+          "  --check            check FLEET.yaml, and start nothing\n"
           "  --address ADDRESS  address of this machine to listen on: 127.0.0.1 or ::1 (default: 127.0.0.1)\n"
-          "  --port PORT        TCP port; 0: any free port (default: 8090)\n"
-          "  --host NAME        host name of the proxy. Requests for other names are refused: a foreign page may have sent them\n",
+          "  --port PORT        TCP port to listen on; 0: any free port (default: 8090)\n"
+          "  --host NAME        host name under which browsers reach the reverse proxy. Requests for other\n"
+          "                     names are refused, because a foreign page may have sent them\n",
           out);
 }
 

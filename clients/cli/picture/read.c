@@ -20,10 +20,12 @@ static void print_usage(FILE *out)
 {
     fputs("usage: plantcast read PICTURE X Y [X Y]...\n"
           "\n"
-          "Prints the value that a pixel shows, and the bounds within which its colour is the same. PICTURE is a PNG or JPEG drawn\n"
-          "with --strip legend (/snapshot.png: strip=legend), or a copy of one: scaled, compressed, or part of a screenshot. Range\n"
-          "and unit are read from the strip; metadata is ignored. X and Y count from 0 at the upper left corner.\n"
-          "Exit status: 0 success, 1 no strip, or a pixel shows no value, 2 the picture could not be read.\n",
+          "Prints the value that a pixel shows, and the range of values that have the same colour.\n"
+          "PICTURE is a PNG or JPEG drawn with --strip legend (/snapshot.png: strip=legend).\n"
+          "It may be scaled, compressed, or part of a screenshot.\n"
+          "Range and unit are read from the strip itself, not from metadata of the file.\n"
+          "X and Y are the column and row of a pixel, counted from 0 at the upper left corner.\n"
+          "Exit status: 0 success, 1 no strip in the picture or no value at a pixel, 2 unreadable picture.\n",
           out);
 }
 

@@ -27,14 +27,15 @@ static void print_usage(FILE *out)
         "       plantcast sensors drift PLANT.yaml [--to INSTANT] [--group ID] [--prepared FOLDER] [--folder DIR]\n"
         "       plantcast sensors accept PLANT.yaml ...      (details: plantcast sensors accept --help)\n"
         "\n"
-        "suggest proposes places for N more sensors, one after another, each where it covers most of the hot spots that the present\n"
-        "sensors miss: spots of the group's hot_spot_m that no sensor would read as 5 % of its range (PLANT.md, show: blind).\n"
+        "suggest proposes positions for N more sensors, where they detect most hot spots that are missed now.\n"
+        "A hot spot (of size hot_spot_m of the group) is missed if no sensor reads 5 % of the group's range\n"
+        "more than without it (PLANT.md, show: blind).\n"
         "\n"
-        "  --add N            number of sensors\n"
-        "  --group ID         sensor group (default: the first one)\n"
-        "  --asset ID         only on this asset (default: all assets on which the group has placed sensors)\n"
-        "  --prepared FOLDER  output folder of plantcast-prep (default: PLANT.prepared next to the plant file)\n"
-        "  --csv              print CSV\n",
+        "  --add N            number of sensors to propose\n"
+        "  --group ID         sensor group of the new sensors (default: the first one of the plant file)\n"
+        "  --asset ID         propose positions only on this asset (default: all assets with sensors of the group)\n"
+        "  --prepared FOLDER  output folder of plantcast-prep (default: PLANT.prepared next to PLANT.yaml)\n"
+        "  --csv              print the proposed positions as CSV instead of text\n",
         out);
 }
 

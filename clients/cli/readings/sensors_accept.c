@@ -30,18 +30,22 @@ static void print_usage(FILE *out)
           "                                [--prepared FOLDER] [--dry-run]\n"
           "       plantcast sensors accept PLANT.yaml --undo LIST.N\n"
           "\n"
-          "Accepts assumed places (PLANT.md, Assumed places): clears `Place` in the tag list for all sensors that match every\n"
-          "option. The previous list is kept next to it as LIST.1, LIST.2, ... Run `plantcast reload` to apply the new list.\n"
+          "Confirms positions of sensors that the import only assumed (PLANT.md, Assumed places):\n"
+          "clears the column `Place` of the tag list for all sensors that match every option.\n"
+          "The previous tag list LIST is kept next to it as LIST.1, LIST.2, ...\n"
+          "Run `plantcast reload` to make the daemon use the new list.\n"
           "\n"
           "  --asset ID         only sensors on this asset\n"
           "  --group ID         only sensors of this group\n"
-          "  --tags PATTERN     only tags with this name; * and ? are wildcards. Without wildcards: part of the name or description\n"
+          "  --tags PATTERN     only tags whose name matches PATTERN, with the wildcards * and ?. Without\n"
+          "                     wildcards: tags whose name or description contains PATTERN\n"
           "  --within M         only sensors at most M metres from the surface of their asset\n"
-          "  --confidence C     only sensors matched with at least this confidence, 0 to 1 (matches.csv next to the tag list)\n"
-          "  --prepared FOLDER  output folder of plantcast-prep (default: PLANT.prepared next to the plant file)\n"
-          "  --dry-run          print the names of these sensors, and change nothing\n"
-          "  --undo LIST.N      restore this version of the list, if it differs in nothing but `Place`\n"
-          "Exit status: 1 if no sensor was accepted or the list cannot be written.\n",
+          "  --confidence C     only sensors that were matched to their asset with at least this confidence, 0\n"
+          "                     to 1 (column of matches.csv next to the tag list)\n"
+          "  --prepared FOLDER  output folder of plantcast-prep (default: PLANT.prepared next to PLANT.yaml)\n"
+          "  --dry-run          print the names of the sensors that would be accepted, and change nothing\n"
+          "  --undo LIST.N      restore the kept tag list LIST.N, if only the column `Place` has changed since\n"
+          "Exit status: 0 success, 1 no sensor was accepted or the tag list cannot be written.\n",
           out);
 }
 

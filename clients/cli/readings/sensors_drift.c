@@ -19,14 +19,18 @@ static void print_usage(FILE *out)
 {
     fputs("usage: plantcast sensors drift PLANT.yaml [--to INSTANT] [--group ID] [--prepared FOLDER] [--folder DIR]\n"
           "\n"
-          "Prints for each sensor how far its hourly means drifted within a week from the value that the other sensors of its group\n"
-          "on the same asset predict (PLANT.md, Sensors that drift). Needs at least three sensors and half a week of history.\n"
+          "Prints for each sensor how far it has drifted within one week.\n"
+          "Hourly means of its readings are compared with the values that the other sensors of its group\n"
+          "on the same asset predict (PLANT.md, Sensors that drift).\n"
+          "An asset needs at least three sensors of the group, and half a week of recorded readings.\n"
           "\n"
-          "  --to INSTANT       end of the week (default: now): 2026-11-20T10:00:00Z, or back from now: -1d\n"
-          "  --group ID         sensor group (default: all)\n"
-          "  --prepared FOLDER  output folder of plantcast-prep (default: PLANT.prepared next to the plant file)\n"
-          "  --folder DIR       folder of the history (default: the one that the plant file names, else next to it)\n"
-          "Output: CSV of tag,verdict (found, none, unknown),change,error,scatter,unit,hours. Exit status: 1 if a sensor drifts.\n",
+          "  --to INSTANT       end of the week: 2026-11-20T10:00:00Z, or -1d: a day ago (default: now)\n"
+          "  --group ID         sensor group to check (default: all)\n"
+          "  --prepared FOLDER  output folder of plantcast-prep (default: PLANT.prepared next to PLANT.yaml)\n"
+          "  --folder DIR       folder of recorded readings (default: the one that the plant file names, else\n"
+          "                     next to the plant file)\n"
+          "Output: CSV of tag,verdict (found, none, unknown),change,error,scatter,unit,hours.\n"
+          "Exit status: 0 no sensor drifts, 1 a sensor drifts.\n",
           out);
 }
 

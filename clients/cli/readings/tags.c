@@ -14,12 +14,15 @@ static void print_usage(FILE *out)
           "       plantcast tags --browse opc.tcp://HOST[:PORT][/PATH] [OPTION ...]\n"
           "       plantcast tags --probe DEVICE [--address-base 0|1] [--rtu] ADDRESS\n"
           "\n"
-          "Prints the tags of a daemon (http://HOST:PORT/, or https:// with --token-file FILE) with value, quality and age.\n"
+          "Prints the tags that the daemon at URL serves, with value, quality and age.\n"
+          "URL is http://HOST:PORT/, or https://HOST:PORT/ with --token-file FILE.\n"
           "\n"
-          "  --browse   print the numeric variables of an OPC UA server as a tag list (options: --browse --help)\n"
-          "  --probe    read one address of a Modbus device and print it in every type and byte order. DEVICE is HOST, HOST:PORT or\n"
-          "             /dev/LINE (19200 baud, even parity); ADDRESS is such as hr:0 or 2!400001. Nothing is written to the device\n"
-          "  --rtu      the device expects RTU frames over TCP\n",
+          "  --browse   print the numeric variables of an OPC UA server as a tag list; see plantcast tags\n"
+          "             --browse --help\n"
+          "  --probe    read one address of a Modbus device, and print the value in every type and byte order.\n"
+          "             DEVICE is HOST, HOST:PORT or a serial line /dev/LINE (19200 baud, even parity). ADDRESS\n"
+          "             is such as hr:0, or 2!400001 for unit 2. Nothing is written to the device\n"
+          "  --rtu      use RTU frames over TCP, for devices behind a serial gateway that expects them\n",
           out);
 }
 

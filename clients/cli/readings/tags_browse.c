@@ -23,9 +23,9 @@ static void print_usage(FILE *out)
     fputs("usage: plantcast tags --browse opc.tcp://HOST[:PORT][/PATH] [--login FILE]\n"
           "                      [--certificate FILE --key FILE --trusted FOLDER [--server-name NAME]]\n"
           "\n"
-          "Prints the numeric variables of an OPC UA server as a tag list (CSV), with one row for each element of an array. Options\n"
-          "are those of a source of type opcua in a plant file. Without a certificate the connection is not encrypted. Nothing is\n"
-          "written to the server.\n",
+          "Prints the numeric variables of an OPC UA server as a tag list (CSV); each array element is a row.\n"
+          "The options have the meaning of the keys of a source of type opcua in the plant file (PLANT.md).\n"
+          "Without --certificate the connection is not encrypted. Nothing is written to the server.\n",
           out);
 }
 
