@@ -8,25 +8,18 @@
 
 #include "version.h"
 
-enum {
-    MIN_PX = 320,
-    MAX_PX = 4096,
-    MIN_HEIGHT_PX = 180,
-    MIN_FPS = 5,
-    MAX_FPS = 30,
-    SRT_LEAST_CHARS = 10,
-    SRT_MOST_CHARS = 79
-};
+enum { MIN_PX = 320, MAX_PX = 4096, MIN_HEIGHT_PX = 180, MIN_FPS = 5, MAX_FPS = 30, SRT_LEAST_CHARS = 10, SRT_MOST_CHARS = 79 };
 
-static const char SUMMARY[] =
-    "Serves a view of a Plantcast daemon as video by RTSP and SRT, encoded once as H.264. The picture has markers, legend,\n"
-    "clock and the age of the values. When the server or its values are lost, a card says so within 3 s.";
-static const char DETAIL[] =
-    "Give --rtsp, --srt or both. On an address other than 127.0.0.1 (--listen), --readers-file or --open-readers is required.\n"
-    "  RTSP  rtsp://HOST:PORT/plantcast (user and password)\n"
-    "  SRT   srt://HOST:PORT, as caller (passphrase: the password)\n"
-    "Only SRT is encrypted. Metrics in Prometheus' text format: http://127.0.0.1:PORT/metrics with --http PORT.\n"
-    "Exit status: 0 success, 2 wrong usage, 1 any other error.";
+static const char SUMMARY[] = "Serves a view of a Plantcast daemon as H.264 video by RTSP and SRT. All viewers share one encoding.\n"
+                              "The picture has markers of sensors, legend, clock and the age of the values.\n"
+                              "If the connection to the daemon or the values are lost, the picture says so within 3 s.";
+static const char DETAIL[] = "Give --rtsp, --srt or both.\n"
+                             "If --listen is not 127.0.0.1, --readers-file or --open-readers is required.\n"
+                             "Players open these addresses:\n"
+                             "  RTSP  rtsp://HOST:PORT/plantcast (with user and password)\n"
+                             "  SRT   srt://HOST:PORT, in caller mode (the password of the viewers is the passphrase)\n"
+                             "Only SRT is encrypted. With --http PORT, http://127.0.0.1:PORT/metrics has metrics for Prometheus.\n"
+                             "Exit status: 0 success, 2 wrong usage, 1 any other error.";
 
 static int wrong(const char *fmt, ...) G_GNUC_PRINTF(1, 2);
 static int wrong(const char *fmt, ...)
@@ -99,8 +92,8 @@ static int read_size(struct video_options *options, const char *text)
     int n = 0;
     if (text && (sscanf(text, "%dx%d%n", &options->width_px, &options->height_px, &n) != 2 || text[n]))
         return wrong("--size %s: expected WIDTHxHEIGHT, such as 1920x1080", text);
-    if (options->width_px < MIN_PX || options->width_px > MAX_PX || options->height_px < MIN_HEIGHT_PX ||
-        options->height_px > MAX_PX || options->width_px % 2 || options->height_px % 2)
+    if (options->width_px < MIN_PX || options->width_px > MAX_PX || options->height_px < MIN_HEIGHT_PX || options->height_px > MAX_PX ||
+        options->width_px % 2 || options->height_px % 2)
         return wrong("--size %dx%d: expected even numbers from %dx%d to %dx%d", options->width_px, options->height_px, MIN_PX,
                      MIN_HEIGHT_PX, MAX_PX, MAX_PX);
     return -1;
@@ -117,8 +110,8 @@ static int check_numbers(const struct video_options *options)
         const char *name;
         int value, least, most;
     } numbers[] = { { "--fps", options->fps, MIN_FPS, MAX_FPS }, { "--kbps", options->kbps, 100, 100000 },
-                    { "--every", options->every_ms, 200, 1000 },    { "--most-readers", options->most_readers, 1, OPTIONS_MOST_READERS },
-                    { "--rtsp", options->rtsp_port, 0, 65535 },     { "--http", options->http_port, 0, 65535 },
+                    { "--every", options->every_ms, 200, 1000 }, { "--most-readers", options->most_readers, 1, OPTIONS_MOST_READERS },
+                    { "--rtsp", options->rtsp_port, 0, 65535 },  { "--http", options->http_port, 0, 65535 },
                     { "--srt", options->srt_port, 0, 65535 } };
     int code = -1;
     for (size_t i = 0; i < G_N_ELEMENTS(numbers) && code < 0; i++)
@@ -158,26 +151,33 @@ int options_read(struct video_options *options, int *argc, char ***argv)
     *options = (struct video_options){ .width_px = 1280, .height_px = 720, .fps = 10, .kbps = 4000, .every_ms = 1000 };
     options->most_readers = 64;
     const GOptionEntry entries[] = {
-        { "view", 0, 0, G_OPTION_ARG_STRING, &options->view, "named view, of the plant file or saved on the page", "ID" },
-        { "query", 0, 0, G_OPTION_ARG_STRING, &options->query,
-          "view by parameters of /snapshot.png: group=temperature&camera=...", "TEXT" },
-        { "language", 0, 0, G_OPTION_ARG_STRING, &options->language, "language of all text: en, ko or de (default: en)", "L" },
+        { "view", 0, 0, G_OPTION_ARG_STRING, &options->view, "id of the view to show: a view of the plant file, or one saved on the page",
+          "ID" },
+        { "query", 0, 0, G_OPTION_ARG_STRING, &options->query, "view to show, as parameters of /snapshot.png: group=temperature&camera=...",
+          "PARAMETERS" },
+        { "language", 0, 0, G_OPTION_ARG_STRING, &options->language, "language of all text in the picture: en, ko or de (default: en)",
+          "LANGUAGE" },
         { "token-file", 0, 0, G_OPTION_ARG_FILENAME, &options->token_path,
-          "file whose first line is a viewer's token (plantcast token)", "FILE" },
-        { "ca", 0, 0, G_OPTION_ARG_FILENAME, &options->ca_path, "trusted certificates (PEM), instead of the system's", "FILE" },
-        { "size", 0, 0, G_OPTION_ARG_STRING, &size, "size of the video (default: 1280x720)", "WxH" },
-        { "fps", 0, 0, G_OPTION_ARG_INT, &options->fps, "frames a second, 5 to 30, also of a still picture (default: 10)", "N" },
-        { "kbps", 0, 0, G_OPTION_ARG_INT, &options->kbps, "bit rate limit in kbit/s (default: 4000)", "N" },
-        { "every", 0, 0, G_OPTION_ARG_INT, &options->every_ms, "milliseconds between new pictures, 200 to 1000 (default: 1000)", "MS" },
-        { "listen", 0, 0, G_OPTION_ARG_STRING, &options->listen, "address of all outputs (default: 127.0.0.1)", "ADDRESS" },
-        { "rtsp", 0, 0, G_OPTION_ARG_INT, &options->rtsp_port, "serve RTSP on this port", "PORT" },
-        { "srt", 0, 0, G_OPTION_ARG_INT, &options->srt_port, "accept SRT callers on this port", "PORT" },
-        { "http", 0, 0, G_OPTION_ARG_INT, &options->http_port, "serve /metrics on this port of 127.0.0.1", "PORT" },
-        { "readers-file", 0, 0, G_OPTION_ARG_FILENAME, &readers_path, "file whose first line is USER:PASSWORD of the viewers", "FILE" },
-        { "open-readers", 0, 0, G_OPTION_ARG_NONE, &open_readers, "no password: everybody who reaches the address may watch", NULL },
-        { "most-readers", 0, 0, G_OPTION_ARG_INT, &options->most_readers, "viewers of each output at once (default: 64)", "N" },
-        { "time-code", 0, 0, G_OPTION_ARG_NONE, &time_code,
-          "add a row of blocks below the picture that programs read the time from", NULL },
+          "file whose first line is a token for the daemon, made by `plantcast token`", "FILE" },
+        { "ca", 0, 0, G_OPTION_ARG_FILENAME, &options->ca_path, "certificates (PEM) to trust instead of those of the system", "FILE" },
+        { "size", 0, 0, G_OPTION_ARG_STRING, &size, "width and height of the video in pixels (default: 1280x720)", "WxH" },
+        { "fps", 0, 0, G_OPTION_ARG_INT, &options->fps, "frames per second, 5 to 30, also if nothing changes (default: 10)", "N" },
+        { "kbps", 0, 0, G_OPTION_ARG_INT, &options->kbps, "highest bit rate of the video in kbit/s (default: 4000)", "N" },
+        { "every", 0, 0, G_OPTION_ARG_INT, &options->every_ms,
+          "time between two pictures from the daemon in ms, 200 to 1000 (default: 1000)", "MS" },
+        { "listen", 0, 0, G_OPTION_ARG_STRING, &options->listen,
+          "address of this machine on which RTSP and SRT are served (default: 127.0.0.1)", "ADDRESS" },
+        { "rtsp", 0, 0, G_OPTION_ARG_INT, &options->rtsp_port, "TCP port on which to serve RTSP", "PORT" },
+        { "srt", 0, 0, G_OPTION_ARG_INT, &options->srt_port, "UDP port on which to serve SRT", "PORT" },
+        { "http", 0, 0, G_OPTION_ARG_INT, &options->http_port, "TCP port of 127.0.0.1 on which to serve /metrics", "PORT" },
+        { "readers-file", 0, 0, G_OPTION_ARG_FILENAME, &readers_path, "file whose first line is USER:PASSWORD, which viewers must give",
+          "FILE" },
+        { "open-readers", 0, 0, G_OPTION_ARG_NONE, &open_readers, "require no password: everybody who reaches the address may watch",
+          NULL },
+        { "most-readers", 0, 0, G_OPTION_ARG_INT, &options->most_readers,
+          "most viewers of RTSP, and of SRT, at the same time (default: 64)", "N" },
+        { "time-code", 0, 0, G_OPTION_ARG_NONE, &time_code, "add a row of blocks below the picture, from which programs read its time",
+          NULL },
         { "version", 0, 0, G_OPTION_ARG_NONE, &version, "print the version", NULL },
         { NULL, 0, 0, G_OPTION_ARG_NONE, NULL, NULL, NULL }
     };

@@ -9,15 +9,15 @@
 #include <sys/socket.h>
 
 const char sim_control_help[] =
-    "  set TAG VALUE   hold the tag at VALUE (engineering units; nan and inf where its type can hold them)\n"
-    "  get TAG         print the present value\n"
-    "  fail TAG        refuse each request for a register of the tag (exception 2, illegal address)\n"
-    "  release TAG     undo set and fail\n"
-    "  pause           stop answering and publishing; connections stay open\n"
-    "  resume          undo pause\n"
-    "  stats           print counts of reads and refusals, and the present upset\n"
+    "  set TAG VALUE   hold the tag at VALUE, in its Eng Units; nan and inf if its data type can hold them\n"
+    "  get TAG         print the present value of the tag\n"
+    "  fail TAG        answer requests for the registers of the tag with Modbus exception 2 (illegal address)\n"
+    "  release TAG     undo `set` and `fail` for the tag\n"
+    "  pause           stop answering requests and publishing values; connections stay open\n"
+    "  resume          undo `pause`\n"
+    "  stats           print the number of reads and of refused requests, and the present simulated fault\n"
     "  quit            end plantcast-sim\n"
-    "  Each line is answered with `ok`, `ok ...` or `error: ...`.\n";
+    "  The answer to each command is one line: `ok`, `ok ...` or `error: ...`.\n";
 
 struct sim_command {
     const char *name, *tag, *value; /* "" if the command has none */

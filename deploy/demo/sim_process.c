@@ -277,9 +277,10 @@ double process_upset(const struct process *process, const char **name)
 
 const char *process_upset_help(void)
 {
-    return "  cooling water lost   loops named *water*, *cooling*, *condenser*, *overhead*, *reflux*, *drum*, *offgas*, *distillate*,\n"
-           "                       *column*, *reboiler*\n"
-           "  exchanger fouled     loops named *feed*, *preheat*, *exchanger*, *bottoms*, *product*, *column*\n"
-           "  bearing worn         loops named *pump*, *motor*, P-..., K-..., C-..., EA-...: one machine each time\n"
-           "Loops named *storage*, *weather* and *steam* change slowly.\n";
+    return "  cooling water lost   tags whose Sim Loop contains water, cooling, condenser, overhead, reflux, drum,\n"
+           "                       offgas, distillate, column or reboiler\n"
+           "  exchanger fouled     tags whose Sim Loop contains feed, preheat, exchanger, bottoms, product or column\n"
+           "  bearing worn         tags whose Sim Loop contains pump or motor, or begins with P-, K-, C- or EA-;\n"
+           "                       one machine each time\n"
+           "Tags whose Sim Loop contains storage, weather or steam change slowly.\n";
 }

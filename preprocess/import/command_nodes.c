@@ -15,13 +15,16 @@ static void print_usage(FILE *out)
     fputs(
         "usage: plantcast nodes MODEL [--grep RE] [--tree N] [--json]\n"
         "\n"
-        "Lists the nodes of a model: number, triangles, size and centre (Z up) of each node with its children, path and\n"
-        "properties. The first lines give the number of nodes, the size, and the distance from the origin. A node without a name\n"
-        "takes that of its mesh, else its number, which a plant file accepts too (nodes: \"#12\").\n"
-        "\n"
-        "  --grep RE         only nodes whose path or properties match an extended regular expression, ignoring case\n"
-        "  --tree N          only the first N levels, indented\n"
-        "  --json            print JSON\n",
+        "Lists the nodes (parts) of a CAD model.\n"
+        "Prints for each node its number, triangles, size, centre (Z up), path and properties.\n"
+        "Triangles, size and centre include the children of the node.\n"
+        "The first lines give the number of nodes, the size of the model, and its distance from the origin.\n"
+        "A node without a name gets the name of its mesh, else its number.\n"
+        "A plant file accepts the number of a node too (nodes: \"#12\").\n"
+        "  --grep RE         list only nodes whose path or properties match the extended regular expression\n"
+        "                    RE, ignoring case\n"
+        "  --tree N          list only the first N levels of the hierarchy, indented\n"
+        "  --json            print the list as JSON\n",
         out);
     options_print(out);
     fputs("Exit status: 0 success, 1 the model could not be read, 2 wrong usage, 3 no node matched.\n", out);

@@ -11,16 +11,18 @@ const struct conversion_params options_default = { .chord_m = 0.001, .timeout_s 
 
 void options_print(FILE *out)
 {
-    fputs("  --chord MM        greatest distance in mm from a triangle to the true surface, where a model has one (default: 1)\n"
-          "  --units UNIT      unit of models that name none: m, mm, cm, in or ft\n"
-          "  --mesh-units UNIT unit of OBJ, STL, PLY and 3DS models alone\n"
-          "  --up AXIS         up axis of models that name none: y or z\n"
-          "  --encoding NAME   encoding of names, such as GB18030, Shift-JIS, EUC-KR, Windows-1251 (default: the encoding that the\n"
-          "                    model names, else the most likely one, which is printed)\n"
-          "  --keep-covered    RVM: keep faces that are covered by a neighbouring face\n"
-          "  --timeout S       time limit in seconds for reading one model (default: 120)\n"
-          "  --memory MB       memory limit for reading one model (default: 2048)\n"
-          "  --formats         print the formats that this build reads\n",
+    fputs("  --chord MM        largest distance in mm between the triangles and the curved surfaces of a model\n"
+          "                    that they replace (default: 1)\n"
+          "  --units UNIT      unit of length of models whose file states none: m, mm, cm, in or ft\n"
+          "  --mesh-units UNIT unit of length of OBJ, STL, PLY and 3DS models only\n"
+          "  --up AXIS         axis that points up in models whose file states none: y or z\n"
+          "  --encoding NAME   character encoding of the names in the model, such as GB18030, Shift-JIS,\n"
+          "                    EUC-KR, Windows-1251 (default: the one that the model states, else the most\n"
+          "                    likely one, which is printed)\n"
+          "  --keep-covered    keep faces of RVM models that a neighbouring face covers; nobody can see them\n"
+          "  --timeout S       longest time in seconds that reading one model may take (default: 120)\n"
+          "  --memory MB       most memory that reading one model may take (default: 2048)\n"
+          "  --formats         print the CAD formats that this program can read\n",
           out);
 }
 
