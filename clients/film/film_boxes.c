@@ -115,6 +115,8 @@ static bool content_fits(const struct box_walk *walk, const char *expected, cons
 
 /* --- boxes --------------------------------------------------------------------------------------------------------------------- */
 
+/* Returns the index in `rules` (table of allowed boxes) of the rule for a box of this type in this parent box; RULES: there is none, so the
+   box is not allowed. */
 static int find_rule(const char *parent, const uint8_t *type)
 {
     int i = 0;
@@ -135,8 +137,8 @@ static bool has_two_sets(const uint8_t *at, size_t count)
     return end == count || (end + FORMATS == count && at[count - 1] == 0);
 }
 
-/* Checks one child box against rule number `rule` of the table. content NULL: the box is not in the table. Returns false with the reason
-   in walk->why. */
+/* Checks one box against rules[rule], its entry in the table of allowed boxes; RULES: the table has no entry, which is an error. Each box
+   may occur once. content: the box's content of `count` bytes; NULL: not read. Returns false with the reason in walk->why. */
 static bool take_box(struct box_walk *walk, int rule, const uint8_t *type, const char *parent, const uint8_t *content, size_t count)
 {
     char *why = walk->why, name[5] = "";

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draws one frame of the video: a picture of the plant or a text card, and below it a strip with title, clock and the age of the values.
-   Thread: one. */
+/* Draws one frame of the video: a picture of the plant, and below it a strip with title, clock and the age of the values. If there is no
+   recent picture, a text card with the reason takes its place. Thread: one. */
 #ifndef VIDEO_CANVAS_H
 #define VIDEO_CANVAS_H
 #include <cairo.h>
@@ -9,7 +9,7 @@
 
 struct shown {                /* content to draw in a frame; owned by the source (source.h), valid until its next call */
     cairo_surface_t *picture; /* NULL: the text card is shown */
-    const char *headline, *detail;
+    const char *headline, *detail; /* texts of the card: the state in large letters, and below it the reason */
     gint64 since_us; /* UTC time since which there is a reason for the text card; 0: the card shows no time */
     const char *title;
     gint64 age_ms;   /* age of the oldest value in the picture; -1: it has no values */
@@ -23,9 +23,9 @@ struct canvas {
 
 /* Returns the height in pixels of the picture in a video of height height_px; the rest of the height is the strip's. */
 int canvas_picture_px(int height_px);
-/* Draws the frame for the instant utc_us into the pixels (BGRX). With a time code, the bottom row is CANVAS_CODE_BITS blocks, white for
-   1. From left to right they are: 1, 0, the tenths of seconds since 1970 as CANVAS_TIME_BITS bits with the highest first, 1 if the frame
-   shows a text card, and the parity of all bits before. */
+/* Draws the frame for the instant utc_us into the pixels (BGRX). If canvas->time_code is set, the bottom row of the frame is a
+   machine-readable time code of CANVAS_CODE_BITS blocks, white for 1. From left to right they are: 1, 0, the tenths of seconds since 1970
+   as CANVAS_TIME_BITS bits with the highest first, 1 if the frame shows a text card, and the parity of all bits before. */
 void canvas_draw(const struct canvas *canvas, guint8 *bgrx, int stride_bytes, const struct shown *look, gint64 utc_us);
 enum { CANVAS_TIME_BITS = 36, CANVAS_CODE_BITS = CANVAS_TIME_BITS + 4 };
 

@@ -3,7 +3,7 @@
 #ifndef PREPROCESS_IMPORT_FILE_NAME_H
 #define PREPROCESS_IMPORT_FILE_NAME_H
 
-/* Returns the path without the ending ".gz" (in any case) of a compressed file. */
+/* Returns the path without the ending ".gz" (in upper or lower case) of a compressed file. */
 char *file_name_without_gz(const char *path);
 /* Returns the path with its ending replaced: "a/b.rvm" with ".att" gives "a/b.att", and so does "a/b.rvm.gz". */
 char *file_name_with_ending(const char *path, const char *ending);

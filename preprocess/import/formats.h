@@ -23,7 +23,8 @@ struct import_format {
 /* The reason why a model in this form of IFC is refused. */
 #define FORMAT_IFC_XML "it is IFC in XML (ifcXML), which is not read: export it as IFC in STEP text (.ifc)"
 
-/* Returns the format that the path's ending (in any case) belongs to, or NULL if there is none. All but glTF may be followed by ".gz". */
+/* Returns the format that the path's ending (in upper or lower case) belongs to, or NULL if there is none. All but glTF may be followed by
+ * ".gz". */
 const struct import_format *import_format_of(const char *path);
 /* Finds the reader program of a format. Returns its path, which the caller frees with mem_free, or NULL if it is not installed. */
 char *import_format_program(const struct import_format *format);

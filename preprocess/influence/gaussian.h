@@ -18,7 +18,8 @@
 #define GAUSSIAN_SAMPLES 256
 
 struct gaussian_params {
-    double range_m, noise, deviation; /* range in metres; noise and deviation (standard deviations) in the unit of the readings */
+    /* range: correlation length in metres; noise and deviation (standard deviations) in the unit of the readings */
+    double range_m, noise, deviation;
 };
 
 /* Computes H, P and the standard deviation at each vertex, the latter from random samples with a fixed seed. Returns false after logging if

@@ -103,8 +103,8 @@ static bool is_single(const struct influence_anchor *anchor)
     return anchor->points[0] == anchor->points[1] && anchor->points[0] == anchor->points[2];
 }
 
-/* Returns whether the place is a corner of the drawn triangle, and the drawn value at this corner is the value of the mesh point there.
- * Then the difference at the place is 0. */
+/* A place is a corner of the overlap of a mesh triangle and a drawn triangle. Returns whether it is at a corner of the drawn triangle whose
+ * value is that of the mesh point there. The solved field and the drawn field are then equal at the place, so it needs no check. */
 static bool is_corner(const struct finding *finding, const struct bend_place *place)
 {
     const struct bend_drawn *drawn = &finding->bend->drawn;
@@ -116,7 +116,7 @@ static bool is_corner(const struct finding *finding, const struct bend_place *pl
     return false;
 }
 
-/* Returns whether the place needs no check: it is at a corner with difference 0 (is_corner()), or the drawn triangle already has an equal
+/* Returns whether the place needs no check: both fields are equal there (is_corner()), or the drawn triangle already has an equal
  * place. May miss a duplicate, which costs only time. */
 static bool is_known(struct finding *finding, const struct bend_place *place)
 {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Measures the bend: the largest difference between the solved field and the linear interpolation drawn between the corners of a triangle.
+/* Measures the bend: the largest difference between the solved field, which bends, and the field that is drawn, which is linear between the
+ * corners of each triangle of the asset file.
  * Both fields are piecewise linear, on different triangulations, so their difference is largest at corners of the overlaps of mesh and
  * drawn triangles. All these corners ("places") are found, and the rest of each drawn triangle's area is recorded as not covered. The field
  * is not solved where a part lies inside or against another part. Where crack bridging has moved mesh corners off the drawn triangle, the
@@ -31,15 +32,15 @@ struct bend_drawn { /* the drawn triangles: those of the asset file */
     /* All overlap corners are found for the finest level. Triangles of coarser levels do not lie on the surface: the bend is measured at a
      * few points of each. */
     const struct bend_level *levels;
-    size_t level_count; /* count of levels; 0: all triangles belong to the finest level */
+    size_t level_count; /* number of elements of `levels`; 0: all triangles belong to the finest level */
 };
 
 struct influence_bend {
     struct bend_drawn drawn;
     struct bend_place *places; /* grouped by drawn triangle */
     size_t count, capacity;
-    /* by drawn triangle: its area; the area hidden inside other parts; the area where the bend is unknown. For coarse levels: counts of
-     * samples instead of areas */
+    /* by drawn triangle: its area; the area hidden inside other parts; the area where the bend (see the top) is unknown. For coarse levels:
+     * counts of samples instead of areas */
     double *area_m2, *hidden_m2, *unknown_m2;
     /* by place (corner of an overlap): sums over sensors of the positive and of the negative errors of their weights, in fixed point */
     _Atomic int64_t *plus, *minus;

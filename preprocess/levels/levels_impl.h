@@ -76,15 +76,18 @@ void omissions_find(struct omission *omissions, const struct welds *welds, struc
 
 /* Writes the unit normal of the triangle whose corners are the three welds, or the zero vector if it has no area. */
 void levels_normal(const struct welds *welds, const uint32_t corners[3], float n[3]);
-/* Returns, among the vertices of a weld that are marked in `used`, the one whose normal is closest to the face normal n. Without one_side,
- * a normal that points the opposite way counts as equally close. Returns UINT32_MAX if none is marked. */
+/* Returns, among the vertices of a weld (group of equal vertices at one position), the one whose normal is closest to the face normal n.
+ * used: by vertex, nonzero if the level may use it; other vertices are ignored. Without one_side, a normal that points the opposite way
+ * counts as equally close. Returns UINT32_MAX if the level may use no vertex of the weld. */
 uint32_t levels_vertex(const struct welds *welds, const char *used, uint32_t weld, const float n[3], bool one_side);
 /* Sets contrary[part] for each part in which a face's winding contradicts its vertex normals in the model already, so that its shading
  * cannot be repaired. */
 void levels_find_contrary(const struct welds *welds, char *contrary);
-/* Repairs the shading of thin parts that simplification has flattened. corners: three welds per face. If no vertex marked in `used` at a
- * corner's weld faces the face's side, moves the corner to a neighbouring weld that has such a vertex, at most about most_m[part] away.
- * Sets moved[part] for changed parts. Returns false if no corner was moved. */
+/* Repairs the shading of thin parts that simplification has flattened: there, a face may have corners whose vertex normals all point to the
+ * back of the face. corners: three welds (groups of equal vertices at one position) per face. used: by vertex, nonzero if the level may use
+ * it. If a corner's weld has no usable vertex with a normal to the front, the function moves the corner to a neighbouring weld that has
+ * one, at most about most_m[part] away. contrary: from levels_find_contrary(); such parts stay as they are. Sets moved[part] for changed
+ * parts. Returns false if no corner was moved. */
 bool levels_face(const struct welds *welds, const char *used, const char *contrary, const float *most_m, uint32_t *corners, size_t count,
                  char *moved);
 

@@ -114,7 +114,8 @@ static void index_types(struct tag_json_reader *reader, json_t *node, const char
     mem_free(below);
 }
 
-/* Finds a type by path, or else by name, in any case, if only one type has that name. */
+/* Returns the type definition whose path in the export is `id`. If there is none, returns the only type with that name, ignoring upper and
+ * lower case. NULL: there is no such type, or several have the name. */
 static json_t *find_type(const struct tag_json_reader *reader, const char *id)
 {
     const char *wanted = !strncmp(id, "_types_/", 8) ? id + 8 : id, *slash = strrchr(wanted, '/'), *name = slash ? slash + 1 : wanted, *key;

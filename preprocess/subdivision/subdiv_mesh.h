@@ -19,7 +19,9 @@ struct subdiv_tri {
 struct subdiv_edge { /* an edge between two positions, shared by all levels */
     /* vertices at the edge's ends; where several vertices share a position (with different normals or texture coordinates), any one */
     uint32_t a, b;
-    uint32_t origin[2]; /* two original triangles at the edge, in the first level that had the edge; TRIMESH_NONE: none */
+    /* indices of the triangles that contain the edge, among the level's triangles before subdivision. The second one is recorded only for
+     * edges of the finest level. TRIMESH_NONE: none */
+    uint32_t origin[2];
     uint32_t middle;    /* position index of the split point; TRIMESH_NONE: not split */
     uint32_t load;      /* value that mesh.loads (number of levels loaded so far) had in the last level that split the edge */
     /* head of the list of corners of the current level at which the edge begins (3 * triangle + i, linked by mesh.next); TRIMESH_NONE: no

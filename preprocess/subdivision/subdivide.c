@@ -12,7 +12,8 @@
 
 #define MAX_ROUNDS 16
 #define GRAIN 2048 /* triangles per unit of work of a thread: takes a few tenths of a millisecond */
-/* maximum count of numbers in a sample for which the samples at all positions are stored; larger samples are computed again */
+/* A sample is the list of the sensors' interpolation weights at one point (linear_error.h). If it has at most this many numbers, the
+ * samples at all vertex positions are kept in memory; longer samples are computed each time they are needed. */
 #define MAX_STORED 512
 #define LARGE 0.25 /* share of the distance to the nearest sensor; a triangle is large if it has a longer edge */
 /* sum of a triangle's edge errors, in multiples of the error limit; below this sum, only one of 500 large triangles has an error inside

@@ -58,10 +58,10 @@ bool layout_is_exact(const struct field_layout *layout, enum interpolation inter
 /* Returns whether the sensor's distances by this mode are in its column of the asset file. */
 bool layout_is_in_file(const struct layout_sensor *sensor, enum distance_mode mode);
 /* Returns the distances of `count` vertices from one sensor, beginning with vertex `begin`: a pointer to them, or to `scratch`, which
-   receives them. The vertices must be in one block of KERNEL_BLOCK vertices. If layout->points is set, the distances are those of these
-   points; geodesic ones then follow from the distances at the triangle's corners, as if the triangle were flat and reached from one
-   side. Straight-line distances start at the sensor's surface point, so that both kinds are 0 there; they replace geodesic ones that are
-   not known yet. */
+   receives them. The vertices must be in one block of KERNEL_BLOCK vertices (kernels.h). If layout->points is set, it returns the
+   distances of these points instead. The geodesic distance (along the surface) of such a point follows from those of the three corners of
+   the triangle that contains it, as if the path from the sensor entered the triangle at one side. Straight-line distances start at the
+   sensor's surface point, so that both kinds are 0 there; they replace geodesic ones that are not known yet. */
 const float *layout_distances(const struct field_layout *layout, enum distance_mode mode, size_t sensor, size_t begin, size_t count,
                               float *scratch);
 /* Returns the largest finite distance of any vertex from any sensor, computed once; 1 if all are 0 or infinite. */

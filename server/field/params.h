@@ -59,8 +59,9 @@ const struct field_override *field_params_override_of(const struct field_params 
 /* Returns whether the shown quantity depends only on which sensors are good, not on their readings. */
 bool field_params_cover(const struct field_params *params);
 /* Writes the default range of the colour map: the group's MIN and MAX; for distances 0 to the largest, rounded up; for differences a
-   quarter of the range below and above 0; for the operator's view all positions between limits; for uncertainty 0 to the deviation of the
-   prior; for hot spots a twentieth of the group's range to the whole range. */
+   quarter of the range below and above 0; for `show: operator` -3 to 3, the positions between a tag's alarm limits (field/limits.h); for
+   uncertainty 0 to the standard deviation that `gp` assumes without any reading (its prior); for hot spots a twentieth of the group's range
+   to the whole range. */
 void field_default_range(const struct scene *scene, const struct field_params *params, double *min, double *max);
 
 #endif

@@ -119,8 +119,9 @@ static void choose_members(struct weights *weights, const struct field_params *p
         weights->alike &= weights->strength[weights->members[m]] == weights->strength[weights->members[0]];
 }
 
-/* Returns the number of steps of `lacking` per metre. The 127 steps on either side of the border span a fifth of the asset's size, which
-   is more than any triangle at the border. */
+/* Returns the number of steps of scalar.lacking per metre. That byte encodes the distance of a vertex from the border between data and no
+   data: 127 is the border, more is beyond it. The 127 steps on either side span a fifth of the asset's diagonal, which is more than any
+   triangle at the border. */
 static float steps_per_m(const struct field_layout *layout)
 {
     const struct asset_header *header = layout->file->view.header;

@@ -42,7 +42,7 @@ struct weights {
     const struct field_layout *layout;
     enum interpolation interpolation;
     enum distance_mode distance;
-    float power, reach_m, radius_m, steps_per_m; /* steps_per_m: units of `lacking` per metre */
+    float power, reach_m, radius_m, steps_per_m; /* steps_per_m: steps of scalar.lacking per metre */
     bool alike;                                  /* true: all members (sensors in the sum) have the same strength */
     float *strength, *decay;                     /* by sensor of the layout */
     /* for each sensor of the layout: 1: it would contribute if its quality were good; 0: it would not; more than 1: SENSOR_NO_LIMITS */

@@ -134,8 +134,8 @@ bool plant_import_order(struct plant_import *import, const struct import_order *
     bool taken = !import->busy;
     if (taken) {
         import->order = *order;
-        /* an order that only applies match decisions or sets the source states no encoding: keeps the one with which the tag list was
-           read */
+        /* an order that only applies the user's match decisions, or only sets the plant's data source, does not state the character
+           encoding of the tag list: keep the encoding that the last import used */
         if (order->decides || *order->source.host)
             strcpy(import->order.encoding, import->read.encoding);
         import->ordered = import->busy = true;
@@ -193,7 +193,8 @@ char *plant_import_text(struct plant_import *import, const struct import_source 
 
 /* --- functions that the reload thread calls ----------------------------------------------------------------------------- */
 
-/* Appends the output of a program. The output may contain arbitrary bytes from names of files and tags; these are replaced. */
+/* Appends the output of `plantcast import` to `out`. Writes '?' for each byte that is not UTF-8 or is a control character other than a new
+   line; names of files and tags may contain such bytes. */
 static void add_printable(struct text *out, const char *text)
 {
     for (size_t left = strlen(text), bytes; left > 0; text += bytes, left -= bytes) {

@@ -172,7 +172,8 @@ void streams_settle(struct server_context *server);
 void streams_check_tokens(struct server_context *server, int64_t now_utc_ns);
 /* Begins to close all connections, because the server shuts down. */
 void streams_close(struct server_context *server);
-/* Checks the handshake of a stream. Returns 0 to accept it; 1 if it was answered with an HTTP error. */
+/* Checks the HTTP request that opens a WebSocket. Returns 0 to accept it. Returns 1 to refuse it; an HTTP error (401, 403 or 429, for
+   example) was then sent. */
 int stream_check_upgrade(struct server_context *server, struct lws *wsi);
 
 /* --- http/ --- */

@@ -44,8 +44,8 @@ struct placed {
     enum placed_state state;
 };
 
-struct place_set;
-/* Creates an empty set of moves. The caller destroys it. */
+struct place_set; /* the sensors that one user has moved on trial, with the new positions */
+/* Creates a place set without moves. The caller destroys it. */
 struct place_set *place_set_create(struct placing *placing);
 /* Cancels the pending requests of the set and frees it. &NULL is fine; sets it to NULL. */
 void place_set_destroy(struct place_set **set);
@@ -53,7 +53,8 @@ void place_set_destroy(struct place_set **set);
    nothing changed if a tag cannot be placed: it has no group, or the position is farther from the asset than the asset's size; `why`
    names the tag. */
 bool place_set_moves(struct place_set *set, const struct place_move *moves, size_t count, struct refusal *why);
-/* Returns the id of the set's trial (field/trials.h); 0: the set has no moves, so there is no trial. */
+/* Returns the id of the set's trial (field/trials.h): renderers draw the field of the moved sensors in views that have this id. Each change
+   of the set gives another id. 0: the set has no moves, so there is no trial. */
 uint32_t place_set_trial(const struct place_set *set);
 /* *out receives the set's moves with their results, valid until the set changes. Returns their number. */
 size_t place_set_get(const struct place_set *set, const struct placed **out);

@@ -46,7 +46,9 @@ struct frame {
     struct frame *whole;          /* reference to the frame that owns the pixels; NULL: this frame owns them */
     struct frame_marker *markers; /* sensors of the shown group */
     size_t marker_count;
-    struct frame_label *labels; /* candidate points for isoline labels (more than can be drawn without overlap), and arrows */
+    /* visible points on isolines where the line's value may be written (more than can be drawn without overlap), and the arrows of
+       fields that have a direction */
+    struct frame_label *labels;
     size_t label_count;
     int64_t data_utc_ns;   /* UTC of the snapshot that the frame shows */
     bool clock_unset;      /* true if the clock that gave data_utc_ns was not synchronised */

@@ -19,7 +19,9 @@ struct asset {
     /* bit l set: preparation subdivided the triangles of level l until they show the field without visible error (field/drawn_error.h) */
     uint64_t resolved_levels;
     _Atomic int refs;
-    struct closed_bodies *_Atomic *closed; /* closed bodies per level; NULL: not computed yet */
+    /* by level of detail: which triangles bound closed bodies, whose cut sections are drawn solid (closed_bodies.h); NULL: not computed yet
+       */
+    struct closed_bodies *_Atomic *closed;
 };
 
 /* Opens a file. Returns NULL on failure, logged with path and reason. */
@@ -32,7 +34,8 @@ struct asset *asset_stand_in(void);
 struct asset *asset_ref(struct asset *asset);
 void asset_unref(struct asset **asset);        /* releases the asset and sets *asset to NULL; accepts a pointer to NULL */
 void asset_forget_closed(struct asset *asset); /* frees the closed bodies; pointers from asset_closed() are then invalid */
-/* Returns the closed bodies of a level. The first call computes them, in a few milliseconds per 100,000 triangles. Owned by the asset. */
+/* Returns the closed bodies of a level of detail. The first call computes them, in a few milliseconds per 100,000 triangles. Owned by the
+   asset. */
 const struct closed_bodies *asset_closed(const struct asset *asset, uint32_t level);
 
 #endif

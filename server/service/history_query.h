@@ -21,7 +21,9 @@ struct history_query {
     int64_t from_us, to_us;
     bool csv;
     bool drift;     /* instead of series, the query asks which sensors drifted in the week before to_us (service/drift_report.h) */
-    int group, tag; /* for a drift query: index of the group, or of a single tag; otherwise -1 */
+    /* for a drift query: index in the plant of the group whose sensors are judged, or of one tag; the other one is -1. Both are -1 in other
+       queries */
+    int group, tag;
     bool gaps;      /* instead of series, the query asks for the periods in which nothing was recorded */
     bool journal;   /* instead of series, the query asks for the alarm journal, filtered by `alarms` */
     struct alarm_query alarms;

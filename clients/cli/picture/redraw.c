@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draws the picture that a signed statement describes with the offline renderer, and compares both. */
+/* Redraws a signed picture and compares the result with it. The picture's statement is the signed JSON text inside its file: plant, time,
+   view and all readings. The offline renderer draws from it. */
 #include "redraw.h"
 
 #include <stdio.h>
@@ -11,8 +12,9 @@
 #include "render/overlay/overlay.h"
 #include "value/quality.h"
 
-/* Takes all arguments of the statement's query except the instant, which the statement has separately: a relative `at=-8h` would mean
-   another instant today. */
+/* Copies the arguments of the snapshot query that the statement (signed text in the picture) contains to *options. Leaves out `at`, because
+   a relative `at=-8h` would mean another instant today; the statement also has the instant itself. Returns false if an argument is
+   invalid. */
 static bool take_query(const json_t *statement, struct snapshot_options *options)
 {
     const json_t *args = json_object_get(statement, "query");
@@ -60,8 +62,9 @@ static bool same_reading(const struct reading *a, const struct reading *b)
     return a->quality == b->quality && (!usable || (float)a->value == (float)b->value);
 }
 
-/* Compares the statement's readings with recorded ones. A picture of the past took its readings from the history; the readings of a live
-   picture were recorded with their time of arrival. */
+/* Compares the readings in the signed statement with those that the history folder recorded for the picture's instant, and prints how many
+   agree. at_us: instant of a picture of the past, UTC in microseconds; 0: a live picture, whose instant is that of its readings. Returns
+   true if all agree. */
 static bool same_as_recorded(struct offline_renderer *offline, const struct redraw_options *options, const struct frame_record *record,
                              int64_t at_us)
 {
@@ -101,7 +104,8 @@ static size_t count_agreeing(const struct frame *frame, const uint8_t *rgb)
     return agreeing;
 }
 
-/* rgb has the statement's size. */
+/* Compares the redrawn frame with the pixels of the signed picture. rgb: those pixels, in the width and height that the signed statement
+   gives. */
 static bool same_pixels(const struct frame *frame, const json_t *statement, const uint8_t *rgb)
 {
     size_t all = (size_t)frame->width_px * (size_t)frame->height_px;

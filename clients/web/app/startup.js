@@ -35,7 +35,8 @@ if (query.has('wall'))
 const named = location.hash.length > 1 ? (await import('../core/address.js')).readAddress(location.hash) : {};
 export const address = { camera: null, params: {}, tag: null, time: {}, ...named };
 
-// JPEG can be shown immediately. Whether the browser decodes H.264 is tested later, when it pays, unless the URL asks for H.264.
+// JPEG can be shown immediately. Whether the browser decodes H.264 is tested only after some pictures (main.js), unless the URL asks for
+// H.264.
 const wantedCodec = query.get('codec') ?? 'auto';
 const decoding = browserDecoding();
 const codecs = () => decoding.codecs.filter((name) => name !== 'auto' || wantedCodec === 'auto');

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Chooses hardware or software decoding of H.264: tests once and stores the result; falls back after failures. Loaded when H.264 pays off.
+// Chooses hardware or software decoding of H.264: tests once and stores the result; falls back after failures. The page loads this file
+// only after a number of JPEG pictures (app/main.js), since H.264, which encodes only differences, saves data only with many pictures.
 import { H264Decoder, whatIsWrong } from './h264.js';
 
 const ACCELERATIONS = ['no-preference', 'prefer-software']; // hardware first

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Decides for all parts of the page whether the picture may be trusted: the kind of state, a text about it, and since when.
+// Decides for all parts of the page whether the picture may be trusted. Returns one state with a short and a long text for the user.
 import { ageText, title, zoneClock } from './format.js';
 import { say } from './words.js';
 
 const seconds = (ms) => say('age.s', { n: Math.max(1, Math.ceil(ms / 1000)) });
 
-// Returns { kind: connecting | live | simulated | past | partial | nodata | silent | lost, words, detail, banner (bool) }
+// Returns { kind, words, detail, banner }. words: short text about the state. detail: sentence with the reason; '' if none. banner: true if
+// the page must show the text across the picture. kind: 'connecting': no connection yet; 'live'; 'simulated': at least one source
+// simulates, and all sources are up; 'past': the picture shows a past instant; 'partial': some sources are down; 'nodata': the plant
+// delivers no live values; 'silent': the connection is open, but the server sends nothing; 'lost': the connection was lost.
 export function health(session, now) {
     const { connection, model, picture } = session;
     const old = picture ? say('health.old', { age: ageText(now - session.freshAt) }) : '';

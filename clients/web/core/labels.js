@@ -52,8 +52,8 @@ class Taken {
     }
 }
 
-// Returns the box of a label in a slot. across, down: half the width and height of a group of markers around its centre; 0 for a single
-// marker.
+// Returns the box of a label in a slot (index in SLOTS: a candidate position around the marker). across, down: half the width and height of
+// a group of markers around its centre; 0 for a single marker.
 export function boxAt({ x, y, width, height, ring, across = 0, down = 0 }, slot, unit) {
     const [side, edge] = SLOTS[slot];
     const gap = (slot < FIRST_FAR ? NEAR_GAP : FAR_GAP) * unit;
@@ -63,10 +63,13 @@ export function boxAt({ x, y, width, height, ring, across = 0, down = 0 }, slot,
     return { left, top, right: left + width, bottom: top + height };
 }
 
-// Places labels. all: items { id, x, y (of the marker), width, height, rank, depth, held (previous slot or undefined), ring (true: has an
-// alarm ring), callout (previous call-out) }; area: { left, top, right, bottom }; rings: placeRings() of callouts.js; measure(items)
-// returns the size of a call-out. Returns a Map id -> { left, top, slot }; for rings also width, height and callout (undefined: the ring
-// has its own label).
+// Chooses labels and positions. all: items, one per marker, with these members. x, y: centre of the marker; width, height: size of its
+// label. rank: importance, 0 to RANK_RING, higher ranks are placed first; below 0: no label. depth: distance from the eye; within a rank,
+// the nearest is placed first. ring: the marker has an alarm ring. held: slot (candidate position around the marker) of the previous
+// picture, or undefined. callout: id of the call-out (one label for several rings) in the previous picture.
+// area: { left, top, right, bottom } in which labels must lie. rings: placeRings() of callouts.js, which places the labels of all rings.
+// measure(items): returns the size of a call-out for these items.
+// Returns a Map id -> { left, top, slot }; items with a ring also have width, height and callout (undefined: a label of its own).
 export function placeLabels(all, { area, unit = 1, blocked = [], rings = null, measure = null }) {
     if (!hasArea(area) || !(unit > 0 && unit < Infinity))
         return new Map();

@@ -50,7 +50,8 @@ static void draw_depth(const struct ghosts *ghosts, const struct frame_context *
         }
 }
 
-/* Finds the rectangle that ghosts may cover: its low and high corner in normalised device coordinates (-1 to 1). */
+/* Finds the rectangle of the picture that the bounding boxes of the ghosts cover. A ghost is an asset that is drawn only as an outline with
+   a faint tint. low, high: corners of the rectangle in normalised device coordinates (-1 to 1). */
 static void find_part(const struct frame_context *context, double low[2], double high[2])
 {
     const struct scene *scene = context->gpu_scene->scene;
@@ -75,7 +76,7 @@ static void find_part(const struct frame_context *context, double low[2], double
     }
 }
 
-/* Sets the scissor rectangle to the area of the ghosts; rows are counted from the top. */
+/* Sets the scissor rectangle to the area that ghosts (assets drawn as outlines) may cover; rows are counted from the top. */
 static void scissor(const struct frame_context *context)
 {
     double low[2] = { 1, 1 }, high[2] = { -1, -1 }, width = context->target->width_px, height = context->target->height_px;

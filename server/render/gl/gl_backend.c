@@ -167,8 +167,9 @@ static double draw_surfaces(struct renderer *renderer, struct render_job *job, c
     return TRIANGLE_NS * pass->triangles;
 }
 
-/* Returns the number of cells to draw in all passes: first the surfaces of all tiles, then the edges, which read pixels beyond a tile's
-   border and so need finished surfaces. */
+/* Returns the number of cells (small squares of the frame, frame_tiles.h) to draw, summed over the passes. The first pass draws all
+   surfaces. The second pass, in refined frames only, draws the edges; it reads pixels beyond a tile's border, so the surfaces must be
+   finished. */
 static int count_cells(const struct render_job *job)
 {
     return frame_tiles_cells(&job->of.gl->tiles) * (job->view.tier == TIER_REFINED ? GL_PASSES : 1);

@@ -15,7 +15,9 @@
 enum { SKY_DIRECTIONS = 32, SKY_MAP_PX = 1024, SUN_MAP_PX = 4096 };
 /* constant openness (0..255) of every point in a rough light set, which is baked without openness */
 static const uint8_t ROUGH_OPENNESS = 190;
-static const double LARGE_FACE_TEXELS = 8; /* large faces have an edge of at least this length, in texels of the sky's depth maps */
+/* minimum length of the longest edge of a large triangle, in texels of the sky's depth maps. Light is sampled also inside such triangles,
+   because one vertex in a dark corner would darken the whole triangle */
+static const double LARGE_FACE_TEXELS = 8;
 /* empty border of the sun's shadow map, as a fraction of its width, because a lookup also reads texels around its point */
 static const double SUN_MARGIN = 0.002;
 /* lower bound of openness (0: no sky is visible, 1: all) where the hidden assets are as large as the plant; proportionally less where they
@@ -45,7 +47,9 @@ struct bake {
     enum { BAKE_SKY_MAPS, BAKE_SUN_MAP, BAKE_GROUND, BAKE_FACES, BAKE_VERTICES, BAKE_DONE } part;
     int direction, row;
     size_t asset, place, vertex;
-    struct bake_faces faces; /* large faces of the asset whose vertices are baked next */
+    /* large triangles of the current asset; light is sampled also inside them, because one vertex in a dark corner would darken the whole
+       triangle */
+    struct bake_faces faces;
 };
 
 bool bake_programs_init(struct bake_programs *programs, struct log *log)
@@ -248,7 +252,8 @@ static void bind_vertices(const struct bake *bake)
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 6, bake->faces.sums);
 }
 
-/* Bakes points inside large faces. If there is no memory for them, light is sampled at vertices only. */
+/* Bakes light at points inside large triangles (edge of at least LARGE_FACE_TEXELS). If there is no memory for the points, light is sampled
+   at vertices only. */
 static void faces_bit(struct bake *bake)
 {
     const struct scene_asset *asset = &bake->gpu_scene->scene->assets[bake->asset];

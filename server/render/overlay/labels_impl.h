@@ -40,8 +40,9 @@ struct label_box layout_box(const struct label_item *item, int slot, double unit
 bool layout_is_inside(const struct label_layout *layout, const struct label_box *box);
 /* Returns whether a box overlaps no occupied box. Boxes of `owner` and boxes that `over` allows to cover are ignored. */
 bool layout_is_free(const struct label_layout *layout, const struct label_box *box, int owner, enum label_over over);
-/* Places one label for these items (markers) in `box` and marks the box as occupied; more than one item makes the label a call-out. slot:
-   the label's slot, stored for the next frame. */
+/* Places one label for these items (markers) in `box` and marks the box as occupied; more than one item makes the label a call-out (one
+   label for several alarm rings). slot: the label's position relative to the marker, as an index of the candidate positions; stored, so
+   that the next frame tries it first. */
 void layout_set(struct label_layout *layout, const int *members, size_t count, const struct label_box *box, int slot);
 /* Gives every item with an alarm ring a label of its own or adds it to a call-out, a label shared by several rings. order: indices of the
    items, most important first. */

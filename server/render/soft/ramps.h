@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Colour ramps that previews look up: each material's colours by brightness, and the glossy colour map. Pure. */
+/* Colour ramps: tables that the software renderer looks up for previews, the quick pictures while the camera moves. A ramp has the colours
+   of one material, or of one entry of the colour map, from the darkest to the brightest light. Pure. */
 #ifndef RENDER_SOFT_RAMPS_H
 #define RENDER_SOFT_RAMPS_H
 #include <stdbool.h>
@@ -15,7 +16,8 @@ struct ramp_material {
    muted: greyed as context. */
 void ramp_fill(const struct environment_light *sky, const double up[3], const struct ramp_material *material, bool muted, int steps,
                uint32_t *colors);
-/* Fills `steps` colours, `stride` elements apart, with one colour of the glossy preview from dark to bright. */
+/* Fills `steps` elements, `stride` elements apart, with `color` (sRGB, 0xRRGGBB) as shaded surfaces show it, from the darkest to the
+   brightest light. For the glossy style, in which light shades the colours of the field. */
 void ramp_fill_glossy(uint32_t color, int steps, uint32_t *colors, int stride);
 
 #endif
