@@ -200,7 +200,7 @@ test('thousands of wrong tokens: few lines, and others come in meanwhile', { ski
     t.diagnostic(`${refused} refused in ${took.toFixed(1)} s; the slowest answer to another took ${slowest.toFixed(0)} ms`);
     assert.equal(refused, TRYING * EACH_TRIES);
     assert.ok(slowest < 5000, `${slowest} ms`);
-    await found('the slowing', (line) => /slowed/.test(line.why ?? ''));
+    await found('the slowing', (line) => /delayed/.test(line.why ?? ''));
     const held = await found('unchecked ones', (line) => /tokens from rate-limited addresses were refused unchecked/.test(line.what ?? ''));
     assert.equal(held.result, 'refused');
     assert.ok(lines().length - before_ < 60, `${lines().length - before_} lines`);

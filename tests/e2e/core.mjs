@@ -268,8 +268,8 @@ test('over TLS: a core whose certificate is not trusted is refused by name; one 
         nodes.all.push({ program });
         return program;
     };
-    const wrong = [[renderer('stranger.pem', 'localhost'), /error core: .*no readings: .*is its certificate trusted/],
-        [renderer('core.pem', '127.0.0.1'), /error core: .*no readings: .*is its certificate trusted/]];
+    const wrong = [[renderer('stranger.pem', 'localhost'), /error core: .*no readings: .*is the core's certificate trusted/],
+        [renderer('core.pem', '127.0.0.1'), /error core: .*no readings: .*is the core's certificate trusted/]];
     for (const [program, said] of wrong) {
         await program.line(said);
         assert.doesNotMatch(program.said, /receiving readings/);

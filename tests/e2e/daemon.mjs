@@ -406,7 +406,7 @@ test('no GL at all is said, and ends with 1', { skip }, () => {
 });
 
 test('a GPU that is not there is said once, and ends with 1', { skip }, () => {
-    for (const [device, reason] of [['99', /device 99 asked for/g], ['ffff:ff:1f.7', /at PCI address ffff:ff:1f\.7/g]]) {
+    for (const [device, reason] of [['99', /device 99 was requested/g], ['ffff:ff:1f.7', /at PCI address ffff:ff:1f\.7/g]]) {
         const { code, err } = runProgram('plantcastd', [plant.file, '--port', '0', '--gl-device', device]);
         assert.equal(code, 1, err);
         assert.equal((err.match(/egl-device/g) ?? []).length, 1, err);

@@ -134,7 +134,7 @@ test('a real export with broken attributes or numbers is one line, and leaves no
         [good, `${head}${'NEW A\r\n'.repeat(100000)}`, /a\.att: line \d+: elements are nested more than \d+ deep/],
         [good, `${head}${'END\r\n'.repeat(1000)}`, /a\.att: line \d+: END without NEW/],
         [good, Buffer.from(text.map((byte, i) => (i % 53 === 17 ? 255 - byte : byte))), /a\.att: line \d+: /],
-        [good, '', /a\.att: no elements/], [good, 'hello', /a\.att: no elements/], [good, Buffer.alloc(5000), /a\.att: no elements/],
+        [good, '', /a\.att: .*no elements/], [good, 'hello', /a\.att: .*no elements/], [good, Buffer.alloc(5000), /a\.att: .*no elements/],
         [good.subarray(0, good.length >> 1), text, /byte \d+: the file ends within chunk/],
         [notFinite, text, /none of its \d+ primitives can be shown: .*not finite/],
     ]) {

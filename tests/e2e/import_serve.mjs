@@ -364,7 +364,7 @@ test('an empty plant opens the panel; a model and a tag list make a plant', opti
 test('by keyboard: gone through, its candidates light up, one accepted, all of a pattern, none; saved', options, async () => {
     await page.locator('#import .segments label', { hasText: 'Doubtful' }).click();
     await row(page, 'TT-201').click();
-    const lit = () => page.evaluate(() => globalThis.plantcast.modules.there('import').lit.assets.map(({ id }) => id));
+    const lit = () => page.evaluate(() => globalThis.plantcast.modules.there('import').highlights.assets.map(({ id }) => id));
     assert.deepEqual(await lit(), ['P-201A', 'P-201B']);
     await arrive(page);
     await shoot(page, 'import-3-candidates');

@@ -156,7 +156,7 @@ test('answers that are not to be believed: each is refused by name, and nobody i
         ['alg HS256', /not signed/, (claims, header) => { header.alg = 'HS256'; }],
         ['wrong audience', /another audience/, (claims) => { claims.aud = 'other'; }],
         ['expired', /expired/, (claims) => { claims.exp = now() - 120; }],
-        ['from the future', /another time/, (claims) => { claims.iat = now() + 300; }],
+        ['from the future', /time of issue is implausible/, (claims) => { claims.iat = now() + 300; }],
         ['wrong issuer', /another issuer/, (claims) => { claims.iss = 'https://evil.example'; }],
         ['wrong nonce', /nonce/, (claims) => { claims.nonce = 'other'; }],
         ['no nonce', /nonce/, (claims) => { delete claims.nonce; }],
@@ -197,8 +197,8 @@ test('a code, a state or a whole answer once more, another browser, another issu
     const denied = await browser.begin();
     denied.searchParams.delete('code');
     denied.searchParams.set('error', 'access_denied');
-    assert.match(await (await browser.get(denied)).text(), /refuses it: access_denied/);
-    await recorded('who is refused there', (line) => line.result === 'refused' && /refuses it: access_denied/.test(line.why ?? ''));
+    assert.match(await (await browser.get(denied)).text(), /refused the sign-in: access_denied/);
+    await recorded('who is refused there', (line) => line.result === 'refused' && /refused the sign-in: access_denied/.test(line.why ?? ''));
     for (const to of ['//evil.example', 'https://evil.example', '/\\evil.example', '/\r\nSet-Cookie: a=b'])
         assert.equal((await new Browser().signIn(to)).headers.get('location'), '/', to);
 });

@@ -195,7 +195,7 @@ test('single pictures, pixels and films of the past', { skip, timeout: 280000 },
         assert.equal(made.code, 0, made.err);
         assert.match(made.out, /20 pictures, 5\.0 s/);
         const none = runProgram('plantcast', ['clip', from, '-o', join(plant.folder, 'none.mp4'), ...tour, 'rund']);
-        assert.deepEqual([none.code, /no tour 'rund' \(there is: round\)/.test(none.err)], [1, true], none.err);
+        assert.deepEqual([none.code, /no tour 'rund' \(tours: round\)/.test(none.err)], [1, true], none.err);
     }
     const wrong = [
         [...tour, 'round', '--to', '-1h'], [...tour, 'round', '--group', 'x'],

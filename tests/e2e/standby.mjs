@@ -63,7 +63,7 @@ test('one of two leads, the other follows and is not ready; a renderer finds who
     await until('readings at the renderer', async () => (await renderer.tags())['TI-1'].value === 50);
     const answer = await two.other(core).node.fetch('/readyz');
     assert.equal(answer.status, 503);
-    assert.match(await answer.text(), /stands by/);
+    assert.match(await answer.text(), /is standby/);
     assert.equal((await two.other(core).node.fetch('/healthz')).status, 200);
     assert.equal(await core.node.metric('plantcast_core_active'), 1);
     assert.equal(await two.other(core).node.metric('plantcast_core_active'), 0);

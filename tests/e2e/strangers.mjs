@@ -230,7 +230,7 @@ test('every token that is let in, or is not, is a line in the log; ten wrong one
     engineer.close();
     await plant.daemon.line(/token engineer-1/); // waits for this log line: the earlier ones exist by then, too
     assert.equal(lines(/login from 127\.0\.0\.1 by HTTP: token \(unknown\), role none: refused, nobody's \(\d within/g).length, 6);
-    assert.equal(lines(/by HTTP: token operator-1, role operator: refused, its expired/g).length, 1);
+    assert.equal(lines(/by HTTP: token operator-1, role operator: refused, it has expired/g).length, 1);
     assert.equal(lines(/by stream: token \(unknown\), role none: refused/g).length, 1);
     assert.equal(lines(/by stream: token engineer-1, role engineer: accepted/g).length, 1);
     assert.equal(lines(/by HTTP: token viewer-1, role viewer: accepted/g).length, 1);
