@@ -250,8 +250,8 @@ test('every token that is let in, or is not, is a line in the log; ten wrong one
     await new Promise((done) => setTimeout(done, 1200)); // gauges are updated once a second at least
     assert.equal(await metric('plantcast_logins_slowed_addresses'), 1);
     assert.equal(await metric('plantcast_logins_held_total'), 2);
-    await plant.daemon.line(/: slowed/);
-    assert.equal(lines(/warn +login from 127\.0\.0\.1: slowed/g).length, 1);
+    await plant.daemon.line(/: limited to one token/);
+    assert.equal(lines(/warn +login from 127\.0\.0\.1: limited/g).length, 1);
     for (const token of [wrong, ...Object.values(tokens)])
         assert.ok(!plant.daemon.said.includes(token.slice(3)), 'no token is in the log');
 });

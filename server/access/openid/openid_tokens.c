@@ -117,7 +117,7 @@ struct person *openid_redeem(struct openid *openid, const struct openid_job *job
     if (!answered)
         *why = mem_printf("the provider does not answer: %s", reply.why);
     else if (reply.status != 200)
-        *why = mem_printf("the provider refuses %s: %.80s (status %d)", *result == OPENID_GUESSED ? "the code" : "to be asked",
+        *why = mem_printf("the provider refuses %s: %.80s (status %d)", *result == OPENID_GUESSED ? "the code" : "the request",
                           error ? error : "no reason given", reply.status);
     else
         person = take_tokens(openid, job, reply.json, why);
