@@ -412,6 +412,8 @@ TEST_WITH(test_what_is_kept_can_be_had_anew, reset, NULL)
     struct view seen = view;
     stand_look(&stand, 1, &seen);
     seen.tier = TIER_REFINED;
+    renderer_drop_caches(stand.renderer); /* readings of earlier tests were added to cached sums, which leaves rounding errors */
+    field_clear_cache(stand.field);
     struct frame *before = stand_draw(&stand, &seen);
     draw_much();
     size_t full = caches();
