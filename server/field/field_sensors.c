@@ -40,7 +40,7 @@ size_t field_sensors(struct field *field, int asset, const struct field_params *
     return layout->sensor_count;
 }
 
-/* --- sensors for renderers, which evaluate the field at each pixel ------------------------------------------------------------- */
+/* --- sensors, for pixels ------------------------------------------------------------------------------------------------------- */
 
 static void add_pixel_sensor(const struct field_state *state, size_t sensor, uint32_t bits, struct pixel_field *out)
 {
@@ -59,6 +59,7 @@ static void fill_distance(const struct field_state *state, struct pixel_field *o
 {
     out->show = PIXEL_DISTANCE;
     out->reach_m = INFINITY;
+    out->sensors = mem_array(1, sizeof(*out->sensors));
     for (size_t i = 0; i < state->layout->sensor_count && out->count == 0; i++)
         if (state->layout->sensors[i].tag == state->params.sensor)
             add_pixel_sensor(state, i, PIXEL_CONFIGURED | PIXEL_USABLE, out);
@@ -90,6 +91,7 @@ static void fill_sum(const struct field_state *state, struct pixel_field *out)
 {
     const struct weights *weights = state->weights;
     fill_rule(state, out);
+    out->sensors = mem_array(state->layout->sensor_count, sizeof(*out->sensors));
     for (size_t i = 0; i < state->layout->sensor_count; i++) {
         uint32_t bits = PIXEL_CONFIGURED | (weights->takes_part[i] ? PIXEL_USABLE : 0);
         bits |= weights->configured[i] == SENSOR_NO_LIMITS ? PIXEL_NO_LIMITS : 0;
@@ -98,7 +100,8 @@ static void fill_sum(const struct field_state *state, struct pixel_field *out)
             add_pixel_sensor(state, i, bits, out);
     }
     bool is_even = out->count == 1 && !out->paper && out->show == PIXEL_SUM && out->reach_m == INFINITY;
-    out->count = is_even ? 0 : out->count;
+    if (is_even || out->count == 0)
+        pixel_field_finish(out);
 }
 
 void field_pixels(struct field *field, int asset, const struct field_params *params, struct pixel_field *out)

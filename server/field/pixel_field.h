@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Few sensors by straight-line distance: shepard and paper (field.h) depend on these distances alone, so renderers evaluate them at
-   the surface point of each pixel. Such a field is exact, on triangles of any size and on every level of detail. Thread: any. */
+/* Fields by straight-line distance: shepard and paper (field.h) depend on these distances alone, so renderers evaluate them at the
+   surface point of each pixel. Such a field is exact, on triangles of any size and on every level of detail. Thread: any. */
 #ifndef FIELD_PIXEL_FIELD_H
 #define FIELD_PIXEL_FIELD_H
 #include <stdbool.h>
@@ -18,14 +18,14 @@ struct pixel_sensor {
     uint32_t state; /* PIXEL_* bits; with neither PIXEL_USABLE nor PIXEL_NO_LIMITS the sensor is lost */
 };
 
-struct pixel_field { /* zeroed before it is filled, so that equal fields are equal byte by byte */
-    int32_t count;   /* number of configured sensors; 0: the field is interpolated between vertices instead */
+struct pixel_field {
+    int32_t count; /* number of configured sensors; 0: the field is interpolated between vertices */
     int32_t paper, fill;
     enum pixel_show show;
     float power, reach_m, radius_m;        /* metres; reach_m INFINITY: no limit */
     float scale, offset, low, high, empty; /* converts a sum to a value, like struct kernel_value */
     float hot_spot_m, seen, most;          /* PIXEL_BLIND */
-    struct pixel_sensor sensors[EXACT_SENSORS];
+    struct pixel_sensor *sensors;          /* owned */
 };
 
 struct pixel_value {
@@ -36,5 +36,9 @@ struct pixel_value {
 void pixel_field_at(const struct pixel_field *field, const float point_m[3], struct pixel_value *out);
 /* Returns the largest change of any value of the field since `before`; INFINITY if anything but readings changed. */
 float pixel_field_change(const struct pixel_field *field, const struct pixel_field *before);
+/* Replaces `to`, which may be zeroed, by a copy. */
+void pixel_field_copy(struct pixel_field *to, const struct pixel_field *from);
+void pixel_field_finish(struct pixel_field *field); /* frees the sensors and zeroes the field */
+uint64_t pixel_field_hash(const struct pixel_field *field);
 
 #endif

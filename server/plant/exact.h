@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Fields that pictures show exactly: if a group has few sensors on an asset and uses straight-line distances, the field is evaluated at
-   each pixel (field/pixel_field.h). plantcast-prep does not subdivide triangles for such fields. Thread: any. */
+/* Fields that pictures show exactly: if a group uses straight-line distances and has at most EXACT_SENSORS sensors on an asset, the field
+   is evaluated at each pixel (field/pixel_field.h). plantcast-prep does not subdivide triangles for such fields. Thread: any. */
 #ifndef PLANT_EXACT_H
 #define PLANT_EXACT_H
 #include "plant/influence.h"
 #include "plant/plant.h"
 
-enum { EXACT_SENSORS = 8 }; /* largest number of sensors that a group may have on an asset for its field to be evaluated at each pixel */
+/* Largest number of sensors that a group may have on an asset for its field to be evaluated at each pixel. With 512 sensors a preview
+   would take 2.6 times as long as with a field that is interpolated between vertices, with 64 sensors 1.3 times. */
+enum { EXACT_SENSORS = 64 };
 
 /* Returns whether a field from that many sensors, with this interpolation and kind of distance, is evaluated at each pixel. */
 static inline bool plant_is_exact(enum interpolation interpolation, enum distance_mode distance, size_t sensor_count)

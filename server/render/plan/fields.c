@@ -30,6 +30,7 @@ static void entry_destroy(struct fields *fields, struct fields_entry *entry)
     fields->bytes -= entry->count * sizeof(*entry->shown);
     pool_unref(&entry->slice);
     glDeleteBuffers(1, &entry->sensors);
+    pixel_field_finish(&entry->pixels);
     mem_free(entry->directions);
     mem_free(entry->shown);
     mem_free(entry);
@@ -134,7 +135,7 @@ static void show(struct fields_entry *entry)
         entry->behind = NULL;
     }
     if (entry->hashed != entry->wanted) {
-        entry->content = entry->pixels.count > 0 ? XXH3_64bits(&entry->pixels, sizeof(entry->pixels))
+        entry->content = entry->pixels.count > 0 ? pixel_field_hash(&entry->pixels)
                                                  : XXH3_64bits(entry->shown, entry->wanted * sizeof(*entry->shown));
         entry->hashed = entry->wanted;
     }
@@ -189,21 +190,24 @@ static struct fields_entry *look(struct fields *fields, const struct fields_ask 
         log_err(fields->log, "field of asset %d: out of memory; shown as no data", asset);
         return &fields->lost;
     }
-    struct pixel_field pixels;
-    field_pixels(fields->field, asset, params, &pixels);
     struct fields_entry *entry = entry_find(fields, asset, params, ask->step);
     bool fresh = !entry;
     if (fresh)
         entry = entry_create(fields, asset, params, ask->step, scalars->count);
     if (!entry)
         return &fields->lost;
+    struct pixel_field pixels;
+    field_pixels(fields->field, asset, params, &pixels);
     if (fresh || entry->ready < count || can_be_seen(entry, scalars, &pixels)) {
         entry->behind = scalars;
+        pixel_field_finish(&entry->pixels);
         entry->pixels = pixels;
+        pixels.sensors = NULL;
         if (entry->sensors)
             glDeleteBuffers(1, &entry->sensors);
         entry->sensors = 0;
     }
+    pixel_field_finish(&pixels);
     take_directions(fields, entry, ask);
     entry->wanted = count;
     entry->oldest_age_ns = scalars->oldest_age_ns;

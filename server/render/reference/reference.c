@@ -92,26 +92,27 @@ GLuint reference_sensors(const struct reference *reference, int asset, const str
 GLuint reference_pixel_sensors(struct log *log, const struct pixel_field *field)
 {
     static const int32_t shows[] = { [PIXEL_SUM] = SHOW_VALUE, [PIXEL_DISTANCE] = SHOW_DISTANCE, [PIXEL_BLIND] = SHOW_BLIND };
-    struct {
-        struct sensors_head head;
-        struct sensor_block blocks[EXACT_SENSORS];
-    } all = { .head = { .power = field->power,
-                        .radius_m = field->radius_m,
-                        .reach_m = field->reach_m,
-                        .empty = field->paper ? field->offset : field->empty,
-                        .range = field->scale,
-                        .hot_spot_m = field->hot_spot_m,
-                        .seen = field->seen,
-                        .paper = field->paper,
-                        .fill = field->fill,
-                        .show = shows[field->show] } };
+    const size_t bytes = sizeof(struct sensors_head) + (size_t)field->count * sizeof(struct sensor_block);
+    struct sensors_head *head = mem_array(1, bytes);
+    struct sensor_block *blocks = (struct sensor_block *)(head + 1);
+    *head = (struct sensors_head){ .power = field->power,
+                                   .radius_m = field->radius_m,
+                                   .reach_m = field->reach_m,
+                                   .empty = field->paper ? field->offset : field->empty,
+                                   .range = field->scale,
+                                   .hot_spot_m = field->hot_spot_m,
+                                   .seen = field->seen,
+                                   .paper = field->paper,
+                                   .fill = field->fill,
+                                   .show = shows[field->show] };
     for (int i = 0; i < field->count; i++) {
         const struct pixel_sensor *from = &field->sensors[i];
-        struct sensor_block *to = &all.blocks[i];
-        *to = (struct sensor_block){ .strength = from->strength, .decay = from->decay, .value = from->value, .state = from->state };
-        memcpy(to->place_m, from->place_m, sizeof(from->place_m));
+        blocks[i] = (struct sensor_block){ .strength = from->strength, .decay = from->decay, .value = from->value, .state = from->state };
+        memcpy(blocks[i].place_m, from->place_m, sizeof(from->place_m));
     }
-    return mesh_buffer(log, "sensors of pixels", sizeof(all.head) + (size_t)field->count * sizeof(*all.blocks), &all, 0);
+    GLuint buffer = mesh_buffer(log, "sensors of pixels", bytes, head, 0);
+    mem_free(head);
+    return buffer;
 }
 
 void reference_bind_pixel_sensors(GLuint sensors)

@@ -118,6 +118,27 @@ SOFT_INLINE lanes lanes_log2(lanes x)
     return __builtin_convertvector(exponent, lanes) + r * p;
 }
 
+/* 2^x for x <= 0: 1 at 0, 0 below -126. As exp2_down in field/kernels.c. */
+SOFT_INLINE lanes lanes_exp2_down(lanes x)
+{
+    x = lanes_most(x, (lanes){ 0 } - 127.0f);
+    lanes_int whole = lanes_whole(x - 0.5f);
+    lanes f = x - __builtin_convertvector(whole, lanes);
+    lanes p = f * 0.0013407237129285932f + 0.009671861305832863f;
+    p = p * f + 0.055503085255622864f;
+    p = p * f + 0.24022234976291656f;
+    p = p * f + 0.6931472420692444f;
+    p = p * f + 1.0f;
+    return p * (lanes)((whole + 127) * (1 << 23));
+}
+
+/* 2^x, from 2^-126 to 2^126. */
+SOFT_INLINE lanes lanes_exp2(lanes x)
+{
+    lanes one = (lanes){ 0 } + 1.0f, down = lanes_exp2_down(lanes_most(lanes_least(x, -x), (lanes){ 0 } - 126.0f));
+    return lanes_choose(x > 0.0f, one / down, down);
+}
+
 SOFT_INLINE lanes lanes_root(lanes x)
 {
 #ifdef __AVX2__
@@ -149,6 +170,7 @@ SOFT_INLINE lanes lanes_look_up(const float *table, lanes_int at)
 #endif
 }
 
+#define LANES_IOTA_INT ((lanes_int){ 0, 1, 2, 3, 4, 5, 6, 7 })
 #define LANES_IOTA ((lanes){ 0, 1, 2, 3, 4, 5, 6, 7 })
 
 #endif

@@ -141,7 +141,9 @@ static void add_pixels(struct raster *raster, struct soft_mesh *mesh, const stru
     mem_grow(&raster->pixels, &raster->pixels_capacity, raster->pixels_count + 1, sizeof(*raster->pixels));
     struct soft_pixels *to = &raster->pixels[raster->pixels_count];
     mesh->pixels = (int32_t)raster->pixels_count++;
-    to->field = *field;
+    pixel_field_copy(&to->field, field);
+    to->every = (struct pixel_list){ .count = field->count };
+    to->mesh = (uint32_t)(mesh - raster->meshes);
     for (int c = 0; c < 3; c++)
         middle[c] = 0.5 * ((double)header->bounds_min_m[c] + (double)header->bounds_max_m[c]);
     for (int i = 0; i < field->count; i++)

@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The field of few sensors (field/pixel_field.h) at eight places at a time. Private to soft/. */
+/* A field by straight-line distance (field/pixel_field.h) at eight places at a time. Private to soft/. */
 #ifndef RENDER_SOFT_PIXEL_LANES_H
 #define RENDER_SOFT_PIXEL_LANES_H
 #include <math.h>
 
-#include "field/pixel_field.h"
-#include "render/soft/lanes.h"
+#include "render/soft/pixel_lists.h"
 
 struct eight_values {
     lanes value;
@@ -19,31 +18,26 @@ struct eight_nearest {
 };
 #define PIXEL_FAR2 1e30f
 
-/* 2^x for x <= 0. Returns 1 at 0, and 0 below -126. Same polynomial as exp2_down() in field/kernels.c. */
-SOFT_INLINE lanes lanes_exp2_down(lanes x)
+SOFT_INLINE const struct pixel_sensor *pixel_listed(const struct pixel_field *field, const struct pixel_list *list, int i)
 {
-    x = lanes_most(x, (lanes){ 0 } - 127.0f);
-    lanes_int whole = lanes_whole(x - 0.5f);
-    lanes f = x - __builtin_convertvector(whole, lanes);
-    lanes p = f * 0.0013407237129285932f + 0.009671861305832863f;
-    p = p * f + 0.055503085255622864f;
-    p = p * f + 0.24022234976291656f;
-    p = p * f + 0.6931472420692444f;
-    p = p * f + 1.0f;
-    return p * (lanes)((whole + 127) * (1 << 23));
+    return &field->sensors[list->sensors ? list->sensors[i] : (uint32_t)i];
 }
 
-/* Writes the squared distance of each sensor to `square`. Returns the smallest one for each state of a sensor. */
-SOFT_INLINE struct eight_nearest pixel_distances(const struct pixel_field *field, const lanes at[3], lanes square[EXACT_SENSORS])
+SOFT_INLINE lanes pixel_square(const struct pixel_sensor *sensor, const lanes at[3])
+{
+    lanes x = at[0] - sensor->place_m[0], y = at[1] - sensor->place_m[1], z = at[2] - sensor->place_m[2];
+    return x * x + y * y + z * z;
+}
+
+/* Squares of the distances from the nearest ones. */
+SOFT_INLINE struct eight_nearest pixel_nearest(const struct pixel_field *field, const struct pixel_list *list, const lanes at[3])
 {
     lanes far2 = (lanes){ 0 } + PIXEL_FAR2;
     struct eight_nearest nearest = { far2, far2, far2 };
-    for (int i = 0; i < field->count; i++) {
-        const struct pixel_sensor *sensor = &field->sensors[i];
-        lanes x = at[0] - sensor->place_m[0], y = at[1] - sensor->place_m[1], z = at[2] - sensor->place_m[2];
-        square[i] = x * x + y * y + z * z;
+    for (int i = 0; i < list->count; i++) {
+        const struct pixel_sensor *sensor = pixel_listed(field, list, i);
         lanes *to = sensor->state & PIXEL_USABLE ? &nearest.used : sensor->state & PIXEL_NO_LIMITS ? &nearest.no_limits : &nearest.lost;
-        *to = lanes_least(square[i], *to);
+        *to = lanes_least(pixel_square(sensor, at), *to);
     }
     return nearest;
 }
@@ -83,54 +77,95 @@ SOFT_INLINE lanes pixel_fade(const struct pixel_field *field, lanes square, lane
     return lanes_choose(nearest, one, lanes_choose(within, left * left, none));
 }
 
-SOFT_INLINE void pixel_sum_shepard(const struct pixel_field *field, const lanes square[], lanes near2, struct eight_sums *sums)
+/* The value of a polynomial of a list. u: from the list's centre. */
+SOFT_INLINE lanes pixel_polynomial(const float of[PIXEL_TERMS], const lanes u[3])
 {
-    lanes near_log2 = { 0 };
-    if (field->power != 2.0f)
-        near_log2 = lanes_log2(near2);
-    for (int i = 0; i < field->count; i++) {
-        const struct pixel_sensor *sensor = &field->sensors[i];
-        if (!(sensor->state & PIXEL_USABLE))
-            continue;
-        lanes weight = pixel_part(field, square[i], near2, near_log2) * sensor->strength;
-        if (field->reach_m < INFINITY)
-            weight *= pixel_fade(field, square[i], near2);
-        pixel_add(sensor, weight, weight, sums);
-    }
+    lanes x = u[0] * (of[1] + u[0] * of[4] + u[1] * of[5] + u[2] * of[6]);
+    return of[0] + x + u[1] * (of[2] + u[1] * of[7] + u[2] * of[8]) + u[2] * (of[3] + u[2] * of[9]);
 }
 
-SOFT_INLINE void pixel_sum_paper(const struct pixel_field *field, const lanes square[], lanes near2, struct eight_sums *sums)
+/* Adds the far sensors' sums. part: 2^top of the list over the weights' unit at each place. */
+SOFT_INLINE void pixel_add_far(const struct pixel_field *field, const struct pixel_list *list, const lanes at[3], lanes near2, lanes part,
+                               struct eight_sums *sums)
+{
+    lanes u[3], none = { 0 };
+    for (int c = 0; c < 3; c++)
+        u[c] = at[c] - list->centre[c];
+    if (field->reach_m < INFINITY) {
+        lanes left = 1.0f - lanes_root(near2) * (1.0f / field->reach_m);
+        part = lanes_choose(left > 1e-6f, part / (left * left), none);
+    }
+    sums->total += part * pixel_polynomial(list->total, u);
+    sums->values += part * pixel_polynomial(list->values, u);
+    if (list->has_marks)
+        sums->marked += part * pixel_polynomial(list->marked, u);
+}
+
+SOFT_INLINE void pixel_sum_shepard(const struct pixel_field *field, const struct pixel_list *list, const lanes at[3], lanes near2,
+                                   struct eight_sums *sums)
+{
+    lanes near_log2 = { 0 };
+    if (field->power != 2.0f || list->has_far)
+        near_log2 = lanes_log2(near2);
+    for (int i = 0; i < list->count; i++) {
+        const struct pixel_sensor *sensor = pixel_listed(field, list, i);
+        if (!(sensor->state & PIXEL_USABLE))
+            continue;
+        lanes square = pixel_square(sensor, at), weight = pixel_part(field, square, near2, near_log2) * sensor->strength;
+        if (field->reach_m < INFINITY)
+            weight *= pixel_fade(field, square, near2);
+        pixel_add(sensor, weight, weight, sums);
+    }
+    if (list->has_far)
+        pixel_add_far(field, list, at, near2, lanes_exp2(0.5f * field->power * near_log2 + list->top), sums);
+}
+
+/* Nearness to a sensor, 0 to 1, and the exponent of its weight. */
+SOFT_INLINE lanes pixel_exponent(const struct pixel_field *field, const struct pixel_sensor *sensor, lanes square, lanes *near)
 {
     const float per_radius = 1.0f / field->radius_m;
-    lanes none = { 0 }, top = none, d[EXACT_SENSORS], counts[EXACT_SENSORS];
-    for (int i = 0; i < field->count; i++) {
-        const struct pixel_sensor *sensor = &field->sensors[i];
+    *near = lanes_most((field->radius_m - lanes_root(square)) * per_radius, (lanes){ 0 });
+    return *near * (sensor->strength * 1.44269504f);
+}
+
+SOFT_INLINE void pixel_sum_paper(const struct pixel_field *field, const struct pixel_list *list, const lanes at[3], lanes near2,
+                                 struct eight_sums *sums)
+{
+    lanes none = { 0 }, top = none, near;
+    const bool reaches = field->reach_m < INFINITY;
+    for (int i = 0; i < list->count; i++) {
+        const struct pixel_sensor *sensor = pixel_listed(field, list, i);
         if (!(sensor->state & PIXEL_USABLE))
             continue;
-        d[i] = lanes_most((field->radius_m - lanes_root(square[i])) * per_radius, none);
-        counts[i] = field->reach_m < INFINITY ? pixel_fade(field, square[i], near2) : none + 1.0f;
-        top = lanes_most(lanes_choose(counts[i] > 0.0f, d[i] * (sensor->strength * 1.44269504f), none), top);
+        lanes square = pixel_square(sensor, at), exponent = pixel_exponent(field, sensor, square, &near);
+        if (reaches)
+            exponent = lanes_choose(pixel_fade(field, square, near2) > 0.0f, exponent, none);
+        top = lanes_most(exponent, top);
     }
-    for (int i = 0; i < field->count; i++) {
-        const struct pixel_sensor *sensor = &field->sensors[i];
+    for (int i = 0; i < list->count; i++) {
+        const struct pixel_sensor *sensor = pixel_listed(field, list, i);
         if (!(sensor->state & PIXEL_USABLE))
             continue;
-        lanes below = lanes_least(d[i] * (sensor->strength * 1.44269504f) - top, none), weight = counts[i] * lanes_exp2_down(below), term;
+        lanes square = pixel_square(sensor, at), counts = reaches ? pixel_fade(field, square, near2) : none + 1.0f;
+        lanes below = lanes_least(pixel_exponent(field, sensor, square, &near) - top, none);
+        lanes weight = counts * lanes_exp2_down(below), term;
         if (sensor->decay == 1.0f)
-            term = weight * d[i];
+            term = weight * near;
         else if (sensor->decay == 0.0f) /* 0^0 is 1 */
             term = weight;
         else
-            term = lanes_choose(d[i] > 1e-30f, counts[i] * lanes_exp2_down(below + sensor->decay * lanes_log2(d[i])), none);
+            term = lanes_choose(near > 1e-30f, counts * lanes_exp2_down(below + sensor->decay * lanes_log2(near)), none);
         pixel_add(sensor, weight, term, sums);
     }
+    if (list->has_far)
+        pixel_add_far(field, list, at, near2, lanes_exp2(list->top - top), sums);
 }
 
-/* Evaluates the field at eight points. at: x, y, z in the coordinates of sensors[].place_m. */
-SOFT_INLINE void pixel_lanes_at(const struct pixel_field *field, const lanes at[3], struct eight_values *out)
+/* at: in the frame of the sensors' places. */
+SOFT_INLINE void pixel_lanes_at(const struct pixel_field *field, const struct pixel_list *list, const lanes at[3], struct eight_values *out)
 {
-    lanes square[EXACT_SENSORS], none = { 0 };
-    struct eight_nearest nearest = pixel_distances(field, at, square);
+    lanes none = { 0 };
+    struct eight_nearest nearest = pixel_nearest(field, list, at);
     const lanes_int no = { 0 };
     *out = (struct eight_values){ none, no, no, no };
     if (field->show == PIXEL_DISTANCE) {
@@ -139,9 +174,9 @@ SOFT_INLINE void pixel_lanes_at(const struct pixel_field *field, const lanes at[
     }
     struct eight_sums sums = { none, none, none };
     if (field->paper)
-        pixel_sum_paper(field, square, nearest.used, &sums);
+        pixel_sum_paper(field, list, at, nearest.used, &sums);
     else
-        pixel_sum_shepard(field, square, nearest.used, &sums);
+        pixel_sum_shepard(field, list, at, nearest.used, &sums);
     const float reach2 = field->reach_m < 1e15f ? field->reach_m * field->reach_m : 0.5f * PIXEL_FAR2;
     lanes_int any = sums.total > 0.0f, reached = nearest.used <= reach2, lost = nearest.lost < nearest.used;
     lanes value = sums.values / lanes_choose(any, sums.total, none + 1.0f) * field->scale + field->offset;

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/mem.h"
 #include "render/soft/resolve_pixels.h"
 #include "render/soft/tones.h"
 #include "render/soft/visibility_buffer_impl.h"
@@ -15,9 +16,14 @@ struct coloring {
     bool log, rich;
     struct frame *frame;
     size_t first_band;
+    const struct band_lists *lists; /* sensor lists of the band being coloured */
 };
 
-static const float WEIGHT = 1 / 65535.0f;
+/* Returns the index of a pixel's cell in its band. */
+SOFT_INLINE int cell_at(const struct coloring *coloring, int x, int y)
+{
+    return x / CELL_PX + y % coloring->buffer->band_rows / CELL_PX * coloring->lists->columns;
+}
 
 static uint32_t mix(uint32_t a, uint32_t b, float part)
 {
@@ -147,13 +153,14 @@ static void interpolate_place(const struct coloring *coloring, const uint32_t ve
 /* Evaluates the field at one pixel from its sensors: lane 0 at the pixel itself, lanes 1 and 2 one pixel farther in x and y, which give the
    slope. */
 static void evaluate_place(const struct coloring *coloring, const struct visibility_band *band, uint32_t triangle, const float w[3],
-                           float steps[2][2], struct shown_place *out)
+                           float steps[2][2], int cell, struct shown_place *out)
 {
     struct eight_places places;
     struct eight_values values;
     const lanes w1 = { w[1], w[1] + steps[0][0], w[1] + steps[0][1] }, w2 = { w[2], w[2] + steps[1][0], w[2] + steps[1][1] };
     places_of(band, (lanes_int){ 0 } + (int32_t)triangle, w1, w2, &places);
-    evaluate_places(coloring->buffer, &places, places.at, &values);
+    places.meshes |= ~(lanes_int){ -1, -1, -1 };
+    evaluate_places(coloring->buffer, coloring->lists, &places, places.at, (lanes_int){ 0 } + cell, &values);
     lanes carried = carried_of_values(coloring->scale, values.value);
     out->carried = carried[0];
     out->no_data = values.no_data[0];
@@ -172,7 +179,7 @@ static uint32_t flagged_color(const struct coloring *coloring, const struct visi
     if (coloring->paint.line_px > 0)
         weight_steps(&band->slopes[triangle], w1, w2, x, y, steps);
     if (band->corners[triangle][3] > 0)
-        evaluate_place(coloring, band, triangle, w, steps, &place);
+        evaluate_place(coloring, band, triangle, w, steps, cell_at(coloring, (int)x, (int)y), &place);
     else
         interpolate_place(coloring, band->triangles[triangle], w, steps, &place);
     return color_of_place(coloring, &place);
@@ -195,9 +202,9 @@ struct eight_shown { /* eight pixels of the field: corner weights, and carried v
 };
 
 /* Computes the carried values (colour map columns; on a logarithmic scale values) of eight pixels, as field_color() in shaders/field.glsl
-   does. */
+   does. wanted: pixels that are not wanted receive arbitrary values. cells: cell of each pixel in the band. */
 SOFT_INLINE void carry(const struct coloring *coloring, const struct visibility_band *band, lanes_int triangles, lanes_int weights,
-                       struct eight_shown *out)
+                       lanes_int wanted, lanes_int cells, struct eight_shown *out)
 {
     quad columns[2][3];
     for (int half = 0; half < 2; half++) {
@@ -216,11 +223,12 @@ SOFT_INLINE void carry(const struct coloring *coloring, const struct visibility_
     if (!coloring->buffer->evaluates)
         return;
     places_of(band, triangles, out->w1, out->w2, &out->places);
+    out->places.meshes |= ~wanted;
     lanes_int evaluated = out->places.meshes >= 0;
     struct eight_values values;
     if (!lanes_any(evaluated))
         return;
-    evaluate_places(coloring->buffer, &out->places, out->places.at, &values);
+    evaluate_places(coloring->buffer, coloring->lists, &out->places, out->places.at, cells, &values);
     out->carried = lanes_choose(evaluated, carried_of_values(coloring->scale, values.value), out->carried);
     out->known &= ~(values.no_data | values.uncertain | values.no_limits);
 }
@@ -233,7 +241,7 @@ SOFT_INLINE lanes columns_of_logs(lanes values, const float *scale)
 
 /* Returns which of eight pixels an isoline may touch, judged by the field's slope there. */
 SOFT_INLINE lanes_int may_be_lined(const struct coloring *coloring, const struct visibility_band *band, lanes_int triangles,
-                                   const struct eight_shown *shown, int x, int y)
+                                   const struct eight_shown *shown, lanes_int cells, int x, int y)
 {
     float by[7][LANES], d1[LANES], d2[LANES];
     lanes carried = shown->carried, none = { 0 };
@@ -254,8 +262,12 @@ SOFT_INLINE lanes_int may_be_lined(const struct coloring *coloring, const struct
     lanes by_y = (*(const lanes *)d1 * w1_y + *(const lanes *)d2 * w2_y) * over;
     if (coloring->buffer->evaluates && lanes_any(shown->places.meshes >= 0)) {
         lanes_int evaluated = shown->places.meshes >= 0;
-        by_x = lanes_choose(evaluated, carried_change(coloring->buffer, &shown->places, w1_x * over, w2_x * over, carried), by_x);
-        by_y = lanes_choose(evaluated, carried_change(coloring->buffer, &shown->places, w1_y * over, w2_y * over, carried), by_y);
+        const struct band_lists *lists = coloring->lists;
+        const struct eight_places *places = &shown->places;
+        lanes here_x = carried_change(coloring->buffer, lists, places, w1_x * over, w2_x * over, cells, carried);
+        lanes here_y = carried_change(coloring->buffer, lists, places, w1_y * over, w2_y * over, cells, carried);
+        by_x = lanes_choose(evaluated, here_x, by_x);
+        by_y = lanes_choose(evaluated, here_y, by_y);
     }
     lanes slope = lanes_root(by_x * by_x + by_y * by_y), column = carried;
     if (coloring->log) {
@@ -307,18 +319,23 @@ static inline uint64_t spread(uint32_t color)
     return (color & 0xff00ff) | (uint64_t)(color >> 8 & 0xff) << 32;
 }
 
-SOFT_INLINE void color_parts(const struct coloring *coloring, const struct visibility_band *band, size_t first, struct ahead *ahead)
+/* pixel: index of the first part's pixel in band->mixed. */
+SOFT_INLINE void color_parts(const struct coloring *coloring, const struct visibility_band *band, size_t pixel, struct ahead *ahead)
 {
-    size_t left = band->part_count - first, count = left < PARTS_AHEAD ? left : PARTS_AHEAD;
+    size_t first = band->mixed[pixel].first_part, left = band->part_count - first, count = left < PARTS_AHEAD ? left : PARTS_AHEAD;
     lanes_int all_known = { -1, -1, -1, -1, -1, -1, -1, -1 };
     for (size_t p = 0; p < count; p += LANES) {
         uint32_t triangles[LANES], weights[LANES], shares[LANES], colors[LANES];
         uint8_t rows[LANES];
         uint64_t all_rows;
         struct eight_shown shown;
-        lanes_int of[2];
+        lanes_int of[2], cells, wanted;
         for (size_t i = 0; i < LANES; i++) {
             const struct visibility_part *part = &band->parts[p + i < count ? first + p + i : first];
+            while (p + i < count && first + p + i >= (size_t)band->mixed[pixel].first_part + band->mixed[pixel].part_count)
+                pixel++;
+            cells[i] = cell_at(coloring, band->mixed[pixel].x, band->mixed[pixel].row);
+            wanted[i] = p + i < count ? -1 : 0;
             triangles[i] = part->triangle;
             weights[i] = part->weights;
             rows[i] = part->row;
@@ -327,7 +344,7 @@ SOFT_INLINE void color_parts(const struct coloring *coloring, const struct visib
         memcpy(&all_rows, rows, sizeof(all_rows));
         memcpy(&of[0], triangles, sizeof(of[0]));
         memcpy(&of[1], weights, sizeof(of[1]));
-        carry(coloring, band, of[0], of[1], &shown);
+        carry(coloring, band, of[0], of[1], wanted, cells, &shown);
         of[0] = field_colors(coloring, &shown, all_rows);
         memcpy(colors, &of[0], sizeof(colors));
         memcpy(ahead->known + p, &shown.known, sizeof(shown.known));
@@ -381,7 +398,7 @@ SOFT_INLINE void color_mixed(const struct coloring *coloring, const struct visib
     for (size_t m = 0; m < band->mixed_count; m++) {
         const struct visibility_mixed *mixed = &band->mixed[m];
         if (mixed->first_part < ahead.first || mixed->first_part + mixed->part_count > ahead.end)
-            color_parts(coloring, band, mixed->first_part, &ahead);
+            color_parts(coloring, band, m, &ahead);
         sums four = *(const sums *)(ahead.colors + (mixed->first_part - ahead.first)) & wanted[mixed->part_count];
         uint64_t sum = (four[0] + four[1]) + (four[2] + four[3]);
         if (!ahead.all_known)
@@ -420,10 +437,11 @@ SOFT_INLINE lanes_int color_lanes(const struct coloring *coloring, const struct 
         inks |= veils;
     }
     memcpy(&rows, buffer->rows + at, sizeof(rows));
-    carry(coloring, band, surfaces & field, *(const lanes_int *)(buffer->weights + at), &shown);
+    lanes_int cells = ((LANES_IOTA_INT + x) >> CELL_SHIFT) + cell_at(coloring, 0, y);
+    carry(coloring, band, surfaces & field, *(const lanes_int *)(buffer->weights + at), field, cells, &shown);
     lanes_int colors = field_colors(coloring, &shown, rows);
     if (coloring->paint.line_px > 0)
-        shown.known &= ~may_be_lined(coloring, band, surfaces & field, &shown, x, y);
+        shown.known &= ~may_be_lined(coloring, band, surfaces & field, &shown, cells, x, y);
     for (uint32_t left = lanes_bits(field & ~shown.known); left; left &= left - 1) {
         size_t i = (size_t)__builtin_ctz(left), pixel = at + i;
         colors[i] = (int32_t)flagged_color(coloring, band, buffer->surfaces[pixel], buffer->weights[pixel], buffer->rows[pixel],
@@ -458,17 +476,48 @@ SOFT_KERNEL static void color_band(const struct coloring *coloring, int number)
     color_mixed(coloring, band, top);
 }
 
+static void make_lists(const struct visibility_buffer *buffer, const struct visibility_band *band, struct band_lists *out)
+{
+    const float step = pixel_lists_step(buffer->scale);
+    const size_t rows = (size_t)(buffer->band_rows + CELL_PX - 1) / CELL_PX;
+    struct pixel_lists *lists = &out->lists;
+    for (size_t i = 0, end; i < band->cell_count; i = end) {
+        const struct pixel_cell *first = &band->cells[i];
+        for (end = i + 1; end < band->cell_count && band->cells[end].mesh == first->mesh; end++)
+            if (band->cells[end].column / SQUARE_CELLS != first->column / SQUARE_CELLS)
+                break;
+        pixel_lists_add(lists, &buffer->meshes[first->mesh].pixels, step, first, end - i);
+    }
+    pixel_lists_settle(lists);
+    if (lists->count > 0)
+        out->of_cells = mem_array(rows * (size_t)out->columns, sizeof(*out->of_cells));
+    for (size_t i = 0; i < lists->count; i++) {
+        struct pixel_list *list = &lists->lists[i];
+        uint32_t *of_cell = &out->of_cells[list->row * (uint32_t)out->columns + list->column];
+        list->next = *of_cell;
+        *of_cell = (uint32_t)i + 1;
+    }
+}
+
 static void color_bands(void *arg, size_t begin, size_t end)
 {
-    const struct coloring *coloring = arg;
-    for (size_t band = begin; band < end; band++)
-        color_band(coloring, (int)(coloring->first_band + band));
+    struct coloring coloring = *(const struct coloring *)arg;
+    for (size_t i = begin; i < end; i++) {
+        const size_t number = coloring.first_band + i;
+        struct band_lists lists = { .columns = (coloring.buffer->width_px + CELL_PX - 1) / CELL_PX };
+        coloring.lists = &lists;
+        if (coloring.buffer->evaluates)
+            make_lists(coloring.buffer, &coloring.buffer->bands[number], &lists);
+        color_band(&coloring, (int)number);
+        pixel_lists_finish(&lists.lists);
+        mem_free(lists.of_cells);
+    }
 }
 
 void resolve_colors(const struct visibility_buffer *buffer, const struct resolve_paint *paint, struct workers *workers, int first,
                     int count, struct frame *frame)
 {
     bool log = is_log(buffer->scale);
-    struct coloring coloring = { buffer, buffer->scale, *paint, log, log || paint->line_px > 0, frame, (size_t)first };
+    struct coloring coloring = { buffer, buffer->scale, *paint, log, log || paint->line_px > 0, frame, (size_t)first, NULL };
     workers_for(workers, (size_t)count, 2, color_bands, &coloring);
 }

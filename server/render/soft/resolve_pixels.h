@@ -5,8 +5,13 @@
 #include "render/soft/pixel_lanes.h"
 #include "render/soft/visibility_buffer_impl.h"
 
-/* points on triangles, one per lane; at: the point in metres; second, third: vectors from the triangle's first corner to the others */
-struct eight_places {
+struct band_lists { /* lists of a band, for meshes with many sensors */
+    struct pixel_lists lists;
+    uint32_t *of_cells; /* by cell: 1 + index of its first list, 0: none */
+    int columns;        /* cells in a row */
+};
+
+struct eight_places { /* on triangles: the place, and by how much it changes from the first corner to the others */
     lanes at[3], second[3], third[3];
     lanes_int meshes; /* index of the triangle's mesh in the visibility buffer; -1: the field there is interpolated between vertices */
 };
@@ -26,17 +31,31 @@ SOFT_INLINE void places_of(const struct visibility_band *band, lanes_int triangl
         out->at[c] += w1 * out->second[c] + w2 * out->third[c];
 }
 
-/* Evaluates the field at the points whose mesh is not -1, with the sensors of each point's mesh. Results of other points are 0. */
-SOFT_INLINE void evaluate_places(const struct visibility_buffer *buffer, const struct eight_places *places, const lanes at[3],
-                                 struct eight_values *out)
+SOFT_INLINE const struct pixel_list *list_of(const struct band_lists *lists, const struct visibility_mesh *mesh, uint32_t number,
+                                             int32_t cell)
+{
+    if (mesh->pixels.count <= PIXEL_FEW)
+        return &mesh->every;
+    for (uint32_t i = lists->of_cells ? lists->of_cells[cell] : 0; i > 0; i = lists->lists.lists[i - 1].next)
+        if (lists->lists.lists[i - 1].mesh == number)
+            return &lists->lists.lists[i - 1];
+    return &mesh->every;
+}
+
+/* Evaluates those whose mesh is not -1, each by its mesh and by the list of its cell of the band. */
+SOFT_INLINE void evaluate_places(const struct visibility_buffer *buffer, const struct band_lists *lists, const struct eight_places *places,
+                                 const lanes at[3], lanes_int cells, struct eight_values *out)
 {
     *out = (struct eight_values){ { 0 }, { 0 }, { 0 }, { 0 } };
     uint32_t waiting = lanes_bits(places->meshes >= 0);
     while (waiting) {
-        int32_t mesh = places->meshes[__builtin_ctz(waiting)];
+        int first = __builtin_ctz(waiting), mesh = places->meshes[first], cell = cells[first];
         struct eight_values values;
         lanes_int same = places->meshes == mesh;
-        pixel_lanes_at(&buffer->meshes[mesh].pixels, at, &values);
+        const struct visibility_mesh *of = &buffer->meshes[mesh];
+        if (of->pixels.count > PIXEL_FEW)
+            same &= cells == cell;
+        pixel_lanes_at(&of->pixels, list_of(lists, of, (uint32_t)mesh, cell), at, &values);
         out->value = lanes_choose(same, values.value, out->value);
         out->no_data |= values.no_data & same;
         out->uncertain |= values.uncertain & same;
@@ -55,16 +74,15 @@ SOFT_INLINE lanes carried_of_values(const float *scale, lanes values)
     return lanes_clamp((values - scale[0]) * scale[1] * COLUMNS_OF_RANGE + (1 + SLACK * COLUMNS_OF_RANGE), -farthest, farthest);
 }
 
-/* Returns the change of the carried value (colour map column; on a logarithmic scale the value) when the weights of the triangle's second
-   and third corner grow by w1 and w2. carried: value at the points. */
-SOFT_INLINE lanes carried_change(const struct visibility_buffer *buffer, const struct eight_places *places, lanes w1, lanes w2,
-                                 lanes carried)
+/* By how much what is carried changes where the second and third corner's weights change by w1 and w2. */
+SOFT_INLINE lanes carried_change(const struct visibility_buffer *buffer, const struct band_lists *lists, const struct eight_places *places,
+                                 lanes w1, lanes w2, lanes_int cells, lanes carried)
 {
     lanes at[3];
     struct eight_values values;
     for (int c = 0; c < 3; c++)
         at[c] = places->at[c] + w1 * places->second[c] + w2 * places->third[c];
-    evaluate_places(buffer, places, at, &values);
+    evaluate_places(buffer, lists, places, at, cells, &values);
     return carried_of_values(buffer->scale, values.value) - carried;
 }
 

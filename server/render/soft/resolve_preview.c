@@ -177,19 +177,25 @@ SOFT_INLINE lanes_int color_at(const struct raster *raster, const struct heights
 struct pixel_row { /* eight pixels of one field */
     const struct raster *raster;
     const struct soft_pixels *pixels;
+    const struct pixel_list *list;
     const struct mark_ink *ink;
 };
 
-SOFT_INLINE void values_at(const struct pixel_row *row, lanes x, lanes y, lanes depth, struct eight_values *out)
+SOFT_INLINE void places_at(const struct soft_pixels *pixels, lanes x, lanes y, lanes depth, lanes at[4])
 {
-    const float(*m)[4] = row->pixels->place_from_pixel;
-    lanes at[4];
+    const float(*m)[4] = pixels->place_from_pixel;
     for (int r = 0; r < 4; r++)
         at[r] = x * m[0][r] + (y * m[1][r] + m[3][r]) + depth * m[2][r];
     lanes over = 1.0f / at[3];
     for (int r = 0; r < 3; r++)
         at[r] *= over;
-    pixel_lanes_at(&row->pixels->field, at, out);
+}
+
+SOFT_INLINE void values_at(const struct pixel_row *row, lanes x, lanes y, lanes depth, struct eight_values *out)
+{
+    lanes at[4];
+    places_at(row->pixels, x, y, depth, at);
+    pixel_lanes_at(&row->pixels->field, row->list, at, out);
 }
 
 /* Converts field values to carried values (colour map columns; on a logarithmic scale unchanged), as carry_field() in faces.c. */
@@ -256,7 +262,8 @@ SOFT_INLINE void evaluate_eight(const struct raster *raster, const struct soft_r
     uint32_t waiting = lanes_bits(((marks & (int32_t)MARK_KIND) == 0) & (marks != 0));
     while (waiting) {
         uint32_t first = (uint32_t)marks[__builtin_ctz(waiting)];
-        struct pixel_row pixels = { raster, &raster->pixels[(first & ~MARK_PIXELS) >> 16 << 8 | (first >> 8 & 0xff)], ink };
+        const struct soft_pixels *of = &raster->pixels[(first & ~MARK_PIXELS) >> 16 << 8 | (first >> 8 & 0xff)];
+        struct pixel_row pixels = { raster, of, &of->every, ink };
         lanes_int same = (marks & ~0xff) == (int32_t)(first & ~0xffu);
         out = lanes_choose_int(same, marks_of_field(&pixels, rect, marks, column, row), out);
         waiting &= ~lanes_bits(same);
@@ -264,9 +271,118 @@ SOFT_INLINE void evaluate_eight(const struct raster *raster, const struct soft_r
     *at = out;
 }
 
+/* --- fields of many sensors, in squares of cells ------------------------------------------------------------------------------- */
+
+struct many { /* the square of one such field */
+    const struct raster *raster;
+    const struct soft_pixels *pixels;
+    const struct soft_rect *rect;
+    int left, top;
+    uint32_t mark; /* mark of its pixels, apart from the row of the colour map */
+};
+
+SOFT_INLINE lanes_int *marks_of_many(const struct many *many, int column, int row)
+{
+    return (lanes_int *)(many->raster->marks + (size_t)row * (size_t)many->raster->pitch_px + (size_t)column);
+}
+
+SOFT_INLINE lanes_int is_of_many(const struct many *many, lanes_int marks)
+{
+    return (marks & ~0xff) == (int32_t)many->mark;
+}
+
+/* Returns whether the cell shows the field, and the box around the places there. */
+SOFT_INLINE bool bound_cell(const struct many *many, int column, int top, struct pixel_cell *cell)
+{
+    const struct raster *raster = many->raster;
+    lanes low[3], high[3], at[4];
+    bool any = false;
+    for (int c = 0; c < 3; c++) {
+        low[c] = (lanes){ 0 } + INFINITY;
+        high[c] = -low[c];
+    }
+    for (int i = 0; i < CELL_PX * CELL_PX / LANES; i++) {
+        int x = column + i % (CELL_PX / LANES) * LANES, y = top + i / (CELL_PX / LANES);
+        if (x > many->rect->right || y > many->rect->bottom)
+            continue;
+        lanes_int same = is_of_many(many, *marks_of_many(many, x, y));
+        if (!lanes_any(same))
+            continue;
+        any = true;
+        lanes depth = *(const lanes *)(raster->depth + (size_t)y * (size_t)raster->pitch_px + (size_t)x);
+        places_at(many->pixels, LANES_IOTA + ((float)x + 0.5f), (lanes){ 0 } + ((float)y + 0.5f), depth, at);
+        for (int c = 0; c < 3; c++) {
+            low[c] = lanes_choose(same, lanes_least(at[c], low[c]), low[c]);
+            high[c] = lanes_choose(same, lanes_most(at[c], high[c]), high[c]);
+        }
+    }
+    for (int c = 0; c < 3 && any; c++) {
+        cell->low[c] = low[c][0];
+        cell->high[c] = high[c][0];
+        for (int i = 1; i < LANES; i++) {
+            cell->low[c] = low[c][i] < cell->low[c] ? low[c][i] : cell->low[c];
+            cell->high[c] = high[c][i] > cell->high[c] ? high[c][i] : cell->high[c];
+        }
+    }
+    return any;
+}
+
+SOFT_INLINE void evaluate_cell(const struct many *many, const struct mark_ink *ink, const struct pixel_list *list)
+{
+    int column = many->left + CELL_PX * (int)list->column, top = many->top + CELL_PX * (int)list->row;
+    struct pixel_row pixels = { many->raster, many->pixels, list, ink };
+    for (int i = 0; i < CELL_PX * CELL_PX / LANES; i++) {
+        int x = column + i % (CELL_PX / LANES) * LANES, y = top + i / (CELL_PX / LANES);
+        if (x > many->rect->right || y > many->rect->bottom)
+            continue;
+        lanes_int *at = marks_of_many(many, x, y), marks = *at, same = is_of_many(many, marks);
+        if (lanes_any(same))
+            *at = lanes_choose_int(same, marks_of_field(&pixels, many->rect, marks, x, y), marks);
+    }
+}
+
+SOFT_INLINE void evaluate_square(const struct many *many, const struct mark_ink *ink, float step, struct pixel_lists *lists)
+{
+    struct pixel_cell cells[SQUARE_CELLS * SQUARE_CELLS];
+    size_t count = 0;
+    for (uint32_t i = 0; i < SQUARE_CELLS * SQUARE_CELLS; i++) {
+        uint32_t across, down;
+        pixel_cell_from_order(i, &across, &down);
+        int column = many->left + CELL_PX * (int)across, row = many->top + CELL_PX * (int)down;
+        cells[count].column = (uint16_t)across;
+        cells[count].row = (uint16_t)down;
+        if (column <= many->rect->right && row <= many->rect->bottom && bound_cell(many, column, row, &cells[count]))
+            count++;
+    }
+    lists->count = lists->sensor_count = 0;
+    if (count == 0)
+        return;
+    pixel_lists_add(lists, &many->pixels->field, step, cells, count);
+    pixel_lists_settle(lists);
+    for (size_t i = 0; i < lists->count; i++)
+        evaluate_cell(many, ink, &lists->lists[i]);
+}
+
+SOFT_INLINE void evaluate_many(const struct raster *raster, const struct soft_rect *rect, const struct mark_ink *ink, size_t number)
+{
+    const struct soft_rect *found = &raster->found[raster->pixels[number].mesh].rect;
+    const float step = pixel_lists_step(raster->block.scale);
+    const int size = SQUARE_CELLS * CELL_PX;
+    struct pixel_lists lists = { 0 };
+    struct many many = { raster, &raster->pixels[number], rect, 0, 0, MARK_PIXELS | (uint32_t)number >> 8 << 16 | (number & 0xff) << 8 };
+    for (many.top = rect->top; many.top <= rect->bottom; many.top += size)
+        for (many.left = rect->left; many.left <= rect->right; many.left += size)
+            if (many.top <= found->bottom && many.top + size > found->top && many.left <= found->right && many.left + size > found->left)
+                evaluate_square(&many, ink, step, &lists);
+    pixel_lists_finish(&lists);
+}
+
 SOFT_INLINE void evaluate_fields(const struct raster *raster, const struct soft_rect *rect)
 {
     struct mark_ink ink = ink_of(raster);
+    for (size_t i = 0; i < raster->pixels_count; i++)
+        if (raster->pixels[i].field.count > PIXEL_FEW)
+            evaluate_many(raster, rect, &ink, i);
     for (int row = rect->top; row <= rect->bottom && raster->pixels_count > 0; row++)
         for (int column = rect->left; column <= rect->right; column += LANES)
             evaluate_eight(raster, rect, &ink, column, row);

@@ -155,6 +155,8 @@ void raster_finish(struct raster *raster)
         mem_free(raster->found[i].items);
     mem_free(raster->found);
     mem_free(raster->meshes);
+    for (size_t i = 0; i < raster->pixels_capacity; i++)
+        pixel_field_finish(&raster->pixels[i].field);
     mem_free(raster->pixels);
     mem_free(raster->depth);
     mem_free(raster->marks);

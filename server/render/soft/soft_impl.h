@@ -6,6 +6,7 @@
 #include "render/soft/lanes.h"
 #include "render/soft/soft.h"
 #include "render/soft/parts.h"
+#include "render/soft/pixel_lists.h"
 #include "render/soft/textures.h"
 #include "render/gl/frame_uniforms.h"
 #include "render/shaded_colormap.h"
@@ -57,7 +58,9 @@ struct soft_mesh { /* one asset in this frame */
 };
 
 struct soft_pixels { /* field of a mesh that is evaluated at pixels; positions are relative to the centre of the mesh */
-    struct pixel_field field;
+    struct pixel_field field;     /* owned */
+    struct pixel_list every;      /* list of all its sensors */
+    uint32_t mesh;                /* index in raster->meshes */
     float place_from_pixel[4][4]; /* matrix, column by column */
 };
 

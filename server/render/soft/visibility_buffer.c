@@ -40,7 +40,10 @@ void visibility_buffer_destroy(struct visibility_buffer **buffer_ptr)
         mem_free(buffer->bands[i].parts);
         mem_free(buffer->bands[i].gloss);
         mem_free(buffer->bands[i].mixed);
+        mem_free(buffer->bands[i].cells);
     }
+    for (size_t m = 0; m < buffer->mesh_count; m++)
+        pixel_field_finish(&buffer->meshes[m].pixels);
     mem_free(buffer->bands);
     mem_free(buffer->meshes);
     mem_free(buffer->surfaces);
@@ -76,7 +79,7 @@ size_t visibility_buffer_bytes(const struct visibility_buffer *buffer)
     for (int i = 0; i < buffer->band_count; i++) {
         const struct visibility_band *band = &buffer->bands[i];
         bytes += band->place_capacity * sizeof(*band->places) + band->slope_capacity * sizeof(*band->slopes) +
-                 band->gloss_capacity * sizeof(*band->gloss);
+                 band->gloss_capacity * sizeof(*band->gloss) + band->cell_capacity * sizeof(*band->cells);
         bytes += band->triangle_capacity * (sizeof(*band->triangles) + sizeof(*band->corners)) +
                  band->part_capacity * sizeof(*band->parts) + band->mixed_capacity * sizeof(*band->mixed);
     }
@@ -298,6 +301,8 @@ static void read_corners(void *arg, size_t begin, size_t end)
             continue;
         place_triangles(buffer, band);
         mark_evaluated(buffer, band);
+        if (buffer->finds_cells)
+            visibility_find_cells(buffer, (int)b);
     }
 }
 
@@ -313,7 +318,9 @@ void resolve_read(struct visibility_buffer *buffer, const struct frame_context *
         struct reading_job job = { buffer, field->shown, block.scale, mesh->first_vertex };
         if (mesh->read && same_scale && mesh->content == field->content && field->shown)
             continue;
-        mesh->pixels = field->pixels;
+        buffer->finds_cells |= (field->pixels.count > PIXEL_FEW) != (mesh->pixels.count > PIXEL_FEW);
+        pixel_field_copy(&mesh->pixels, &field->pixels);
+        mesh->every = (struct pixel_list){ .count = field->pixels.count };
         if (field->pixels.count == 0)
             workers_for(workers, mesh->vertex_count, VERTICES_AT_ONCE, read_vertices, &job);
         mesh->read = true;
@@ -325,4 +332,5 @@ void resolve_read(struct visibility_buffer *buffer, const struct frame_context *
         buffer->evaluates |= buffer->meshes[m].pixels.count > 0;
     if (changed)
         workers_for(workers, (size_t)buffer->band_count, 4, read_corners, buffer);
+    buffer->finds_cells = false;
 }

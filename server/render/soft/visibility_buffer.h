@@ -5,9 +5,9 @@
 #ifndef RENDER_SOFT_VISIBILITY_BUFFER_H
 #define RENDER_SOFT_VISIBILITY_BUFFER_H
 #include "base/workers.h"
-#include "field/pixel_field.h"
 #include "render/frame.h"
 #include "render/frame_context.h"
+#include "render/soft/pixel_lists.h"
 
 /* surfaces[] of a pixel is one of: VISIBILITY_FIXED | a colour that no reading changes (blue | green << 8 | red << 16); VISIBILITY_MIXED |
    index of a struct visibility_mixed in the band; or, without flag, the index in the band of the triangle of a field that the pixel
@@ -64,8 +64,10 @@ struct visibility_band { /* a band: group of pixel rows; written by one worker *
     struct visibility_part *parts;
     struct visibility_gloss *gloss; /* by index in `parts`; only filled in for the glossy look */
     struct visibility_mixed *mixed;
+    struct pixel_cell *cells; /* that show fields of many sensors (pixel_lists.h); square by square, there by mesh */
     size_t triangle_count, part_count, mixed_count;
     size_t place_count; /* number of elements of `places` */
+    size_t cell_count, cell_capacity;
     size_t triangle_capacity, corner_capacity, place_capacity, slope_capacity, part_capacity, gloss_capacity, mixed_capacity;
 };
 
@@ -77,7 +79,8 @@ struct visibility_mesh { /* an asset with a field */
     uint32_t first_vertex, vertex_count;
     bool read;                 /* true if `carried` holds the values of the field version `content` */
     uint64_t content;          /* hash from struct fields_entry */
-    struct pixel_field pixels; /* from struct fields_entry */
+    struct pixel_field pixels; /* copy from struct fields_entry, owned */
+    struct pixel_list every;   /* all sensors of `pixels` */
 };
 
 struct visibility_buffer {
@@ -98,6 +101,7 @@ struct visibility_buffer {
     struct visibility_mesh *meshes;
     size_t mesh_count, mesh_capacity, vertex_count;
     bool evaluates;     /* some mesh's field is evaluated at pixels */
+    bool finds_cells;   /* resolve_read() makes the cells, since other meshes have many sensors than before */
     float scale[4];     /* struct frame_uniforms.scale at the time when the vertices' values were read */
     uint32_t *vertices; /* kept (visible) vertices, mesh by mesh: index in the asset's file */
     /* carried value of each kept (visible) vertex: column of the colour map (logarithmic scale: the field's value); NAN: a flag of the

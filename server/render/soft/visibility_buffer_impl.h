@@ -11,6 +11,7 @@
 #include "render/soft/visibility_buffer.h"
 #include "shaders/constants.glsl"
 
+static const float WEIGHT = 1 / 65535.0f; /* unit of the corners' weights */
 static const float SLACK = 1e-5f, COLUMNS_OF_RANGE = COLORMAP_PLACES / (1 + 2 * 1e-5f);
 
 static inline float clamped(float x, float low, float high)
@@ -30,6 +31,9 @@ static inline bool is_log(const float *scale)
 {
     return scale[2] > 0.5f;
 }
+
+/* Makes band->cells, once `places` and `corners` are known. */
+void visibility_find_cells(const struct visibility_buffer *buffer, int number);
 
 static inline bool has_ink(const struct visibility_buffer *buffer, size_t pixel)
 {
