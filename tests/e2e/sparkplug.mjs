@@ -150,7 +150,7 @@ test('who was born before we came is read once its birth is known', options, asy
     await stranger.tell('spBv1.0/U100/NBIRTH/edge', encode({ seq: 0, metrics: [{ name: 'Inlet/Temperature', type: 'Double', value: 9 }] }),
         { retain: true });
     await plant.run('payload: sparkplug', ROWS);
-    await plant.daemon.line(/NBIRTH\/edge: \d+ bytes was refused: a retained message may be old/);
+    await plant.daemon.line(/NBIRTH\/edge: a message of \d+ bytes was refused: a retained message may be old/);
     await stranger.tell('spBv1.0/U100/NBIRTH/edge', '', { retain: true });
     await stranger.leave();
     await sleep(200);
@@ -186,7 +186,7 @@ test('what is no Sparkplug, and metrics that change their type, are refused by n
             assert.ok(performance.now() < end, `${count} messages are refused`);
     };
     await stranger.tell('spBv1.0/U100/NDATA/edge', Buffer.from([0xff, 0xff, 0xff, 0xff, 0x0f, 1, 2, 3]));
-    await plant.daemon.line(/NDATA\/edge: 8 bytes was refused: not a Sparkplug B payload/);
+    await plant.daemon.line(/NDATA\/edge: a message of 8 bytes was refused: not a Sparkplug B payload/);
     await stranger.tell(`spBv1.0/U100/DDATA/edge/${'x'.repeat(65000)}`, encode({ metrics: [] }));
     await refused(2); // the log has at most one line a minute about refused messages
     await stranger.tell('spBv1.0/U100/NDATA/edge', Buffer.alloc(5 << 20)).catch(() => {});
