@@ -24,7 +24,7 @@ enum { GROUP = 64, GRAIN = 1024, MAX_PIECES = 96 };
                                  sensor and of the radius R */
 #define STEP_OF_COLOR (1 / 255.0f)
 #define BORDER_SLACK 4  /* tolerated displacement of the border between data and no data, in units of struct scalar's `lacking` */
-#define MOST 0.75       /* part of the area */
+#define MARK_ALL 0.75   /* fraction of a level's area that errs from which on the whole level is marked */
 #define MIN_ERROR 1e-4f /* interpolation errors smaller than this are stored as 0 */
 
 struct triangle_piece {  /* part of a triangle; the error is sampled at the middle of the piece's longest side */
@@ -301,14 +301,14 @@ static void add_areas(const struct asset_view *file, uint32_t first_index, uint3
     }
 }
 
-/* Returns an error that the whole level is marked with, so that no limit which at least MOST of its area exceeds leaves the rest unmarked;
- * 0: none. Distances along surfaces are measured on the same triangles. Triangles that are mostly too long for the field are too long
- * for the distances, too: on a part of needles, distances were up to 4 % too long, and a third of what the errors of interpolation left
- * unmarked was wrong. */
+/* Returns an error that marks the whole level: twice the largest threshold (1, 1/2, ...) that MARK_ALL of the level's area reaches, at most
+   the level's largest error, so that vertices are marked with every limit below. 0: so much of the area reaches no threshold.
+   Distances along surfaces are measured on the same triangles. If most triangles are too long for the field, the distances are wrong, too,
+   so triangles without an error of interpolation cannot be trusted (tests/bench/notes/windows.md). */
 static float error_of_all(const struct weights *weights, const double erring[], double all, float largest)
 {
     for (int b = 0; b < WEIGHTS_ERRING && weights->distance != DISTANCE_EUCLIDEAN; b++)
-        if (all > 0 && erring[b] >= MOST * all)
+        if (all > 0 && erring[b] >= MARK_ALL * all)
             return fminf(ldexpf(1, 1 - b), largest);
     return 0;
 }

@@ -132,9 +132,9 @@ struct field_sensor {
 /* Lists the inputs of the field on an asset, as the last field_scalars() with these parameters used them. *radius_m receives the radius
    R of Algorithm 1 (Kim & Suh). Returns the number of inputs; 0: no sensor contributes. The caller frees *out (mem_free). */
 size_t field_sensors(struct field *field, int asset, const struct field_params *params, struct field_sensor **out, float *radius_m);
-/* Fills in what renderers need to evaluate the field at pixels, of the readings that the last field_scalars() with these parameters took.
-   out->count is 0 where the field is interpolated between vertices, and where it is the same everywhere. The caller frees `out`
-   (pixel_field_finish). */
+/* Fills *out with the sensors and readings from which renderers evaluate the field at each pixel, as the last field_scalars() with these
+   parameters took them. out->count is 0 if the field must be interpolated between vertices, or is the same everywhere. The caller frees
+   the sensors with pixel_field_finish(). */
 void field_pixels(struct field *field, int asset, const struct field_params *params, struct pixel_field *out);
 
 #endif

@@ -40,7 +40,7 @@ size_t field_sensors(struct field *field, int asset, const struct field_params *
     return layout->sensor_count;
 }
 
-/* --- sensors, for pixels ------------------------------------------------------------------------------------------------------- */
+/* --- sensors for renderers, which evaluate the field at each pixel ------------------------------------------------------------- */
 
 static void add_pixel_sensor(const struct field_state *state, size_t sensor, uint32_t bits, struct pixel_field *out)
 {

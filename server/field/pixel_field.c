@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The sums over all sensors at one point. */
+/* Evaluates a pixel field at one point, by sums over all its sensors. */
 #include "field/pixel_field.h"
 
 #include <math.h>
@@ -39,7 +39,7 @@ static float nearness(const struct pixel_field *field, float distance_m)
     return fmaxf(0, (field->radius_m - distance_m) / field->radius_m);
 }
 
-/* top: of paper, the largest exponent. */
+/* Returns a sensor's weight. top: for paper, the largest exponent of all sensors at this point, which keeps expf() from overflowing. */
 static float weight_of(const struct pixel_field *field, float strength, float distance_m, float near_m, float top)
 {
     float left = 1, part = 1;

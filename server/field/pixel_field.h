@@ -18,14 +18,14 @@ struct pixel_sensor {
     uint32_t state; /* PIXEL_* bits; with neither PIXEL_USABLE nor PIXEL_NO_LIMITS the sensor is lost */
 };
 
-struct pixel_field {
-    int32_t count; /* number of configured sensors; 0: the field is interpolated between vertices */
+struct pixel_field { /* zeroed before it is filled, because fields are compared and hashed byte by byte, padding included */
+    int32_t count; /* number of configured sensors; 0: the field is interpolated between vertices instead */
     int32_t paper, fill;
     enum pixel_show show;
     float power, reach_m, radius_m;        /* metres; reach_m INFINITY: no limit */
     float scale, offset, low, high, empty; /* converts a sum to a value, like struct kernel_value */
     float hot_spot_m, seen, most;          /* PIXEL_BLIND */
-    struct pixel_sensor *sensors;          /* owned */
+    struct pixel_sensor *sensors;          /* `count` sensors, owned; NULL if count is 0 */
 };
 
 struct pixel_value {
@@ -36,7 +36,7 @@ struct pixel_value {
 void pixel_field_at(const struct pixel_field *field, const float point_m[3], struct pixel_value *out);
 /* Returns the largest change of any value of the field since `before`; INFINITY if anything but readings changed. */
 float pixel_field_change(const struct pixel_field *field, const struct pixel_field *before);
-/* Replaces `to`, which may be zeroed, by a copy. */
+/* Replaces *to, which must be zeroed or filled before, by a copy of *from with its own sensors. */
 void pixel_field_copy(struct pixel_field *to, const struct pixel_field *from);
 void pixel_field_finish(struct pixel_field *field); /* frees the sensors and zeroes the field */
 uint64_t pixel_field_hash(const struct pixel_field *field);

@@ -29,7 +29,7 @@ SOFT_INLINE lanes pixel_square(const struct pixel_sensor *sensor, const lanes at
     return x * x + y * y + z * z;
 }
 
-/* Squares of the distances from the nearest ones. */
+/* Returns the squared distance from each of eight points to the nearest sensor of each state, among the sensors of the list. */
 SOFT_INLINE struct eight_nearest pixel_nearest(const struct pixel_field *field, const struct pixel_list *list, const lanes at[3])
 {
     lanes far2 = (lanes){ 0 } + PIXEL_FAR2;
@@ -77,14 +77,14 @@ SOFT_INLINE lanes pixel_fade(const struct pixel_field *field, lanes square, lane
     return lanes_choose(nearest, one, lanes_choose(within, left * left, none));
 }
 
-/* The value of a polynomial of a list. u: from the list's centre. */
+/* Returns a list's polynomial at eight points. u: vectors from the list's centre to the points, metres. */
 SOFT_INLINE lanes pixel_polynomial(const float of[PIXEL_TERMS], const lanes u[3])
 {
     lanes x = u[0] * (of[1] + u[0] * of[4] + u[1] * of[5] + u[2] * of[6]);
     return of[0] + x + u[1] * (of[2] + u[1] * of[7] + u[2] * of[8]) + u[2] * (of[3] + u[2] * of[9]);
 }
 
-/* Adds the far sensors' sums. part: 2^top of the list over the weights' unit at each place. */
+/* Adds the polynomials of a list's far sensors. part: converts them to the unit of weights at each point, 2^top / unit. */
 SOFT_INLINE void pixel_add_far(const struct pixel_field *field, const struct pixel_list *list, const lanes at[3], lanes near2, lanes part,
                                struct eight_sums *sums)
 {
@@ -120,7 +120,7 @@ SOFT_INLINE void pixel_sum_shepard(const struct pixel_field *field, const struct
         pixel_add_far(field, list, at, near2, lanes_exp2(0.5f * field->power * near_log2 + list->top), sums);
 }
 
-/* Nearness to a sensor, 0 to 1, and the exponent of its weight. */
+/* For paper: nearness to a sensor, 1 at the sensor and 0 at the radius R, and the exponent of the sensor's weight. */
 SOFT_INLINE lanes pixel_exponent(const struct pixel_field *field, const struct pixel_sensor *sensor, lanes square, lanes *near)
 {
     const float per_radius = 1.0f / field->radius_m;
@@ -161,7 +161,8 @@ SOFT_INLINE void pixel_sum_paper(const struct pixel_field *field, const struct p
         pixel_add_far(field, list, at, near2, lanes_exp2(list->top - top), sums);
 }
 
-/* at: in the frame of the sensors' places. */
+/* Evaluates the field at eight points. at: x, y, z in the coordinates of sensors[].place_m. list: sensors to sum, and polynomials of the
+   others. */
 SOFT_INLINE void pixel_lanes_at(const struct pixel_field *field, const struct pixel_list *list, const lanes at[3], struct eight_values *out)
 {
     lanes none = { 0 };

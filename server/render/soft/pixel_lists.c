@@ -9,23 +9,26 @@
 
 #include "base/mem.h"
 
-enum { DEPTH = 4, SHORT_LIST = 8 }; /* squares of 128 to 16 pixels; a list so short is not shortened */
+enum { DEPTH = 4, SHORT_LIST = 8 }; /* DEPTH: levels of squares, 128 to 16 pixels; SHORT_LIST: lists of at most so many sensors
+                                          are not shortened */
 static const float FAR_M = 1e15f, MOST_SHARE = 0.125f, LOG2_E = 1.44269504f;
 
 enum node_column { PLACE_X, PLACE_Y, PLACE_Z, VALUE, STRENGTH, DECAY, STATE, INDEX, COLUMNS };
 
 struct node {
-    float *columns[COLUMNS]; /* sensors that are not far yet; padded to LANES. STATE and INDEX (in the field) are whole numbers */
+    float *columns[COLUMNS]; /* sensors that are not far yet, padded to LANES. STATE and INDEX (index in field->sensors) are
+                                 stored as integers */
     int count;
-    struct pixel_list far; /* without sensors */
+    struct pixel_list far; /* polynomials of the far sensors; its sensors are not set */
     float least;           /* lower bound of the far sensors' sum of weights */
     float left;            /* share of the sum of all weights by which the sum may still err */
 };
 
 struct building {
     const struct pixel_field *field;
-    float *errors;               /* by index in the parent's list; INFINITY: near; -1: does not matter */
-    struct node nodes[DEPTH + 1]; /* [0]: all sensors */
+    float *errors;               /* error if the sensor becomes far, by index in the parent's list; INFINITY: must stay near; -1: has no
+                                    weight */
+    struct node nodes[DEPTH + 1]; /* by level; [0]: all sensors */
 };
 
 struct box {
@@ -42,7 +45,7 @@ float pixel_lists_step(const float *scale)
 
 struct eight_sensors {
     lanes at[3], value, strength, decay;
-    lanes_int used, lost, no_limits, uncertain, counts; /* counts: 0 beyond the list's end */
+    lanes_int used, lost, no_limits, uncertain, counts; /* masks by state; counts: 0 beyond the list's end */
 };
 
 SOFT_INLINE void load(const struct node *node, int first, struct eight_sensors *out)
@@ -65,7 +68,7 @@ SOFT_INLINE lanes all(float x)
     return (lanes){ 0 } + x;
 }
 
-/* Returns the weight at a distance, or for paper's term (weight times a power of nearness) that, times 2^-top. */
+/* Returns 2^-top times the weight at a distance. term (paper only): 2^-top times the weight times nearness^decay instead. */
 SOFT_INLINE lanes weight_at(const struct pixel_field *field, const struct eight_sensors *of, lanes distance, bool term, float top)
 {
     lanes log, zero = { 0 };
@@ -91,11 +94,12 @@ SOFT_INLINE lanes weight_at(const struct pixel_field *field, const struct eight_
     return field->paper ? weight : weight * of->strength;
 }
 
-struct jet { /* a weight as a quadratic of the place: its value and derivatives by the distance, a bound of its error, its least value */
+struct jet { /* a weight as a quadratic function of the place: value and derivatives by the distance at the box's centre, a bound of the
+                error in the box, and the smallest weight in the box */
     lanes value, first, second, error, least;
 };
 
-/* Sums of the derivatives of a weight's logarithm, each of one sign: of the first, second and third. */
+/* Derivatives of a weight's logarithm by the distance: the first, second and third. Each is a sum of terms of one sign. */
 struct logarithm {
     lanes first, second, third;
 };
@@ -108,7 +112,9 @@ SOFT_INLINE void add_pole(struct logarithm *to, lanes times, lanes left)
     to->third += 2.0f * times * over * over * over;
 }
 
-/* near_m, far_m: distances for the factors that rise towards their poles when near and when far. */
+/* Bounds the derivatives of a weight's logarithm in the box. near_m, far_m: smallest and largest distance from the sensor there; factors
+   with a pole at the sensor are evaluated at near_m, those with a pole at the reach or radius at far_m. sign: of the latter's second
+   derivative. */
 SOFT_INLINE struct logarithm logarithm_of(const struct pixel_field *field, const struct eight_sensors *of, lanes near_m, lanes far_m,
                                           bool term, float sign)
 {
@@ -136,7 +142,8 @@ SOFT_INLINE struct logarithm logarithm_of(const struct pixel_field *field, const
     return out;
 }
 
-/* distance: from the box's centre. All weights fall with distance. */
+/* Fills *out with the weights of eight sensors as functions of the place in the box. distance: from each sensor to the box's centre.
+   Correct only because all weights fall with distance. */
 SOFT_INLINE void jet_of(const struct pixel_field *field, const struct eight_sensors *of, lanes distance, float radius, bool term, float top,
                         struct jet *out)
 {
@@ -187,7 +194,7 @@ SOFT_INLINE float least_of(lanes x)
     return least;
 }
 
-/* Adds the chosen ones of eight. away: unit vectors from the sensors to the centre. */
+/* Adds the quadratic functions of the chosen sensors of eight to the polynomial `to`. away: unit vectors from the sensors to the centre. */
 SOFT_INLINE void add_terms(lanes to[PIXEL_TERMS], const struct jet *jet, lanes_int chosen, lanes times, lanes distance, const lanes away[3])
 {
     const lanes zero = { 0 }, first = lanes_choose(chosen, times * jet->first, zero);
@@ -221,7 +228,7 @@ SOFT_INLINE lanes distances_of(const struct eight_sensors *of, const struct box 
 
 struct nearest_bounds { /* upper bounds of the distance to the nearest sensor of each state, anywhere in the box; FAR_M: there is none */
     float used, lost, no_limits;
-    float top; /* logarithm of about the largest weight */
+    float top; /* logarithm (base 2) of about the largest weight in the box */
 };
 
 SOFT_INLINE void bound_nearest(const struct pixel_field *field, const struct node *from, const struct box *box, struct nearest_bounds *out)
@@ -246,7 +253,7 @@ SOFT_INLINE void bound_nearest(const struct pixel_field *field, const struct nod
         out->top = fmaxf(out->top, from->far.top);
 }
 
-/* Fills building->errors. Returns the least sum of the weights of the list. */
+/* Fills building->errors. Returns a lower bound, in the box, of the sum of the weights of the list's sensors. */
 SOFT_INLINE float bound_errors(const struct building *building, const struct node *from, const struct box *box,
                                const struct nearest_bounds *nearest)
 {
@@ -271,7 +278,7 @@ SOFT_INLINE float bound_errors(const struct building *building, const struct nod
     return sum_of(least);
 }
 
-/* Returns the sum of the errors up to `most`. */
+/* Returns the sum of those errors that are at most `most`. */
 SOFT_INLINE float sum_up_to(const float *errors, int count, float most)
 {
     lanes sum = { 0 };
@@ -311,7 +318,7 @@ SOFT_INLINE void keep(const struct node *from, int sensor, struct node *to)
     to->count++;
 }
 
-/* Splits the parent's list: sensors with an error up to `most` are far. */
+/* Splits the parent's list: sensors with an error up to `most` become far and are added to the polynomials; the others stay listed. */
 SOFT_INLINE void split(const struct building *building, const struct node *from, const struct box *box, float most, float top,
                        struct node *to)
 {
@@ -345,7 +352,7 @@ SOFT_INLINE void split(const struct building *building, const struct node *from,
     to->least = from->least * times + sum_of(sums.least);
 }
 
-/* Makes a node from its parent. last: all of the error that is left may be used. */
+/* Makes a node from its parent. last: the node may use all of the error that is left; other nodes leave a part for their children. */
 SOFT_KERNEL static void make_node(const struct building *building, const struct node *from, const struct box *box, bool last,
                                   struct node *to)
 {
@@ -365,7 +372,7 @@ SOFT_KERNEL static void make_node(const struct building *building, const struct 
 
 /* --- squares of cells ------------------------------------------------------------------------------------------------------------ */
 
-/* The box around cells[first] and those after it in the same square of this level. */
+/* Computes the box around cells[first] and the cells after it that are in the same square of this level. */
 static void bound_cells(const struct pixel_cell *cells, size_t count, size_t first, int level, struct box *out)
 {
     const int shift = 2 * (DEPTH - level);
@@ -415,7 +422,7 @@ static void add_list(struct pixel_lists *lists, const struct node *node, const s
     list->column = cell->column;
     list->row = cell->row;
     list->first = lists->sensor_count;
-    if (repeats) { /* the list of the cell before */
+    if (repeats) { /* the cell has the same list as the cell before */
         list->first = list[-1].first;
         return;
     }

@@ -11,23 +11,23 @@
 /* PIXEL_FEW: with that many sensors, all are summed at each pixel. */
 enum { PIXEL_FEW = 8, CELL_SHIFT = 4, CELL_PX = 1 << CELL_SHIFT, SQUARE_CELLS = 8, PIXEL_TERMS = 10 };
 
-struct pixel_cell { /* pixels of one mesh in a cell */
-    float low[3], high[3]; /* box around the places that the pixels show */
-    uint16_t column, row;  /* in cells */
+struct pixel_cell { /* pixels of one mesh in a cell, a square of CELL_PX pixels */
+    float low[3], high[3]; /* box around the surface points that the pixels show, metres */
+    uint16_t column, row;  /* position of the cell, in cells */
     uint32_t mesh;
 };
 
 struct pixel_list {
-    const uint32_t *sensors; /* indices in the field; NULL: the first `count` sensors */
-    size_t first;            /* of `sensors` in struct pixel_lists */
+    const uint32_t *sensors; /* indices of the near sensors in field->sensors; NULL: the first `count` sensors */
+    size_t first;            /* index of the list's first sensor in pixel_lists.sensors */
     int count;
-    bool has_far;   /* the polynomials are not 0 */
-    bool has_marks; /* a far sensor is uncertain */
-    /* The polynomials: sums of weights, of weights times values, of uncertain weights, all times 2^-top. Terms: 1, x, y, z, xx, xy, xz,
-       yy, yz, zz from the centre. */
+    bool has_far;   /* true: at least one sensor is far, so the polynomials are not 0 */
+    bool has_marks; /* true: a far sensor's reading is Uncertain */
+    /* Polynomials of the far sensors' sums: of weights, of weights times values, and of the weights of Uncertain sensors, all times 2^-top.
+       Coefficients of 1, x, y, z, xx, xy, xz, yy, yz, zz, with x, y, z from the centre in metres. */
     float top, centre[3], total[PIXEL_TERMS], values[PIXEL_TERMS], marked[PIXEL_TERMS];
-    uint32_t mesh, column, row; /* from the cell */
-    uint32_t next;              /* for the caller */
+    uint32_t mesh, column, row; /* mesh and position of the list's cell, copied from struct pixel_cell */
+    uint32_t next;              /* set and read by the caller only */
 };
 
 struct pixel_lists {
@@ -40,7 +40,7 @@ struct pixel_lists {
 float pixel_lists_step(const float *scale);
 /* Appends a list for each cell. cells: of one square of SQUARE_CELLS x SQUARE_CELLS cells, in the order of pixel_cells_order(). */
 void pixel_lists_add(struct pixel_lists *lists, const struct pixel_field *field, float step, const struct pixel_cell *cells, size_t count);
-/* Sets `sensors` of all lists, which pixel_lists_add() moves. */
+/* Sets the pointer `sensors` of all lists. Call it after the last pixel_lists_add(), which may move the array. */
 void pixel_lists_settle(struct pixel_lists *lists);
 void pixel_lists_finish(struct pixel_lists *lists); /* a zeroed struct is fine; it can be used again */
 

@@ -5,13 +5,13 @@
 #include "render/soft/pixel_lanes.h"
 #include "render/soft/visibility_buffer_impl.h"
 
-struct band_lists { /* lists of a band, for meshes with many sensors */
+struct band_lists { /* sensor lists of one band of pixel rows, for meshes whose fields have more than PIXEL_FEW sensors */
     struct pixel_lists lists;
-    uint32_t *of_cells; /* by cell: 1 + index of its first list, 0: none */
-    int columns;        /* cells in a row */
+    uint32_t *of_cells; /* by cell of the band: 1 + index of the cell's first list in `lists`; 0: the cell has none */
+    int columns;        /* number of cells in a row of cells */
 };
 
-struct eight_places { /* on triangles: the place, and by how much it changes from the first corner to the others */
+struct eight_places { /* points on triangles; at: the point in metres; second, third: vectors from the first corner to the others */
     lanes at[3], second[3], third[3];
     lanes_int meshes; /* index of the triangle's mesh in the visibility buffer; -1: the field there is interpolated between vertices */
 };
@@ -42,7 +42,8 @@ SOFT_INLINE const struct pixel_list *list_of(const struct band_lists *lists, con
     return &mesh->every;
 }
 
-/* Evaluates those whose mesh is not -1, each by its mesh and by the list of its cell of the band. */
+/* Evaluates the field at the points whose mesh is not -1, with the sensor list of the point's mesh and cell. Results of other points are
+   0. cells: index of each point's cell in the band. */
 SOFT_INLINE void evaluate_places(const struct visibility_buffer *buffer, const struct band_lists *lists, const struct eight_places *places,
                                  const lanes at[3], lanes_int cells, struct eight_values *out)
 {
@@ -74,7 +75,8 @@ SOFT_INLINE lanes carried_of_values(const float *scale, lanes values)
     return lanes_clamp((values - scale[0]) * scale[1] * COLUMNS_OF_RANGE + (1 + SLACK * COLUMNS_OF_RANGE), -farthest, farthest);
 }
 
-/* By how much what is carried changes where the second and third corner's weights change by w1 and w2. */
+/* Returns the change of the carried value (colour map column; on a logarithmic scale the value) when the weights of the triangle's second
+   and third corner grow by w1 and w2. carried: value at the points. */
 SOFT_INLINE lanes carried_change(const struct visibility_buffer *buffer, const struct band_lists *lists, const struct eight_places *places,
                                  lanes w1, lanes w2, lanes_int cells, lanes carried)
 {

@@ -273,12 +273,12 @@ SOFT_INLINE void evaluate_eight(const struct raster *raster, const struct soft_r
 
 /* --- fields of many sensors, in squares of cells ------------------------------------------------------------------------------- */
 
-struct many { /* the square of one such field */
+struct many { /* pixels of one field of many sensors within a square of cells */
     const struct raster *raster;
     const struct soft_pixels *pixels;
     const struct soft_rect *rect;
     int left, top;
-    uint32_t mark; /* mark of its pixels, apart from the row of the colour map */
+    uint32_t mark; /* mark that the field's pixels have, without the low byte (row of the colour map) */
 };
 
 SOFT_INLINE lanes_int *marks_of_many(const struct many *many, int column, int row)
@@ -291,7 +291,7 @@ SOFT_INLINE lanes_int is_of_many(const struct many *many, lanes_int marks)
     return (marks & ~0xff) == (int32_t)many->mark;
 }
 
-/* Returns whether the cell shows the field, and the box around the places there. */
+/* Fills the box of *cell around the surface points that show the field. Returns false if no pixel of the cell shows the field. */
 SOFT_INLINE bool bound_cell(const struct many *many, int column, int top, struct pixel_cell *cell)
 {
     const struct raster *raster = many->raster;

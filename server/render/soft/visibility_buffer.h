@@ -64,7 +64,7 @@ struct visibility_band { /* a band: group of pixel rows; written by one worker *
     struct visibility_part *parts;
     struct visibility_gloss *gloss; /* by index in `parts`; only filled in for the glossy look */
     struct visibility_mixed *mixed;
-    struct pixel_cell *cells; /* that show fields of many sensors (pixel_lists.h); square by square, there by mesh */
+    struct pixel_cell *cells; /* cells that show fields of many sensors (pixel_lists.h), sorted by square, then by mesh */
     size_t triangle_count, part_count, mixed_count;
     size_t place_count; /* number of elements of `places` */
     size_t cell_count, cell_capacity;
@@ -101,7 +101,7 @@ struct visibility_buffer {
     struct visibility_mesh *meshes;
     size_t mesh_count, mesh_capacity, vertex_count;
     bool evaluates;     /* some mesh's field is evaluated at pixels */
-    bool finds_cells;   /* resolve_read() makes the cells, since other meshes have many sensors than before */
+    bool finds_cells;   /* true: resolve_read() must find the cells again, because other meshes than before have many sensors */
     float scale[4];     /* struct frame_uniforms.scale at the time when the vertices' values were read */
     uint32_t *vertices; /* kept (visible) vertices, mesh by mesh: index in the asset's file */
     /* carried value of each kept (visible) vertex: column of the colour map (logarithmic scale: the field's value); NAN: a flag of the

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds the cells of kept pictures that show fields of many sensors, and boxes around the places there. */
+/* Finds the cells of kept pictures that show fields of many sensors, and boxes around the surface points there (pixel_lists.h). */
 #include <math.h>
 #include <stdlib.h>
 
