@@ -92,6 +92,8 @@ programs := $(if $(wildcard server/main.c),$(bin)/plantcastd) $(if $(wildcard pr
             $(if $(wildcard clients/cli/main.c),$(bin)/plantcast) $(if $(filter h264,$(CODECS)),$(bin)/plantcast-film) \
             $(if $(import_sources),$(bin)/plantcast-import) \
             $(if $(filter %/main.c,$(match_sources)),$(bin)/plantcast-match) $(if $(sim_sources),$(bin)/plantcast-sim)
+# Commands that set up, back up and restore the service.
+scripts  := $(addprefix $(bin)/plantcast-,init backup restore)
 modules  := $(bin)/plantcast-images.so $(if $(filter h264,$(CODECS)),$(bin)/plantcast-h264.so)
 # Readers of other formats, each where its library is (plantcast import --formats).
 occt     := $(dir $(wildcard /usr/include/opencascade/STEPCAFControl_Reader.hxx))
@@ -109,7 +111,7 @@ video := $(if $(strip $(video_missing)),,$(bin)/plantcast-video)
 video_cflags := $(if $(video),$(patsubst -I%,-isystem %,$(shell pkg-config --cflags $(video_packages))))
 
 .PHONY: all programs run demo test check test-long bench gpu-bench style layers headers deps test-deps golden-update install clean help
-all: $(programs) $(or $(video),no-video) $(bin)/plantcast-init $(modules) $(readers) \
+all: $(programs) $(or $(video),no-video) $(scripts) $(modules) $(readers) \
     $(if $(PACKED),,$(bin)/plantcast-import-ifc/ifc.mjs) clients/web/vendor/uPlot.js clients/web/made/version.js
 # The page's charts. Without them nothing is built.
 clients/web/vendor/uPlot.js: clients/web/package-lock.json
@@ -126,7 +128,7 @@ programs: all
 no-video:
 	@echo "  without plantcast-video, a view as video: no $(strip $(video_missing))"
 .PHONY: no-video
-$(bin)/plantcast-init: deploy/init
+$(scripts): $(bin)/plantcast-%: deploy/%
 	@mkdir -p $(@D); cp $< $@
 
 # What reads images, and H.264, is loaded when it is needed.

@@ -28,7 +28,7 @@ install: all
 	install -d $(root)/bin $(root)/lib/plantcast $(root)/libexec/plantcast $(root)/share/plantcast $(root)/share/doc/plantcast
 	install -m 755 $(filter-out $(bin)/plantcast-sim,$(programs)) $(root)/bin
 	$(if $(video),install -m 755 $(video) $(root)/bin)
-	install -m 755 deploy/init $(root)/bin/plantcast-init
+	install -m 755 $(scripts) $(root)/bin
 	install -m 755 $(modules) deploy/systemd/certbot-hook deploy/systemd/kiosk $(root)/lib/plantcast
 	$(if $(readers),install -m 755 $(readers) $(root)/libexec/plantcast)
 	[ ! -d $(bin)/plantcast-import-ifc ] || cp -r $(bin)/plantcast-import-ifc $(root)/libexec/plantcast/

@@ -49,7 +49,7 @@ static const struct cli_command {
     { "drain", "move all user sessions of a daemon on this machine to other daemons", cmd_drain },
     { "reload", "let a daemon on this machine reload its plant file and tag list, and print the result", cmd_reload },
     { "history", "add readings to the recorded history of a plant, or export them as CSV", cmd_history },
-    { "backup", "back up history, alarm journal, plant file and tag list of a plant; its daemon may run", cmd_backup },
+    { "backup", "back up a plant or all files of a service plantcastd@NAME; the daemon may run", cmd_backup },
     { "restore", "restore a backup that `plantcast backup` made", cmd_restore },
     { "fleet", "serve one overview page and one /metrics for the daemons of many plants", cmd_fleet },
     { "token", "create, list and revoke the tokens with which users and programs sign in", cmd_token },

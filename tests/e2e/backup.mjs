@@ -99,6 +99,7 @@ test('what is damaged, missing or in the way is refused by name', { skip }, () =
     const there = runProgram('plantcast', ['backup', plant.file, '-o', folder('three')]);
     assert.deepEqual([there.code, /is there already/.test(there.err)], [1, true]);
     for (const args of [['backup', plant.file], ['backup'], ['backup', '--verify', 'a', '-o', 'b'], ['restore', '--verify', 'a', 'b'],
-        ['restore', folder('three')], ['restore', 'a', 'b', 'c']])
+        ['restore'], ['restore', 'a', 'b', 'c']])
         assert.equal(runProgram('plantcast', args).code, 2, args.join(' '));
+    assert.match(runProgram('plantcast', ['restore', folder('three')]).err, /history only, not the service's files: .*three PLANT\.yaml/);
 });

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast backup` and `plantcast restore`: copy history, alarm journal and configuration of a plant into one folder, and back. */
+/* `plantcast backup` and `plantcast restore`: copy history, alarm journal and configuration of a plant into one folder, and back. For an
+   instance of the service, both start a helper program (deploy/backup, deploy/restore), which calls this one. */
 #include <dirent.h>
 #include <errno.h>
 #include <getopt.h>
@@ -21,6 +22,7 @@
 #include "history/month.h"
 #include "base/text/timestamp.h"
 #include "plant/plant.h"
+#include "version.h"
 #include "loopcheck/loop_checks.h"
 #include "access/pairings.h"
 #include "views/named_views.h"
@@ -35,28 +37,47 @@ struct backup_job {
     struct log *log;
     const char *folder;  /* backup folder */
     const char *history; /* value of --history */
-    json_t *files;       /* manifest entries: {"name":...,"bytes":...,"xxh128":...} */
+    json_t *files;       /* manifest entries: {"name":...,"bytes":...,"xxh128":...}; with "service":true for a file of the service */
+    json_t *added;       /* paths of --add */
 };
 
 static void print_usage(FILE *out)
 {
-    fputs("usage: plantcast backup PLANT.yaml -o FOLDER [--history DIR]\n"
+    fputs("usage: plantcast backup NAME --recipient KEY|--passphrase|--without-secrets [-o FOLDER] [--to URL]\n"
+          "       plantcast restore FOLDER|URL [--identity FILE] [--without-secrets]\n"
+          "       plantcast backup PLANT.yaml -o FOLDER [--history DIR]\n"
           "       plantcast backup --verify FOLDER\n"
           "       plantcast restore FOLDER PLANT.yaml [--history DIR]\n"
           "\n"
-          "backup creates FOLDER with a copy of history, alarm journal, loop checks, plant file and tag list.\n"
+          "backup NAME backs up all files of the service plantcastd@NAME, also while it runs, and verifies the\n"
+          "backup: plant file, models, options, keys, tokens, sign-in, tag list, history, alarm journal, audit\n"
+          "trail, views, notes, and files elsewhere that options or plant file name. Not: prepared files.\n"
+          "restore FOLDER makes the service again, on a machine that has only the packages.\n"
+          "\n"
+          "  -o, --out FOLDER        folder to create (default: /var/backups/plantcast/NAME/TIME)\n"
+          "  --recipient KEY         encrypt keys and tokens with age to this public key (age1..., ssh-ed25519 ...);\n"
+          "                          may be given several times; --recipients-file FILE reads one from each line\n"
+          "  --passphrase            encrypt them to a passphrase, for which age asks\n"
+          "  --without-secrets       leave keys, tokens and sign-in out; with restore: do not decrypt them\n"
+          "  --to sftp://[USER@]HOST[:PORT]/FOLDER    also copy the backup to another host, with an SSH key\n"
+          "  --hook PROGRAM          run PROGRAM with the backup's folder as its argument\n"
+          "  --keep N                afterwards remove all but the newest N in /var/backups/plantcast/NAME\n"
+          "  --identity FILE         private key with which to decrypt (without: age asks for the passphrase)\n"
+          "  --root DIR              use the files below DIR instead of /, for tests and images\n"
+          "\n"
+          "backup PLANT.yaml copies history, alarm journal, loop checks, plant file and tag list to FOLDER.\n"
           "Only the owner can read FOLDER. The daemon may run: the copy of each database is consistent.\n"
           "Models are not copied. Symbolic links are not followed.\n"
           "A file is skipped if its owner is not the owner of its folder, also when root runs the command.\n"
           "\n"
           "--verify restores a backup into a temporary folder, compares all files and checks each database.\n"
           "\n"
-          "restore checks a backup, then writes the plant file to PLANT.yaml, and tag list and history to the\n"
-          "places that the plant file names. If root runs it, each file gets the owner of its folder.\n"
-          "If one of these files exists already, nothing is restored.\n"
+          "restore FOLDER PLANT.yaml checks a backup, then writes the plant file to PLANT.yaml, and tag list and\n"
+          "history to the places that the plant file names. If root runs it, each file gets the owner of its\n"
+          "folder. If one of these files exists already, nothing is restored.\n"
           "\n"
-          "  --history DIR    folder of recorded readings (default: the one that the plant file names, else\n"
-          "                   next to the plant file)\n",
+          "  --history DIR           folder of recorded readings (default: the one that the plant file names,\n"
+          "                          else next to the plant file)\n",
           out);
 }
 
@@ -140,6 +161,21 @@ static bool add_history(struct backup_job *job, const char *folder)
     return good;
 }
 
+/* Copies the files of --add, which only plantcast-restore unpacks. */
+static bool add_service(struct backup_job *job)
+{
+    size_t i;
+    json_t *path;
+    bool good = true;
+    json_array_foreach(job->added, i, path)
+    {
+        const char *from = json_string_value(path);
+        good = good && add(job, copy_file, from, text_base_name(from)) &&
+               json_object_set_new(json_array_get(job->files, json_array_size(job->files) - 1), "service", json_true()) == 0;
+    }
+    return good;
+}
+
 /* Returns the path of the history folder as the plant file writes it; NULL: the plant file uses the default folder, next to itself. */
 static const char *history_name(const struct plant *plant)
 {
@@ -150,8 +186,8 @@ static bool write_manifest(struct backup_job *job, const struct plant *plant)
 {
     char now[TIMESTAMP_BYTES];
     timestamp_print(clock_utc_ns() / 1000, now);
-    json_t *manifest = json_pack("{s:i,s:s,s:s?,s:s,s:O}", "version", MANIFEST_VERSION, "made", now, "history", history_name(plant), "tags",
-                                 as_written(plant, plant->tags_path), "files", job->files);
+    json_t *manifest = json_pack("{s:i,s:s,s:s,s:s?,s:s,s:O}", "version", MANIFEST_VERSION, "plantcast", PLANTCAST_VERSION, "made", now,
+                                 "history", history_name(plant), "tags", as_written(plant, plant->tags_path), "files", job->files);
     char *path = mem_printf("%s/" MANIFEST, job->folder), *text = json_dumps(manifest, JSON_INDENT(2));
     int error = atomic_file_put(path, text, strlen(text));
     if (error)
@@ -201,7 +237,7 @@ static bool back_up(struct backup_job *job, const struct plant *plant, const cha
         say(part, strerror(errno));
     else {
         good = add(job, copy_file, plant->path, PLANT_FILE) && add(job, copy_file, plant->tags_path, tags) && add_history(job, history) &&
-               write_manifest(job, plant);
+               add_service(job) && write_manifest(job, plant);
         if (good && rename(part, out) != 0)
             good = say(out, strerror(errno));
         if (!good)
@@ -218,6 +254,16 @@ static bool back_up(struct backup_job *job, const struct plant *plant, const cha
 
 /* --- restore -------------------------------------------------------------------------------------------------------------------- */
 
+/* Returns false if a newer Plantcast made the backup: its databases may have a form that this program does not know. */
+static bool is_known_version(const char *path, const char *version)
+{
+    if (!version || strverscmp(version, PLANTCAST_VERSION) <= 0)
+        return true;
+    fprintf(stderr, "plantcast: %s: Plantcast %s made this backup, and this is " PLANTCAST_VERSION ": install %s or a later version\n",
+            path, version, version);
+    return false;
+}
+
 static json_t *read_manifest(const char *folder)
 {
     char *path = mem_printf("%s/" MANIFEST, folder);
@@ -228,6 +274,7 @@ static json_t *read_manifest(const char *folder)
         json_integer_value(json_object_get(manifest, "version")) == MANIFEST_VERSION && json_is_array(json_object_get(manifest, "files"));
     if (!good)
         say(path, text ? "is not a backup's file list, or of a version that this program cannot read" : strerror(errno));
+    good = good && is_known_version(path, json_string_value(json_object_get(manifest, "plantcast")));
     if (!good && manifest) {
         json_decref(manifest);
         manifest = NULL;
@@ -302,6 +349,8 @@ static bool each_file(struct backup_job *job, const char *plant_path, const char
     json_array_foreach(job->files, i, file)
     {
         const char *name = json_string_value(json_object_get(file, "name"));
+        if (json_is_true(json_object_get(file, "service")))
+            continue;
         char *from = mem_printf("%s/%s", job->folder, name), *to = place_of(name, plant_path, history, tags);
         good = good && (put ? copy_file(job->log, from, to) : is_free(to));
         mem_free(from);
@@ -320,6 +369,15 @@ static char *future_history(const struct backup_job *job, const json_t *manifest
     if (name)
         return mem_printf("%.*s%s", (int)(file - plant_path), plant_path, name);
     return mem_printf("%.*s.history", (int)(dot ? dot - plant_path : (long)strlen(plant_path)), plant_path);
+}
+
+static bool check(struct backup_job *job)
+{
+    json_t *manifest = read_manifest(job->folder);
+    job->files = json_object_get(manifest, "files");
+    bool good = manifest && is_whole(job);
+    json_decref(manifest);
+    return good;
 }
 
 static bool restore(struct backup_job *job, const char *plant_path)
@@ -354,6 +412,8 @@ static bool each_restored(struct backup_job *job, const char *plant_path, const 
     json_array_foreach(job->files, i, file)
     {
         const char *name = json_string_value(json_object_get(file, "name")), *expected = json_string_value(json_object_get(file, "xxh128"));
+        if (json_is_true(json_object_get(file, "service")))
+            continue;
         char *path = place_of(name, plant_path, history, NULL), *copy = mem_printf("%s.checked", path), hash[COPY_HASH_BYTES];
         long long bytes;
         bool same = copy_hash(job->log, path, hash, &bytes) && !strcmp(hash, expected);
@@ -409,19 +469,28 @@ static bool verify(struct backup_job *job)
 
 /* --- the command line ------------------------------------------------------------------------------------------------------------ */
 
+struct backup_arguments {
+    const char *out;    /* -o */
+    bool verify, check; /* --verify, --check */
+};
+
 /* Parses the command line. Returns -1 to continue, or the exit code. */
-static int parse(int argc, char **argv, struct backup_job *job, const char **out, bool *drill)
+static int parse(int argc, char **argv, struct backup_job *job, struct backup_arguments *arguments)
 {
     static const struct option options[] = { { "history", required_argument, NULL, 'd' },
                                              { "out", required_argument, NULL, 'o' },
                                              { "verify", no_argument, NULL, 'v' },
+                                             { "check", no_argument, NULL, 'c' },
+                                             { "add", required_argument, NULL, 'a' },
                                              { "help", no_argument, NULL, 'h' },
                                              { 0 } };
     for (int option; (option = getopt_long(argc, argv, "o:h", options, NULL)) != -1;) {
         switch (option) {
         case 'd': job->history = optarg; break;
-        case 'o': *out = optarg; break;
-        case 'v': *drill = true; break;
+        case 'o': arguments->out = optarg; break;
+        case 'v': arguments->verify = true; break;
+        case 'c': arguments->check = true; break;
+        case 'a': json_array_append_new(job->added, json_string(optarg)); break;
         case 'h': print_usage(stdout); return 0;
         default: print_usage(stderr); return 2;
         }
@@ -429,54 +498,79 @@ static int parse(int argc, char **argv, struct backup_job *job, const char **out
     return -1;
 }
 
-int cmd_backup(int argc, char **argv)
+static int wrong_arguments(void)
 {
-    struct backup_job job = { 0 };
-    const char *out = NULL;
-    bool drill = false;
-    int code = parse(argc, argv, &job, &out, &drill);
+    print_usage(stderr);
+    return 2;
+}
+
+static int back_up_plant(struct backup_job *job, const char *plant_path, const char *out)
+{
+    struct plant *plant = plant_load_or_print(plant_path);
+    bool good = plant && back_up(job, plant, out);
+    plant_destroy(&plant);
+    return good ? 0 : 1;
+}
+
+static int run(int argc, char **argv, int (*command)(int argc, char **argv, struct backup_job *job))
+{
+    struct backup_job job = { .log = log_create(LOG_WARN), .files = json_array(), .added = json_array() };
+    json_t *files = job.files; /* restore and verify replace job.files by a part of the manifest */
+    int code = command(argc, argv, &job);
+    json_decref(files);
+    json_decref(job.added);
+    log_destroy(&job.log);
+    return code;
+}
+
+static int run_backup(int argc, char **argv, struct backup_job *job)
+{
+    struct backup_arguments arguments = { 0 };
+    int code = parse(argc, argv, job, &arguments);
     if (code >= 0)
         return code;
-    if (argc - optind != 1 || !out == !drill || (drill && job.history)) {
-        print_usage(stderr);
-        return 2;
-    }
-    if (drill) {
-        umask(0077);
-        job.log = log_create(LOG_WARN);
-        job.folder = argv[optind];
-        code = verify(&job) ? 0 : 1;
-        log_destroy(&job.log);
-        return code;
-    }
-    struct plant *plant = plant_load_or_print(argv[optind]);
-    if (!plant)
-        return 1;
+    if (argc - optind != 1 || !arguments.out == !arguments.verify || (arguments.verify && job->history) || arguments.check)
+        return wrong_arguments();
     umask(0077); /* only the user who makes the backup may read its files */
-    job.log = log_create(LOG_WARN);
-    job.files = json_array();
-    code = back_up(&job, plant, out) ? 0 : 1;
-    json_decref(job.files);
-    log_destroy(&job.log);
-    plant_destroy(&plant);
-    return code;
+    if (!arguments.verify)
+        return back_up_plant(job, argv[optind], arguments.out);
+    job->folder = argv[optind];
+    return verify(job) ? 0 : 1;
+}
+
+static int run_restore(int argc, char **argv, struct backup_job *job)
+{
+    struct backup_arguments arguments = { 0 };
+    int code = parse(argc, argv, job, &arguments);
+    if (code >= 0)
+        return code;
+    if (argc - optind != (arguments.check ? 1 : 2) || arguments.out || arguments.verify || json_array_size(job->added) > 0)
+        return wrong_arguments();
+    job->folder = argv[optind];
+    return (arguments.check ? check(job) : restore(job, argv[optind + 1])) ? 0 : 1;
+}
+
+/* Returns whether an argument is the name of a service's instance, as `plantcast init` accepts it, and not the path of a plant file. */
+static bool is_instance(const char *argument)
+{
+    return argument && *argument != '-' && !strpbrk(argument, "./");
+}
+
+int cmd_backup(int argc, char **argv)
+{
+    if (is_instance(argv[1])) {
+        run_beside("-backup", argv);
+        return 1;
+    }
+    return run(argc, argv, run_backup);
 }
 
 int cmd_restore(int argc, char **argv)
 {
-    struct backup_job job = { 0 };
-    const char *out = NULL;
-    bool drill = false;
-    int code = parse(argc, argv, &job, &out, &drill);
-    if (code >= 0)
-        return code;
-    if (argc - optind != 2 || out || drill) {
-        print_usage(stderr);
-        return 2;
+    bool has_folder = argc > 1 && argv[1][0] != '-', has_plant = argc > 2 && (argv[2][0] != '-' || !strcmp(argv[2], "--history"));
+    if (has_folder && !has_plant) {
+        run_beside("-restore", argv);
+        return 1;
     }
-    job.log = log_create(LOG_WARN);
-    job.folder = argv[optind];
-    code = restore(&job, argv[optind + 1]) ? 0 : 1;
-    log_destroy(&job.log);
-    return code;
+    return run(argc, argv, run_restore);
 }

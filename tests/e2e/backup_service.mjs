@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `plantcast backup NAME` while the service's daemon runs, and `plantcast restore` on a bare host: the same server, the same picture.
+import assert from 'node:assert/strict';
+import { spawn, spawnSync } from 'node:child_process';
+import { cpSync, existsSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { BareRoot, missingBareRoot } from './support/bare_root.mjs';
+import { folderOfTests } from './support/folders.mjs';
+import { freePort } from './support/ports.mjs';
+import { BIN, notBuilt, TinyPlant } from './support/tiny_plant.mjs';
+
+const has = (program) => spawnSync('which', [program]).status === 0;
+const options = { timeout: 300000, skip: notBuilt() || (!existsSync(join(BIN, 'plantcast-restore')) && 'not built: plantcast-restore') ||
+    (missingBareRoot() ?? (has('age') ? false : 'no age')) };
+const SSHD = '/usr/sbin/sshd', BEGIN_S = Math.floor(Date.now() / 1000) - 86400, ETC = '/etc/plantcast/p1', STATE = '/var/lib/plantcast/p1';
+const folder = folderOfTests();
+let plant, port, first, tokens, picture, daemon, recipient;
+
+const ok = ({ code, out, err }) => {
+    assert.equal(code, 0, err);
+    return out;
+};
+
+// Prepares and serves p1 as the unit does: as the user plantcast, with the file of options.
+async function serve(root) {
+    const prepared = `--prepared ${STATE}/prepared --history ${STATE}/history`;
+    const [program, args] = root.line(`. ${ETC}/options; exec setpriv --reuid plantcast --regid plantcast --init-groups sh -euc "` +
+        `plantcast-prep -o ${STATE}/prepared ${ETC}/plant.yaml && exec plantcastd ${ETC}/plant.yaml ${prepared} $PLANTCAST_OPTIONS"`);
+    daemon = spawn(program, args, { stdio: ['ignore', 'pipe', 'pipe'] });
+    daemon.ended = new Promise((done) => daemon.once('exit', done));
+    let said = '';
+    daemon.stderr.on('data', (text) => { said += text; });
+    await new Promise((done, fail) => {
+        daemon.stdout.on('data', (text) => /ready/.test(said += text) && done());
+        daemon.once('exit', () => fail(new Error(said)));
+    });
+}
+async function stop() {
+    if (daemon && daemon.exitCode === null) {
+        const inner = readFileSync(`/proc/${daemon.pid}/task/${daemon.pid}/children`, 'utf8').trim().split(' ')[0];
+        process.kill(Number(inner), 'SIGTERM'); // unshare passes no signal on; this is the daemon, which every program before it became
+        await daemon.ended;
+    }
+}
+// Draws the recorded readings of an instant through the daemon, with a token of the tokens file.
+function draw(root) {
+    root.write('/tmp/token', tokens.viewer, 0o600);
+    ok(root.run(`plantcast snapshot https://localhost:${port}/ --ca ${ETC}/tls/fullchain.pem --token-file /tmp/token ` +
+        `--at ${BEGIN_S + 3000} ` + '--size 320x200 -o /tmp/picture.png; chmod 644 /tmp/picture.png'));
+    return readFileSync(root.path('tmp/picture.png'));
+}
+// All files that the service needs, with owner, mode and size or content.
+const listing = (root) => ok(root.run(`find ${ETC} /etc/plantcast/mail.password ${STATE} -path ${STATE}/history -prune -o ` +
+    `-path ${STATE}/prepared -prune -o ! -name 'audit.log*' -printf '%p %U %u %g %m ' ` +
+    "! -type d -exec sha256sum {} ';' -o -type d -printf '\\n'"))
+    .split('\n').map((line) => line.replace(/ \d+ (?=root|plantcast)/, ' ')).sort().join('\n');
+
+before(async () => {
+    if (options.skip)
+        return;
+    plant = await TinyPlant.create();
+    first = new BareRoot(folder);
+    port = await freePort();
+    cpSync(plant.folder, first.path('root/plant'), { recursive: true });
+    const made = ok(first.run(`plantcast init p1 --plant /root/plant --host localhost --port ${port}`));
+    tokens = Object.fromEntries(made.trim().split('\n').map((line) => line.split(/ {2,}/)));
+    ok(first.run(`openssl genpkey -algorithm ed25519 -out ${ETC}/signing.key; echo secret >/etc/plantcast/mail.password
+        for f in ${ETC}/signing.key /etc/plantcast/mail.password; do chgrp plantcast $f; chmod 640 $f; done
+        sed -i 's# --audit# --signing-key ${ETC}/signing.key --audit#' ${ETC}/options
+        echo 'notify: { recipients: [{ id: ops, email: a@example.org }], mail: { server: "smtp://localhost:25", from: a@example.org, ` +
+        `user: a, password_file: ../mail.password }, rules: [{ id: all, to: ops }] }' >>${ETC}/plant.yaml`));
+    const rows = Array.from({ length: 400 }, (_, i) => `TI-1,${BEGIN_S + i * 60},${(50 + 40 * Math.sin(i / 9)).toFixed(3)}`);
+    first.write('/root/series.csv', ['Tag,Time,Value', ...rows].join('\n'));
+    ok(first.run(`install -d -o plantcast -g plantcast ${STATE}/history
+        plantcast history import ${ETC}/plant.yaml /root/series.csv --folder ${STATE}/history
+        chown -R plantcast:plantcast ${STATE}/history`));
+    const key = ok(first.run('age-keygen 2>/dev/null'));
+    first.write('/root/key', key, 0o600);
+    recipient = ok(first.run('age-keygen -y /root/key')).trim();
+    await serve(first);
+    picture = draw(first);
+    assert.ok(picture.length > 2000);
+});
+after(async () => {
+    await stop();
+    await plant?.destroy();
+});
+
+test('backup needs a word about keys, and an instance', options, () => {
+    const none = first.run('plantcast backup p1');
+    assert.deepEqual([none.code, /--recipient KEY or --passphrase.*--without-secrets/.test(none.err)], [1, true], none.err);
+    assert.match(first.run('plantcast backup p2 --without-secrets').err, /p2\/plant\.yaml does not exist/);
+    assert.match(first.run('plantcast backup p1 --recipient nonsense').err, /malformed recipient[^]*age encrypted nothing/);
+    assert.equal(first.run('plantcast backup p1 --colour').code, 2);
+    assert.deepEqual(readdirSync(first.path('var/backups/plantcast/p1')), [], 'a failed backup leaves nothing');
+});
+
+test('a backup while the daemon runs has everything, its keys only encrypted', options, () => {
+    const { code, err, out } = first.run(`plantcast backup p1 --recipient ${recipient} --keep 2`);
+    assert.equal(code, 0, err);
+    assert.match(out, /verified: a trial restore/);
+    const [name] = readdirSync(first.path('var/backups/plantcast/p1'));
+    const made = first.path(`var/backups/plantcast/p1/${name}`);
+    cpSync(made, join(folder, 'backup'), { recursive: true });
+    assert.deepEqual(readdirSync(made).filter((file) => !/sqlite$/.test(file)).sort(),
+        ['backup.json', 'etc.tar', 'plant.yaml', 'secrets.tar.age', 'state.tar', 'tags.csv']);
+    const plain = spawnSync('grep', ['-rlE', 'PRIVATE KEY|^secret$', made], { encoding: 'utf8' }).stdout;
+    assert.equal(plain, '', 'no key lies there in plain text');
+    assert.equal(spawnSync('find', [made, '-perm', '/077'], { encoding: 'utf8' }).stdout, '');
+});
+
+test('one command on a bare host gives the same server', options, async () => {
+    const was = listing(first);
+    await stop();
+    rmSync(first.path('etc/plantcast'), { recursive: true });
+    rmSync(first.path('var/lib/plantcast'), { recursive: true });
+    const second = new BareRoot(folder);
+    cpSync(join(folder, 'backup'), second.path('root/backup'), { recursive: true });
+    second.write('/root/key', readFileSync(first.path('root/key')), 0o600);
+    second.run('useradd --system other'); // the user plantcast gets another number here
+    const { code, err, out } = second.run('plantcast restore /root/backup --identity /root/key');
+    assert.equal(code, 0, err);
+    assert.doesNotMatch(out, /missing/);
+    assert.equal(listing(second), was);
+    await serve(second);
+    assert.ok(draw(second).equals(picture), 'another picture');
+    ok(second.run(`plantcast audit verify ${STATE}/audit.log`));
+    assert.match(readFileSync(second.path(`${STATE}/audit.log`), 'utf8'), /"event":"stop"|"event":"start"[^]*"event":"start"/);
+    const again = second.run('plantcast restore /root/backup --identity /root/key');
+    assert.deepEqual([again.code, /p1 exists already; nothing was restored/.test(again.err)], [1, true], again.err);
+});
+
+test('a wrong key, a damaged file and a newer version are refused by name, and nothing stays', options, () => {
+    const third = new BareRoot(folder), copy = (name) => cpSync(join(folder, 'backup'), third.path(`root/${name}`), { recursive: true });
+    const refused = (name, why, more = '') => {
+        const { code, err } = third.run(`plantcast restore /root/${name} ${more}`);
+        assert.deepEqual([code, why.test(err)], [1, true], err);
+        assert.equal(third.run('find /etc/plantcast /var/lib/plantcast -mindepth 1 2>/dev/null || true').out, '');
+    };
+    third.write('/root/key', readFileSync(first.path('root/key')), 0o600);
+    ok(third.run('age-keygen -o /root/other 2>/dev/null'));
+    copy('a');
+    refused('a', /secrets\.tar\.age cannot be decrypted; nothing was restored/, '--identity /root/other');
+    for (const name of ['state.tar', 'secrets.tar.age', 'tags.csv']) {
+        copy(name);
+        const bytes = readFileSync(third.path(`root/${name}/${name}`));
+        bytes[bytes.length >> 1] ^= 1;
+        writeFileSync(third.path(`root/${name}/${name}`), bytes);
+        refused(name, new RegExp(`${name.replaceAll('.', '\\.')}: was changed or damaged`), '--identity /root/key');
+    }
+    copy('newer');
+    const list = third.path('root/newer/backup.json'), text = readFileSync(list, 'utf8');
+    writeFileSync(list, text.replace(/"plantcast": ".*"/, '"plantcast": "9.0.0"'));
+    refused('newer', /Plantcast 9\.0\.0 made this backup, and this is .*: install 9\.0\.0/, '--identity /root/key');
+    writeFileSync(list, text.replace('"version": 1', '"version": 2'));
+    refused('newer', /of a version that this program cannot read/);
+    refused('nothing', /has no backup\.json/);
+    third.write('/etc/plantcast/mail.password', 'of another plant');
+    const taken = third.run('plantcast restore /root/a --identity /root/key');
+    assert.deepEqual([taken.code, /mail\.password exists already and differs/.test(taken.err)], [1, true], taken.err);
+    rmSync(third.path('etc/plantcast/mail.password'));
+    const without = third.run('plantcast restore /root/a --without-secrets');
+    assert.equal(without.code, 0, without.err);
+    assert.match(without.out, /missing +\/etc\/plantcast\/p1\/tls\/fullchain\.pem\n[^]*missing +\/etc\/plantcast\/p1\/tokens/);
+});
+
+test('a passphrase, as age asks for it', { ...options, skip: options.skip || (has('script') ? false : 'no script') }, () => {
+    const host = new BareRoot(folder);
+    cpSync(plant.folder, host.path('root/plant'), { recursive: true });
+    ok(host.run('plantcast init p1 --plant /root/plant --host localhost'));
+    const typed = (command, ...lines) => host.run(`(for line in ${lines.join(' ')}; do sleep 1; echo "$line"; done; sleep 1) | ` +
+        `script -qec '${command}' /dev/null`);
+    ok(typed('plantcast backup p1 --passphrase -o /root/b', 'correct-horse', 'correct-horse'));
+    ok(host.run('rm -r /etc/plantcast /var/lib/plantcast'));
+    const wrong = typed('plantcast restore /root/b', 'wrong-horse');
+    assert.deepEqual([wrong.code, /incorrect passphrase[^]*nothing was restored/.test(wrong.out)], [1, true], wrong.out);
+    ok(typed('plantcast restore /root/b', 'correct-horse'));
+    assert.match(readFileSync(host.path(`${ETC}/tls/privkey.pem`), 'utf8'), /PRIVATE KEY/);
+});
+
+test('a backup goes to another host by SFTP, and comes back from there',
+    { ...options, skip: options.skip || (existsSync(SSHD) ? false : 'no sshd') }, async (t) => {
+        const host = new BareRoot(folder), sshPort = await freePort(), kept = join(folder, 'kept');
+        mkdirSync(kept);
+        mkdirSync('/run/sshd', { recursive: true });
+        for (const [name, path] of [['host', join(folder, 'host-key')], ['user', host.path('root/.ssh/id_ed25519')]])
+            ok({ code: spawnSync('ssh-keygen', ['-q', '-t', 'ed25519', '-N', '', '-f', path]).status, err: name });
+        cpSync(host.path('root/.ssh/id_ed25519.pub'), join(folder, 'authorized'));
+        host.write('/root/.ssh/config', 'Host *\n  StrictHostKeyChecking no\n  UserKnownHostsFile /dev/null\n', 0o600);
+        writeFileSync(join(folder, 'sshd'), [`Port ${sshPort}`, 'ListenAddress 127.0.0.1', `HostKey ${join(folder, 'host-key')}`,
+            'StrictModes no', 'PidFile none', `AuthorizedKeysFile ${join(folder, 'authorized')}`, 'PermitRootLogin yes', 'UsePAM no',
+            'Subsystem sftp internal-sftp', ''].join('\n'));
+        const sshd = spawn(SSHD, ['-D', '-f', join(folder, 'sshd')], { stdio: 'inherit' });
+        t.after(() => sshd.kill());
+        cpSync(plant.folder, host.path('root/plant'), { recursive: true });
+        ok(host.run('plantcast init p1 --plant /root/plant --host localhost'));
+        const there = `sftp://root@127.0.0.1:${sshPort}${kept}`;
+        host.write('/usr-hook', '#!/bin/sh\necho "$1" >/root/hooked\n', 0o755);
+        const listens = `for i in $(seq 100); do sftp -q -b /dev/null sftp://root@127.0.0.1:${sshPort} 2>/dev/null && break; ` +
+            'sleep 0.1; done';
+        ok(host.run(`${listens}; plantcast backup p1 --recipient ${recipient} --to ${there} --hook /usr-hook -o /root/b`));
+        assert.equal(readFileSync(host.path('root/hooked'), 'utf8'), '/root/b\n');
+        assert.deepEqual(readdirSync(kept), ['p1-b']);
+        ok(host.run('rm -r /etc/plantcast /var/lib/plantcast /root/b'));
+        host.write('/root/key', readFileSync(first.path('root/key')), 0o600);
+        ok(host.run(`plantcast restore ${there}/p1-b --identity /root/key`));
+        assert.match(readFileSync(host.path(`${ETC}/tls/privkey.pem`), 'utf8'), /PRIVATE KEY/);
+        const away = host.run(`plantcast backup p1 --without-secrets --to sftp://root@127.0.0.1:${sshPort}/proc/nothing -o /root/c`);
+        assert.deepEqual([away.code, /was not copied; it is in \/root\/c/.test(away.err)], [1, true], away.err);
+    });
