@@ -340,10 +340,10 @@ TEST_WITH(test_the_rim_of_the_uncertain_runs_true, set_up, tear_down)
     }
 }
 
-/* Alarm colours are saturated; the field's colours never are. */
+/* Matches the colour of alarms of priority 3, a magenta. The colours of the field are far from it. */
 static bool is_alarm_color(const uint8_t *bgrx)
 {
-    return bgrx[2] > 150 && bgrx[2] - bgrx[0] > 120;
+    return bgrx[2] > 150 && bgrx[2] - bgrx[1] > 80 && bgrx[0] > 130;
 }
 
 static int count_alarm_colors(const struct frame *frame)

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Keeps the alarms that are not normal, as the server sends them, and selects one annunciated alarm per tag.
 
+// [background, text] by priority: colours that no colour map comes near (tests/web/alarm_colours.test.mjs)
+export const ALARM_COLOURS = [['#af0c4a', '#fff'], ['#ffff96', '#1b1300'], ['#b646aa', '#fff'], ['#1e00f5', '#fff']];
+
 const CALLS = ['unacknowledged', 'active', 'returned', 'latched', 'acknowledged']; // annunciated states
 
 export const calls = (state) => CALLS.includes(state);

@@ -57,14 +57,21 @@ static void draw_mark(struct pen *pen, const struct frame_marker *marker, bool b
 void overlay_ring(struct pen *pen, double x, double y, double radius, int priority, enum alarm_status word)
 {
     static const double colors[ALARM_PRIORITIES][3] = {
-        { 0.80, 0.05, 0.12 }, { 0.93, 0.42, 0.04 }, { 0.96, 0.74, 0.05 }, { 0.10, 0.60, 0.74 }
+        /* the colours of the page (clients/web/core/alarms.js), which no colour map comes near */
+        { 0xaf / 255.0, 0x0c / 255.0, 0x4a / 255.0 },
+        { 0xff / 255.0, 0xff / 255.0, 0x96 / 255.0 },
+        { 0xb6 / 255.0, 0x46 / 255.0, 0xaa / 255.0 },
+        { 0x1e / 255.0, 0x00 / 255.0, 0xf5 / 255.0 },
     };
     const double *color = colors[priority - 1];
     double wide = word == ALARM_ACKNOWLEDGED ? 0.22 : 0.42;
     cairo_new_path(pen->cairo);
     cairo_arc(pen->cairo, x, y, radius, 0, 2 * M_PI);
-    pen_ink(pen, 0.9);
-    cairo_set_line_width(pen->cairo, fmax(3.0, (wide + 0.17) * radius));
+    cairo_set_source_rgb(pen->cairo, 1, 1, 1); /* light rim, outside the dark one */
+    cairo_set_line_width(pen->cairo, fmax(4.6, (wide + 0.4) * radius));
+    cairo_stroke_preserve(pen->cairo);
+    pen_ink(pen, 1);
+    cairo_set_line_width(pen->cairo, fmax(3.0, (wide + 0.19) * radius));
     cairo_stroke_preserve(pen->cairo);
     cairo_set_source_rgb(pen->cairo, color[0], color[1], color[2]);
     cairo_set_line_width(pen->cairo, fmax(1.8, wide * radius));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Draws markers and labels sharply over the picture, with the camera of that picture.
-import { isGone } from '../../core/alarms.js';
+import { ALARM_COLOURS, isGone } from '../../core/alarms.js';
 import { projector } from '../../core/camera.js';
 import { thinOut } from '../../core/declutter.js';
 import { changeText, decimalsFor, numberText, unitText } from '../../core/format.js';
@@ -10,9 +10,8 @@ import { say } from '../../core/words.js';
 
 export const INK = '#1d252d';
 export const INK_2 = '#4d5964', ACCENT = '#2a5f8f';
-const ALARM_COLOURS = [['#c40d20', '#fff'], ['#e06a0a', '#1b0d00'], ['#f2bb0d', '#1b1300'], ['#1b93b5', '#00161d']]; // by priority
 export const LABEL_HEIGHT = 20;
-const PADDING = 6, NAMES_UP_TO = 24;
+const PADDING = 6, NAMES_UP_TO = 24, RING_RADIUS = 10;
 
 const SHAPES = {
     good: (c, r) => c.arc(0, 0, r, 0, 2 * Math.PI),
@@ -153,7 +152,7 @@ export class Overlay {
     // Returns the boxes of the HTML elements that lie over the picture.
     blocked() {
         const origin = this.viewport.element.getBoundingClientRect();
-        const boxes = [...this.viewport.element.querySelectorAll('.legend, .banner, .card, .simulated-note, .chip')]
+        const boxes = [...this.viewport.element.querySelectorAll('.legend, .banner, .card, .simulated-note, .chip, .note-pin')]
             .map((e) => e.getBoundingClientRect());
         const { unit } = this;
         const own = boxes.filter((box) => box.width > 0).map((box) => ({
@@ -241,14 +240,15 @@ export class Overlay {
         this.context.font = `${weight} 12.5px ${this.font}`;
     }
 
-    // Draws an alarm ring around a marker. Its colour shows the priority. Its form shows the state: thick and slowly blinking while
-    // unacknowledged, thin once acknowledged, hollow after the return to normal.
+    // Draws an alarm ring around a marker, with a dark and a light rim, so that it is seen on every colour. Its colour shows the priority.
+    // Its form shows the state: thick and slowly blinking while unacknowledged, thin once acknowledged, hollow after the return to normal.
     drawAlarm({ priority, state, waiting }) {
-        const c = this.context, blinks = waiting && document.body.classList.contains('alarm-blink');
-        const wide = !waiting || blinks ? 2 : 4, colour = ALARM_COLOURS[priority - 1][0], solid = [[INK, wide + 2], [colour, wide]];
-        for (const [style, width] of isGone(state) ? [[INK, wide + 4.5], [colour, wide + 3], ['#fff', 2.5]] : solid) {
+        const c = this.context, blinks = waiting && document.body.classList.contains('alarm-blink'), gone = isGone(state);
+        const wide = (!waiting || blinks ? 2.5 : 4.5) + (gone ? 2.5 : 0), colour = ALARM_COLOURS[priority - 1][0];
+        const strokes = [['#fff', wide + 4], [INK, wide + 1.8], [colour, wide], ...gone ? [['#fff', 2.5]] : []];
+        for (const [style, width] of strokes) {
             c.beginPath();
-            c.arc(0, 0, 10, 0, 2 * Math.PI);
+            c.arc(0, 0, RING_RADIUS, 0, 2 * Math.PI);
             c.lineWidth = width;
             c.strokeStyle = style;
             c.stroke();
@@ -323,9 +323,11 @@ export class Overlay {
         c.beginPath();
         c.moveTo(x1, y1);
         c.lineTo(x2, y2);
-        c.lineWidth = 1;
-        c.strokeStyle = 'rgb(29 37 45 / 0.7)';
-        c.stroke();
+        for (const [style, width] of [['rgb(255 255 255 / 0.85)', 3], [INK, 1.25]]) { // a dark line with a light case
+            c.lineWidth = width;
+            c.strokeStyle = style;
+            c.stroke();
+        }
     }
 
     drawPlate({ left, top }, { width, height }) {
@@ -349,12 +351,16 @@ export class Overlay {
             const flag = part[2] === null, hollow = flag && isGone(alarm.state);
             const [ground, ink] = flag ? ALARM_COLOURS[alarm.priority - 1] : [];
             if (hollow) {
-                c.strokeStyle = ground;
-                c.lineWidth = 2;
-                c.strokeRect(at - 2, y + 3.5, wide + 4, LABEL_HEIGHT - 7);
+                for (const [style, width] of [[INK, 3.5], [ground, 1.75]]) {
+                    c.strokeStyle = style;
+                    c.lineWidth = width;
+                    c.strokeRect(at - 2, y + 3.5, wide + 4, LABEL_HEIGHT - 7);
+                }
             } else if (flag) {
-                c.fillStyle = ground;
+                c.fillStyle = INK;
                 c.fillRect(at - 3, y + 2.5, wide + 6, LABEL_HEIGHT - 5);
+                c.fillStyle = ground;
+                c.fillRect(at - 2, y + 3.5, wide + 4, LABEL_HEIGHT - 7);
             }
             this.setFont(part[1]);
             c.fillStyle = hollow ? INK : part[2] ?? ink;
