@@ -8,7 +8,7 @@ const CLOSE = 26, STILL_CLOSE = 34;
 // MOST_GROUPS: maximum number of labels; the distances grow by the factor FARTHER until the number is met
 const MOST_GROUPS = 24, FARTHER = 1.25;
 const STEP_X = 24, STEP_Y = 15, STEPS = 60; // units: spacing of the grid of candidate positions around the centre of the rings
-const FARTHEST = 170; // units: largest distance of a label from its rings, unless it is the only label that remains
+const FARTHEST = 60; // units: largest distance of a label from the bounding box of its rings, unless it is the only label that remains
 const MOST_GROWTHS = 100;                   // maximum number of times that the distances grow; by then they exceed any picture
 
 const OFFSETS = []; // candidate positions [x, y, squared distance], nearest first
@@ -103,7 +103,11 @@ export function placeRings(all, { area, unit, taken, measure }) {
             return box.left >= area.left && box.top >= area.top && box.right <= area.right && box.bottom <= area.bottom &&
                 !taken.meets(grown, owner, over) && !out.some((other) => meets(grown, other.box));
         };
-        if (one.held >= 0 && one.held < SLOTS.length + OFFSETS.length && free(one.held, 0, 1))
+        const near = (slot) => {
+            const box = boxOf(one, slot, unit), right = Math.max(0, Math.max(box.left - one.x, one.x - box.right) - one.across);
+            return Math.hypot(right, Math.max(0, Math.max(box.top - one.y, one.y - box.bottom) - one.down)) <= FARTHEST * unit;
+        };
+        if (one.held >= 0 && one.held < SLOTS.length + OFFSETS.length && (alone || near(one.held)) && free(one.held, 0, 1))
             return one.held;
         for (const over of [0, 1]) {
             for (let slot = 0; slot < SLOTS.length; slot++) {
@@ -112,8 +116,8 @@ export function placeRings(all, { area, unit, taken, measure }) {
             }
         }
         for (const over of alone ? [1, 2] : [1]) { // as a last resort, the label of a single ring may cover that ring
-            for (let n = 0; n < OFFSETS.length && (alone || OFFSETS[n][2] <= FARTHEST ** 2); n++) {
-                if (free(SLOTS.length + n, CLEARANCE * unit, over))
+            for (let n = 0; n < OFFSETS.length; n++) {
+                if ((alone || near(SLOTS.length + n)) && free(SLOTS.length + n, CLEARANCE * unit, over))
                     return SLOTS.length + n;
             }
         }

@@ -12,8 +12,8 @@
 static const double CLOSE = 26, STILL_CLOSE = 34;
 static const double GROWTH = 1.25; /* factor by which CLOSE and STILL_CLOSE grow, repeatedly, until at most MAX_GROUPS labels remain */
 enum { MAX_GROUPS = 24 };
-/* largest distance of a label from its alarm rings, in units; does not apply if only one label remains */
-static const double MAX_DISTANCE = 170;
+/* largest distance of a label from the bounding box of its alarm rings, in units; does not apply if only one label remains */
+static const double MAX_DISTANCE = 60;
 /* Grid of further label positions, tried nearest first: STEP_X, STEP_Y: its spacing in units; STEPS: its steps to each side of the centre
    of the rings. */
 enum { STEP_X = 24, STEP_Y = 15, STEPS = 60, SIDE = 2 * STEPS + 1, OFFSETS = SIDE * SIDE, NOWHERE = -2, FORCED = 1000000 };
@@ -186,20 +186,30 @@ static bool is_free(const struct rings *rings, const struct ring_group *group, i
     return true;
 }
 
+/* Returns whether the label of a group of alarm rings is near its rings in this slot. */
+static bool is_near(const struct rings *rings, const struct ring_group *group, int slot)
+{
+    struct label_box box = box_at(rings, group, slot);
+    double right = fmax(0, fmax(box.x - group->item.x, group->item.x - box.x - box.width) - group->across);
+    double down = fmax(0, fmax(box.y - group->item.y, group->item.y - box.y - box.height) - group->down);
+    return hypot(right, down) <= MAX_DISTANCE * rings->layout->area->unit;
+}
+
 static int find_slot(const struct rings *rings, const struct ring_group *group)
 {
     int held = group->item.held;
     bool alone = rings->group_count == 1;
     double clearance = LABEL_CLEARANCE * rings->layout->area->unit;
-    if (held >= 0 && held < LABEL_SLOTS + OFFSETS && is_free(rings, group, held, 0, OVER_MARKS))
+    bool can_hold = held >= 0 && held < LABEL_SLOTS + OFFSETS && (alone || is_near(rings, group, held));
+    if (can_hold && is_free(rings, group, held, 0, OVER_MARKS))
         return held;
     for (int i = 0; i < 2 * LABEL_SLOTS; i++)
         if (is_free(rings, group, i % LABEL_SLOTS, clearance, i < LABEL_SLOTS ? OVER_NOTHING : OVER_MARKS))
             return i % LABEL_SLOTS;
     /* OVER_RINGS: as a last resort the label may cover the alarm rings of its own group */
     for (int over = OVER_MARKS; over <= (alone ? OVER_RINGS : OVER_MARKS); over++)
-        for (int i = 0; i < OFFSETS && (alone || rings->offsets[i].squared <= MAX_DISTANCE * MAX_DISTANCE); i++)
-            if (is_free(rings, group, LABEL_SLOTS + i, clearance, (enum label_over)over))
+        for (int i = 0; i < OFFSETS; i++)
+            if ((alone || is_near(rings, group, LABEL_SLOTS + i)) && is_free(rings, group, LABEL_SLOTS + i, clearance, (enum label_over)over))
                 return LABEL_SLOTS + i;
     return alone ? FORCED : NOWHERE;
 }

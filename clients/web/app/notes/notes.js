@@ -119,7 +119,7 @@ export class Notes {
     pinOf(note) {
         const pin = make('button', { type: 'button', class: 'note-pin', title: this.aboutOf(note), onclick: () => this.lookAt(note) },
             make('span', {}, note.text));
-        this.viewport.element.append(pin);
+        byId('overlay').before(pin); // below alarm rings and their labels
         return pin;
     }
 
