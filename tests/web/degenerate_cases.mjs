@@ -218,6 +218,7 @@ add('wall', 'wallFit', [{ inches: 55, metres: 3 }, HD, { width: 1900, height: 10
 add('wall', 'brightness', [{ from_min: 60, to_min: 300, percent: 40 }, 100, false], ENDS);
 add('wall', 'burnShift', [1e15], ENDS);
 add('wall', 'legendsLie', [640, 360, true], ENDS);
+add('wire', 'depthGridOf', [[2, 1, 2, 0]], { call: (bytes) => wire.depthGridOf(Uint8Array.from(bytes).buffer)?.more });
 add('wire', 'pictureSize', [640, 360]);
 
 // Cases for the page's own modules: charts and curves, which draw the geometry that they compute.

@@ -174,11 +174,14 @@ test('latency: from the input to the picture that shows it, once; the median of 
     latency.sent(1, 100);
     latency.sent(2, 116);
     latency.sent(3, 132);
+    assert.equal(latency.behindMs(150), 50);
     latency.drawn(2, 160);
+    assert.equal(latency.behindMs(160), 28);
     latency.drawn(2, 500);
     assert.equal(latency.median(500), 44);
     latency.drawn(3, 150);
     assert.equal(latency.inputs.size, 0);
+    assert.equal(latency.behindMs(9000), 0);
 });
 
 test('the address carries the view there and back', () => {

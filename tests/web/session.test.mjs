@@ -473,6 +473,32 @@ test('a frame that the server gave up is passed over in silence', () => {
     assert.equal(events.at(-1)[0], 'frame');
 });
 
+test('a frame has the depth grids that it refers to, both halves or none', () => {
+    const { session, socket, events } = greeted(), frame = vectorBytes('frame/jpeg-key.bin'), withDepth = frame.slice();
+    withDepth[2] |= 128;
+    const grid = (flags) => Uint8Array.from([2, 1, flags, 0, 9]).buffer, newest = () => events.at(-1)[1].depth;
+    socket.sayBytes(frame);
+    assert.equal(newest(), null);
+    socket.sayBytes(grid(2));
+    socket.sayBytes(withDepth);
+    assert.equal(newest(), null, 'the other half is missing');
+    socket.sayBytes(grid(0));
+    socket.sayBytes(withDepth);
+    assert.equal(newest().messages.length, 2);
+    socket.sayBytes(grid(0));
+    socket.sayBytes(withDepth);
+    const kept = newest();
+    assert.equal(kept.messages.length, 1);
+    socket.sayBytes(withDepth);
+    assert.equal(newest(), kept, 'the grid of an earlier picture');
+    socket.sayBytes(frame);
+    assert.equal(newest(), null);
+    socket.sayBytes(new ArrayBuffer(0));
+    assert.equal(events.at(-1)[0], 'ignored');
+    session.hello([]);
+    assert.equal(session.depth, null, 'of another connection');
+});
+
 test('following another: its parameters and camera are shown, until a hand moves', () => {
     const { session, socket, clock } = greeted();
     session.follow(12);

@@ -78,7 +78,7 @@ listenToInput(byId('viewport'), modules);
 
 let pictures = 0;
 viewport.onTick = (now) => modules.there('cameraController')?.tick(now);
-viewport.onDrawn = (newPicture) => {
+viewport.onDrawn = (newPicture, isWarped) => {
     if (newPicture) {
         byId('waiting').hidden = true;
         byId('viewport').classList.toggle('split', Boolean(session.shown.split));
@@ -87,7 +87,7 @@ viewport.onDrawn = (newPicture) => {
     }
     if (newPicture && (session.picture.past || status.past))
         status.show(); // the status bar must change together with the picture
-    if (newPicture || overlay.dirty) {
+    if (newPicture || isWarped || overlay.dirty) {
         for (const name of ['card', 'place', 'measure', 'clipGizmo', 'notes'])
             modules.there(name)?.show();
         overlay.draw();
@@ -125,6 +125,8 @@ session.on('params', async () => {
 let moved = false;
 session.on('camera', () => {
     moved = true;
+    if (session.reprojects)
+        modules.prepare('warp');
     saveAddress();
     viewport.invalidate();
 });

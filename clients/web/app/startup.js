@@ -57,6 +57,7 @@ export const connection = new Connection({ url: streamUrl, open: (url, protocol)
 connection.onUnopened = () => import('../core/blocked.js').then(({ explain }) => explain(connection), () => {});
 const wanted = { ...address, params: { ...address.params, backdrop } };
 export const session = new Session({ connection, now: clock.now, wanted, codecs: codecs() });
+session.wantsDepth = !query.has('wall') && 'WebGL2RenderingContext' in globalThis;
 session.token = stored('token');
 session.leader = Number(new URLSearchParams(location.hash.slice(1)).get('follow')) || null;
 // After a reload, followers find this session again by its secret. The secret is stored only from one page to the next, so that two tabs

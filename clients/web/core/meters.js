@@ -41,6 +41,12 @@ export class LatencyMeter {
         }
     }
 
+    // Returns by how many milliseconds the newest picture's camera is older than the newest input.
+    behindMs(now) {
+        const [oldest = now] = this.inputs.values();
+        return now - oldest;
+    }
+
     clear() {
         this.inputs.clear();
     }

@@ -4,7 +4,7 @@ import { besideLegend, cameraMessage, cameraOfMessage, home, same, valid } from 
 import { quantityText } from './format.js';
 import { LatencyMeter, RateMeter } from './meters.js';
 import { Model } from './model.js';
-import { decodeFrame, decodeMessage, isGivenUp, WireError } from './wire.js';
+import { decodeFrame, decodeMessage, depthGridOf, isGivenUp, WireError } from './wire.js';
 import { say } from './words.js';
 
 export const PARAMS = [
@@ -64,6 +64,8 @@ export class Session {
         this.leader = null;      // id of the session to follow, also after a reconnect; null: none
         this.lent = null;        // camera of the followed session that this one has taken over; null: none
         this.followers = { count: 0, sessions: [] }; // sessions that follow this one
+        this.wantsDepth = false; // true: asks for depth grids, with which a picture can be shown from another camera
+        this.depth = null;       // newest depth grids: { messages, more (true: one is missing) }
         this.forget();
         // the instant shown, as the server reports it; atUs null: now; fromUs null: no history is recorded
         this.time = { ...NOW, ...wanted.time };
@@ -75,8 +77,11 @@ export class Session {
         connection.onText = (text) => (this.unheard ? this.unheard.push([this.now(), text]) : this.hear(text));
         connection.onBytes = (bytes) => this.guard(() => {
             this.freshen();
-            if (!isGivenUp(bytes))
-                this.emit('frame', decodeFrame(bytes));
+            const grid = depthGridOf(bytes);
+            if (grid)
+                this.depth = { ...grid, messages: [...(this.depth?.more ? this.depth.messages : []), bytes] };
+            else if (!isGivenUp(bytes))
+                this.receive(decodeFrame(bytes));
         });
     }
 
@@ -108,6 +113,12 @@ export class Session {
         } finally {
             this.now = now;
         }
+    }
+
+    // Adds the depth grids that the frame refers to, and passes the frame on.
+    receive(frame) {
+        frame.depth = frame.hasDepth && !this.depth?.more ? this.depth : null;
+        this.emit('frame', frame);
     }
 
     hear(text) {
@@ -156,7 +167,9 @@ export class Session {
             // marks the picture as one of the previous connection, whose sequence numbers mean nothing to the new one
             this.picture.paramsSeq = -1;
         this.greetedCamera = parts.includes('camera') ? this.camera : null;
-        const message = { type: 'hello', ...this.size, ...this.proofs(), codecs: this.codecs };
+        const message = { type: 'hello', ...this.size, ...this.proofs(), codecs: this.codecs,
+            ...(this.wantsDepth ? { depth: true } : {}) };
+        this.depth = null;
         if (this.time.atUs !== null)
             Object.assign(message, { at_us: this.time.atUs, speed: this.time.speed });
         if (this.greetedCamera)
@@ -418,6 +431,7 @@ const HANDLERS = {
         this.anew = false;
         this.role = message.role ?? null;
         this.imports = message.imports === true;
+        this.reprojects = message.reprojection === true;
         this.signs = message.signing_key;
         this.codec = message.codec;
         this.connection.settle();

@@ -8,7 +8,8 @@ const MAX_PIXELS = 16 * 1024 * 1024;
 const MIN_SIDE_PX = 16;
 const NO_AGE = 0xffffffff;
 export const CODECS = { 1: 'jpeg', 2: 'png', 3: 'h264' };
-const FLAG_KEY = 1, FLAG_STILL = 2, FLAG_NO_LIVE_DATA = 4, FLAG_MORE = 8, FLAG_DATA = 16, FLAG_PAST = 32;
+const FLAG_KEY = 1, FLAG_STILL = 2, FLAG_NO_LIVE_DATA = 4, FLAG_MORE = 8, FLAG_DATA = 16, FLAG_PAST = 32, FLAG_DEPTH = 128;
+const DEPTH_GRID = 2, FLAG_OTHER_HALF = 2; // type and flag of a depth grid
 const MAX_PAYLOAD_BYTES = 64 * 1024 * 1024;
 
 class WireError extends Error {}
@@ -55,6 +56,8 @@ export function decodeFrame(bytes) {
         past: (flags & FLAG_PAST) !== 0,
         // flag: another frame with a further rectangle of the same picture follows
         more: (flags & FLAG_MORE) !== 0,
+        // flag: the newest depth grids are of this picture
+        hasDepth: (flags & FLAG_DEPTH) !== 0,
         seq: u32(8), cameraSeq: u32(12), paramsSeq: u32(16),
         oldestAgeMs: u32(20) === NO_AGE ? null : u32(20),
         dataTimeUs: time(view, 24), sentTimeUs: time(view, 32),
@@ -81,6 +84,12 @@ export function isGivenUp(bytes) {
     const data = bytes instanceof Uint8Array ? bytes : new Uint8Array(bytes);
     const there = data.length - FRAME_HEADER_BYTES;
     return there >= 0 && new DataView(data.buffer, data.byteOffset, data.length).getUint32(4, true) > there;
+}
+
+// Returns null if the message is not a depth grid, else { more }: the grid of the other half follows. core/depth_grid.js parses the rest.
+export function depthGridOf(bytes) {
+    const [type, , flags] = new Uint8Array(bytes, 0, Math.min(3, bytes.byteLength));
+    return type === DEPTH_GRID ? { more: (flags & FLAG_OTHER_HALF) !== 0 } : null;
 }
 
 // Returns true if the frame covers the whole picture, so that nothing of the previous one remains.

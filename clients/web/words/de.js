@@ -164,6 +164,7 @@ rate: {count}/s
 still: ruht
 latency: Latenz
 ms: {n} ms
+behind: {n} s zurück
 config: Konfiguration
 picture: Bild
 retry: Jetzt versuchen

@@ -164,6 +164,7 @@ rate: {count}/s
 still: idle
 latency: Latency
 ms: {n} ms
+behind: {n} s behind
 config: Configuration
 picture: Picture
 retry: Try now

@@ -162,6 +162,7 @@ rate: {count}/s
 still: 대기
 latency: 지연
 ms: {n} ms
+behind: {n}초 늦음
 config: 구성
 picture: 화면
 retry: 지금 시도

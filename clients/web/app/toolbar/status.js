@@ -6,6 +6,8 @@ import { say } from '../../core/words.js';
 import { clock } from '../common/clock.js';
 import { byId, make, setText, setVariable } from '../common/dom.js';
 
+const BEHIND_MS = 500; // from here on, the status bar says by how much the picture is older than the camera
+
 export class Status {
     // onFreshness(isFresh) is called when it changes whether the server still sends messages, so that shown values are current.
     constructor({ session, onFreshness }) {
@@ -89,7 +91,12 @@ export class Status {
         const quiet = say(['live', 'simulated', 'partial'].includes(kind) ? 'status.still' : 'none');
         setText(byId('rate'), rate > 0 ? say('status.rate', { count: Math.round(rate) }) : quiet);
         const latency = session.latency.median(now);
-        setText(byId('latency'), latency === null ? '–' : say('status.ms', { n: Math.round(latency) }));
+        const behind = session.latency.behindMs(now);
+        byId('latency').parentElement.classList.toggle('late', behind > BEHIND_MS);
+        if (behind > BEHIND_MS)
+            setText(byId('latency'), say('status.behind', { n: (behind / 1000).toFixed(1) }));
+        else
+            setText(byId('latency'), latency === null ? '–' : say('status.ms', { n: Math.round(latency) }));
         const { picture } = session;
         if (picture)
             setText(byId('size'), `${picture.fullWidth}×${picture.fullHeight} ${picture.codec.toUpperCase()}`);

@@ -14,12 +14,14 @@ function devicePixels(cssPx, exact) {
 const sizeOf = (width, height) => ({ ...pictureSize(width, height), pixel_ratio: Math.min(8, Math.max(0.25, window.devicePixelRatio)) });
 
 export class Viewport {
-    // onTick(now) is called once per animation frame, before drawing; onDrawn(frame) after drawing.
+    // onTick(now) is called once per animation frame, before drawing; onDrawn(isNew, isWarped) after drawing. isNew: a new picture was
+    // drawn; isWarped: what is seen has changed without one (warp.js).
     constructor({ element, canvas, session, decoding }) {
         Object.assign(this, { element, canvas, session });
         this.context = canvas.getContext('2d', { alpha: false });
         this.decoded = []; // decoded frames that are not drawn yet: whole pictures, and rectangles of an incomplete one
         this.scheduled = false;
+        this.warp = null; // a Warp (warp.js), once it is loaded
         this.onTick = this.onDrawn = () => {};
         this.slot = new DecodeQueue({
             decode: (frame) => decoding.decode(frame),
@@ -125,6 +127,6 @@ export class Viewport {
         const { picture, shown } = this.session;
         if (picture)
             picture.shownWidth = shown.split ? picture.fullWidth : (picture.fullHeight * this.width) / this.height;
-        this.onDrawn(drawn.length > 0);
+        this.onDrawn(drawn.length > 0, this.warp?.draw() ?? false);
     }
 }

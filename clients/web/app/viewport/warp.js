@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Shows the newest picture from the present camera until the server's picture of that camera arrives: draws the picture by WebGL 2 on a
+// mesh over its depth grid, once per animation frame in which the camera has moved. Places that the picture does not show are hatched.
+// Loaded when the camera first moves.
+import { same } from '../../core/camera.js';
+import { decodeGrid } from '../../core/depth_grid.js';
+import { depthAt, FLOATS, isNear, meshOf, moveBy, warpMatrix } from '../../core/warp_mesh.js';
+import { make } from '../common/dom.js';
+
+const KEPT = 3; // number of depth grids that may be decoded before their pictures are
+const NEAREST = 0.05; // distance before which nothing is drawn, as a share of the nearest possible depth
+// If updates come later than SLOW_MS after each other, as without a GPU, the warped picture is drawn with fewer pixels.
+const SLOW_MS = 26, SLOW_COUNT = 8, PAUSE_MS = 150, LEAST_SCALE = 0.5;
+
+const MESH = `#version 300 es
+in vec4 vertex;
+uniform mat4 warp;
+out vec2 at;
+flat out float kind;
+void main() {
+    at = vertex.xy;
+    kind = vertex.w;
+    gl_Position = warp * vec4(vertex.xyz, 1.0);
+}`;
+const PICTURE = `#version 300 es
+precision highp float;
+in vec2 at;
+flat in float kind;
+uniform sampler2D picture, masks;
+uniform vec2 origin, size;
+uniform float bit;
+out vec4 colour;
+void main() {
+    if (kind > 0.5 && (texelFetch(masks, ivec2(at / bit), 0).r > 0.5) != (kind < 1.5))
+        discard;
+    colour = texture(picture, (origin + at) / size);
+}`;
+const BEHIND = `#version 300 es
+void main() {
+    gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 1.0, 1.0);
+}`;
+const HATCH = `#version 300 es
+precision highp float;
+uniform vec2 greys;
+uniform float step;
+out vec4 colour;
+void main() {
+    colour = vec4(vec3(mod(gl_FragCoord.x - gl_FragCoord.y, 2.0 * step) < step ? greys.x : greys.y), 1.0);
+}`;
+const GREYS = { light: [0.8, 0.85], dark: [0.21, 0.26] }, HATCH_PX = 4;
+
+// Returns { program, at(name) }; at() returns the location of a uniform.
+function programOf(gl, ...sources) {
+    const program = gl.createProgram();
+    [gl.VERTEX_SHADER, gl.FRAGMENT_SHADER].forEach((type, i) => {
+        const shader = gl.createShader(type);
+        gl.shaderSource(shader, sources[i]);
+        gl.compileShader(shader);
+        gl.attachShader(program, shader);
+    });
+    gl.bindAttribLocation(program, 0, 'vertex');
+    gl.linkProgram(program);
+    if (!gl.getProgramParameter(program, gl.LINK_STATUS))
+        throw new Error(gl.getProgramInfoLog(program));
+    return { program, at: (name) => gl.getUniformLocation(program, name) };
+}
+
+export class Warp {
+    constructor({ session, viewport, modules }) {
+        Object.assign(this, { session, viewport, modules, updates: 0, scale: 1, intervals: [], last: 0 });
+        this.grids = [];    // decoded depth grids: { depth, parts: [{ grid, mesh }] or null }, newest last
+        this.source = null; // picture that WebGL draws: { picture, camera, parts, isLoaded }
+        this.canvas = make('canvas', { id: 'warp', 'aria-hidden': 'true' });
+        this.canvas.style.display = 'none';
+        if (!this.open())
+            return;
+        viewport.canvas.after(this.canvas);
+        viewport.warp = this;
+        session.on('frame', (frame) => this.prepare(frame));
+        session.on('hello', () => this.forget());
+        if (session.picture)
+            this.prepare(session.picture);
+    }
+
+    // Prepares WebGL. Returns false if the browser does not have it; pictures are then shown unwarped.
+    open() {
+        const gl = this.canvas.getContext('webgl2', { alpha: false, antialias: false, powerPreference: 'high-performance' });
+        if (!gl)
+            return false;
+        try {
+            this.mesh = programOf(gl, MESH, PICTURE);
+            this.hatch = programOf(gl, BEHIND, HATCH);
+        } catch (error) {
+            console.warn(`pictures are not warped: ${error.message}`);
+            return false;
+        }
+        this.canvas.addEventListener('webglcontextlost', () => this.giveUp());
+        gl.enable(gl.DEPTH_TEST);
+        gl.enable(gl.CULL_FACE);
+        gl.depthFunc(gl.LEQUAL);
+        gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
+        gl.enableVertexAttribArray(0);
+        this.gl = gl;
+        this.texture = this.newTexture();
+        return true;
+    }
+
+    newTexture() {
+        const { gl } = this, texture = gl.createTexture();
+        gl.bindTexture(gl.TEXTURE_2D, texture);
+        // NEAREST, because users would read a mixture of two colours as the value between them
+        for (const [name, value] of [[gl.TEXTURE_MIN_FILTER, gl.NEAREST], [gl.TEXTURE_MAG_FILTER, gl.NEAREST],
+            [gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE], [gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE]])
+            gl.texParameteri(gl.TEXTURE_2D, name, value);
+        return texture;
+    }
+
+    // Shows pictures unwarped from now on, because WebGL is lost.
+    giveUp() {
+        this.hide();
+        this.viewport.warp = null;
+        this.canvas.remove();
+        this.viewport.invalidate();
+    }
+
+    forget() {
+        this.grids = [];
+    }
+
+    // Decodes the depth grids of a frame, while the browser decodes its picture.
+    async prepare({ depth, camera, fullWidth, fullHeight }) {
+        if (!depth || this.grids.some((one) => one.depth === depth))
+            return;
+        const entry = { depth, parts: null };
+        this.grids = [...this.grids.slice(1 - KEPT), entry];
+        try {
+            const grids = await Promise.all(depth.messages.map((bytes) => decodeGrid(new Uint8Array(bytes))));
+            const fits = (grid) => grid.fullWidth === fullWidth && grid.fullHeight === fullHeight && grid.parallel === (camera.fov === 0);
+            if (!grids.every(fits))
+                throw new Error('depth grid: of another picture');
+            entry.parts = grids.map((grid) => ({ grid, mesh: meshOf(grid, camera) }));
+            this.viewport.invalidate();
+        } catch (error) {
+            console.warn(error.message);
+            entry.fails = true;
+        }
+    }
+
+    // Returns true if the picture is to be shown from the present camera, which is not its own.
+    get isWanted() {
+        const { session, source, modules } = this, { picture, camera } = session;
+        const isAhead = session.cameraNews || picture.cameraSeq !== session.cameraSeq;
+        return source !== null && isAhead && session.leader === null && !session.lent && !modules.there('cameraController')?.fly
+            && Math.abs(picture.shownWidth - picture.fullWidth) <= 2 && isNear(source.camera, camera);
+    }
+
+    // Draws the newest picture from the present camera, or shows the picture itself. Called once per animation frame, after new pictures
+    // were drawn. Returns true if what is seen has changed.
+    draw() {
+        const { session } = this, { picture, camera } = session;
+        if (!picture)
+            return false;
+        picture.ownCamera ??= picture.camera;
+        const known = this.grids.find(({ depth }) => depth === picture.depth);
+        if (!picture.depth || known?.fails)
+            this.source = null;
+        else if (known?.parts && this.source?.picture !== picture)
+            this.source = { picture, camera: picture.ownCamera, parts: known.parts, isLoaded: false };
+        if (!this.isWanted || !this.load())
+            return this.hide();
+        if (this.isShown && same(camera, picture.camera))
+            return false;
+        this.paint(camera);
+        picture.camera = camera;
+        picture.moved = (x, y) => this.moved(x, y);
+        this.updates++;
+        return true;
+    }
+
+    hide() {
+        const { picture } = this.session;
+        if (picture?.ownCamera)
+            Object.assign(picture, { camera: picture.ownCamera, moved: null });
+        const was = this.isShown;
+        this.isShown = false;
+        this.canvas.style.display = 'none';
+        return Boolean(was);
+    }
+
+    // Hands the picture and its mesh to WebGL. Returns false if the picture is no longer on the canvas.
+    load() {
+        const { gl, source, session, viewport } = this;
+        if (source.isLoaded)
+            return true;
+        if (source.picture !== session.picture)
+            return false;
+        gl.bindTexture(gl.TEXTURE_2D, this.texture);
+        gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA, gl.RGBA, gl.UNSIGNED_BYTE, viewport.canvas);
+        for (const part of source.parts)
+            this.loadPart(part);
+        source.isLoaded = true;
+        return true;
+    }
+
+    // Buffers and mask belong to a set of grids, which several pictures may share.
+    loadPart(part) {
+        const { gl } = this, { grid, mesh } = part;
+        if (part.buffers)
+            return;
+        this.release(this.loaded, this.source.parts);
+        this.loaded = this.source.parts;
+        part.masks = this.newTexture();
+        const { masks, maskSide, columns, rows } = grid;
+        gl.texImage2D(gl.TEXTURE_2D, 0, gl.R8, columns * maskSide, rows * maskSide, 0, gl.RED, gl.UNSIGNED_BYTE, masks);
+        part.buffers = [[gl.ARRAY_BUFFER, mesh.vertices], [gl.ELEMENT_ARRAY_BUFFER, mesh.indices]].map(([target, data]) => {
+            const buffer = gl.createBuffer();
+            gl.bindBuffer(target, buffer);
+            gl.bufferData(target, data, gl.STATIC_DRAW);
+            return buffer;
+        });
+    }
+
+    release(parts, except) {
+        if (parts === except)
+            return;
+        for (const part of parts ?? []) {
+            part.buffers?.forEach((buffer) => this.gl.deleteBuffer(buffer));
+            this.gl.deleteTexture(part.masks);
+            part.buffers = null;
+        }
+    }
+
+    // Chooses the size of the drawing: that of the picture, or less if updates are slow.
+    fit({ fullWidth, fullHeight }) {
+        const now = performance.now(), interval = now - this.last, { canvas } = this;
+        this.last = now;
+        if (interval < PAUSE_MS)
+            this.intervals.push(interval);
+        if (this.intervals.length >= SLOW_COUNT) {
+            const middle = this.intervals.sort((a, b) => a - b)[SLOW_COUNT >> 1];
+            this.intervals = [];
+            if (middle > SLOW_MS)
+                this.scale = Math.max(LEAST_SCALE, this.scale / Math.SQRT2);
+        }
+        const [width, height] = [fullWidth, fullHeight].map((px) => Math.round(px * this.scale));
+        if (canvas.width !== width || canvas.height !== height)
+            Object.assign(canvas, { width, height });
+    }
+
+    paint(camera) {
+        const { gl, canvas, source, mesh } = this, { picture, parts } = source;
+        this.fit(picture);
+        gl.viewport(0, 0, canvas.width, canvas.height);
+        gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+        gl.useProgram(mesh.program);
+        gl.bindTexture(gl.TEXTURE_2D, this.texture);
+        gl.activeTexture(gl.TEXTURE1);
+        gl.uniform1i(mesh.at('masks'), 1);
+        gl.uniform2f(mesh.at('size'), picture.fullWidth, picture.fullHeight);
+        for (const part of parts)
+            this.paintPart(part, camera);
+        gl.activeTexture(gl.TEXTURE0);
+        gl.viewport(0, 0, canvas.width, canvas.height);
+        gl.useProgram(this.hatch.program);
+        gl.uniform2fv(this.hatch.at('greys'), GREYS[this.session.shown.backdrop] ?? GREYS.light);
+        gl.uniform1f(this.hatch.at('step'), HATCH_PX * window.devicePixelRatio * canvas.height / this.session.size.height);
+        gl.drawArrays(gl.TRIANGLES, 0, 3);
+        this.isShown = true;
+        canvas.style.display = '';
+    }
+
+    paintPart(part, camera) {
+        const { gl, canvas, source, mesh } = this, { grid, buffers } = part, { fullWidth, fullHeight } = source.picture;
+        const across = canvas.width / fullWidth, up = canvas.height / fullHeight;
+        part.matrix = warpMatrix(grid, source.camera, camera, NEAREST / (grid.base + grid.levels * grid.unit));
+        gl.viewport(grid.x * across, (fullHeight - grid.y - grid.height) * up, grid.width * across, grid.height * up);
+        gl.uniformMatrix4fv(mesh.at('warp'), false, part.matrix);
+        gl.uniform2f(mesh.at('origin'), grid.x, grid.y);
+        gl.uniform1f(mesh.at('bit'), grid.cellPx / grid.maskSide);
+        gl.bindTexture(gl.TEXTURE_2D, part.masks);
+        gl.bindBuffer(gl.ARRAY_BUFFER, buffers[0]);
+        gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, buffers[1]);
+        gl.vertexAttribPointer(0, FLOATS, gl.FLOAT, false, 0, 0);
+        gl.drawElements(gl.TRIANGLES, part.mesh.indices.length, gl.UNSIGNED_INT, 0);
+    }
+
+    // Returns where a pixel of the picture appears now, [x, y]; null: nowhere.
+    moved(x, y) {
+        const part = this.source?.parts.find(({ grid }) => x >= grid.x && x < grid.x + grid.width);
+        const depth = part && depthAt(part.grid, x - part.grid.x, y - part.grid.y);
+        const at = part?.matrix && depth !== null ? moveBy(part.matrix, part.grid, [x - part.grid.x, y - part.grid.y, depth]) : null;
+        return at && [at[0] + part.grid.x, at[1] + part.grid.y];
+    }
+}

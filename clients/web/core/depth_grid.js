@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Parses depth grids (protocol/PROTOCOL.md): the coarse depth of a picture, from which warp_mesh.js builds a mesh.
+
+const HEADER_BYTES = 44, ENCODING = 1, FLAG_PARALLEL = 1, FLAG_MORE = 2, MAX_LEVELS = 4095, LONG = 255;
+const MAX_CELLS = 1 << 20, MAX_MASK_PX = 1 << 24;
+
+function need(condition, what) {
+    if (!condition)
+        throw new Error(`depth grid: ${what}`);
+}
+
+// Returns the header of a depth grid, with its compressed payload. Throws if a field has an impossible value.
+export function readHeader(data) {
+    need(data.length > HEADER_BYTES, `${data.length} bytes`);
+    const view = new DataView(data.buffer, data.byteOffset, data.length);
+    const u16 = (o) => view.getUint16(o, true), u32 = (o) => view.getUint32(o, true);
+    const grid = {
+        parallel: (u16(2) & FLAG_PARALLEL) !== 0, more: (u16(2) & FLAG_MORE) !== 0, seq: u32(8),
+        x: u16(12), y: u16(14), width: u16(16), height: u16(18), fullWidth: u16(20), fullHeight: u16(22), columns: u16(24), rows: u16(26),
+        cellPx: data[28], maskSide: data[29], levels: u16(30), base: view.getFloat32(32, true), unit: view.getFloat32(36, true),
+        dataBytes: u32(40), payload: data.subarray(HEADER_BYTES),
+    };
+    const { width, height, columns, rows, cellPx, maskSide, base, unit } = grid;
+    need(data[0] === 2 && data[1] === ENCODING, `encoding ${data[1]} is unknown`);
+    need(u32(4) === grid.payload.length, `payload of ${u32(4)} bytes stated, ${grid.payload.length} there`);
+    need(cellPx > 0 && maskSide > 0 && cellPx % maskSide === 0, `cells of ${cellPx} px with masks of ${maskSide}`);
+    need(width > 0 && height > 0 && grid.x + width <= grid.fullWidth && grid.y + height <= grid.fullHeight, `part of ${width}x${height}`);
+    need(columns === Math.ceil(width / cellPx) && rows === Math.ceil(height / cellPx), `${columns}x${rows} cells`);
+    need(columns * rows <= MAX_CELLS && columns * rows * maskSide * maskSide <= MAX_MASK_PX, `masks of ${maskSide}`);
+    need(grid.levels >= 1 && grid.levels <= MAX_LEVELS, `${grid.levels} levels`);
+    // Codes grow towards the eye: 1/z grows in a perspective picture, z shrinks in an orthographic one.
+    const grows = grid.parallel ? unit < 0 : unit > 0 && base > 0;
+    need(Number.isFinite(base) && Number.isFinite(unit) && grows, `depths from ${base} by ${unit}`);
+    need(Number.isFinite(base + grid.levels * unit), 'depths beyond all numbers');
+    return grid;
+}
+
+// Reads the symbols of near and far codes.
+class Symbols {
+    constructor(bytes, at, levels) {
+        Object.assign(this, { bytes, at, levels });
+    }
+
+    next(prediction) {
+        const symbol = this.bytes[this.at++];
+        let code = prediction + (symbol & 1 ? -(symbol + 1) / 2 : symbol / 2);
+        if (symbol === LONG) {
+            code = this.bytes[this.at] | (this.bytes[this.at + 1] << 8);
+            this.at += 2;
+        }
+        need(code >= 0 && code <= this.levels, `code ${code}`); // undefined bytes beyond the end make the code NaN
+        return code;
+    }
+}
+
+// Returns `near`, `far` (-1: the cell is not divided) and the position behind them.
+function readCodes({ columns, rows, levels }, bytes) {
+    const count = columns * rows, near = new Int16Array(count), far = new Int16Array(count).fill(-1), bits = Math.ceil(count / 8);
+    const symbols = new Symbols(bytes, bits, levels), divided = (i) => bytes[i >> 3] & (1 << (i & 7));
+    for (let y = 0, i = 0; y < rows; y++)
+        for (let x = 0; x < columns; x++, i++) {
+            const left = x > 0 ? near[i - 1] : 0, up = y > 0 ? near[i - columns] : 0, corner = x > 0 && y > 0 ? near[i - columns - 1] : 0;
+            near[i] = symbols.next(left && up && corner ? Math.max(1, Math.min(levels, left + up - corner)) : left || up);
+        }
+    for (let i = 0; i < count; i++)
+        if (divided(i)) {
+            far[i] = symbols.next(i % columns === 0 ? 0 : far[i - 1] >= 0 ? far[i - 1] : near[i - 1]);
+            need(far[i] < near[i], `a near code of ${near[i]} behind ${far[i]}`);
+        }
+    return { near, far, at: symbols.at };
+}
+
+// Returns one byte for each mask bit of the whole grid: 255 where the picture is near.
+function readMasks({ columns, rows, maskSide }, bytes, far, start) {
+    const masks = new Uint8Array(columns * rows * maskSide * maskSide), each = Math.ceil(maskSide * maskSide / 8);
+    let at = start;
+    for (let i = 0; i < far.length; i++) {
+        if (far[i] < 0)
+            continue;
+        const corner = (Math.floor(i / columns) * columns * maskSide + i % columns) * maskSide;
+        for (let bit = 0; bit < maskSide * maskSide; bit++)
+            if (bytes[at + (bit >> 3)] & (1 << (bit & 7)))
+                masks[corner + Math.floor(bit / maskSide) * columns * maskSide + bit % maskSide] = 255;
+        at += each;
+    }
+    need(at === bytes.length, `${bytes.length} bytes where ${at} are needed`);
+    return masks;
+}
+
+// Parses the inflated payload of a grid. Returns the grid with `near` and `far` (codes by cell; far -1: one surface) and `masks`.
+export function readGrid(header, bytes) {
+    need(bytes.length === header.dataBytes, `${bytes.length} bytes, ${header.dataBytes} stated`);
+    const { near, far, at } = readCodes(header, bytes);
+    return { ...header, payload: null, near, far, masks: readMasks(header, bytes, far, at) };
+}
+
+async function inflate(payload, most) {
+    const reader = new Blob([payload]).stream().pipeThrough(new DecompressionStream('deflate-raw')).getReader();
+    const bytes = new Uint8Array(most);
+    for (let at = 0; ;) {
+        const { done, value } = await reader.read();
+        if (done)
+            return bytes.subarray(0, at);
+        need(at + value.length <= most, `more than the ${most} bytes stated`);
+        bytes.set(value, at);
+        at += value.length;
+    }
+}
+
+// Decodes a binary message with a depth grid. Rejects if it is not one.
+export async function decodeGrid(bytes) {
+    const header = readHeader(bytes), most = 3 * MAX_CELLS + MAX_MASK_PX;
+    need(header.dataBytes <= most, `${header.dataBytes} bytes`);
+    return readGrid(header, await inflate(header.payload, header.dataBytes));
+}

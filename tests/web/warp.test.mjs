@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Depth grids, and meshes that show a picture from another camera: a synthetic scene of a floor and a box in front of a background.
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { deflateRawSync } from 'node:zlib';
+import { projector } from '../../clients/web/core/camera.js';
+import { sight } from '../../clients/web/core/camera_moves.js';
+import { decodeGrid, readHeader } from '../../clients/web/core/depth_grid.js';
+import { along } from '../../clients/web/core/vector.js';
+import { depthAt, FAR, FLOATS, isNear, meshOf, moveBy, NEAR, warpMatrix } from '../../clients/web/core/warp_mesh.js';
+
+const WIDTH = 400, HEIGHT = 240, CELL = 8, SIDE = 4, LEVELS = 4095;
+const PERSPECTIVE = { eye: [6, -9, 5], target: [0, 0, 0.5], up: [0, 0, 1], fov: 45 };
+const PARALLEL = { ...PERSPECTIVE, fov: 0, height_m: 8 };
+const BOX = { min: [-1, -1, 0], max: [1, 1, 2] }, FLOOR = 4; // half the side of the floor
+
+// Returns the distance along the view to the first surface at a pixel, and the surface; null: background.
+function hit(camera, x, y) {
+    const { origin, direction } = sight(camera, x, y, WIDTH, HEIGHT);
+    let best = null;
+    const offer = (t, name, point) => {
+        if (t > 1e-6 && (best === null || t < best.z))
+            best = { z: t, name, point };
+    };
+    const floor = -origin[2] / direction[2], at = along(origin, direction, floor);
+    if (Math.abs(at[0]) <= FLOOR && Math.abs(at[1]) <= FLOOR)
+        offer(floor, 'floor', at);
+    for (const i of [0, 1, 2])
+        for (const side of ['min', 'max']) {
+            const t = (BOX[side][i] - origin[i]) / direction[i], p = along(origin, direction, t);
+            if ([0, 1, 2].every((j) => j === i || (p[j] >= BOX.min[j] && p[j] <= BOX.max[j])))
+                offer(t, `box ${i} ${side}`, p);
+        }
+    return best;
+}
+
+// Encodes the scene as PROTOCOL.md says. A cell is divided where it shows the box and something else.
+function encode(camera) {
+    const parallel = camera.height_m !== undefined, columns = Math.ceil(WIDTH / CELL), rows = Math.ceil(HEIGHT / CELL);
+    const depth = (at) => (parallel ? at.z : 1 / at.z), all = [];
+    for (let y = 0; y < HEIGHT; y++)
+        for (let x = 0; x < WIDTH; x++)
+            all.push(hit(camera, x + 0.5, y + 0.5));
+    const depths = all.filter(Boolean).map(depth), low = Math.min(...depths), high = Math.max(...depths);
+    const [base, last] = parallel ? [high, low] : [low, high], unit = (last - base) / (LEVELS - 1);
+    const code = (at) => (at === null ? 0 : Math.round((depth(at) - base) / unit) + 1);
+    const near = [], far = [], masks = [];
+    for (let row = 0; row < rows; row++)
+        for (let column = 0; column < columns; column++) {
+            const pixels = [];
+            for (let y = 0; y < CELL; y++)
+                for (let x = 0; x < CELL; x++)
+                    pixels.push({ x, y, at: all[(row * CELL + y) * WIDTH + column * CELL + x] });
+            const kind = ({ at }) => (at === null ? 0 : at.name === 'floor' ? 1 : 2), most = Math.max(...pixels.map(kind));
+            const front = pixels.filter((p) => kind(p) === most), back = pixels.filter((p) => kind(p) < most);
+            const mean = (some) => Math.round(some.reduce((sum, { at }) => sum + code(at), 0) / some.length);
+            const [n, f] = [mean(front), back.length > 0 ? mean(back.filter((p) => kind(p) === Math.max(...back.map(kind)))) : -1];
+            near.push(n);
+            far.push(f < n ? f : -1);
+            const bit = CELL / SIDE, mask = Array(SIDE * SIDE).fill(0);
+            front.forEach(({ x, y }) => { mask[Math.floor(y / bit) * SIDE + Math.floor(x / bit)]++; });
+            masks.push(mask.map((count) => count > bit * bit / 2));
+        }
+    const bits = (flags) => flags.reduce((bytes, flag, i) => (flag ? bytes.with(i >> 3, bytes[i >> 3] | 1 << (i & 7)) : bytes),
+        new Uint8Array(Math.ceil(flags.length / 8)));
+    const out = [...bits(far.map((f) => f >= 0))];
+    const symbol = (value, prediction) => {
+        const d = value - prediction, s = d >= 0 ? 2 * d : -2 * d - 1;
+        out.push(...(s < 255 ? [s] : [255, value & 255, value >> 8]));
+    };
+    near.forEach((value, i) => {
+        const left = i % columns ? near[i - 1] : 0, up = near[i - columns] ?? 0, corner = i % columns ? near[i - columns - 1] ?? 0 : 0;
+        symbol(value, left && up && corner ? Math.max(1, Math.min(LEVELS, left + up - corner)) : left || up);
+    });
+    far.forEach((value, i) => value >= 0 && symbol(value, i % columns === 0 ? 0 : far[i - 1] >= 0 ? far[i - 1] : near[i - 1]));
+    far.forEach((value, i) => value >= 0 && out.push(...bits(masks[i])));
+    return { bytes: packed(Uint8Array.from(out), { parallel, columns, rows, base, unit }), near, far, all };
+}
+
+function packed(data, { parallel, columns, rows, base, unit, width = WIDTH }) {
+    const payload = deflateRawSync(data), bytes = new Uint8Array(44 + payload.length), view = new DataView(bytes.buffer);
+    bytes.set([2, 1, parallel ? 1 : 0, 0]);
+    view.setUint32(4, payload.length, true);
+    view.setUint32(8, 7, true);
+    [0, 0, width, HEIGHT, width, HEIGHT, columns, rows].forEach((value, i) => view.setUint16(12 + 2 * i, value, true));
+    bytes.set([CELL, SIDE], 28);
+    view.setUint16(30, LEVELS, true);
+    view.setFloat32(32, base, true);
+    view.setFloat32(36, unit, true);
+    view.setUint32(40, data.length, true);
+    bytes.set(payload, 44);
+    return bytes;
+}
+
+for (const [name, camera] of [['perspective', PERSPECTIVE], ['orthographic', PARALLEL]]) {
+    test(`a depth grid is decoded as it was encoded: ${name}`, async () => {
+        const { bytes, near, far, all } = encode(camera), grid = await decodeGrid(bytes);
+        assert.deepEqual([...grid.near], near);
+        assert.deepEqual([...grid.far], far);
+        assert.ok(far.some((code) => code >= 0), 'some cells are divided');
+        let off = 0;
+        for (let i = 0; i < all.length; i++) {
+            const depth = depthAt(grid, i % WIDTH + 0.5, Math.floor(i / WIDTH) + 0.5);
+            off += all[i] !== null && Math.abs((grid.parallel ? depth : 1 / depth) - all[i].z) > 0.3 ? 1 : 0;
+        }
+        assert.ok(off < 0.03 * all.length, `${off} pixels are elsewhere`);
+        assert.equal(depthAt(grid, WIDTH + 9, 5), null);
+    });
+
+    test(`a point of the picture moves to where the new camera has it: ${name}`, async () => {
+        const grid = await decodeGrid(encode(camera).bytes), to = { ...camera, eye: [6.5, -8.6, 5.2], target: [0.2, 0, 0.4] };
+        const matrix = warpMatrix(grid, camera, to, 0.1), project = projector(to, WIDTH, HEIGHT);
+        for (const [x, y] of [[150.5, 150.5], [200.5, 120.5], [210.5, 180.5]]) {
+            const { z, point } = hit(camera, x, y), [px, py] = moveBy(matrix, grid, [x, y, grid.parallel ? z : 1 / z]);
+            const [wantX, wantY] = project(point);
+            assert.ok(Math.hypot(px - wantX, py - wantY) < 1e-3, `${px}, ${py} instead of ${wantX}, ${wantY}`);
+        }
+        const same = warpMatrix(grid, camera, camera, 0.1);
+        assert.ok(Math.hypot(...moveBy(same, grid, [30, 40, depthAt(grid, 30, 40)]).map((v, i) => v - [30, 40][i])) < 1e-3);
+    });
+
+    test(`the mesh lies on the surfaces, and is cut between them: ${name}`, async () => {
+        const grid = await decodeGrid(encode(camera).bytes), { vertices, indices, count } = meshOf(grid, camera);
+        assert.ok(count < grid.near.length, `${count} quads for ${grid.near.length} cells: planes are merged`);
+        assert.equal(indices.length, 6 * count);
+        assert.ok(vertices.every(Number.isFinite));
+        const covered = new Float32Array(WIDTH * HEIGHT), kinds = new Set();
+        let off = 0, checked = 0;
+        for (let q = 0; q < count; q++) {
+            const corner = (n) => [...vertices.subarray((4 * q + n) * FLOATS, (4 * q + n + 1) * FLOATS)];
+            const [a, b, c, d] = [0, 1, 2, 3].map(corner), kind = a[3];
+            kinds.add(kind);
+            for (let y = Math.ceil(a[1]); y + 0.5 < d[1]; y++)
+                for (let x = Math.ceil(a[0]); x + 0.5 < d[0]; x++) {
+                    const u = (x + 0.5 - a[0]) / (d[0] - a[0]), v = (y + 0.5 - a[1]) / (d[1] - a[1]);
+                    const depth = (1 - v) * ((1 - u) * a[2] + u * b[2]) + v * ((1 - u) * c[2] + u * d[2]);
+                    const isNearPixel = grid.masks[Math.floor(y / 2) * grid.columns * SIDE + Math.floor(x / 2)] > 0;
+                    if ((kind === NEAR && !isNearPixel) || (kind === FAR && isNearPixel))
+                        continue;
+                    covered[y * WIDTH + x]++;
+                    const truth = hit(camera, x + 0.5, y + 0.5);
+                    if (!truth)
+                        continue;
+                    checked++;
+                    off += Math.abs((grid.parallel ? depth : 1 / depth) - truth.z) > 0.02 * truth.z ? 1 : 0;
+                }
+        }
+        assert.ok(covered.every((times) => times >= 1), 'every pixel is on the mesh');
+        assert.deepEqual([...kinds].sort(), [0, NEAR, FAR]);
+        assert.ok(off < 0.05 * checked, `${off} of ${checked} pixels lie off their surface`);
+    });
+}
+
+test('a grid that is not one is refused, whatever it says', async () => {
+    const { bytes } = encode(PERSPECTIVE), changed = (f) => {
+        const copy = bytes.slice();
+        f(copy, new DataView(copy.buffer));
+        return copy;
+    };
+    const wrong = {
+        short: bytes.slice(0, 40), 'cut off': bytes.slice(0, -5), encoding: changed((b) => { b[1] = 9; }),
+        'no cells': changed((_, v) => v.setUint16(24, 0, true)), 'another size': changed((_, v) => v.setUint16(16, 64, true)),
+        'mask of 3': changed((b) => { b[29] = 3; }), 'cell of 0': changed((b) => { b[28] = 0; }),
+        'NaN base': changed((_, v) => v.setFloat32(32, NaN, true)), 'infinite unit': changed((_, v) => v.setFloat32(36, Infinity, true)),
+        'unit of 0': changed((_, v) => v.setFloat32(36, 0, true)), 'negative base': changed((_, v) => v.setFloat32(32, -1, true)),
+        levels: changed((_, v) => v.setUint16(30, 5000, true)), 'fewer levels than codes': changed((_, v) => v.setUint16(30, 3, true)),
+        'more bytes than stated': changed((_, v) => v.setUint32(40, 9, true)),
+        'fewer than stated': changed((_, v) => v.setUint32(40, 1e6, true)),
+        'beyond memory': changed((_, v) => v.setUint32(40, 0xffffffff, true)), noise: changed((b) => b.fill(0x5a, 44)),
+        orthographic: changed((b) => { b[2] = 1; }),
+    };
+    for (const [name, data] of Object.entries(wrong))
+        await assert.rejects(decodeGrid(data), undefined, name);
+    assert.equal(readHeader(bytes).seq, 7);
+});
+
+test('a camera that jumps, or changes its projection, gets no picture from elsewhere', () => {
+    const turned = { ...PERSPECTIVE, eye: [-6, -9, 5] };
+    assert.ok(isNear(PERSPECTIVE, { ...PERSPECTIVE, eye: [6.3, -8.7, 5] }));
+    assert.ok(!isNear(PERSPECTIVE, turned));
+    assert.ok(!isNear(PERSPECTIVE, PARALLEL));
+    assert.ok(!isNear(PARALLEL, { ...PARALLEL, height_m: 80 }));
+    assert.ok(isNear(PARALLEL, { ...PARALLEL, height_m: 7 }));
+});
