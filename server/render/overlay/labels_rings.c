@@ -208,9 +208,9 @@ static int find_slot(const struct rings *rings, const struct ring_group *group)
             return i % LABEL_SLOTS;
     /* OVER_RINGS: as a last resort the label may cover the alarm rings of its own group */
     for (int over = OVER_MARKS; over <= (alone ? OVER_RINGS : OVER_MARKS); over++)
-        for (int i = 0; i < OFFSETS; i++)
-            if ((alone || is_near(rings, group, LABEL_SLOTS + i)) && is_free(rings, group, LABEL_SLOTS + i, clearance, (enum label_over)over))
-                return LABEL_SLOTS + i;
+        for (int slot = LABEL_SLOTS; slot < LABEL_SLOTS + OFFSETS; slot++)
+            if ((alone || is_near(rings, group, slot)) && is_free(rings, group, slot, clearance, (enum label_over)over))
+                return slot;
     return alone ? FORCED : NOWHERE;
 }
 
