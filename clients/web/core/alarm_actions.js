@@ -20,7 +20,7 @@ export const asideOf = ({ rows }) =>
     [...rows.values()].filter(({ state }) => !calls(state)).sort((a, b) => (a.tag.index ?? -1) - (b.tag.index ?? -1));
 
 // Returns all alarms of a row in the alarm list: the alarm that the tag shows, and the tag's other alarms.
-const allOf = (row) => [row, ...(row.others ?? [])];
+export const allOf = (row) => [row, ...(row.others ?? [])];
 
 // Returns those alarms of a row to which an action applies.
 export const targetsOf = (row, action, mode, role) => allOf(row).filter((alarm) => actionsFor(alarm, mode, role).includes(action));

@@ -1,22 +1,63 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Sorts shift notes and rows of the alarm journal for the shift handover.
+import { fieldInstant, fieldText } from './instant.js';
 
 const WORKED = { acknowledge: 'acknowledged', shelve: 'shelved', unshelve: 'shelved', out_of_service: 'aside', in_service: 'aside' };
+const SAME_ACT_US = 1e6; // an action on a tag acts on all its alarms within this time
 
-// rows: rows of the journal, in any order. Returns { raised: [{ tag, kind, priority, count, first, last }], the most frequent first;
-// acknowledged, shelved, aside (taken out of service or put back): lists of rows, oldest first }.
+// Gives a model the alarms of /api/v1/alarms, so that they are counted and sorted as on the page: one alarm for each tag.
+export function hearAlarms(model, { mode, alarms }) {
+    const rows = alarms.map((one) => [one.kind === 'LINK' ? one.tag : model.tag(one.tag)?.index, one.kind, one.state, one.priority,
+        one.raised_us, one.value, one.limit, one.active, one.held, one.until_us, one.who, one.reason]);
+    model.alarms.hear({ mode, all: true, alarms: rows });
+}
+
+// Adds a raise to the alarms raised. An alarm that rises from H to HH is still the same alarm of its tag, and is not counted again.
+function addRaise(raised, { tag, kind, priority, value, limit, time_us: us }) {
+    const known = raised.get(tag) ?? { tag, kinds: [], priority, count: 0, first: us, active: new Set() };
+    const isNew = known.active.size === 0 || known.active.has(kind);
+    if (isNew)
+        known.active.clear();
+    known.active.add(kind);
+    raised.set(tag, { ...known, kinds: [...new Set([...known.kinds, kind])], priority: Math.min(known.priority, priority),
+        count: known.count + Number(isNew), last: us, value, limit });
+}
+
+// Adds what an operator did. One action on several alarms of a tag is one entry.
+function addAct(list, row) {
+    const { tag, kind, event, who, reason, time_us: us } = row;
+    const same = list.findLast((one) => one.tag === tag && one.event === event && one.who === who && one.reason === reason);
+    if (same && us - same.time_us < SAME_ACT_US)
+        same.kinds.push(kind);
+    else
+        list.push({ ...row, kinds: [kind] });
+}
+
+// rows: rows of the journal, in any order. Returns { raised: [{ tag, kinds, priority, count, first, last, value, limit (of the last
+// raise) }], the most frequent first; acknowledged, shelved, aside (taken out of service or put back): lists of actions with
+// `kinds`, oldest first }.
 export function sortJournal(rows) {
     const raised = new Map(), out = { acknowledged: [], shelved: [], aside: [] };
     for (const row of [...rows].sort((a, b) => a.time_us - b.time_us || a.id - b.id)) {
-        const { tag, kind, event, priority, time_us: us } = row;
-        if (event === 'raise') {
-            const key = `${tag}/${kind}`, known = raised.get(key) ?? { tag, kind, priority, count: 0, first: us };
-            raised.set(key, { ...known, priority: Math.min(known.priority, priority), count: known.count + 1, last: us });
-        }
-        out[WORKED[event]]?.push(row);
+        if (row.event === 'raise' || row.event === 'call')
+            addRaise(raised, row);
+        if (row.event === 'clear')
+            raised.get(row.tag)?.active.delete(row.kind);
+        if (WORKED[row.event])
+            addAct(out[WORKED[row.event]], row);
     }
     const order = (a, b) => b.count - a.count || a.priority - b.priority || a.first - b.first;
     return { ...out, raised: [...raised.values()].sort(order) };
+}
+
+const HOURS = { shift: 8, day: 24, week: 168 };
+// Returns the limits of a named span of the journal as [from, to] in microseconds; `to` null: the span ends now. today and yesterday
+// begin at midnight in the plant's time zone.
+export function journalSpan(name, nowUs, timeZone) {
+    if (name in HOURS)
+        return [nowUs - HOURS[name] * 3600e6, null];
+    const midnight = (us) => fieldInstant(fieldText(us, timeZone).slice(0, 10), timeZone), today = midnight(nowUs);
+    return name === 'today' ? [today, null] : [midnight(today - 12 * 3600e6), today];
 }
 
 // Reads the journal of a time span page by page, up to `most` rows. Returns { rows, cut: true if rows were left out }. get(query) fetches

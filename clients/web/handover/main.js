@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The shift handover page: notes, alarms, acknowledgements and shelved alarms for the next shift, to be printed or saved as PDF by the
 // browser. ?from and ?to as in /api/v1/history.
-import { zoneClock } from '../core/format.js';
-import { readJournal, sortJournal } from '../core/handover.js';
+import { asideOf } from '../core/alarm_actions.js';
+import { areaOf } from '../core/alarm_table.js';
+import { decimalsFor, numberText, unitText, zoneClock } from '../core/format.js';
+import { hearAlarms, readJournal, sortJournal } from '../core/handover.js';
 import { ask } from '../core/history.js';
+import { Model } from '../core/model.js';
 import { whereOf } from '../core/notes.js';
 import { language, learnWords, say } from '../core/words.js';
 import { byId, make } from '../app/common/dom.js';
@@ -26,7 +29,26 @@ const timeOf = (us) => {
     const { date, time } = clock(us / 1000);
     return `${date} ${time.slice(0, 5)}`;
 };
-const alarmOf = ({ tag, kind }) => `${tag} · ${say(`kind.${kind}`)}`;
+const dayTimeOf = (us) => { // without the year, which the page's head says
+    const { day, time } = clock(us / 1000);
+    return `${day} ${time.slice(0, 5)}`;
+};
+const alarmOf = (tag, kinds) => `${tag} · ${kinds.map((kind) => say(`kind.${kind}`)).join(', ')}`;
+const kindsOf = ({ kind, others = [] }) => [kind, ...others.map((other) => other.kind)];
+
+// Returns the equipment and the description of a tag as text.
+function aboutOf(model, tag) {
+    const area = tag ? areaOf(model, tag) : '', about = tag?.description ?? '';
+    return about.startsWith(area) ? about : [area, about].filter(Boolean).join(', ');
+}
+
+// Returns a value and the limit that it exceeded, in the tag's unit.
+function valueOf(model, tag, { value, limit }) {
+    const group = tag && model.group(tag.group), decimals = group ? decimalsFor(group.max - group.min) : 2;
+    const unit = unitText(tag?.unit || group?.unit), texts = [numberText(value, decimals), limit === null ? ''
+        : `(${numberText(limit, decimals)})`, unit];
+    return value === null ? '' : texts.filter(Boolean).join(' ');
+}
 
 function tableOf(titles, rows) {
     if (rows.length === 0)
@@ -47,16 +69,30 @@ function formOf(hours) {
         make('button', { type: 'button', onclick: () => window.print() }, say('handover.print')));
 }
 
-function pageOf({ plant, assets }, notes, journal, standing, [fromUs, toUs], missing) {
-    const { raised, acknowledged, shelved, aside } = sortJournal(journal.rows);
-    const model = { asset: (id) => assets.find((one) => one.id === id) };
-    const doneBy = ({ time_us: us, who, reason, ...alarm }) => [timeOf(us), alarmOf(alarm), who, reason ?? ''];
+function standingPart(model) {
+    return part('standing', ['priority', 'alarm', 'about', 'state', 'time', 'value', 'who'], model.alarms.list().map((alarm) =>
+        [String(alarm.priority), alarmOf(alarm.tag.name, kindsOf(alarm)), aboutOf(model, alarm.tag), say(`state.${alarm.state}`),
+            dayTimeOf(alarm.raisedUs), valueOf(model, alarm.tag, alarm), [alarm.who, alarm.reason].filter(Boolean).join(': ')]));
+}
+
+function asidePart(model) {
+    return part('asides', ['alarm', 'about', 'state', 'until', 'who', 'reason'], asideOf(model.alarms).map((alarm) =>
+        [alarmOf(alarm.tag.name, [alarm.kind]), aboutOf(model, alarm.tag), say(`state.${alarm.state}`),
+            alarm.untilUs ? dayTimeOf(alarm.untilUs) : '', alarm.who, alarm.reason]));
+}
+
+function pageOf(model, notes, journal, [fromUs, toUs], missing) {
+    const { raised, acknowledged, shelved, aside } = sortJournal(journal.rows), { active, waiting } = model.alarms.counts();
+    const doneBy = ({ time_us: us, who, reason, tag, kinds }) =>
+        [dayTimeOf(us), alarmOf(tag, kinds), aboutOf(model, model.tag(tag)), who, reason ?? ''];
+    const raisedOf = ({ first, last, count, priority, tag, kinds, ...row }) => [dayTimeOf(first), alarmOf(tag, kinds),
+        aboutOf(model, model.tag(tag)), String(priority), String(count), dayTimeOf(last), valueOf(model, model.tag(tag), row)];
     const endOf = ({ ended_us: us, ended_by: who, until_us: until }) =>
-        (us ? say('handover.ended', { who, time: timeOf(us) }) : until ? timeOf(until) : '');
-    const noteOf = (note) => [timeOf(note.time_us), whereOf(model, note) ?? say('notes.place'), note.text, note.by, endOf(note)];
-    const counts = [['raised', raised.reduce((sum, { count }) => sum + count, 0)], ['acknowledged', acknowledged.length],
-        ['standing', standing.length]];
-    const title = say('handover.title', { plant: plant.name });
+        (us ? say('handover.ended', { who, time: dayTimeOf(us) }) : until ? dayTimeOf(until) : '');
+    const noteOf = (note) => [dayTimeOf(note.time_us), whereOf(model, note) ?? say('notes.place'), note.text, note.by, endOf(note)];
+    const counts = [['active', active], ['waiting', waiting], ['raised', raised.reduce((sum, { count }) => sum + count, 0)],
+        ['acknowledged', acknowledged.length]];
+    const title = say('handover.title', { plant: model.plant.name });
     document.title = `${title} ${timeOf(toUs)}`;
     return [
         make('h1', {}, title), make('p', { class: 'span' }, `${timeOf(fromUs)} – ${timeOf(toUs)} ${clock(toUs / 1000).offset}`),
@@ -64,13 +100,10 @@ function pageOf({ plant, assets }, notes, journal, standing, [fromUs, toUs], mis
         make('p', { class: 'counts' }, ...counts.map(([name, n]) =>
             make('span', {}, `${say(`handover.${name}`)}: `, make('b', {}, String(n))))),
         ...[...missing, ...(journal.cut ? [say('handover.cut')] : [])].map((text) => make('p', { class: 'wrong' }, text)),
-        part('notes', ['time', 'where', 'what', 'who', 'until'], notes.map(noteOf)),
-        part('standing', ['time', 'alarm', 'priority', 'state', 'who'], standing.map((alarm) => [timeOf(alarm.raised_us), alarmOf(alarm),
-            String(alarm.priority), say(`state.${alarm.state}`), [alarm.who, alarm.reason].filter(Boolean).join(': ')])),
-        part('raised', ['time', 'alarm', 'priority', 'count', 'newest'], raised.map(({ first, last, count, priority, ...alarm }) =>
-            [timeOf(first), alarmOf(alarm), String(priority), String(count), timeOf(last)])),
-        part('acknowledged', ['time', 'alarm', 'who', 'reason'], acknowledged.map(doneBy)),
-        part('shelved', ['time', 'alarm', 'who', 'reason'], [...shelved, ...aside].map(doneBy)),
+        part('notes', ['time', 'where', 'what', 'who', 'until'], notes.map(noteOf)), standingPart(model), asidePart(model),
+        part('raised', ['time', 'alarm', 'about', 'priority', 'count', 'newest', 'value'], raised.map(raisedOf)),
+        part('acknowledged', ['time', 'alarm', 'about', 'who', 'reason'], acknowledged.map(doneBy)),
+        part('shelved', ['time', 'alarm', 'about', 'who', 'reason'], [...shelved, ...aside].map(doneBy)),
         make('div', { class: 'sign' }, make('p', {}, say('handover.gives')), make('p', {}, say('handover.takes'))),
     ];
 }
@@ -87,10 +120,13 @@ async function show() {
         return empty;
     };
     const [plant, { list }, alarms, gaps] = await Promise.all([get('plant'), get('notes', span),
-        get('alarms', { limit: 10000 }).catch(orElse({ alarms: [] })), get('history/gaps', span)]);
+        get('alarms', { limit: 10000 }).catch(orElse({ mode: 'display', alarms: [] })), get('history/gaps', span)]);
     const journal = await readJournal((args) => get('alarms/journal', args).catch(orElse({ rows: [] })), span.from, span.to);
     clock = zoneClock(plant.plant.time_zone);
-    byId('handover').replaceChildren(...pageOf(plant, list, journal, alarms.alarms, [gaps.from_us, gaps.to_us], missing));
+    const model = new Model(plant);
+    hearAlarms(model, alarms);
+    journal.cut ||= Boolean(alarms.next_offset);
+    byId('handover').replaceChildren(...pageOf(model, list, journal, [gaps.from_us, gaps.to_us], missing));
 }
 
 show().catch((error) => byId('handover').replaceChildren(make('p', { class: 'wrong' }, error.message)));

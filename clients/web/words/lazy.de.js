@@ -201,6 +201,11 @@ hours: {n} Stunden
 print: Drucken oder als PDF speichern
 notes: Notizen
 standing: Aktiv oder unquittiert
+active: Jetzt aktiv
+waiting: Jetzt unquittiert
+about: Beschreibung
+value: Wert (Grenze)
+asides: Jetzt zurückgestellt oder unterdrückt
 raised: Gekommene Alarme
 acknowledged: Quittiert
 shelved: Zurückgestellt oder außer Betrieb
@@ -331,30 +336,7 @@ all: Alles zeigen
 close: Hinweis schließen
 
 [alarms]
-close: Alarme schließen
-then: Das Bild zeigt die Vergangenheit, diese Liste die aktuellen Alarme.
-quiet: Keine aktiven Alarme.
-aside: Zurückgestellt oder unterdrückt ({count})
 more: und {count} weitere
-since: seit {time}, {age}
-until: bis {time}
-by: durch {who}
-held: Messung gestört: letzter Zustand gehalten
-fly: Zu {tag} fliegen
-stale: Nicht aktuell: Stand {time}, als die Verbindung abbrach.
-which: Welche Alarme
-search: Filtern
-filtered: Keine Treffer unter {count} Alarmen.
-choose: {tag} auswählen
-chooseall: Alle auswählen
-acknowledge: {count} quittieren
-also: auch {what}
-
-[which]
-all: Alle
-waiting: Unquittiert
-active: Aktiv
-gone: Gegangen
 
 [state]
 active: Aktiv
@@ -365,24 +347,6 @@ latched: Gehalten
 shelved: Zurückgestellt
 suppressed: Planmäßig unterdrückt
 out_of_service: Außer Betrieb
-
-[action]
-acknowledge: Quittieren
-shelve: Zurückstellen …
-reset: Zurücksetzen
-unshelve: Wieder melden
-in_service: Wieder in Betrieb nehmen
-
-[shelve]
-title: {what} zurückstellen
-for: Für
-quarter: 15 Minuten
-hour: 1 Stunde
-shift: 8 Stunden
-day: 1 Tag
-reason: Grund
-cancel: Abbrechen
-do: Zurückstellen
 
 [trends]
 time: Zeit

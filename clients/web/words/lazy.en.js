@@ -200,6 +200,11 @@ hours: {n} hours
 print: Print or save as PDF
 notes: Notes
 standing: Active or unacknowledged
+active: Active now
+waiting: Unacknowledged now
+about: Description
+value: Value (limit)
+asides: Shelved or suppressed now
 raised: Alarms raised
 acknowledged: Acknowledged
 shelved: Shelved or out of service
@@ -330,30 +335,7 @@ all: Show everything
 close: Close this notice
 
 [alarms]
-close: Close alarms
-then: The picture shows the past; this list shows current alarms.
-quiet: No active alarms.
-aside: Shelved or suppressed ({count})
 more: and {count} more
-since: since {time}, {age}
-until: until {time}
-by: by {who}
-held: bad measurement: last state held
-fly: Fly to {tag}
-stale: Out of date: as of {time}, when the connection was lost.
-which: Which alarms
-search: Filter
-filtered: No match among {count} alarms.
-choose: Select {tag}
-chooseall: Select all
-acknowledge: Acknowledge {count}
-also: also {what}
-
-[which]
-all: All
-waiting: Unacknowledged
-active: Active
-gone: Returned to normal
 
 [state]
 active: Active
@@ -364,24 +346,6 @@ latched: Latched
 shelved: Shelved
 suppressed: Suppressed by design
 out_of_service: Out of service
-
-[action]
-acknowledge: Acknowledge
-shelve: Shelve…
-reset: Reset
-unshelve: Unshelve
-in_service: Return to service
-
-[shelve]
-title: Shelve {what}
-for: For
-quarter: 15 minutes
-hour: 1 hour
-shift: 8 hours
-day: 1 day
-reason: Reason
-cancel: Cancel
-do: Shelve
 
 [trends]
 time: Time

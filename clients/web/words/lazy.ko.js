@@ -198,6 +198,11 @@ hours: {n}시간
 print: 인쇄 또는 PDF 저장
 notes: 메모
 standing: 활성 또는 미확인
+active: 현재 활성
+waiting: 현재 미확인
+about: 설명
+value: 값 (한계)
+asides: 현재 보류 또는 억제
 raised: 발생한 알람
 acknowledged: 확인됨
 shelved: 보류 또는 사용 중지
@@ -327,30 +332,7 @@ all: 전체 보기
 close: 알림 닫기
 
 [alarms]
-close: 알람 닫기
-then: 화면은 과거이고, 이 목록은 현재 알람입니다.
-quiet: 활성 알람이 없습니다.
-aside: 보류 또는 억제 ({count})
 more: 외 {count}건
-since: {time}부터, {age}
-until: {time}까지
-by: 처리: {who}
-held: 계측 불량: 마지막 상태 유지
-fly: {tag}(으)로 이동
-stale: 현재가 아님: 연결이 끊긴 {time} 기준입니다.
-which: 알람 종류
-search: 필터
-filtered: {count}건 중 필터에 맞는 것이 없습니다.
-choose: {tag} 선택
-chooseall: 모두 선택
-acknowledge: {count}건 확인
-also: 또한 {what}
-
-[which]
-all: 전체
-waiting: 미확인
-active: 활성
-gone: 정상 복귀
 
 [state]
 active: 활성
@@ -361,24 +343,6 @@ latched: 래치됨
 shelved: 보류
 suppressed: 설계 억제
 out_of_service: 사용 중지
-
-[action]
-acknowledge: 확인
-shelve: 보류…
-reset: 리셋
-unshelve: 보류 해제
-in_service: 사용 재개
-
-[shelve]
-title: {what} 보류
-for: 기간
-quarter: 15분
-hour: 1시간
-shift: 8시간
-day: 1일
-reason: 사유
-cancel: 취소
-do: 보류
 
 [trends]
 time: 시각

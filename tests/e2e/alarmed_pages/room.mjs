@@ -78,10 +78,10 @@ for (const name of WALKED) {
             await land(page);
             assert.deepEqual(await amiss(page), [], 'as it opens');
             await press('#alarm-strip');
-            await page.locator('#alarms-list li').first().waitFor();
+            await page.locator('#alarms-list tr').first().waitFor();
             await land(page);
             assert.deepEqual(await amiss(page), [], 'alarms');
-            await page.locator('#alarms-list li', { hasText: 'TI-1' }).locator('.alarm-go').first().click();
+            await page.locator('#alarms-list tr', { hasText: 'TI-1' }).locator('.alarm-go').first().click();
             await page.locator('#card').waitFor();
             await arrive(page);
             assert.deepEqual(await amiss(page), [], 'flown to');

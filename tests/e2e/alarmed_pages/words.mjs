@@ -43,7 +43,7 @@ const unsaid = (page) => page.evaluate(() => {
 
 test('no word is said that is not in the files of words, and no key is shown', options, async () => {
     const browser = await openPage(`${url}?lang=de`, { viewport: { width: 1440, height: 900 } }, null, async (page) => {
-        await page.route(/\/words\/(lazy\.)?de\.js/, async (route) => {
+        await page.route(/\/words\/(lazy\.|alarms\.)?de\.js/, async (route) => {
             const text = await (await route.fetch()).text();
             const marked = text.replace(/^([\w. ]+(?:\(\w+\))?: )(.*)$/gm,
                 (_, key, said) => `${key}⟦${(said.match(/\{\w+\}/g) ?? []).join('⟧⟦')}⟧`);

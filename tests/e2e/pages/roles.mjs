@@ -61,8 +61,8 @@ const waitForMode = (page, mode) => page.waitForFunction((is) => globalThis.plan
     globalThis.plantcast.session.model.alarms.known && globalThis.plantcast.session.model.alarms.mode === is, mode);
 // Returns the actions offered for the first alarm of the list, or of those set aside.
 const offered = async (page, list = '#alarms-list') => {
-    await page.locator(`${list} li`).first().waitFor();
-    return page.locator(`${list} li`).first().locator('.do button').evaluateAll((all) => all.map((button) => button.dataset.action));
+    await page.locator(`${list} tr`).first().waitFor();
+    return page.locator(`${list} tr`).first().locator('[data-action]').evaluateAll((all) => all.map((button) => button.dataset.action));
 };
 // Returns the server's answer to an action that the page does not offer.
 const ask = (page, action) => page.evaluate(async (what) => {
@@ -96,7 +96,7 @@ test('where alarms are this site\'s own, operators and engineers act on them, vi
     await pages.operator.locator('#shelve button[type="submit"]').tap();
     await everyRole(async (page, role) => {
         assert.deepEqual(await offered(page, '#alarms-aside'), role === 'viewer' ? [] : ['unshelve'], role);
-        assert.match(await page.locator('#alarms-aside li').textContent(), /by operator-1, calibration/, 'everybody is told who and why');
+        assert.match(await page.locator('#alarms-aside tr').textContent(), /by operator-1, calibration/, 'everybody is told who and why');
     });
     await pages.engineer.locator('[data-action="unshelve"]').tap();
     await everyRole((page) => waitForState(page, ['unacknowledged']));

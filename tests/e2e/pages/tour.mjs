@@ -65,7 +65,7 @@ test('an alarm: counted at once, listed, and one click leads there', options, as
     await page.waitForFunction((name) => globalThis.plantcast.session.model.alarms.list().some(({ tag, kind }) =>
         tag.name === name && kind === 'HH'), HOT, { timeout: 30000 });
     await page.locator('#alarm-strip').click();
-    const row = page.locator('#alarms-list li', { hasText: `${HOT} High-high` });
+    const row = page.locator('#alarms-list tr', { hasText: `${HOT}High-high` });
     await row.waitFor();
     await settle(page);
     await keep('2-alarm');
@@ -110,7 +110,7 @@ test('its trend, and the instant before it began', options, async () => {
 
 test('acknowledged, and said to everybody', options, async () => {
     await page.locator('#alarm-strip').click();
-    const row = page.locator('#alarms-list li', { hasText: `${HOT} High-high` });
+    const row = page.locator('#alarms-list tr', { hasText: `${HOT}High-high` });
     await row.locator('button[data-action="acknowledge"]').click();
     await page.waitForFunction((name) => globalThis.plantcast.session.model.alarms.list().some(({ tag, kind, state }) =>
         tag.name === name && kind === 'HH' && state === 'acknowledged'), HOT, { timeout: 20000 });

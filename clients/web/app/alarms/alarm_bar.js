@@ -60,6 +60,7 @@ export class AlarmBar {
         setText(byId('alarm-words'), this.words(counts, this.alarms.byTag.size > 0));
         this.showNewest();
         setText(byId('alarm-mode'), say(`mode.${this.alarms.mode}`));
+        document.title = `${active > 0 ? `(${active}) ` : ''}${this.session.model.plant.name} – Plantcast`;
     }
 
     words({ active, waiting, latched }, any) {

@@ -1,44 +1,54 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The alarm list: one row per tag, with actions on one or several alarms.
-import { asideOf, inMessages, passes, rowActions, targetsOf } from '../../core/alarm_actions.js';
-import { isGone } from '../../core/alarms.js';
-import { ageText, zoneClock } from '../../core/format.js';
+// The alarm list: one row per tag, with actions on one or several alarms. Its second tab is the journal.
+import { allOf, asideOf, inMessages, passes, rowActions, targetsOf } from '../../core/alarm_actions.js';
+import { areaOf, areasOf, isIn, tableCsv } from '../../core/alarm_table.js';
+import { zoneClock } from '../../core/format.js';
 import { put, refusalText } from '../../core/refusals.js';
 import { actOnAlarm } from '../../core/requests.js';
 import { say } from '../../core/words.js';
 import { byId, make, setText } from '../common/dom.js';
 import { fillSelect } from '../common/choices.js';
-import { asOf, badge, limitText } from './alarm_bar.js';
+import { saveFile } from '../common/save_file.js';
+import { asOf } from './alarm_bar.js';
+import { actionButton, AlarmTable, momentButton, refreshCells, rowOf } from './alarm_table.js';
 
 const SHOWN = 200; // maximum number of rows in the document
 const WHICH = ['all', 'waiting', 'active', 'gone'];
+const FILTERS = { words: 'alarms-words', which: 'alarms-which', priority: 'alarms-priority', area: 'alarms-area' };
 
 export class AlarmList {
     // showTag(tag) and flyToTag(tag) are functions of the page; of `overlay` only `fresh` is used.
     constructor({ session, modules, overlay, showTag, flyToTag }) {
         Object.assign(this, { session, modules, overlay, showTag, flyToTag });
-        // rows selected for acknowledgement: tag -> ids of the tag's unacknowledged alarms at the time of selection
+        // selected rows: tag -> signature of the tag's alarms at the time of selection (see signatureOf)
         this.chosen = new Map();
-        this.filter = { which: 'all', words: '' };
-        const priorities = [1, 2, 3, 4].map((priority) => [priority, say('alarms.priority', { priority })]);
-        fillSelect(byId('alarms-which'), [...WHICH.map((name) => [name, say(`which.${name}`)]), ...priorities], 'all');
-        for (const [id, name] of [['alarms-which', 'which'], ['alarms-words', 'words']])
+        this.filter = { which: 'all', words: '', priority: '', area: '' };
+        this.pickAll = make('input', { type: 'checkbox', id: 'alarms-all', 'aria-label': say('alarms.chooseall'),
+            title: say('alarms.chooseall'), onchange: () => this.chooseAll(this.pickAll.checked) });
+        this.table = new AlarmTable(byId('alarms-table'), byId('alarms-order'), this.pickAll, () => this.show());
+        fillSelect(byId('alarms-priority'), [['', say('alarms.priorities')],
+            ...[1, 2, 3, 4].map((priority) => [priority, say('alarms.priority', { priority })])], '');
+        for (const [name, id] of Object.entries(FILTERS))
             byId(id).addEventListener('input', () => {
                 this.filter[name] = byId(id).value;
                 this.show();
             });
-        byId('alarms-all').addEventListener('change', () => this.chooseAll(byId('alarms-all').checked));
-        byId('alarms-acknowledge').addEventListener('click', () => this.acknowledgeChosen());
         this.small = window.matchMedia('(max-width: 719px), (max-height: 480px)');
-        byId('alarms-close').addEventListener('click', () => this.setOpen(false));
+        const press = { 'alarms-acknowledge': () => this.actOnChosen('acknowledge'), 'alarms-shelve': () => this.actOnChosen('shelve'),
+            'alarms-unchoose': () => this.chooseAll(false), 'alarms-close': () => this.setOpen(false), 'alarms-csv': () => this.save(),
+            'shelve-cancel': () => byId('shelve').close(), 'alarms-tab': () => this.turnTo(false), 'journal-tab': () => this.turnTo(true) };
+        for (const [id, f] of Object.entries(press))
+            byId(id).addEventListener('click', f);
         byId('shelve-form').addEventListener('submit', (event) => this.shelve(event));
-        byId('shelve-cancel').addEventListener('click', () => byId('shelve').close());
+        for (const tab of ['alarms-tab', 'journal-tab'])
+            byId(tab).addEventListener('keydown', ({ key }) =>
+                ['ArrowLeft', 'ArrowRight'].includes(key) && this.turnTo(!this.journalOpen, true));
         session.on('welcome', () => {
             ['alarms-list', 'alarms-aside'].forEach((id) => byId(id).replaceChildren()); // removes the rows of the previous plant
             this.show();
         });
-        session.on('alarms', () => this.show());
-        session.on('time', () => this.show());
+        for (const name of ['alarms', 'time'])
+            session.on(name, () => this.show());
         session.on('alarmed', (answer) => this.answered(answer));
         setInterval(() => this.tick(), 500);
     }
@@ -49,6 +59,10 @@ export class AlarmList {
 
     get open() {
         return !byId('alarms').hidden;
+    }
+
+    get journalOpen() {
+        return !byId('alarms-journal').hidden;
     }
 
     toggle() {
@@ -67,21 +81,36 @@ export class AlarmList {
             byId('alarm-strip').focus();
     }
 
+    // Shows the journal or the present alarms.
+    turnTo(journal, focus = false) {
+        for (const [id, on] of [['alarms-tab', !journal], ['journal-tab', journal]]) {
+            byId(id).setAttribute('aria-selected', on);
+            byId(id).tabIndex = on ? 0 : -1;
+            if (on && focus)
+                byId(id).focus();
+        }
+        for (const id of ['alarms-now', 'alarms-which', 'alarms-order'])
+            byId(id).hidden = journal;
+        for (const id of ['alarms-journal', 'journal-which', 'journal-order'])
+            byId(id).hidden = !journal;
+        if (journal)
+            this.modules.use('journal', (part) => part.open(this));
+        this.show();
+    }
+
     // Role of the user, which decides about the actions offered; null while no messages arrive from the server.
     get role() {
         return this.overlay.fresh ? this.session.role : null;
     }
 
-    // Updates the ages shown.
+    // Updates ages and present values.
     tick() {
         if (!this.open)
             return;
         if (this.shownFresh !== this.overlay.fresh)
             this.show();
-        for (const [row, alarm] of this.ages ?? []) {
-            setText(row.querySelector('.since'), this.since(alarm));
-            setText(row.querySelector('.raised'), this.readingText(alarm));
-        }
+        for (const [element, row] of this.journalOpen ? [] : this.drawn ?? [])
+            refreshCells(this.session, element, row, this.overlay.fresh);
     }
 
     show() {
@@ -89,26 +118,51 @@ export class AlarmList {
             return;
         const { fresh } = this.overlay;
         this.shownFresh = fresh;
-        byId('alarms-then').hidden = this.session.time.atUs === null;
+        byId('alarms-then').hidden = this.journalOpen || this.session.time.atUs === null;
         setText(byId('alarms-stale'), fresh ? '' : say('alarms.stale', { time: asOf(this.session) }));
         this.keepFocus(() => this.showList());
+        if (this.journalOpen)
+            this.modules.there('journal')?.show();
     }
 
+    // Adds what the table shows and sorts by to an alarm.
+    rowOf = (alarm) => ({ ...alarm, us: alarm.raisedUs, area: areaOf(this.session.model, alarm.tag), about: alarm.tag.description ?? '' });
+
     showList() {
-        const all = this.alarms.list(), aside = asideOf(this.alarms);
-        const list = all.filter((row) => passes(row, this.textOf(row), this.filter));
+        const all = this.alarms.list().map(this.rowOf), aside = asideOf(this.alarms).map(this.rowOf);
+        this.showChoices(all, [...all, ...aside]);
+        const passing = (row) => isIn(row, this.filter) && passes(row, this.textOf(row), { ...this.filter, which: 'all' });
+        const list = this.table.sorted(all.filter((row) => passing(row) && passes(row, '', { which: this.filter.which, words: '' })));
+        const asides = this.table.sorted(aside.filter(passing));
+        this.listed = [...list, ...asides];
         this.rows = list.slice(0, SHOWN);
-        this.ages = [];
         this.forgetChanged(all);
-        this.fill('alarms-list', this.rows);
+        this.drawn = [...this.fill('alarms-list', this.rows), ...this.fill('alarms-aside', asides.slice(0, SHOWN))];
         const none = all.length > 0 ? say('alarms.filtered', { count: all.length }) : say('alarms.quiet');
         setText(byId('alarms-none'), list.length > 0 ? '' : none);
-        byId('alarms-aside-head').hidden = aside.length === 0;
-        setText(byId('alarms-aside-head'), say('alarms.aside', { count: aside.length }));
-        this.fill('alarms-aside', aside.slice(0, SHOWN));
-        const more = Math.max(0, list.length - SHOWN) + Math.max(0, aside.length - SHOWN);
+        this.showAsideHead(asides.length);
+        const more = Math.max(0, list.length - SHOWN) + Math.max(0, asides.length - SHOWN);
         setText(byId('alarms-more'), more > 0 ? say('alarms.more', { count: more }) : '');
         this.showChosen();
+    }
+
+    // Offers areas, and tells how many alarms each choice of a state has.
+    showChoices(all, known) {
+        const choices = WHICH.map((name) => [name, `${say(`which.${name}`)} (${all.filter((row) => passes(row, '',
+            { which: name, words: '' })).length})`]);
+        fillSelect(byId('alarms-which'), choices, this.filter.which);
+        setText(byId('alarms-count'), String(all.length));
+        const areas = this.session.model.assets.map(({ id }) => ({ area: areaOf(this.session.model, { asset: id }) }));
+        const offered = areas.some(({ area }) => area) ? areasOf(areas) : areasOf(known);
+        fillSelect(byId('alarms-area'), [['', say('alarms.areas')], ...offered.map((area) => [area, area])], this.filter.area);
+    }
+
+    showAsideHead(count) {
+        const head = byId('alarms-aside-head');
+        head.hidden = count === 0;
+        if (!head.firstChild)
+            head.append(make('tr', {}, make('th', { colspan: 13, scope: 'rowgroup' })));
+        setText(head.querySelector('th'), say('alarms.aside', { count }));
     }
 
     // Returns the text of an alarm in which the filter searches.
@@ -117,32 +171,21 @@ export class AlarmList {
         return [tag.name, tag.description, kind, say(`kind.${kind}`), tag.asset, asset?.tag, asset?.description].filter(Boolean).join(' ');
     }
 
-    // Fills the table. Keeps the elements of rows that did not change, so that a button does not move while it is being pressed.
-    fill(id, alarms) {
-        const list = byId(id), before = new Map([...list.children].map((row) => [row.said, row]));
-        const rows = alarms.map((alarm) => {
-            const said = [alarm, rowActions(alarm, this.alarms.mode, this.role)];
-            const is = JSON.stringify(said, (key, value) => (key === 'tag' ? undefined : value));
-            const row = before.get(is) ?? Object.assign(this.row(alarm), { said: is });
-            before.delete(is);
-            this.ages.push([row, alarm]);
-            return row;
-        });
-        for (const row of before.values())
-            row.remove();
-        rows.forEach((row, i) => list.children[i] !== row && list.insertBefore(row, list.children[i] ?? null));
+    fill(id, rows) {
+        return this.table.fill(byId(id), rows, (row) => JSON.stringify([row, rowActions(row, this.alarms.mode, this.role)],
+            (key, value) => (key === 'tag' ? undefined : value)), (row) => this.draw(row));
     }
 
-    // --- actions on several alarms
+    // --- selection, and actions on several alarms
 
-    // Returns the ids and times of a row's alarms that this user can acknowledge, as a text; '' if there are none.
-    waitsFor(row) {
-        return targetsOf(row, 'acknowledge', this.alarms.mode, this.role).map(({ id, raisedUs }) => `${id}@${raisedUs}`).join();
-    }
+    // Returns the ids and times of a row's alarms. While they are the same, the row shows the alarms that the user selected.
+    signatureOf = (row) => allOf(row).map(({ id, raisedUs }) => `${id}@${raisedUs}`).join();
+
+    can = (row) => rowActions(row, this.alarms.mode, this.role).some((action) => ['acknowledge', 'shelve'].includes(action));
 
     // Deselects rows that have another alarm than when they were selected, because the user has not seen it.
     forgetChanged(all) {
-        const now = new Map(all.map((row) => [row.tag.name, this.waitsFor(row)]));
+        const now = new Map(all.map((row) => [row.tag.name, this.can(row) ? this.signatureOf(row) : null]));
         for (const [name, was] of this.chosen)
             if (now.get(name) !== was)
                 this.chosen.delete(name);
@@ -150,60 +193,71 @@ export class AlarmList {
 
     choose(row, on) {
         if (on)
-            this.chosen.set(row.tag.name, this.waitsFor(row));
+            this.chosen.set(row.tag.name, this.signatureOf(row));
         else
             this.chosen.delete(row.tag.name);
         this.showChosen();
     }
 
     chooseAll(on) {
-        for (const row of this.rows.filter((one) => this.waitsFor(one)))
+        for (const row of this.rows.filter(this.can))
             this.choose(row, on);
         this.showChosen();
     }
 
+    // Returns the selected rows that are visible; rows hidden by the filter are not acted on.
+    get chosenRows() {
+        return this.rows.filter(({ tag }) => this.chosen.has(tag.name));
+    }
+
     showChosen() {
-        const can = this.rows.filter((row) => this.waitsFor(row)), on = can.filter(({ tag }) => this.chosen.has(tag.name));
-        byId('alarms-many').hidden = can.length < 2;
-        byId('alarms-all').checked = on.length === can.length;
-        byId('alarms-all').indeterminate = on.length > 0 && on.length < can.length;
-        setText(byId('alarms-acknowledge'), say('alarms.acknowledge', { count: on.length }));
-        byId('alarms-acknowledge').disabled = on.length === 0;
+        const can = this.rows.filter(this.can), on = this.chosenRows;
+        this.pickAll.disabled = can.length === 0;
+        this.pickAll.checked = on.length > 0 && on.length === can.length;
+        this.pickAll.indeterminate = on.length > 0 && on.length < can.length;
+        byId('alarms-many').hidden = on.length === 0 || this.journalOpen;
+        setText(byId('alarms-chosen'), say('alarms.chosen', { count: on.length }));
+        for (const action of ['acknowledge', 'shelve']) {
+            const count = on.filter((row) => rowActions(row, this.alarms.mode, this.role).includes(action)).length;
+            setText(byId(`alarms-${action}`), say(`alarms.${action}`, { count }));
+            byId(`alarms-${action}`).disabled = count === 0;
+        }
         for (const box of byId('alarms-list').querySelectorAll('.choose'))
             box.checked = this.chosen.has(box.value);
     }
 
-    // Acknowledges the selected rows that are visible; rows hidden by the filter are not acknowledged.
-    acknowledgeChosen() {
-        const rows = this.rows.filter(({ tag }) => this.chosen.has(tag.name));
-        const alarms = rows.flatMap((row) => targetsOf(row, 'acknowledge', this.alarms.mode, this.role));
+    actOnChosen(action) {
+        const rows = this.chosenRows, alarms = rows.flatMap((row) => targetsOf(row, action, this.alarms.mode, this.role));
+        if (action === 'shelve') {
+            this.askShelve(alarms, say('alarms.count', { count: rows.length }));
+            return;
+        }
+        this.send(action, alarms);
+        this.chooseAll(false);
+    }
+
+    send(action, alarms, more) {
         for (const some of inMessages(alarms.map(({ tag, kind }) => [tag.name, kind])))
-            actOnAlarm(this.session, 'acknowledge', some);
-        this.chosen.clear();
-        this.showChosen();
+            actOnAlarm(this.session, action, some, more);
     }
 
     // Calls f, which rebuilds rows, and then gives the keyboard focus back to the same alarm, or to the next row if that alarm is gone.
     keepFocus(f) {
-        const held = document.activeElement, row = held.closest('#alarms li'), place = row && [...row.parentElement.children].indexOf(row);
+        const held = document.activeElement, row = held.closest('#alarms-now tbody tr');
+        const place = row && [...row.parentElement.children].indexOf(row);
         f();
         if (!row || document.activeElement === held)
             return;
-        const next = document.querySelector(`#alarms li[data-alarm="${CSS.escape(row.dataset.alarm)}"]`) ??
-            [...document.querySelectorAll('#alarms li')][place];
+        const next = document.querySelector(`#alarms-now tr[data-alarm="${CSS.escape(row.dataset.alarm)}"]`) ??
+            [...document.querySelectorAll('#alarms-list tr, #alarms-aside tr')][place];
         (held.isConnected ? held : next?.querySelector('.do button, button') ?? byId('alarms-close')).focus();
     }
 
-    since({ raisedUs }) {
-        const now = this.session.clockUs();
-        if (raisedUs === null || now === null)
-            return '';
-        const { time } = zoneClock(this.session.model.plant.time_zone)(raisedUs / 1000);
-        return say('alarms.since', { time, age: ageText((now - raisedUs) / 1000) });
-    }
+    // --- rows
 
-    // Returns a text with the user who last acted on the alarm, when the effect of the action ends (such as shelving), and the reason.
-    note({ state, who, reason, untilUs, held }) {
+    // Returns what a row says in addition to its columns: the end of shelving, the user who last acted on the alarm, the reason, and
+    // whether the measurement is bad.
+    noteOf({ state, who, reason, untilUs, held }) {
         const clock = zoneClock(this.session.model.plant.time_zone);
         const until = untilUs === null ? '' : say('alarms.until', { time: clock(untilUs / 1000).time.slice(0, 5) });
         const by = who && state !== 'unacknowledged' ? say('alarms.by', { who }) : '';
@@ -211,55 +265,51 @@ export class AlarmList {
     }
 
     // Returns the other alarms of the row's tag as text.
-    also({ others = [] }) {
-        return others.length === 0 ? '' : say('alarms.also', { what: others.map(({ kind, state }) =>
-            `${say(`kind.${kind}`)} (${say(`state.${state}`)})`).join(', ') });
-    }
+    alsoOf = ({ others = [] }) => (others.length === 0 ? '' : say('alarms.also', { what: others.map(({ kind, state }) =>
+        `${say(`kind.${kind}`)} (${say(`state.${state}`)})`).join(', ') }));
 
-    readingText(alarm) {
-        const value = limitText(this.session, alarm, this.overlay.fresh);
-        return value ? `, ${value}` : '';
-    }
-
-    row(alarm) {
-        const { tag, kind, state, priority } = alarm, { mode } = this.alarms, actions = rowActions(alarm, mode, this.role);
-        const reading = make('span', { class: 'raised' }, this.readingText(alarm));
-        const asset = this.session.model.asset(tag.asset), age = make('span', { class: 'since' }, this.since(alarm));
-        // `nowhere`: true for a device, which has no position in the model
-        const title = say('alarms.fly', { tag: tag.name }), nowhere = tag.index === null;
-        const how = nowhere ? { class: 'alarm-go' } : { type: 'button', class: 'alarm-go', title, onclick: () => this.flyTo(tag) };
-        const note = [this.note(alarm), this.also(alarm)].filter(Boolean).join('; ');
-        const fly = make(nowhere ? 'div' : 'button', how, badge(priority, isGone(state)),
-            make('span', { class: 'what' }, make('b', {}, tag.name), ` ${say(`kind.${kind}`)}`, reading),
-            make('span', { class: 'where' }, [asset?.tag ?? asset?.id, tag.description].filter(Boolean).join(', ')),
-            make('span', { class: 'state' }, say(`state.${state}`)), age, make('span', { class: 'note' }, note));
-        const buttons = actions.map((action) =>
-            make('button', { type: 'button', 'data-action': action, onclick: () => this.act(action, alarm) }, say(`action.${action}`)));
-        const choose = make('input', {
-            type: 'checkbox', class: 'choose', value: tag.name, 'aria-label': say('alarms.choose', { tag: tag.name }),
-            onchange: ({ target }) => this.choose(alarm, target.checked),
+    draw(row) {
+        const { tag, kind, state } = row, actions = rowActions(row, this.alarms.mode, this.role);
+        const choose = make('input', { type: 'checkbox', class: 'choose', value: tag.name,
+            'aria-label': say('alarms.choose', { tag: tag.name }), onchange: ({ target }) => this.choose(row, target.checked) });
+        const buttons = actions.map((action) => actionButton(action, () => this.act(action, row)));
+        const back = this.session.recorded && row.us !== null ? [momentButton(() => this.showMoment(row))] : [];
+        return rowOf(this.session, row, this.overlay.fresh, {
+            look: { class: row.waiting ? 'calls' : state, 'data-alarm': row.id, 'data-kind': kind },
+            pick: this.can(row) && row.others ? choose : null, state: say(`short.${state}`), note: this.noteOf(row),
+            also: this.alsoOf(row), buttons: [...back, ...buttons], fly: (one) => this.flyTo(one),
         });
-        const look = { class: alarm.waiting ? 'calls' : state, 'data-alarm': alarm.id };
-        return make('li', look, actions.includes('acknowledge') ? choose : null, fly, make('div', { class: 'do' }, ...buttons));
     }
 
     flyTo(tag) {
-        if (this.small.matches)
-            this.setOpen(false); // closes the list on narrow screens, which show either the plant or the list
+        this.giveRoom();
         this.showTag(tag);
         this.flyToTag(tag);
+    }
+
+    // Closes the list on narrow screens, which show either the plant or the list.
+    giveRoom() {
+        if (this.small.matches)
+            this.setOpen(false);
+    }
+
+    showMoment(row) {
+        this.giveRoom();
+        this.modules.use('moment', (moment) => moment.show(row), 'moment');
     }
 
     // Applies an action to all alarms of the row.
     act(action, row) {
         const alarms = targetsOf(row, action, this.alarms.mode, this.role);
-        if (action !== 'shelve') {
-            actOnAlarm(this.session, action, alarms.map(({ tag, kind }) => [tag.name, kind]));
-            return;
-        }
+        if (action === 'shelve')
+            this.askShelve(alarms, `${row.tag.name} ${alarms.map(({ kind }) => say(`kind.${kind}`)).join(', ')}`);
+        else
+            this.send(action, alarms);
+    }
+
+    askShelve(alarms, what) {
         this.shelving = alarms;
-        const kinds = alarms.map(({ kind }) => say(`kind.${kind}`)).join(', ');
-        setText(byId('shelve-title'), say('shelve.title', { what: `${row.tag.name} ${kinds}` }));
+        setText(byId('shelve-title'), say('shelve.title', { what }));
         byId('shelve-reason').value = '';
         byId('shelve').showModal();
     }
@@ -269,8 +319,8 @@ export class AlarmList {
         const reason = byId('shelve-reason').value.trim();
         if (!reason)
             return;
-        const alarms = this.shelving.map(({ tag, kind }) => [tag.name, kind]);
-        actOnAlarm(this.session, 'shelve', alarms, { reason, for_s: Number(byId('shelve-for').value) });
+        this.send('shelve', this.shelving, { reason, for_s: Number(byId('shelve-for').value) });
+        this.chosen.clear();
         byId('shelve').close();
     }
 
@@ -278,5 +328,11 @@ export class AlarmList {
         const texts = refused.map(([tag, kind, ...cause]) => `${tag} ${kind}: ${refusalText(...cause)}`);
         setText(byId('alarms-refused'), [...texts, ...(count ? [put('page.unkept', { text: refusalText(why, refusal) })] : [])].join('; '));
     }
-}
 
+    save() {
+        if (this.journalOpen)
+            this.modules.there('journal')?.save();
+        else
+            saveFile('alarms.csv', 'text/csv', tableCsv(this.listed));
+    }
+}

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The table element of the alarm list and of the journal: sortable columns, and the cells that both have.
+import { nextSort, sortable, sortRows } from '../../core/alarm_table.js';
+import { isGone } from '../../core/alarms.js';
+import { ageText, decimalsFor, numberText, unitText, zoneClock } from '../../core/format.js';
+import { say } from '../../core/words.js';
+import { icon, make, makeSvg, setText } from '../common/dom.js';
+import { fillSelect } from '../common/choices.js';
+import { badge } from './alarm_bar.js';
+
+const COLUMNS = ['pick', 'state', 'priority', 'tag', 'kind', 'area', 'about', 'us', 'then', 'now', 'limit', 'since', 'do'];
+const ICONS = {
+    acknowledge: 'M4 10.5 8.5 15 16.5 5.5', shelve: 'M3.5 4h13v4h-13zM4.5 8v8.5h11V8M8 11h4', reset: 'M5 4.5v4h4M5.3 8.5a6 6 0 1 1-.6 4',
+    unshelve: 'M3.5 12.5v4h13v-4M10 13V4M6.5 7 10 3.5 13.5 7', in_service: 'M3.5 12.5v4h13v-4M10 13V4M6.5 7 10 3.5 13.5 7',
+};
+
+export class AlarmTable {
+    // table: an empty <table>; select: a list of the same orders, for screens without column titles; pick: content of the first title.
+    // changed(): called after the user chose another order.
+    constructor(table, select, pick, changed) {
+        Object.assign(this, { select, changed, sort: { by: null, down: false } });
+        this.heads = COLUMNS.filter(sortable).map((name) => [name, make('th', { scope: 'col', 'data-col': name, 'aria-sort': 'none' },
+            make('button', { type: 'button', title: say('column.sort', { what: say(`column.${name}`) }),
+                onclick: () => this.order(nextSort(this.sort, name)) }, say(`column.${name}`)))]);
+        const heads = new Map(this.heads), other = (name) => (name === 'pick' ? make('th', { 'data-col': name }, pick)
+            : make('th', { scope: 'col', 'data-col': name }, say(`column.${name}`)));
+        table.prepend(make('thead', {}, make('tr', {}, ...COLUMNS.map((name) => heads.get(name) ?? other(name)))));
+        fillSelect(select, [['', say('column.order')], ...this.heads.map(([name]) => [name, say(`column.${name}`)])], '');
+        select.addEventListener('change', () => this.order({ by: select.value || null, down: false }));
+    }
+
+    order(sort) {
+        this.sort = sort;
+        this.select.value = sort.by ?? '';
+        for (const [name, head] of this.heads)
+            head.setAttribute('aria-sort', sort.by !== name ? 'none' : sort.down ? 'descending' : 'ascending');
+        this.changed();
+    }
+
+    sorted(rows) {
+        return sortRows(rows, this.sort);
+    }
+
+    // Fills a <tbody>. Keeps the elements of rows whose text said(row) did not change, so that a button does not move while it is being
+    // pressed. Returns [[element, row]].
+    fill(body, rows, said, draw) {
+        const before = new Map([...body.children].map((element) => [element.said, element]));
+        const drawn = rows.map((row) => {
+            const is = said(row), element = before.get(is) ?? Object.assign(draw(row), { said: is });
+            before.delete(is);
+            return [element, row];
+        });
+        for (const element of before.values())
+            element.remove();
+        drawn.forEach(([element], i) => body.children[i] !== element && body.insertBefore(element, body.children[i] ?? null));
+        return drawn;
+    }
+}
+
+// Returns a function that formats a number in a tag's unit and decimals.
+function textsOf(model, tag) {
+    const group = model.group(tag.group), decimals = group ? decimalsFor(group.max - group.min) : 2;
+    return { unit: unitText(tag.unit || group?.unit), text: (value) => (value === null ? '' : numberText(value, decimals)) };
+}
+
+// Returns the present value as text. It is a dash while the past is shown, or if `fresh` is false: no messages arrive from the server.
+function nowText({ model, time }, tag, fresh) {
+    const { text, unit } = textsOf(model, tag), reading = tag.index === null ? null : model.readings[tag.index];
+    if (!reading)
+        return '';
+    return !fresh || time.atUs !== null ? '–' : reading.quality === 'bad' ? say('novalue') : `${text(reading.value)} ${unit}`;
+}
+
+// Updates the cells that change by themselves: the present value and the age.
+export function refreshCells(session, element, row, fresh) {
+    const now = session.clockUs();
+    setText(element.querySelector('[data-col=now]'), nowText(session, row.tag, fresh));
+    setText(element.querySelector('[data-col=since]'), row.us === null || now === null ? '' : ageText((now - row.us) / 1000));
+}
+
+function timeText(session, us) {
+    if (us === null)
+        return '';
+    const clock = zoneClock(session.model.plant.time_zone), at = clock(us / 1000);
+    return at.date === clock(session.clockUs() / 1000).date ? at.time : `${at.day} ${at.time.slice(0, 5)}`;
+}
+
+const flyButton = (tag, name, fly) => make('button', { type: 'button', class: 'alarm-go', title: say('alarms.fly', { tag: tag.name }),
+    onclick: () => fly(tag) }, name);
+
+// Returns the <tr> of a row. { look (attributes), pick, state, note, also, buttons } differ between the list and the journal. fly(tag):
+// called by the button on the tag.
+export function rowOf(session, row, fresh, { look, pick, state, note, also = '', buttons, fly }) {
+    const { tag, kind, priority } = row, { text } = textsOf(session.model, tag), name = make('b', {}, tag.name);
+    const cell = (col, title, ...content) => make('td', { 'data-col': col, title }, ...content);
+    const about = [note, row.about, also].filter(Boolean);
+    const element = make('tr', look, cell('pick', null, pick), cell('state', state, state),
+        cell('priority', null, badge(priority, isGone(row.state))),
+        // a device has no position in the model
+        cell('tag', null, tag.index === null ? name : flyButton(tag, name, fly)),
+        cell('kind', null, say(`kind.${kind}`)), cell('area', row.area, row.area),
+        cell('about', about.join(' · '), ...about.flatMap((part, i) =>
+            [i > 0 ? ' · ' : null, part === note ? make('em', {}, part) : part])),
+        cell('us', null, timeText(session, row.us)), cell('then', null, text(row.value)), cell('now'),
+        cell('limit', null, text(row.limit)), cell('since'), cell('do', null, ...buttons));
+    refreshCells(session, element, row, fresh);
+    return element;
+}
+
+// Returns the button of an action on a row.
+export const actionButton = (action, onclick) => make('button', { type: 'button', 'data-action': action, title: say(`action.${action}`),
+    'aria-label': say(`action.${action}`), onclick }, makeSvg('svg', { viewBox: '0 0 20 20', 'aria-hidden': 'true' },
+    makeSvg('path', { d: ICONS[action] })));
+
+// Returns the button that shows the plant 30 s before an alarm.
+export const momentButton = (onclick) => make('button', { type: 'button', class: 'moment-go', title: say('moment.show'),
+    'aria-label': say('moment.show'), onclick }, icon('i-clock'));

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Words of the alarm list, the journal and the moment before an alarm, in German.
+export default `
+[alarms]
+close: Alarme schließen
+then: Das Bild zeigt die Vergangenheit, diese Liste die aktuellen Alarme.
+quiet: Keine aktiven Alarme.
+aside: Zurückgestellt oder unterdrückt ({count})
+until: bis {time}
+by: durch {who}
+held: Messung gestört: letzter Zustand gehalten
+fly: Zu {tag} fliegen
+stale: Nicht aktuell: Stand {time}, als die Verbindung abbrach.
+which: Welche Alarme
+search: Filtern
+filtered: Keine Treffer unter {count} Alarmen.
+choose: {tag} auswählen
+chooseall: Alle auswählen
+acknowledge: {count} quittieren
+also: auch {what}
+priorities: Alle Prioritäten
+areas: Alle Bereiche
+chosen(one): {count} ausgewählt
+chosen(other): {count} ausgewählt
+count(one): {count} Alarm
+count(other): {count} Alarme
+shelve: {count} zurückstellen …
+unchoose: Auswahl aufheben
+
+[which]
+all: Alle
+waiting: Unquittiert
+active: Aktiv
+gone: Gegangen
+
+[action]
+acknowledge: Quittieren
+shelve: Zurückstellen …
+reset: Zurücksetzen
+unshelve: Wieder melden
+in_service: Wieder in Betrieb nehmen
+
+[shelve]
+title: {what} zurückstellen
+for: Für
+quarter: 15 Minuten
+hour: 1 Stunde
+shift: 8 Stunden
+day: 1 Tag
+reason: Grund
+cancel: Abbrechen
+do: Zurückstellen
+
+[short]
+active: Aktiv
+unacknowledged: Unquittiert
+acknowledged: Quittiert
+returned: Gegangen
+latched: Gehalten
+shelved: Zurückgestellt
+suppressed: Unterdrückt
+out_of_service: Außer Betrieb
+
+[column]
+state: Zustand
+priority: Prio
+tag: Messstelle
+kind: Alarm
+area: Bereich
+about: Beschreibung
+us: Gekommen
+then: Damals
+now: Jetzt
+limit: Grenze
+since: Dauer
+do: Aktionen
+order: Reihenfolge
+sort: Nach {what} sortieren
+
+[journal]
+title: Journal
+csv: CSV
+which: Welche Änderungen
+span: Zeitraum
+all: Alle Änderungen
+raised: Gekommen
+cleared: Gegangen
+acknowledged: Quittiert
+shelved: Zurückgestellt, unterdrückt
+shift: Letzte 8 Stunden
+day: Letzte 24 Stunden
+today: Heute
+yesterday: Gestern
+week: Letzte 7 Tage
+chosen: Von – bis …
+from: Von
+to: Bis
+count(one): {count} Änderung
+count(other): {count} Änderungen
+cut: {count} der neuesten {all} Änderungen, zurück bis {time}
+older: Ältere lesen
+
+[change]
+raise: Gekommen
+clear: Gegangen
+acknowledge: Quittiert
+reset: Zurückgesetzt
+shelve: Zurückgestellt
+unshelve: Wieder gemeldet
+suppress: Unterdrückt
+unsuppress: Nicht unterdrückt
+out_of_service: Außer Betrieb
+in_service: In Betrieb
+carry: Durch Gerät ersetzt
+call: Gekommen
+
+[moment]
+show: Den Augenblick davor zeigen
+raised: gekommen {time}
+early: {s} s davor
+late: {s} s danach
+now: beim Alarm
+before: 30 s davor
+at: Zum Alarm
+play: Abspielen
+live: Zurück zu Live
+`;

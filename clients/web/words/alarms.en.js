@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Words of the alarm list, the journal and the moment before an alarm, in English.
+export default `
+[alarms]
+close: Close alarms
+then: The picture shows the past; this list shows current alarms.
+quiet: No active alarms.
+aside: Shelved or suppressed ({count})
+until: until {time}
+by: by {who}
+held: bad measurement: last state held
+fly: Fly to {tag}
+stale: Out of date: as of {time}, when the connection was lost.
+which: Which alarms
+search: Filter
+filtered: No match among {count} alarms.
+choose: Select {tag}
+chooseall: Select all
+acknowledge: Acknowledge {count}
+also: also {what}
+priorities: All priorities
+areas: All areas
+chosen(one): {count} selected
+chosen(other): {count} selected
+count(one): {count} alarm
+count(other): {count} alarms
+shelve: Shelve {count}…
+unchoose: Deselect
+
+[which]
+all: All
+waiting: Unacknowledged
+active: Active
+gone: Returned to normal
+
+[action]
+acknowledge: Acknowledge
+shelve: Shelve…
+reset: Reset
+unshelve: Unshelve
+in_service: Return to service
+
+[shelve]
+title: Shelve {what}
+for: For
+quarter: 15 minutes
+hour: 1 hour
+shift: 8 hours
+day: 1 day
+reason: Reason
+cancel: Cancel
+do: Shelve
+
+[short]
+active: Active
+unacknowledged: Unacknowledged
+acknowledged: Acknowledged
+returned: Returned
+latched: Latched
+shelved: Shelved
+suppressed: Suppressed
+out_of_service: Out of service
+
+[column]
+state: State
+priority: Prio
+tag: Tag
+kind: Alarm
+area: Area
+about: Description
+us: Raised
+then: Then
+now: Now
+limit: Limit
+since: Age
+do: Actions
+order: Order
+sort: Sort by {what}
+
+[journal]
+title: Journal
+csv: CSV
+which: Which changes
+span: Time range
+all: All changes
+raised: Raised
+cleared: Cleared
+acknowledged: Acknowledged
+shelved: Shelved, suppressed
+shift: Last 8 hours
+day: Last 24 hours
+today: Today
+yesterday: Yesterday
+week: Last 7 days
+chosen: From – to…
+from: From
+to: To
+count(one): {count} change
+count(other): {count} changes
+cut: {count} of the newest {all} changes, back to {time}
+older: Read older ones
+
+[change]
+raise: Raised
+clear: Cleared
+acknowledge: Acknowledged
+reset: Reset
+shelve: Shelved
+unshelve: Unshelved
+suppress: Suppressed
+unsuppress: Unsuppressed
+out_of_service: Out of service
+in_service: In service
+carry: Held by device
+call: Raised
+
+[moment]
+show: Show the moment before
+raised: raised {time}
+early: {s} s before
+late: {s} s after
+now: at the raise
+before: 30 s before
+at: At the alarm
+play: Play
+live: Back to live
+`;

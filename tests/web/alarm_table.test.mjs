@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Rows of the alarm table and of the journal: order, filter, area, export, and named spans.
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { areaOf, areasOf, isIn, journalRow, nextSort, sortRows, tableCsv } from '../../clients/web/core/alarm_table.js';
+import { journalSpan } from '../../clients/web/core/handover.js';
+
+const row = (name, more = {}) => ({ tag: { name, unit: '°C' }, kind: 'H', state: 'active', priority: 2, us: 10, area: '', about: '',
+    value: 1, limit: 2, who: '', reason: '', ...more });
+const names = (rows) => rows.map(({ tag }) => tag.name).join(' ');
+
+test('rows are sorted by any column, and equal ones keep their order', () => {
+    const rows = [row('TE-10', { priority: 3, us: 5, area: 'B' }), row('TE-9', { priority: 1, us: 7, area: 'A', state: 'returned' }),
+        row('TE-2', { priority: 3, us: 6, area: 'B', state: 'unacknowledged' })];
+    const by = (name, down = false) => names(sortRows(rows, { by: name, down }));
+    assert.equal(by('tag'), 'TE-2 TE-9 TE-10', 'numbers in names count');
+    assert.equal(by('tag', true), 'TE-10 TE-9 TE-2');
+    assert.equal(by('priority'), 'TE-9 TE-10 TE-2');
+    assert.equal(by('us'), 'TE-9 TE-2 TE-10', 'newest first');
+    assert.equal(by('area'), 'TE-9 TE-10 TE-2');
+    assert.equal(by('state'), 'TE-2 TE-9 TE-10');
+    assert.equal(by(null), names(rows));
+});
+
+test('a click on a title sorts, a second reverses, a third gives the first order back', () => {
+    const order = [{ by: null, down: false }];
+    for (let i = 0; i < 3; i++)
+        order.push(nextSort(order.at(-1), 'tag'));
+    assert.deepEqual(order.slice(1), [{ by: 'tag', down: false }, { by: 'tag', down: true }, { by: null, down: false }]);
+    assert.deepEqual(nextSort(order[2], 'area'), { by: 'area', down: false });
+});
+
+const model = { asset: (id) => ({ P: { id: 'P', tag: 'P-101', area: 'North' }, Q: { id: 'Q', tag: '', area: '' } })[id],
+    tag: (name) => (name === 'TI-1' ? { name, index: 0, asset: 'P', description: 'Pump', unit: '°C' } : null) };
+
+test('an area is the one of the equipment, else the equipment itself', () => {
+    assert.deepEqual(['P', 'Q', null].map((asset) => areaOf(model, { asset })), ['North', 'Q', '']);
+    assert.deepEqual(areasOf([{ area: 'U10' }, { area: 'U9' }, { area: '' }, { area: 'U10' }]), ['U9', 'U10']);
+    const north = row('TI-1', { area: 'North', priority: 1 });
+    assert.deepEqual([{}, { area: 'North' }, { area: 'South' }, { priority: '1' }, { priority: '2' }].map((filter) => isIn(north, filter)),
+        [true, true, false, true, false]);
+});
+
+test('rows of the journal, also of tags that the plant no longer has; their export', () => {
+    const from = { id: 7, time_us: 1e15, tag: 'TI-1', kind: 'HH', event: 'raise', state: 'unacknowledged', priority: 1, value: 95.5,
+        limit: 90, who: '', reason: '' };
+    const other = { ...from, tag: 'TI-9', event: 'shelve', who: '=kim', reason: 'a, "b"' };
+    const known = journalRow(model, from), gone = journalRow(model, other);
+    assert.deepEqual([known.area, known.about, known.us, known.tag.index], ['North', 'Pump', 1e15, 0]);
+    assert.deepEqual([gone.area, gone.tag.index], ['', null]);
+    assert.deepEqual(tableCsv([known, gone]).split('\r\n'), [
+        'time,state,event,priority,tag,kind,area,description,value,limit,unit,who,reason',
+        '2001-09-09T01:46:40.000Z,unacknowledged,raise,1,TI-1,HH,North,Pump,95.5,90,°C,,',
+        '2001-09-09T01:46:40.000Z,unacknowledged,shelve,1,TI-9,HH,,,95.5,90,,\'=kim,"a, ""b"""', '']);
+});
+
+test('yesterday is from midnight to midnight of the plant, also where a day has 23 hours', () => {
+    const us = (text) => Date.parse(text) * 1000;
+    const yesterday = (now, zone) => journalSpan('yesterday', us(now), zone);
+    assert.deepEqual(yesterday('2026-11-26T10:00Z', 'Asia/Seoul'), [us('2026-11-24T15:00Z'), us('2026-11-25T15:00Z')]);
+    assert.deepEqual(yesterday('2026-03-30T10:00Z', 'Europe/Berlin'), [us('2026-03-28T23:00Z'), us('2026-03-29T22:00Z')]);
+    assert.deepEqual(journalSpan('today', us('2026-11-26T10:00Z'), 'UTC'), [us('2026-11-26T00:00Z'), null]);
+    assert.deepEqual(journalSpan('shift', 9 * 3600e6, 'UTC'), [3600e6, null]);
+});
