@@ -634,6 +634,20 @@ test('alarms: a tag counts once, by its worst that is there', () => {
     assert.deepEqual(alarms.counts(), { active: 0, waiting: 1, latched: 1, of: [0, 0, 0, 0], gone: [1, 0, 1, 0] });
 });
 
+test('alarms: each alarm is announced once, when it is raised', () => {
+    const { session, socket } = greeted(), { alarms } = session.model;
+    const raised = (all, ...rows) => {
+        socket.say({ ...alarmRows(...rows), all });
+        return alarms.raised.map(({ tag, kind }) => `${tag.index ?? tag.name} ${kind}`);
+    };
+    assert.deepEqual(raised(true, [0, 'H', 'unacknowledged', 3, 10]), [], 'alarms that were there before');
+    assert.deepEqual(raised(false, [0, 'H', 'acknowledged', 3, 10]), []);
+    assert.deepEqual(raised(false, [0, 'HH', 'unacknowledged', 2, 20], [1, 'L', 'unacknowledged', 3, 20]), ['0 HH', '1 L']);
+    assert.deepEqual(raised(false, [0, 'HH', 'returned', 2, 20], [1, 'L', 'returned', 3, 20]), []);
+    assert.deepEqual(raised(false, [0, 'HH', 'normal'], [1, 'L', 'unacknowledged', 3, 30]), ['1 L'], 'raised again');
+    assert.deepEqual(raised(false, [1, 'L', 'normal'], [1, 'L', 'normal']), []);
+});
+
 test('alarms: what is done to a row is done to all of its tag that it can be done to; a filter', () => {
     const { session, socket } = greeted();
     const { alarms } = session.model;

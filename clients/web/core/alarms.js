@@ -20,7 +20,7 @@ export const graver = (a, b) => isGone(a.state) - isGone(b.state) || a.priority 
 
 export class Alarms {
     constructor(tags) {
-        Object.assign(this, { tags, mode: 'display', known: false });
+        Object.assign(this, { tags, mode: 'display', known: false, raised: [] });
         this.rows = new Map(); // "tag index/kind" -> alarm
         this.then = null; // readings of the past instant that is shown, which then determine each tag's alarm; null: the present is shown
         // tag index or device name -> its most urgent annunciated alarm; `waiting` true: any of its alarms is unacknowledged
@@ -29,6 +29,7 @@ export class Alarms {
     }
 
     hear({ mode, all, alarms }) {
+        const before = new Map(all ? [] : this.byTag);
         Object.assign(this, { mode, known: true });
         if (all)
             this.rows.clear();
@@ -46,6 +47,11 @@ export class Alarms {
         }
         this.byTag = new Map([...ofTags].map(([key, [gravest, ...others]]) =>
             [key, { ...gravest, others, waiting: [gravest, ...others].some(({ state }) => isWaiting(state)) }]));
+        // alarms that this message raised, one per tag, the most urgent first; not those that only changed their state
+        this.raised = all ? [] : this.list().filter(({ tag, state, raisedUs }) => {
+            const was = before.get(tag.index ?? tag.name), known = was ? [was, ...was.others].map((one) => one.raisedUs) : [];
+            return !isGone(state) && state !== 'acknowledged' && known.every((us) => us < raisedUs);
+        });
     }
 
     // Returns one alarm per tag: unacknowledged first, then active, then by priority, then newest first.

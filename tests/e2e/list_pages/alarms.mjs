@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Alarms in the browser: counted and marked in every view, listed, acknowledged, shelved, flown to.
 import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
 import { DESKTOP, openPage, settle, shoot, TABLET, view, waitForHealth, waitForPicture } from '../support/browser.mjs';
 import { missing, startPlant } from '../support/plant.mjs';
@@ -55,8 +56,8 @@ test('what comes beyond its limit is counted, marked and listed, the most urgent
     await waitForRing(HOT);
     assert.deepEqual((({ kind, state }) => [kind, state])(await ring(HOT)), ['HH', 'unacknowledged']);
     await page.locator('#alarm-strip').click();
-    const first = page.locator('#alarms-list li').first();
-    assert.match(await first.textContent(), new RegExp(`${HOT} High-high, raised at ${limitOf(HOT).HH + 1}`));
+    const first = page.locator('#alarms-list tr').first();
+    assert.match(await first.textContent(), new RegExp(`${HOT}High-high.*${limitOf(HOT).HH + 1}`));
     await settle(page);
     const [legend, list] = await Promise.all(['#legend', '#alarms'].map((id) => page.locator(id).boundingBox()));
     assert.ok(legend.x + legend.width <= list.x, 'the legend is read beside the list');
@@ -85,15 +86,15 @@ test('an acknowledgement is done once, for everybody', options, async () => {
         await waitForPicture(other.page);
         const id = await page.evaluate((hot) => globalThis.plantcast.session.model.alarms.list().find(({ tag, kind }) => tag.name === hot &&
             kind === 'HH').id, HOT);
-        await page.locator(`li[data-alarm="${id}"] button[data-action="acknowledge"]`).focus();
+        await page.locator(`tr[data-alarm="${id}"] button[data-action="acknowledge"]`).focus();
         await page.keyboard.press('Enter');
         await other.page.waitForFunction(
             (alarm) => globalThis.plantcast.session.model.alarms.rows.get(alarm)?.state === 'acknowledged', id);
         await page.waitForFunction((alarm) => globalThis.plantcast.session.model.alarms.rows.get(alarm)?.state === 'acknowledged', id);
         assert.ok(await other.page.locator('#alarm-strip').isVisible(), 'on a wall too');
-        assert.match(await page.locator(`li[data-alarm="${id}"]`).textContent(), /Acknowledged.*by local/s);
-        assert.equal(await page.locator(`li[data-alarm="${id}"] button[data-action="acknowledge"]`).count(), 0);
-        assert.equal(await page.evaluate(() => document.activeElement.closest('li')?.dataset.alarm), id, 'the keyboard stays there');
+        assert.match(await page.locator(`tr[data-alarm="${id}"]`).textContent(), /Acknowledged.*by local/s);
+        assert.equal(await page.locator(`tr[data-alarm="${id}"] button[data-action="acknowledge"]`).count(), 0);
+        assert.equal(await page.evaluate(() => document.activeElement.closest('tr')?.dataset.alarm), id, 'the keyboard stays there');
         await shoot(other.page, 'alarms-wall');
         assert.deepEqual(other.errors, []);
     } finally {
@@ -103,13 +104,13 @@ test('an acknowledgement is done once, for everybody', options, async () => {
 
 test('a row under the hand stays while others come, and can be pressed', options, async () => {
     const { name, limits } = tags.find(({ group, limits: of, name: is }) => group === 'temperature' && of.HH !== null && is !== HOT);
-    const row = page.locator('#alarms-list li', { hasText: HOT }).first(), held = await row.elementHandle();
+    const row = page.locator('#alarms-list tr', { hasText: HOT }).first(), held = await row.elementHandle();
     const box = await row.locator('button[data-action="shelve"]').boundingBox();
     await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
     await page.mouse.down();
     await plant.ask(`set ${name} ${limits.H + 0.1}`);
-    await page.locator('#alarms-list li', { hasText: `${name} High,` }).waitFor({ timeout: 30000 });
-    assert.ok(await held.evaluate((li) => li.isConnected), 'it is the same');
+    await page.locator('#alarms-list tr', { hasText: `${name}High` }).waitFor({ timeout: 30000 });
+    assert.ok(await held.evaluate((tr) => tr.isConnected), 'it is the same');
     const now = await row.locator('button[data-action="shelve"]').boundingBox();
     await page.mouse.move(now.x + now.width / 2, now.y + now.height / 2);
     await page.mouse.up();
@@ -121,23 +122,23 @@ test('a row under the hand stays while others come, and can be pressed', options
 test('a shelf needs a reason, and keeps the alarm from being seen', options, async () => {
     const id = await page.evaluate((hot) => globalThis.plantcast.session.model.alarms.list().find(({ tag, kind }) => tag.name === hot &&
         kind === 'HH').id, HOT);
-    await page.locator(`li[data-alarm="${id}"] button[data-action="shelve"]`).click();
+    await page.locator(`tr[data-alarm="${id}"] button[data-action="shelve"]`).click();
     await page.locator('#shelve button[type="submit"]').click();
     assert.ok(await page.locator('#shelve').isVisible(), 'without a reason nothing happens');
     await shoot(page, 'alarms-shelve');
     await page.locator('#shelve-reason').fill('transmitter is being changed');
     await page.locator('#shelve button[type="submit"]').click();
-    const row = page.locator(`#alarms-aside li[data-alarm="${id}"]`);
+    const row = page.locator(`#alarms-aside tr[data-alarm="${id}"]`);
     await row.waitFor();
     assert.match(await row.textContent(), /Shelved.*until \d\d:\d\d, by local, transmitter is being changed/s);
     await row.locator('button[data-action="unshelve"]').click();
-    await page.locator(`#alarms-list li[data-alarm="${id}"].calls`).waitFor(); /* the alarm is listed again as if it were new */
+    await page.locator(`#alarms-list tr[data-alarm="${id}"].calls`).waitFor(); /* the alarm is listed again as if it were new */
 });
 
 test('a click flies there, in its own group, and back to normal is said', options, async () => {
     await page.evaluate(() => globalThis.plantcast.session.setParams({ group: 'pressure' }));
     const { camera } = await view(page);
-    await page.locator('#alarms-list li .alarm-go').first().click();
+    await page.locator('#alarms-list tr .alarm-go').first().click();
     await page.waitForFunction(() => globalThis.plantcast.session.params.group === 'temperature');
     await page.waitForFunction((eye) => Math.hypot(...globalThis.plantcast.session.camera.eye.map((x, i) => x - eye[i])) > 1, camera.eye);
     assert.equal(await page.evaluate(() => globalThis.plantcast.selection?.tag ?? document.querySelector('#card h3').textContent), HOT);
@@ -149,7 +150,7 @@ test('a click flies there, in its own group, and back to normal is said', option
     assert.deepEqual(browser.errors, []);
 });
 
-const rowOf = (name) => page.locator('#alarms-list li').filter({ has: page.locator('.what b', { hasText: new RegExp(`^${name}$`) }) });
+const rowOf = (name) => page.locator('#alarms-list tr').filter({ has: page.locator('td b', { hasText: new RegExp(`^${name}$`) }) });
 const settleAll = async () => { // sets all values within their limits and acknowledges all alarms
     for (const { name, limits } of tags.filter((tag) => tag.limits.H !== null))
         await plant.ask(`set ${name} ${((limits.L ?? 0) + limits.H) / 2}`);
@@ -200,8 +201,8 @@ test('several are acknowledged at once, only those that are seen; a filter', opt
         await plant.ask(`set ${name} ${limitOf(name).H + 0.1}`);
     await waitForWords('^3 active alarms, 3 unacknowledged$');
     await page.locator('#alarms-words').fill(three[0]);
-    assert.equal(await page.locator('#alarms-list li').count(), 1);
-    assert.ok(await page.locator('#alarms-many').isHidden(), 'one has a button of its own');
+    assert.equal(await page.locator('#alarms-list tr').count(), 1);
+    assert.ok(await page.locator('#alarms-many').isHidden(), 'nothing is selected');
     await page.locator('#alarms-words').fill('');
     await page.locator('#alarms-which').selectOption('gone');
     assert.equal(await page.locator('#alarms-none').textContent(), 'No match among 3 alarms.');
@@ -212,8 +213,136 @@ test('several are acknowledged at once, only those that are seen; a filter', opt
     await shoot(page, 'alarms-several');
     await page.locator('#alarms-acknowledge').click();
     await waitForWords('^3 active alarms, 1 unacknowledged$');
-    assert.deepEqual(await page.locator('#alarms-list li .what b').allTextContents(), [three[0]]);
+    assert.deepEqual(await page.locator('#alarms-list td b').allTextContents(), [three[0]]);
     await page.locator('#alarms-which').selectOption('all');
+});
+
+test('a new alarm is announced once, with tag, state and value', options, async () => {
+    await settleAll();
+    await page.evaluate(() => {
+        const element = document.getElementById('alarm-said');
+        globalThis.announced = [];
+        new MutationObserver(() => globalThis.announced.push(element.textContent)).observe(element, { childList: true });
+    });
+    const { H } = limitOf(HOT);
+    await plant.ask(`set ${HOT} ${H + 0.5}`);
+    await page.waitForFunction(() => globalThis.announced.length > 0);
+    await plant.ask(`set ${HOT} ${H + 0.75}`);
+    await rowOf(HOT).locator('button[data-action="acknowledge"]').click();
+    await waitForWords('^1 active alarm$');
+    const [text, ...more] = await page.evaluate(() => globalThis.announced);
+    assert.match(text, new RegExp(`^${HOT} High, Unacknowledged, raised at ${H}\\.5 °C, now .* \\(limit ${H}\\.0 °C\\)$`));
+    assert.deepEqual(more, []);
+});
+
+test('in forced colours active and returned alarms still look different', options, async () => {
+    await page.emulateMedia({ forcedColors: 'active' });
+    const looks = await page.evaluate(() => ['priority p2', 'priority p2 hollow'].map((name) => {
+        const element = document.createElement('span');
+        element.className = name;
+        document.body.append(element);
+        const { backgroundColor, borderStyle } = getComputedStyle(element);
+        element.remove();
+        return [backgroundColor, borderStyle];
+    }));
+    await shoot(page, 'alarms-forced-colours');
+    await page.emulateMedia({ forcedColors: 'none' });
+    assert.notEqual(looks[0][0], looks[1][0], looks.join(' | '));
+    assert.deepEqual(looks.map(([, border]) => border), ['none', 'dashed']);
+});
+
+// The rows of the list that are whole within its panel.
+const wholeRows = () => page.evaluate(() => {
+    const { bottom } = document.getElementById('alarms-now').getBoundingClientRect();
+    const rows = [...document.querySelectorAll('#alarms-list tr')].map((row) => row.getBoundingClientRect());
+    return { count: rows.filter((box) => box.bottom <= bottom).length, highest: Math.max(...rows.map(({ height }) => height)) };
+});
+const column = (col) => page.locator(`#alarms-list td[data-col=${col}]`).allTextContents();
+
+test('at 900 pixels twenty rows and more are seen, sorted by any column, filtered by area', options, async () => {
+    await settleAll();
+    const many = tags.filter(({ group, limits }) => group === 'temperature' && limits.H !== null).slice(0, 26);
+    for (const { name, limits } of many)
+        await plant.ask(`set ${name} ${limits.H + 0.1}`);
+    await waitForWords(`^${many.length} active alarms, ${many.length} unacknowledged$`);
+    await page.setViewportSize({ width: 1600, height: 900 });
+    await settle(page);
+    const { count, highest } = await wholeRows();
+    assert.ok(count >= 20 && highest <= 29, `${count} rows of at most ${highest} pixels`);
+    for (const [id, text] of [['#alarms-count', `${many.length}`],
+        ['#alarms-which option[value=waiting]', `Unacknowledged (${many.length})`],
+        ['#alarms-which option[value=gone]', 'Returned to normal (0)']])
+        assert.equal(await page.locator(id).textContent(), text);
+    assert.equal(await page.title().then((title) => title.slice(0, 5)), `(${many.length}) `);
+    const names = many.map(({ name }) => name).sort((a, b) => a.localeCompare(b, undefined, { numeric: true }));
+    const title = page.locator('#alarms-table th[data-col=tag]');
+    await title.locator('button').click();
+    assert.deepEqual([await column('tag'), await title.getAttribute('aria-sort')], [names, 'ascending']);
+    await title.locator('button').click();
+    assert.deepEqual([await column('tag'), await title.getAttribute('aria-sort')], [[...names].reverse(), 'descending']);
+    await title.locator('button').click();
+    const [area] = await column('area');
+    await page.locator('#alarms-area').selectOption(area);
+    assert.deepEqual([...new Set(await column('area'))], [area]);
+    await shoot(page, 'alarms-area');
+    await page.locator('#alarms-area').selectOption('');
+});
+
+test('several are shelved at once with one reason; the list is exported', options, async () => {
+    await page.locator('#alarms-list .choose').nth(0).check();
+    await page.locator('#alarms-list .choose').nth(1).check();
+    const two = (await column('tag')).slice(0, 2);
+    await page.locator('#alarms-shelve').click();
+    await page.locator('#shelve-reason').fill('work on the line');
+    await shoot(page, 'alarms-shelve-two');
+    await page.locator('#shelve button[type="submit"]').click();
+    await page.waitForFunction(() => document.querySelectorAll('#alarms-aside tr').length === 2);
+    assert.deepEqual((await page.locator('#alarms-aside td[data-col=tag]').allTextContents()).sort(), [...two].sort());
+    assert.ok(await page.locator('#alarms-many').isHidden());
+    const [download] = await Promise.all([page.waitForEvent('download'), page.locator('#alarms-csv').click()]);
+    const lines = readFileSync(await download.path(), 'utf8').trim().split('\r\n');
+    assert.match(lines[0], /^time,state,event,priority,tag,kind,area,/);
+    assert.equal(lines.filter((line) => line.includes('shelved') && line.endsWith('work on the line')).length, 2);
+});
+
+test('the journal: the same columns, a time range, each change', options, async () => {
+    await page.locator('#journal-tab').click();
+    const changes = () => page.locator('#journal-list tr').evaluateAll((rows) => rows.map((row) => row.dataset.event));
+    await page.locator('#journal-list tr[data-event=shelve]', { hasText: 'work on the line' }).first().waitFor();
+    assert.deepEqual(await page.locator('#journal-table th').evaluateAll((all) => all.map((th) => th.dataset.col)),
+        await page.locator('#alarms-table th[data-col]').evaluateAll((all) => all.map((th) => th.dataset.col)));
+    await page.locator('#journal-which').selectOption('raised');
+    assert.deepEqual([...new Set(await changes())], ['raise']);
+    await page.locator('#alarms-words').fill(HOT);
+    assert.ok((await page.locator('#journal-list td[data-col=tag]').allTextContents()).every((name) => name === HOT));
+    await shoot(page, 'alarms-journal');
+    await page.locator('#journal-span').selectOption('chosen');
+    for (const [id, text] of [['from', '2020-01-01T00:00'], ['to', '2020-01-02T00:00']])
+        await page.locator(`#journal-${id}`).fill(text);
+    await page.locator('#journal-list:empty').waitFor({ state: 'attached' });
+    await page.locator('#journal-span').selectOption('day');
+    await page.locator('#journal-list tr').first().waitFor();
+    await page.locator('#alarms-words').fill('');
+    await page.locator('#journal-which').selectOption('');
+    await page.locator('#alarms-tab').click();
+});
+
+test('the moment before an alarm: half a minute earlier, there, and the alarm is named', options, async () => {
+    const row = page.locator('#alarms-list tr').first(), name = await row.locator('td[data-col=tag]').textContent();
+    const raisedUs = await page.evaluate((of) =>
+        globalThis.plantcast.session.model.alarms.list().find(({ tag }) => tag.name === of).raisedUs, name);
+    await row.locator('.moment-go').click();
+    await page.waitForFunction(() => globalThis.plantcast.session.time.atUs !== null);
+    assert.equal(await page.evaluate(() => globalThis.plantcast.session.time.atUs), Math.round(raisedUs - 30e6));
+    assert.match(await page.locator('#moment').textContent(), new RegExp(`${name} High.*raised .* · 30 s before`));
+    await page.waitForFunction((tag) => globalThis.plantcast.selection.tag === tag, name);
+    await settle(page);
+    await shoot(page, 'alarms-moment');
+    await page.locator('#moment .at').click();
+    await page.waitForFunction((us) => globalThis.plantcast.session.time.atUs === us, Math.round(raisedUs));
+    await page.locator('#moment .live').click();
+    await page.locator('#moment').waitFor({ state: 'hidden' });
+    await page.setViewportSize(DESKTOP.viewport);
 });
 
 test('without a connection the strip says as of when, and offers nothing', options, async () => {
@@ -226,7 +355,7 @@ test('without a connection the strip says as of when, and offers nothing', optio
     await waitForWords('^As of \\d\\d:\\d\\d:\\d\\d: ');
     assert.equal((await words()).replace(/^As of [\d:]+: /, ''), before);
     assert.ok(await page.locator('.stale #alarm-strip').isVisible());
-    await page.waitForFunction(() => document.querySelectorAll('#alarms .do button').length === 0);
+    await page.waitForFunction(() => document.querySelectorAll('#alarms [data-action]').length === 0);
     assert.match(await page.locator('#alarms-stale').textContent(), /^Out of date: as of \d\d:\d\d:\d\d/);
     assert.equal(await page.evaluate(() => document.body.classList.contains('alarm-blink')), false);
     await shoot(page, 'alarms-disconnected');
