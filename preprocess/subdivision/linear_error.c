@@ -249,11 +249,11 @@ static double worst_of(const struct linear_error *linear, const struct error_que
     return most;
 }
 
-double linear_error_on_edge(const struct linear_error *linear, enum linear_error_modes modes, const float *a, const float *b, double t,
+double linear_error_on_edge(const struct linear_error *linear, enum linear_error_modes modes, const float *const ends[2], double t,
                             const float *between, double wide_m, double slack_m)
 {
-    const float *const corners[2] = { a, b }, weights[2] = { 1 - (float)t, (float)t };
-    return worst_of(linear, &(struct error_question){ modes, corners, weights, 2, wide_m, slack_m }, between);
+    const float weights[2] = { 1 - (float)t, (float)t };
+    return worst_of(linear, &(struct error_question){ modes, ends, weights, 2, wide_m, slack_m }, between);
 }
 
 double linear_error_in_triangle(const struct linear_error *linear, enum linear_error_modes modes, const float *const corners[3],

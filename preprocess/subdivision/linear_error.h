@@ -65,7 +65,7 @@ double linear_error_rim_of(const struct linear_error *linear, const struct inter
  * distance to the nearest point where a group's data ends. */
 double linear_error_nearest_of(const struct linear_error *linear, const struct interp_norm *norms);
 /* Return the error of the sample at a point (`between`, `inside`), as a share of the range. linear_error_on_edge() compares it with the
- * linear interpolation at fraction t from sample a to sample b at the edge's ends; linear_error_in_triangle() with the interpolation of
+ * linear interpolation at fraction t between the samples of the edge's ends; linear_error_in_triangle() with the interpolation of
  * three corners' samples by `weights`. modes: kinds of distance to include. The change of the value within slack_m, at most one colour
  * step, is subtracted from the error. Farther than wide_m outside a group's data, the error is 0. Nearer, it counts, because an edge or
  * triangle that wide would carry the wrong values into the area with data. */
@@ -74,7 +74,7 @@ enum linear_error_modes {
     LINEAR_ERROR_EUCLIDEAN = 1 << DISTANCE_EUCLIDEAN,
     LINEAR_ERROR_BOTH = 3
 };
-double linear_error_on_edge(const struct linear_error *linear, enum linear_error_modes modes, const float *a, const float *b, double t,
+double linear_error_on_edge(const struct linear_error *linear, enum linear_error_modes modes, const float *const ends[2], double t,
                             const float *between, double wide_m, double slack_m);
 double linear_error_in_triangle(const struct linear_error *linear, enum linear_error_modes modes, const float *const corners[3],
                                 const double weights[3], const float *inside, double wide_m, double slack_m);

@@ -281,12 +281,20 @@ uint64_t subdiv_cache_key(const struct subdiv *subdiv, const uint32_t *corners, 
     return XXH3_64bits_withSeed(places_m, count * sizeof(*places_m), subdiv->level);
 }
 
+/* Distances in metres between an edge or triangle and a changed sensor. */
+struct change_range {
+    double wide_m; /* largest distance from the middle of the corners to a corner */
+    double near_m; /* largest distance from a corner to its nearest sensor of the group */
+    double far_m;  /* lower bound of the distance to the changed sensor */
+};
+
 /* Returns an upper bound of the interpolation error that a new sensor's weight causes between these corners: from the weight's curvature,
  * and from a kink where two paths along the surface are equally long. On an edge, a kink is possible only if the distance to the sensor
- * grows by less than the edge's length. */
+ * grows by less than the edge's length. share: the weight's upper bound. */
 static float bend_of(const struct subdiv *subdiv, const struct subdiv_sensor_change *change, const uint32_t *corners, size_t count,
-                     double wide_m, double near_m, double far_m, double share)
+                     const struct change_range *range, double share)
 {
+    const double wide_m = range->wide_m, near_m = range->near_m, far_m = range->far_m;
     const double p = (double)change->power, near = wide_m / fmax(near_m, 1e-9), far = wide_m / far_m;
     double low_m = INFINITY, high_m = 0;
     for (size_t c = 0; c < count; c++) {
@@ -323,7 +331,7 @@ static float share_of_changes(const struct subdiv *subdiv, const uint32_t *corne
         float own = ratio < 1 ? powf((float)ratio, change->power) : 1;
         share += own;
         if (change->column != UINT32_MAX && own < MAX_SETTLED)
-            *off += bend_of(subdiv, change, corners, count, wide_m, near_m, far_m, (double)own);
+            *off += bend_of(subdiv, change, corners, count, &(struct change_range){ wide_m, near_m, far_m }, (double)own);
     }
     return share;
 }

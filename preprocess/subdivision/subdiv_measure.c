@@ -224,8 +224,8 @@ struct line { /* sample points along an edge, in order from a to b */
 static double error_at(const struct line *line, enum linear_error_modes modes, int from, int to, int point)
 {
     double t = (line->t[point] - line->t[from]) / (line->t[to] - line->t[from]);
-    return linear_error_on_edge(line->subdiv->in->linear, modes, line->interp[from], line->interp[to], t, line->interp[point],
-                                line->length_m, line->subdiv->slack_m);
+    const float *const ends[2] = { line->interp[from], line->interp[to] };
+    return linear_error_on_edge(line->subdiv->in->linear, modes, ends, t, line->interp[point], line->length_m, line->subdiv->slack_m);
 }
 
 /* Adds a sample point if it is visible. Returns its error against linear interpolation between the edge's ends, or 0 if it is hidden. */

@@ -222,17 +222,26 @@ static void add_item(const struct refined *refined, struct refined_row *row, con
     }
 }
 
-/* Adds a pixel that shows several surfaces to the row. first, end: range of the blended fragments over this pixel. */
-static void add_mixed(struct recent *recent, struct refined_row *row, const struct soft_sample samples[SAMPLES], size_t at, int column,
-                      int y, const struct layers *layers, size_t first, size_t end)
+/* A pixel that shows several surfaces. */
+struct mixed_pixel {
+    size_t at; /* index of the pixel in the samples */
+    int column, y;
+    size_t first, end; /* range of the blended fragments over the pixel */
+};
+
+/* Adds the pixel to the row. */
+static void add_mixed(struct recent *recent, struct refined_row *row, const struct soft_sample samples[SAMPLES],
+                      const struct layers *layers, const struct mixed_pixel *pixel)
 {
+    const size_t at = pixel->at;
+    const int column = pixel->column, y = pixel->y;
     struct soft_triangle triangles[SAMPLES];
     struct sample_group groups[SAMPLES];
     uint16_t under[SAMPLES] = { SAMPLE_SHARE, SAMPLE_SHARE, SAMPLE_SHARE, SAMPLE_SHARE };
     struct mixed *mixed = &row->mixed[row->mixed_count++];
     *mixed = (struct mixed){ .column = column, .first_field = (uint32_t)row->field_count, .first_surface = (uint32_t)row->surface_count };
-    if (end > first)
-        blend(layers, first, end, mixed->over, under);
+    if (pixel->end > pixel->first)
+        blend(layers, pixel->first, pixel->end, mixed->over, under);
     int count = group_samples(recent, samples, at, under, triangles, groups);
     for (int g = 0; g < count; g++) {
         float over = 1.0f / (float)groups[g].count;
@@ -273,7 +282,7 @@ static void sort_row(struct recent *recent, struct refined_row *row, const struc
             ++*layered;
         bool alike = first == samples[1].ids[at] && first == samples[2].ids[at] && first == samples[3].ids[at];
         if (!alike || *layered > over) {
-            add_mixed(recent, row, samples, at, column, y, layers, over, *layered);
+            add_mixed(recent, row, samples, layers, &(struct mixed_pixel){ at, column, y, over, *layered });
         } else if (first == ID_CAP) {
             row->caps[column] = 1;
             row->any_cap = true;
