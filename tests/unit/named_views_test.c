@@ -98,7 +98,7 @@ CASE(they_are_kept_in_order)
 
 CASE(what_they_were_is_kept)
 {
-    char title[8];
+    char title[12];
     assert_int_equal(save(f, "a", "0", -1), REFUSAL_NONE);
     assert_int_equal(versions_of(f, "a", 1), 0);
     assert_int_equal(save(f, "a", "0", 0), REFUSAL_NONE); /* nothing but its place */
