@@ -288,8 +288,8 @@ $(out)/tests/validation/compare: ldflags += -Wl,--wrap=field_scalars_of
 $(out)/tests/faults/libEGL.so.1: $(out)/obj/tests/faults/gl_faults.pic.o
 	@mkdir -p $(@D); echo "  LINK $@"; $(CC) $(ldflags) -shared -o $@ $<
 # Kills a program where the test says; sets its clock wrong.
-# Preloaded into programs of others, too, which have no sanitizer.
-$(out)/obj/tests/faults/%.pic.o: CFLAGS += -fno-sanitize=all
+# Also preloaded into programs without a sanitizer, and run where LeakSanitizer cannot work.
+$(out)/obj/tests/faults/%.o: CFLAGS += -fno-sanitize=all
 $(out)/tests/faults/%: ldflags += -fno-sanitize=all
 $(out)/tests/faults/%.so: $(out)/obj/tests/faults/%.pic.o
 	@mkdir -p $(@D); echo "  LINK $@"; $(CC) $(ldflags) -shared -o $@ $<
