@@ -6,7 +6,7 @@ import { distance } from './camera_moves.js';
 import { add, dot, length, scale, subtract } from './vector.js';
 
 const STEEPEST = 6; // steepest slope of a surface along the view, as a tangent: cells that differ by more show two surfaces
-const FLAT_SHARE = 0.001, FLAT_CODES = 1; // deviation from a plane within which cells are merged
+const FLAT_SHARE = 0.002, FLAT_CODES = 2; // deviation from a plane within which cells are merged
 const BLOCK = 16; // largest side of a merged block, in cells
 const LAP_PX = 0.5; // overlap of merged blocks, which hides cracks between blocks of different sizes
 export const WHOLE = 0, NEAR = 1, FAR = 2; // which pixels of its cells a quad shows: all, those before the step, those behind

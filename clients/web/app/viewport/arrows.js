@@ -61,8 +61,11 @@ export class Arrows {
         if (!picture)
             return;
         const parts = halves(shown, picture.shownWidth), [across, down] = this.scale, c = this.overlay.context;
-        for (const [px, py, dx, dy, value, uncertain, half, number] of this.session.markersOf(picture.seq)?.arrows ?? []) {
-            const { params, width } = parts[half] ?? parts[0];
+        for (const [x, y, dx, dy, value, uncertain, half, number] of this.session.markersOf(picture.seq)?.arrows ?? []) {
+            const { params, width } = parts[half] ?? parts[0], moved = picture.moved ? picture.moved(x, y) : [x, y];
+            if (!moved)
+                continue;
+            const [px, py] = moved;
             if (number) {
                 const at = [(px + (picture.shownWidth - picture.fullWidth) / 2) * across, py * down];
                 const speed = Math.min(1, Math.abs(value) / this.longestIn(params));

@@ -23,9 +23,11 @@ export class Isolines {
         overlay.setFont(600);
         c.textBaseline = 'middle';
         c.textAlign = 'center';
-        for (const { text, x, y } of (this.session.markersOf(picture.seq)?.isolines ?? []).map(([value, px, py]) => ({
-            text: shortNumberText(value, decimalsFor(max - min)), x: (px + (shownWidth - fullWidth) / 2) * scale[0], y: py * scale[1],
-        }))) {
+        const moved = picture.moved ?? ((...at) => at);
+        const labels = (this.session.markersOf(picture.seq)?.isolines ?? []).map(([value, ...at]) => ({ value, at: moved(...at) }))
+            .filter(({ at }) => at).map(({ value, at: [px, py] }) => ({ text: shortNumberText(value, decimalsFor(max - min)),
+                x: (px + (shownWidth - fullWidth) / 2) * scale[0], y: py * scale[1] }));
+        for (const { text, x, y } of labels) {
             const wide = c.measureText(text).width + 6, box = { left: x - wide / 2, right: x + wide / 2, top: y - 8, bottom: y + 8, text };
             const meets = (o) => box.left < o.right && o.left < box.right && box.top < o.bottom && o.top < box.bottom;
             const near = (o) => o.text === text && Math.hypot(o.left - box.left, o.top - box.top) < SPACING_PX;

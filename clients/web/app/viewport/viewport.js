@@ -15,13 +15,13 @@ const sizeOf = (width, height) => ({ ...pictureSize(width, height), pixel_ratio:
 
 export class Viewport {
     // onTick(now) is called once per animation frame, before drawing; onDrawn(isNew, isWarped) after drawing. isNew: a new picture was
-    // drawn; isWarped: what is seen has changed without one (warp.js).
+    // drawn; isWarped: what is seen has changed without one (../picture/warp.js).
     constructor({ element, canvas, session, decoding }) {
         Object.assign(this, { element, canvas, session });
         this.context = canvas.getContext('2d', { alpha: false });
         this.decoded = []; // decoded frames that are not drawn yet: whole pictures, and rectangles of an incomplete one
         this.scheduled = false;
-        this.warp = null; // a Warp (warp.js), once it is loaded
+        this.warp = null; // a Warp (../picture/warp.js), once it is loaded
         this.onTick = this.onDrawn = () => {};
         this.slot = new DecodeQueue({
             decode: (frame) => decoding.decode(frame),

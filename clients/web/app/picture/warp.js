@@ -3,14 +3,13 @@
 // mesh over its depth grid, once per animation frame in which the camera has moved. Places that the picture does not show are hatched.
 // Loaded when the camera first moves.
 import { same } from '../../core/camera.js';
-import { decodeGrid } from '../../core/depth_grid.js';
-import { depthAt, FLOATS, isNear, meshOf, moveBy, warpMatrix } from '../../core/warp_mesh.js';
+import { depthAt, FLOATS, isNear, moveBy, warpMatrix } from '../../core/warp_mesh.js';
 import { make } from '../common/dom.js';
 
 const KEPT = 3; // number of depth grids that may be decoded before their pictures are
 const NEAREST = 0.05; // distance before which nothing is drawn, as a share of the nearest possible depth
 // If updates come later than SLOW_MS after each other, as without a GPU, the warped picture is drawn with fewer pixels.
-const SLOW_MS = 26, SLOW_COUNT = 8, PAUSE_MS = 150, LEAST_SCALE = 0.5;
+const SLOW_MS = 26, SLOW_COUNT = 8, PAUSE_MS = 150, LEAST_PX = 250000;
 
 const MESH = `#version 300 es
 in vec4 vertex;
@@ -67,14 +66,16 @@ function programOf(gl, ...sources) {
 
 export class Warp {
     constructor({ session, viewport, modules }) {
-        Object.assign(this, { session, viewport, modules, updates: 0, scale: 1, intervals: [], last: 0 });
-        this.grids = [];    // decoded depth grids: { depth, parts: [{ grid, mesh }] or null }, newest last
+        Object.assign(this, { session, viewport, modules, updates: 0, mostPx: Infinity, intervals: [], last: 0, count: 0 });
+        this.grids = [];    // newest depth grids: { id, depth, parts: [{ grid, mesh }] or null until decoded, fails }, newest last
         this.source = null; // picture that WebGL draws: { picture, camera, parts, isLoaded }
         this.canvas = make('canvas', { id: 'warp', 'aria-hidden': 'true' });
         this.canvas.style.display = 'none';
         if (!this.open())
             return;
         viewport.canvas.after(this.canvas);
+        this.worker = new Worker(new URL('./warp_worker.js', import.meta.url), { type: 'module' });
+        this.worker.onmessage = ({ data }) => this.take(data);
         viewport.warp = this;
         session.on('frame', (frame) => this.prepare(frame));
         session.on('hello', () => this.forget());
@@ -120,6 +121,7 @@ export class Warp {
         this.hide();
         this.viewport.warp = null;
         this.canvas.remove();
+        this.worker.terminate();
         this.viewport.invalidate();
     }
 
@@ -127,23 +129,26 @@ export class Warp {
         this.grids = [];
     }
 
-    // Decodes the depth grids of a frame, while the browser decodes its picture.
-    async prepare({ depth, camera, fullWidth, fullHeight }) {
+    // Has the depth grids of a frame decoded, while the browser decodes its picture.
+    prepare({ depth, camera, fullWidth, fullHeight }) {
         if (!depth || this.grids.some((one) => one.depth === depth))
             return;
-        const entry = { depth, parts: null };
-        this.grids = [...this.grids.slice(1 - KEPT), entry];
-        try {
-            const grids = await Promise.all(depth.messages.map((bytes) => decodeGrid(new Uint8Array(bytes))));
-            const fits = (grid) => grid.fullWidth === fullWidth && grid.fullHeight === fullHeight && grid.parallel === (camera.fov === 0);
-            if (!grids.every(fits))
-                throw new Error('depth grid: of another picture');
-            entry.parts = grids.map((grid) => ({ grid, mesh: meshOf(grid, camera) }));
-            this.viewport.invalidate();
-        } catch (error) {
-            console.warn(error.message);
+        const id = ++this.count;
+        this.grids = [...this.grids.slice(1 - KEPT), { id, depth, parts: null, fails: false }];
+        this.worker.postMessage({ id, messages: depth.messages, frame: { camera, fullWidth, fullHeight } });
+    }
+
+    take({ id, parts, why }) {
+        const entry = this.grids.find((one) => one.id === id);
+        if (!entry)
+            return;
+        if (parts) {
+            entry.parts = parts;
+        } else {
+            console.warn(why);
             entry.fails = true;
         }
+        this.viewport.invalidate();
     }
 
     // Returns true if the picture is to be shown from the present camera, which is not its own.
@@ -240,9 +245,10 @@ export class Warp {
             const middle = this.intervals.sort((a, b) => a - b)[SLOW_COUNT >> 1];
             this.intervals = [];
             if (middle > SLOW_MS)
-                this.scale = Math.max(LEAST_SCALE, this.scale / Math.SQRT2);
+                this.mostPx = Math.max(LEAST_PX, canvas.width * canvas.height / 2);
         }
-        const [width, height] = [fullWidth, fullHeight].map((px) => Math.round(px * this.scale));
+        const scale = Math.min(1, Math.sqrt(this.mostPx / (fullWidth * fullHeight)));
+        const [width, height] = [fullWidth, fullHeight].map((px) => Math.round(px * scale));
         if (canvas.width !== width || canvas.height !== height)
             Object.assign(canvas, { width, height });
     }
