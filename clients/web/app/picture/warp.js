@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Shows the newest picture from the present camera until the server's picture of that camera arrives: draws the picture by WebGL 2 on a
-// mesh over its depth grid, once per animation frame in which the camera has moved. Places that the picture does not show are hatched.
-// Loaded when the camera first moves.
+// mesh over its depth grid, once per animation frame in which the camera has moved. A grey lattice covers places that the picture does not
+// show. Loaded when the camera first moves.
 import { same } from '../../core/camera.js';
 import { depthAt, FLOATS, isNear, moveBy, warpMatrix } from '../../core/warp_mesh.js';
+import { isWhole } from '../../core/wire.js';
 import { make } from '../common/dom.js';
 
 const KEPT = 3; // number of depth grids that may be decoded before their pictures are
@@ -38,15 +39,16 @@ const BEHIND = `#version 300 es
 void main() {
     gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 1.0, 1.0);
 }`;
-const HATCH = `#version 300 es
+const LATTICE = `#version 300 es
 precision highp float;
 uniform vec2 greys;
 uniform float step;
 out vec4 colour;
 void main() {
-    colour = vec4(vec3(mod(gl_FragCoord.x - gl_FragCoord.y, 2.0 * step) < step ? greys.x : greys.y), 1.0);
+    vec2 line = mod(vec2(gl_FragCoord.x + gl_FragCoord.y, gl_FragCoord.x - gl_FragCoord.y), step);
+    colour = vec4(vec3(min(line.x, line.y) < 0.15 * step ? greys.x : greys.y), 1.0);
 }`;
-const GREYS = { light: [0.8, 0.85], dark: [0.21, 0.26] }, HATCH_PX = 4;
+const GREYS = { light: [0.72, 0.84], dark: [0.34, 0.24] }, LATTICE_PX = 14;
 
 // Returns { program, at(name) }; at() returns the location of a uniform.
 function programOf(gl, ...sources) {
@@ -68,6 +70,7 @@ export class Warp {
     constructor({ session, viewport, modules }) {
         Object.assign(this, { session, viewport, modules, updates: 0, mostPx: Infinity, intervals: [], last: 0, count: 0 });
         this.grids = [];    // newest depth grids: { id, depth, parts: [{ grid, mesh }] or null until decoded, fails }, newest last
+        this.held = null;   // newest frame, decoded but not drawn on the viewport's canvas: { frame, picture }
         this.source = null; // picture that WebGL draws: { picture, camera, parts, isLoaded }
         this.canvas = make('canvas', { id: 'warp', 'aria-hidden': 'true' });
         this.canvas.style.display = 'none';
@@ -90,7 +93,7 @@ export class Warp {
             return false;
         try {
             this.mesh = programOf(gl, MESH, PICTURE);
-            this.hatch = programOf(gl, BEHIND, HATCH);
+            this.lattice = programOf(gl, BEHIND, LATTICE);
         } catch (error) {
             console.warn(`pictures are not warped: ${error.message}`);
             return false;
@@ -173,7 +176,7 @@ export class Warp {
             this.source = { picture, camera: picture.ownCamera, parts: known.parts, isLoaded: false };
         if (!this.isWanted || !this.load())
             return this.hide();
-        if (this.isShown && same(camera, picture.camera))
+        if (this.isShown && this.painted === this.source && same(camera, picture.camera))
             return false;
         this.paint(camera);
         picture.camera = camera;
@@ -182,7 +185,24 @@ export class Warp {
         return true;
     }
 
+    // Keeps a decoded frame that will be shown warped, which saves drawing it on the viewport's canvas. Returns false if it must be drawn.
+    hold(decoded) {
+        if (isWhole(decoded.frame))
+            this.held?.picture.close();
+        else
+            this.putHeld();
+        this.held = this.isShown && isWhole(decoded.frame) ? decoded : null;
+        return this.held !== null;
+    }
+
+    putHeld() {
+        if (this.held)
+            this.viewport.put(this.held);
+        this.held = null;
+    }
+
     hide() {
+        this.putHeld();
         const { picture } = this.session;
         if (picture?.ownCamera)
             Object.assign(picture, { camera: picture.ownCamera, moved: null });
@@ -194,13 +214,15 @@ export class Warp {
 
     // Hands the picture and its mesh to WebGL. Returns false if the picture is no longer on the canvas.
     load() {
-        const { gl, source, session, viewport } = this;
+        const { gl, source, session, viewport, held } = this;
         if (source.isLoaded)
             return true;
         if (source.picture !== session.picture)
             return false;
         gl.bindTexture(gl.TEXTURE_2D, this.texture);
-        gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA, gl.RGBA, gl.UNSIGNED_BYTE, viewport.canvas);
+        const pixels = held?.frame.seq === source.picture.seq ? held.picture : viewport.canvas;
+        gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+        source.size = [pixels.displayWidth ?? pixels.width, pixels.displayHeight ?? pixels.height]; // may be a pixel more than the frame's
         for (const part of source.parts)
             this.loadPart(part);
         source.isLoaded = true;
@@ -262,16 +284,17 @@ export class Warp {
         gl.bindTexture(gl.TEXTURE_2D, this.texture);
         gl.activeTexture(gl.TEXTURE1);
         gl.uniform1i(mesh.at('masks'), 1);
-        gl.uniform2f(mesh.at('size'), picture.fullWidth, picture.fullHeight);
+        gl.uniform2fv(mesh.at('size'), source.size);
         for (const part of parts)
             this.paintPart(part, camera);
         gl.activeTexture(gl.TEXTURE0);
         gl.viewport(0, 0, canvas.width, canvas.height);
-        gl.useProgram(this.hatch.program);
-        gl.uniform2fv(this.hatch.at('greys'), GREYS[this.session.shown.backdrop] ?? GREYS.light);
-        gl.uniform1f(this.hatch.at('step'), HATCH_PX * window.devicePixelRatio * canvas.height / this.session.size.height);
+        gl.useProgram(this.lattice.program);
+        gl.uniform2fv(this.lattice.at('greys'), GREYS[this.session.shown.backdrop] ?? GREYS.light);
+        gl.uniform1f(this.lattice.at('step'), LATTICE_PX * window.devicePixelRatio * canvas.height / this.session.size.height);
         gl.drawArrays(gl.TRIANGLES, 0, 3);
         this.isShown = true;
+        this.painted = source;
         canvas.style.display = '';
     }
 

@@ -103,19 +103,24 @@ export class Viewport {
         });
     }
 
+    // Draws one frame on the canvas.
+    put({ frame, picture }) {
+        if (this.canvas.width !== frame.fullWidth || this.canvas.height !== frame.fullHeight) {
+            this.canvas.width = frame.fullWidth;
+            this.canvas.height = frame.fullHeight;
+        }
+        const { x, y, width, height } = frame; // the coded picture may be one pixel wider and higher than the frame
+        this.context.drawImage(picture, 0, 0, width, height, x, y, width, height);
+        picture.close();
+    }
+
     // Draws the pictures that are complete; rectangles wait for the rest of their picture. A picture of another shape is scaled to the
     // viewport's height, undistorted. picture.shownWidth: the viewport's width in pixels of the picture.
     draw() {
         const complete = this.decoded.findLastIndex(({ frame }) => !frame.more) + 1, drawn = this.decoded.splice(0, complete);
-        for (const { frame, picture } of drawn) {
-            if (this.canvas.width !== frame.fullWidth || this.canvas.height !== frame.fullHeight) {
-                this.canvas.width = frame.fullWidth;
-                this.canvas.height = frame.fullHeight;
-            }
-            const { x, y, width, height } = frame; // the coded picture may be one pixel wider and higher than the frame
-            this.context.drawImage(picture, 0, 0, width, height, x, y, width, height);
-            picture.close();
-        }
+        for (const decoded of drawn)
+            if (!this.warp?.hold(decoded))
+                this.put(decoded);
         let decodeMs = 0;
         for (const { frame, decodeMs: ms } of drawn) {
             decodeMs += ms;
