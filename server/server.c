@@ -488,13 +488,14 @@ static void server_finish(struct server *server)
     pthread_mutex_unlock(&server->wake_lock);
     reload_destroy(&server->reload);
     net_destroy(&net);
-    file_writer_stop(&server->file_writer);
+    file_writer_stop(server->file_writer);
     agent_stop(&server->agent);
     if (server->audit)
         record(server, "stop");
     audit_stop(&server->audit);
     plant_import_destroy(&server->import);
     plant_runtime_destroy(&server->runtime);
+    file_writer_destroy(&server->file_writer);
     lease_keeper_destroy(&server->keeper); /* gives the lease back; nothing polls devices any more */
     node_id_release(&server->node_id);
     workers_destroy(&server->workers);

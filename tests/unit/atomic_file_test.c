@@ -170,7 +170,7 @@ TEST(a_failed_write_fails_those_that_build_on_it)
     assert_int_equal(file_writer_settled(writer, &second), -ENOSPC);
     assert_int_equal(file_writer_settled(writer, &none), 0);
     assert_int_equal(queue_held(writer, &owner_a, NULL, 0, &late), 0); /* builds on what is on disk */
-    file_writer_stop(&writer);
+    file_writer_destroy(&writer);
     assert_int_equal(late, 0);
     assert_int_equal(atomic_load(&written), 3); /* the follower of the failed job was not written */
     log_destroy(&log);
@@ -192,7 +192,7 @@ TEST(a_disk_that_hangs_fills_the_queue_and_owners_may_leave)
     assert_int_equal(results[count - 1], ENOENT);
     file_writer_forget(writer, &leaver);
     pthread_mutex_unlock(&gate);
-    file_writer_stop(&writer);
+    file_writer_destroy(&writer);
     assert_int_equal(left, -ECANCELED);
     for (int i = 0; i < count; i++)
         assert_int_equal(results[i], 0);

@@ -174,9 +174,12 @@ CASE(a_note_is_shown_once_it_is_on_disk)
     assert_int_equal(notes_end(notes, f->id, "kim", NOON + S), REFUSAL_NONE);
     assert_int_equal(notes_add(notes, &three, "kim", NOON + S, f->id), REFUSAL_NONE);
     notes_close(&notes); /* a reload: the file gets the change all the same */
-    file_writer_stop(&writer);
+    file_writer_stop(writer);
     open_again(f);
     assert_notes(notes_text(f->notes, NOON + 2 * S), "one three");
+    notes = notes_open(f->log, f->history, writer);
+    notes_close(&notes); /* the daemon ends: the writer has stopped, and is destroyed after its owners */
+    file_writer_destroy(&writer);
     mem_free(spoiled);
     mem_free(mended);
 }

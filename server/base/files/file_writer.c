@@ -82,17 +82,24 @@ struct file_writer *file_writer_start(struct log *log, void (*notify)(void *arg)
     writer->notify = notify;
     writer->arg = arg;
     if (!thread_start(&writer->thread, log, "file writer", run, writer))
-        file_writer_stop(&writer);
+        file_writer_destroy(&writer);
     return writer;
 }
 
-void file_writer_stop(struct file_writer **pointer)
+void file_writer_stop(struct file_writer *writer)
 {
-    struct file_writer *writer = *pointer;
     if (!writer)
         return;
     thread_stop(&writer->thread);
     file_writer_collect(writer);
+}
+
+void file_writer_destroy(struct file_writer **pointer)
+{
+    struct file_writer *writer = *pointer;
+    if (!writer)
+        return;
+    file_writer_stop(writer);
     thread_finish(&writer->thread);
     mem_free(writer);
     *pointer = NULL;

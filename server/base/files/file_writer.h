@@ -23,8 +23,11 @@ struct file_writer;
 /* Starts the thread. notify(arg) is called by the thread after each job: call file_writer_collect() then. Returns NULL if the thread cannot
    start (logged). */
 struct file_writer *file_writer_start(struct log *log, void (*notify)(void *arg), void *arg);
-/* Writes what is queued, finishes all jobs and ends the thread. &NULL is allowed; sets *writer to NULL. */
-void file_writer_stop(struct file_writer **writer);
+/* Writes what is queued, finishes all jobs and ends the thread. Owners of jobs may still call file_writer_forget() afterwards. NULL is
+   allowed. */
+void file_writer_stop(struct file_writer *writer);
+/* Stops and frees the writer, after the owners of its jobs. &NULL is allowed; sets *writer to NULL. */
+void file_writer_destroy(struct file_writer **writer);
 /* Queues a job. writer NULL: writes and finishes the job at once. Returns 0 or -errno; on an error the job is finished already. */
 int file_writer_queue(struct file_writer *writer, struct file_job *job);
 /* Finishes all jobs that were written since the last call. Returns whether there were any. */
