@@ -46,6 +46,8 @@ static void print_usage(FILE *out)
           "                   such as https://portal.example; may be given up to 16 times\n"
           "  --behind-proxy   take clients' addresses from X-Forwarded-For, which a reverse proxy on this\n"
           "                   machine sets; requires --host\n"
+          "  --trusted-proxy ADDRESS[/BITS]  the same for a proxy on another machine, such as 10.0.0.10 or\n"
+          "                   10.0.0.0/28; ignore X-Forwarded-For of all others; may be given up to 16 times\n"
           "  --limit NAME=N   change one resource limit; the names are listed below; may be repeated\n"
           "\n"
           "Drawing:\n"
@@ -213,6 +215,7 @@ enum {
     OPTION_NOTICE,
     OPTION_LOCK,
     OPTION_PROXY,
+    OPTION_TRUSTED_PROXY,
     OPTION_TRUST,
     OPTION_HOST,
     OPTION_ORIGIN,
@@ -260,6 +263,7 @@ static const struct option options[] = {
     { "notice", required_argument, NULL, OPTION_NOTICE },
     { "lock-after", required_argument, NULL, OPTION_LOCK },
     { "behind-proxy", no_argument, NULL, OPTION_PROXY },
+    { "trusted-proxy", required_argument, NULL, OPTION_TRUSTED_PROXY },
     { "trust-local", no_argument, NULL, OPTION_TRUST },
     { "host", required_argument, NULL, OPTION_HOST },
     { "origin", required_argument, NULL, OPTION_ORIGIN },
@@ -317,6 +321,10 @@ static int take_access_option(int option, struct access_params *access)
     case OPTION_LOCK:
         return parse_minutes(optarg, &access->lock_min) ? -1 : usage_error("--lock-after: expected minutes, at most 1440, not", optarg);
     case OPTION_PROXY: access->behind_proxy = true; return -1;
+    case OPTION_TRUSTED_PROXY:
+        return access_add_proxy(access, optarg)
+                   ? -1
+                   : usage_error("--trusted-proxy: expected ADDRESS or ADDRESS/BITS with at least 1 bit (at most 16), not", optarg);
     case OPTION_TRUST: access->trust_local = true; return -1;
     case OPTION_HOST:
         return add_host(access, optarg) ? -1 : usage_error("--host: expected a name without port (at most 16 names), not", optarg);

@@ -5,6 +5,7 @@
 #include <arpa/inet.h>
 #include <ctype.h>
 #include <errno.h>
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
@@ -69,6 +70,56 @@ bool access_name_is_address(const char *name)
 {
     struct in6_addr any;
     return inet_pton(AF_INET, name, &any) == 1 || inet_pton(AF_INET6, name, &any) == 1;
+}
+
+/* Reads a numeric address; IPv4 addresses as ::ffff:a.b.c.d. Returns false if the text is none. */
+static bool read_address(const char *text, uint8_t out[16])
+{
+    static const uint8_t mapped[12] = { [10] = 0xff, [11] = 0xff };
+    if (inet_pton(AF_INET6, text, out) == 1)
+        return true;
+    memcpy(out, mapped, sizeof(mapped));
+    return inet_pton(AF_INET, text, out + sizeof(mapped)) == 1;
+}
+
+bool access_add_proxy(struct access_params *params, const char *text)
+{
+    struct access_network *network = &params->proxies[params->proxy_count];
+    size_t n = strcspn(text, "/");
+    char address[64] = "", *end = NULL;
+    bool four = memchr(text, ':', n) == NULL;
+    if (params->proxy_count == ACCESS_MAX_NAMES || n >= sizeof(address))
+        return false;
+    memcpy(address, text, n);
+    long most = four ? 32 : 128, bits = text[n] && isdigit((unsigned char)text[n + 1]) ? strtol(text + n + 1, &end, 10) : most;
+    if (!read_address(address, network->address) || (text[n] && (!end || *end)) || bits < 1 || bits > most)
+        return false;
+    network->bits = (int)bits + (four ? 96 : 0);
+    params->proxy_count++;
+    params->behind_proxy |= access_is_proxy(params, "127.0.0.1") || access_is_proxy(params, "::1");
+    return true;
+}
+
+static bool contains(const struct access_network *network, const uint8_t address[16])
+{
+    int bytes = network->bits / 8, rest = network->bits % 8;
+    return !memcmp(network->address, address, (size_t)bytes) &&
+           (rest == 0 || (network->address[bytes] ^ address[bytes]) >> (8 - rest) == 0);
+}
+
+static bool is_listed(const struct access_params *params, const char *text)
+{
+    uint8_t address[16];
+    bool found = false;
+    for (int i = 0; read_address(text, address) && i < params->proxy_count && !found; i++)
+        found = contains(&params->proxies[i], address);
+    return found;
+}
+
+bool access_is_proxy(const struct access_params *params, const char *address)
+{
+    const char *four = strncasecmp(address, "::ffff:", 7) ? address : address + 7;
+    return (params->behind_proxy && access_name_is_local(four)) || is_listed(params, address);
 }
 
 bool access_origin(const struct access_params *params, const char *origin, const char *host, bool secure)
@@ -143,21 +194,29 @@ bool access_list_rest(const char *list, const char *prefix, char *out, size_t si
     return false;
 }
 
-bool access_forwarded(const char *list, char *out, size_t size)
+/* Reads one entry of X-Forwarded-For: an address, an IPv6 address also without brackets, an IPv4 address also with a port. */
+static bool read_forwarded(const char *at, size_t n, char *out, size_t size)
+{
+    char word[64];
+    if (n >= sizeof(word) || n >= size)
+        return false;
+    memcpy(word, at, n);
+    word[n] = 0;
+    if (access_name_is_address(word))
+        strcpy(out, word);
+    return access_name_is_address(word) || (access_host_name(word, out, size) && access_name_is_address(out));
+}
+
+bool access_forwarded(const struct access_params *params, const char *list, char *out, size_t size)
 {
     size_t n;
     bool found = false;
     for (const char *at; (at = next_word(&list, &n));) {
-        char word[64];
-        if (n >= sizeof(word))
-            continue;
-        memcpy(word, at, n);
-        word[n] = 0;
-        /* an IPv6 address may come without brackets, and an IPv4 address with a port: tries the whole word first, then the host part */
-        bool bare = access_name_is_address(word) && n < size;
-        if (bare)
-            strcpy(out, word);
-        found = bare || (access_host_name(word, out, size) && access_name_is_address(out));
+        char address[64];
+        bool good = read_forwarded(at, n, address, sizeof(address) < size ? sizeof(address) : size);
+        if (good && (!found || !is_listed(params, address)))
+            strcpy(out, address);
+        found = good;
     }
     return found;
 }

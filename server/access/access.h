@@ -9,10 +9,17 @@
 
 enum { ACCESS_MAX_NAMES = 16 };
 
+struct access_network {
+    uint8_t address[16]; /* IPv4 addresses as ::ffff:a.b.c.d */
+    int bits;            /* number of leading bits that all addresses of the network share, 1..128 */
+};
+
 struct access_params {
     bool open_viewers; /* true: clients without a token get pictures and nothing else */
     /* true: a proxy on this machine forwards connections of other clients, so a loopback address does not prove that a client is local */
     bool behind_proxy;
+    struct access_network proxies[ACCESS_MAX_NAMES]; /* reverse proxies on other machines whose X-Forwarded-For is believed */
+    int proxy_count;
     bool trust_local;                         /* true: clients on this machine need no token, although others do */
     const char *tokens_path;                  /* file of tokens; NULL: tokens are not used */
     const char *openid_path;                  /* path of the file of --openid; NULL: no sign-in with OpenID Connect */
@@ -49,8 +56,14 @@ bool access_list_has(const char *list, const char *word);
 /* Finds the word of a comma-separated list that begins with the prefix and writes the rest of that word to out. Returns false if there
    is none. */
 bool access_list_rest(const char *list, const char *prefix, char *out, size_t size);
-/* Writes the last address of an X-Forwarded-For header, which the nearest proxy added, to out. Returns false if there is none. */
-bool access_forwarded(const char *list, char *out, size_t size);
+/* Parses ADDRESS or ADDRESS/BITS and adds the network to params->proxies. A network that has a loopback address also sets behind_proxy.
+   Returns false if the text is no network, if BITS is 0, or if there are too many. */
+bool access_add_proxy(struct access_params *params, const char *text);
+/* Returns whether the X-Forwarded-For header of a peer with this numeric address is believed. */
+bool access_is_proxy(const struct access_params *params, const char *address);
+/* Writes the client's address from an X-Forwarded-For header to out: the last one that is not an address of params->proxies, since each
+   proxy appends its peer. Returns false if there is none. */
+bool access_forwarded(const struct access_params *params, const char *list, char *out, size_t size);
 /* Returns true if a query argument is a token. Tokens are refused in URLs, because logs and browser histories keep URLs. */
 bool access_argument_is_token(const char *argument);
 

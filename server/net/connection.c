@@ -40,10 +40,10 @@ bool connection_may_open(struct server_context *server, int fd)
     char address[64] = "";
     if (server->connection_count >= server->quotas->at[QUOTA_CONNECTIONS])
         return count_refusal(server, false);
-    /* behind a proxy all connections come from the proxy's address; sessions are limited later, by the address that the proxy forwards */
-    if (server->params.access.behind_proxy)
-        return true;
     lws_get_peer_simple_fd(fd, address, sizeof(address));
+    /* all connections of a proxy come from its address; sessions are limited later, by the address that the proxy forwards */
+    if (access_is_proxy(&server->params.access, address))
+        return true;
     struct address_usage *usage = address_limits_ref(server->limits, address);
     bool good = address_limits_may_connect(server->limits, usage);
     address_limits_unref(server->limits, &usage);
@@ -146,15 +146,16 @@ static bool has_forwarding(struct lws *wsi)
     return false;
 }
 
-/* Finds the client's address; behind a proxy, the address that the proxy forwards. Returns false with *refusal set. */
+/* Finds the client's address; for a trusted proxy, the address that the proxy forwards. Returns false with *refusal set. */
 static bool find_client(struct server_context *server, struct lws *wsi, struct connection *connection, struct http_refusal *refusal)
 {
-    bool proxied = server->params.access.behind_proxy && connection->usage->local;
     char list[512] = "", *address = connection->address;
+    lws_get_peer_simple(wsi, address, sizeof(connection->address));
+    bool proxied = access_is_proxy(&server->params.access, address);
     leave_client(server, connection);
     if (proxied && !connection_header(wsi, WSI_TOKEN_X_FORWARDED_FOR, list, sizeof(list)))
         *refusal = TOO_LONG;
-    if (!list[0] || !access_forwarded(list, address, sizeof(connection->address)))
+    if (list[0] && !access_forwarded(&server->params.access, list, address, sizeof(connection->address)))
         lws_get_peer_simple(wsi, address, sizeof(connection->address));
     connection->client = address_limits_ref(server->limits, address);
     if (proxied && !refusal->status && !address_limits_may_be_named(server->limits, connection->client))

@@ -485,7 +485,7 @@ struct net *net_create(const struct net_params *params)
     server->next_client = 1;
     server->quotas = &server->params.access.quotas;
     server->admission.quotas = server->quotas;
-    server->limits = address_limits_create(server->quotas, !params->access.behind_proxy);
+    server->limits = address_limits_create(server->quotas, !params->access.behind_proxy && params->access.proxy_count == 0);
     server->login_throttle = login_throttle_create();
     server->session_context = (struct session_context){
         .alarm_texts = &server->alarm_texts,

@@ -51,7 +51,10 @@ static void read_list(const char *text)
     access_list_has(text, "plantcast.v1");
     if (access_list_rest(text, "Authorization-Bearer.", out, sizeof(out)))
         require(out[0] && strlen(out) < sizeof(out) && !strpbrk(out, " ,\t"), "a word");
-    if (access_forwarded(text, out, sizeof(out)))
+    struct access_params params = { 0 };
+    if (access_add_proxy(&params, text))
+        require(access_is_proxy(&params, text) || strchr(text, '/'), "a network has its own address");
+    if (access_forwarded(&params, text, out, sizeof(out)))
         require(access_name_is_address(out), "an address");
 }
 

@@ -5,7 +5,6 @@
 
 #include "tests/support/test.h"
 
-
 #include "base/mem.h"
 #include "message/message_parse.h"
 #include "message/names.h"
@@ -171,13 +170,61 @@ TEST(lists_in_headers)
     assert_string_equal(out, "pc_1");
     assert_false(access_list_rest("plantcast.v1, Authorization-Bearer.", "Authorization-Bearer.", out, sizeof(out)));
     assert_false(access_list_rest("Authorization-Bearer.12345", "Authorization-Bearer.", out, 5));
-    assert_true(access_forwarded("10.0.0.1, 203.0.113.7", out, sizeof(out)));
-    assert_string_equal(out, "203.0.113.7");
-    assert_true(access_forwarded("203.0.113.7:1234", out, sizeof(out)) && !strcmp(out, "203.0.113.7"));
-    assert_true(access_forwarded("unknown, [2001:db8::1]:99", out, sizeof(out)) && !strcmp(out, "2001:db8::1"));
-    assert_true(access_forwarded("2001:db8::1", out, sizeof(out)) && !strcmp(out, "2001:db8::1"));
-    assert_false(access_forwarded("203.0.113.7, unknown", out, sizeof(out))); /* only the last address of the header comes from our proxy */
-    assert_false(access_forwarded("", out, sizeof(out)));
+}
+
+TEST(a_forwarded_address_is_the_one_that_a_proxy_appended)
+{
+    static const struct {
+        const char *list, *address;
+    } cases[] = { { "10.0.0.1, 203.0.113.7", "203.0.113.7" },
+                  { "203.0.113.7:1234", "203.0.113.7" },
+                  { "unknown, [2001:db8::1]:99", "2001:db8::1" },
+                  { "2001:db8::1", "2001:db8::1" },
+                  { "198.51.100.1, 203.0.113.7, 10.0.0.10", "203.0.113.7" }, /* two trusted proxies in a row */
+                  { "198.51.100.1, 203.0.113.7, fd00:1::7, 10.0.0.10", "203.0.113.7" },
+                  { "198.51.100.1, unknown, 10.0.0.10", "10.0.0.10" }, /* nobody vouches for what is before an unknown peer */
+                  { "10.0.0.11, 10.0.0.10", "10.0.0.11" },             /* a client on the proxy's host */
+                  { "10.0.0.10", "10.0.0.10" },
+                  { "203.0.113.7, unknown", NULL }, /* only the last address of the header comes from our proxy */
+                  { "203.0.113.7, 1.2.3.4.5.6.7.8.9.0.1.2.3.4.5.6.7.8.9.0.1.2.3.4.5.6.7.8.9.0.1.2.3.4.5.6.7.8", NULL },
+                  { "", NULL } };
+    struct access_params params = { 0 };
+    assert_true(access_add_proxy(&params, "10.0.0.8/30") && access_add_proxy(&params, "fd00:1::/32"));
+    assert_false(params.behind_proxy);
+    for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
+        char out[64] = "before";
+        bool found = access_forwarded(&params, cases[i].list, out, sizeof(out));
+        if (found != (cases[i].address != NULL) || (found && strcmp(out, cases[i].address) != 0))
+            fail_msg("%s: %s", cases[i].list, found ? out : "none");
+    }
+}
+
+TEST(only_the_named_networks_are_proxies)
+{
+    static const char *const good[] = { "10.0.0.10", "10.1.0.0/16", "192.0.2.128/25", "2001:db8::5", "fd00::/7", "::ffff:198.51.100.1" };
+    static const char *const bad[] = { "",          "10.0.0.0/0", "10.0.0.0/33", "10.0.0.0/-1", "10.0.0.0/", "10.0.0.0/8x", "plant.example",
+                                       "10.0.0/24", "::/0",       "::1/129",     "10.0.0.1/ 8", "/8",        "10.0.0.1:80" };
+    static const char *const proxies[] = { "10.0.0.10",   "::ffff:10.0.0.10", "10.1.255.255", "192.0.2.128",
+                                           "192.0.2.255", "2001:db8::5",      "fdff::1",      "198.51.100.1" };
+    static const char *const others[] = { "10.0.0.11", "10.2.0.0", "192.0.2.127", "2001:db8::6", "fe00::1", "127.0.0.1", "198.51.100.2",
+                                          "::1",       "",         "unknown" };
+    struct access_params params = { 0 };
+    for (size_t i = 0; i < sizeof(good) / sizeof(good[0]); i++)
+        assert_true(access_add_proxy(&params, good[i]));
+    for (size_t i = 0; i < sizeof(bad) / sizeof(bad[0]); i++)
+        if (access_add_proxy(&params, bad[i]))
+            fail_msg("accepted: %s", bad[i]);
+    for (size_t i = 0; i < sizeof(proxies) / sizeof(proxies[0]); i++)
+        if (!access_is_proxy(&params, proxies[i]))
+            fail_msg("no proxy: %s", proxies[i]);
+    for (size_t i = 0; i < sizeof(others) / sizeof(others[0]); i++)
+        if (access_is_proxy(&params, others[i]))
+            fail_msg("a proxy: %s", others[i]);
+    assert_false(params.behind_proxy);
+    assert_true(access_add_proxy(&params, "127.0.0.1") && params.behind_proxy); /* so that local clients are not trusted */
+    while (params.proxy_count < ACCESS_MAX_NAMES)
+        assert_true(access_add_proxy(&params, "10.0.0.10"));
+    assert_false(access_add_proxy(&params, "10.0.0.10"));
 }
 
 TEST(tokens_in_queries_are_known_by_name)

@@ -11,18 +11,19 @@ const PROGRAM = '/usr/sbin/haproxy', SHIPPED = new URL('../../../deploy/proxy/ha
 export const missingHaproxy = () => (existsSync(PROGRAM) ? null : 'haproxy is not installed');
 
 export class Haproxy {
-    // renderers: [{ port, agentPort }]; core and standby: { port }
-    static async start(renderers, core, standby = null) {
+    // renderers: [{ port, agentPort }]; core and standby: { port }. host: address of all daemons; ca: file with their certificates
+    static async start(renderers, core, standby = null, { host = '127.0.0.1', ca = null } = {}) {
         const proxy = new Haproxy();
         proxy.folder = mkdtempSync(join(tmpdir(), 'plantcast-haproxy-'));
         proxy.port = await freePort();
-        let text = readFileSync(SHIPPED, 'utf8').replaceAll(/ ssl verify required ca-file \S+/g, '')
+        const tls = ca ? ` ssl verify required ca-file ${ca}` : '';
+        let text = readFileSync(SHIPPED, 'utf8').replaceAll(/ ssl verify required ca-file \S+/g, tls)
             .replace(/bind :443 .*/, `bind 127.0.0.1:${proxy.port}`).replace('/run/haproxy', proxy.folder)
-            .replace('server core 10.0.0.10:8443', `server core 127.0.0.1:${core.port}`);
+            .replace('server core 10.0.0.10:8443', `server core ${host}:${core.port}`);
         if (standby)
-            text = text.replace('# server standby 10.0.0.20:8443', `server standby 127.0.0.1:${standby.port}`);
+            text = text.replace('# server standby 10.0.0.20:8443', `server standby ${host}:${standby.port}`);
         renderers.forEach(({ port, agentPort }, i) => {
-            text = text.replace(`10.0.0.1${i + 1}:8443`, `127.0.0.1:${port}`)
+            text = text.replace(`10.0.0.1${i + 1}:8443`, `${host}:${port}`)
                 .replace(`cookie r${i + 1} agent-port 8404`, `cookie r${i + 1} agent-port ${agentPort}`);
         });
         const file = join(proxy.folder, 'haproxy.cfg');

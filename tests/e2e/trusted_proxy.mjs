@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// HAProxy with the shipped configuration, as a proxy on another host (--trusted-proxy): limits, lock-out, log and audit trail use the
+// client's address, and forged headers change nothing.
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { readFileSync } from 'node:fs';
+import { request } from 'node:https';
+import { networkInterfaces } from 'node:os';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { Haproxy, missingHaproxy } from './support/haproxy.mjs';
+import { Nodes, until } from './support/nodes.mjs';
+import { get, PlainClient } from './support/plain_client.mjs';
+import { freePort } from './support/ports.mjs';
+import { notBuilt } from './support/tiny_plant.mjs';
+
+// The daemons see connections from this address as from another machine, because it is no loopback address.
+const HOST = Object.values(networkInterfaces()).flat().find(({ family, internal }) => family === 'IPv4' && !internal)?.address;
+const options = { timeout: 200000, skip: notBuilt() || (missingHaproxy() ?? (HOST ? false : 'no network interface but loopback')) };
+const SESSIONS = 80, CLIENTS = 20, WRONG = 'x'.repeat(43);
+let nodes, core, renderers, proxy, other;
+
+const path = (name) => join(nodes.plant.folder, name);
+const served = (name) => ['--listen', '0.0.0.0', '--tls-cert', path('cert.pem'), '--tls-key', path('key.pem'), '--host', 'plant.example',
+    '--audit', path(`${name}.audit`)];
+const audited = (name) => readFileSync(path(`${name}.audit`), 'utf8').trim().split('\n').map((line) => JSON.parse(line));
+const bearer = (token, more = '') => `Authorization: Bearer ${token}\r\n${more}`;
+// Asks through HAProxy, as a client with that address.
+const ask = async (localAddress, headers, page = '/api/v1/tags') => (await get(proxy.port, page, 'GET', headers, { localAddress })).status;
+
+// Asks a daemon itself: { status, body }.
+const secure = ({ port }, headers, { host = HOST, page = '/api/v1/tags' } = {}) => new Promise((done, fail) => {
+    request({ host, port, path: page, rejectUnauthorized: false,
+        headers: { Host: 'plant.example', 'X-Forwarded-For': '127.0.0.44', ...headers } }, (response) => {
+        let body = '';
+        response.on('data', (text) => { body += text; }).on('end', () => done({ status: response.statusCode, body }));
+    }).on('error', fail).end();
+});
+
+async function start(name) {
+    const agentPort = await freePort();
+    const node = await nodes.renderer(name, core, '--core-ca', path('cert.pem'), '--agent-port', String(agentPort),
+        '--trusted-proxy', '198.51.100.0/24', '--trusted-proxy', HOST, ...served(name));
+    return Object.assign(node, { agentPort });
+}
+
+before(async () => {
+    if (options.skip)
+        return;
+    nodes = await Nodes.create();
+    nodes.trustsLocal = false;
+    const made = spawnSync('openssl', ['req', '-x509', '-newkey', 'ec', '-pkeyopt', 'ec_paramgen_curve:prime256v1', '-nodes', '-days', '2',
+        '-keyout', path('key.pem'), '-out', path('cert.pem'), '-subj', '/CN=plant.example',
+        '-addext', `subjectAltName=DNS:plant.example,DNS:localhost,IP:127.0.0.1,IP:${HOST}`]);
+    assert.equal(made.status, 0);
+    core = await nodes.core(0, '--trusted-proxy', HOST, ...served('core'));
+    Object.defineProperty(core, 'url', { value: `wss://127.0.0.1:${core.port}` });
+    renderers = [await start('r1'), await start('r2')];
+    proxy = await Haproxy.start(renderers, core, null, { host: HOST, ca: path('cert.pem') });
+    await until('both nodes and the core up', async () => [...Object.values(await proxy.servers().catch(() => ({ none: {} }))),
+        ...Object.values(await proxy.servers('core').catch(() => ({ none: {} })))].every(({ status }) => /^UP/.test(status)));
+});
+after(async () => {
+    await proxy?.destroy();
+    await nodes?.destroy();
+});
+
+test('eighty sessions of twenty clients on two nodes are all let in, with the default limits', options, async (t) => {
+    const clients = [];
+    t.after(() => clients.forEach((client) => client.close()));
+    for (let i = 0; i < SESSIONS; i++) {
+        const client = await PlainClient.open(proxy.port, { localAddress: `127.0.0.${10 + i % CLIENTS}` });
+        clients.push(client);
+        client.say({ type: 'hello', token: nodes.tokens.viewer, width: 64, height: 64, codecs: ['jpeg'] });
+        await client.text('welcome', 20000);
+    }
+    assert.deepEqual(clients.map(({ closed }) => closed).filter(Boolean), []);
+    const addresses = new Set([...audited('r1'), ...audited('r2')].filter(({ event, how }) => event === 'login' && how === 'stream')
+        .map(({ from }) => from));
+    assert.deepEqual([...addresses].sort(), Array.from({ length: CLIENTS }, (_, i) => `127.0.0.${10 + i}`));
+});
+
+test('one client with wrong tokens is slowed down, and nobody else; also where it forges X-Forwarded-For', options, async () => {
+    const [liar, user] = ['127.0.0.40', '127.0.0.41'];
+    for (const page of ['/api/v1/tags', '/api/v1/history?tags=TI-1']) { // at the renderers, and at the core
+        const answers = [], forged = `X-Forwarded-For: ${user}\r\nForwarded: for=${user}\r\nX-Real-IP: ${user}\r\n`;
+        for (let i = 0; i < 25; i++)
+            answers.push(await ask(liar, bearer(WRONG, forged), page));
+        assert.ok(answers.includes(401) && answers.at(-1) === 429, answers.join(' '));
+        assert.equal(await ask(user, bearer(nodes.tokens.viewer), page), 200);
+    }
+    for (const [name, node] of [['r1', renderers[0]], ['r2', renderers[1]], ['core', core]]) {
+        const refused = audited(name).filter(({ event, result }) => event === 'login' && result === 'refused');
+        assert.deepEqual([...new Set(refused.flatMap(({ from }) => from ?? []))], [liar], name);
+        assert.match(node.program.said, /login from 127\.0\.0\.40 by HTTP: token \(unknown\)/);
+        assert.ok(!node.program.said.includes(`login from ${user} by HTTP: token (unknown)`));
+    }
+});
+
+test('an action through a renderer is recorded with the client\'s address', options, async () => {
+    const client = await PlainClient.open(proxy.port, { localAddress: '127.0.0.43' });
+    client.say({ type: 'hello', token: nodes.tokens.operator, width: 64, height: 64, codecs: ['jpeg'] });
+    await client.text('welcome');
+    client.say({ type: 'note', seq: 1, tag: 'TI-1', text: 'permit 4711' });
+    await client.text('notes');
+    client.close();
+    const note = audited('core').find(({ event }) => event === 'note');
+    assert.deepEqual([note?.who, note?.from], ['anna', '127.0.0.43']);
+});
+
+test('headers of a peer that is no trusted proxy are ignored', options, async () => {
+    other = await nodes.start(['--port', String(await freePort()), '--trusted-proxy', '198.51.100.1', ...served('other')]);
+    const direct = (host, headers) => secure(other, headers, { host }).then(({ status }) => status);
+    assert.equal(await direct(HOST, { Authorization: `Bearer ${WRONG}` }), 401);
+    assert.deepEqual(audited('other').filter(({ event }) => event === 'login').map(({ from }) => from), [HOST]);
+    assert.equal(await direct('127.0.0.1', { Authorization: `Bearer ${nodes.tokens.viewer}` }), 403, 'a local proxy needs --behind-proxy');
+});
+
+test('as a renderer, HAProxy takes a daemon that draws for a core, and no other, and the answer says why', options, async () => {
+    const asked = (node) => secure(node, {}, { page: '/readyz?role=render' });
+    assert.equal((await asked(renderers[0])).status, 200);
+    assert.equal((await asked(core)).status, 200);
+    assert.equal((await secure(other, {}, { page: '/readyz' })).status, 200);
+    const { status, body } = await asked(other);
+    assert.deepEqual([status, /^not a renderer: this daemon was started without --role render/.test(body)], [503, true], body);
+});
