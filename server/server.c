@@ -426,17 +426,20 @@ static bool make_keeper(struct server *server)
     if (!take_seat(server, name))
         return false;
     server->follows = true;
+    char *maintenance_path = mem_printf("%s/" LEASE_MAINTENANCE_FILE, server->runtime->services.history_folder);
     const struct lease_keeper_params params = {
         .log = server->log,
         .counters = server->counters,
         .postgres = &plant->history.postgres,
         .plant = plant->name,
         .node = name,
+        .maintenance_path = maintenance_path,
         .won = on_won,
         .lost = on_lost,
         .arg = server,
     };
     server->context.keeper = server->keeper = lease_keeper_create(&params);
+    mem_free(maintenance_path);
     return server->keeper;
 }
 

@@ -33,7 +33,7 @@ struct supervision {
     int64_t looked_ns;
     bool ready, stuck, said_refused;
     size_t said_sessions;
-    bool said_lacks;
+    const char *said_core; /* as in struct net_status */
 };
 
 struct supervision *supervision_create(struct log *log, struct counters *counters)
@@ -73,25 +73,24 @@ void supervision_starting(struct supervision *supervision, const char *what)
     service_patience_status(supervision->patience, what);
 }
 
-static void say_ready(struct supervision *supervision)
+static void say_ready(struct supervision *supervision, const char *core)
 {
     service_patience_end(&supervision->patience);
-    service_notify("READY=1\nSTATUS=ready");
+    service_notify("READY=1\nSTATUS=%s", core ? core : "ready");
     supervision->ready = true;
 }
 
-static void say_status(struct supervision *supervision, size_t sessions, bool lacks_standby)
+static void say_status(struct supervision *supervision, size_t sessions, const char *core)
 {
     bool refused = atomic_load(&supervision->refused);
     if (!atomic_exchange(&supervision->reloaded, false) && refused == supervision->said_refused && sessions == supervision->said_sessions &&
-        lacks_standby == supervision->said_lacks)
+        core == supervision->said_core)
         return;
     supervision->said_refused = refused;
     supervision->said_sessions = sessions;
-    supervision->said_lacks = lacks_standby;
-    service_notify("STATUS=%zu session%s%s%s", sessions, sessions == 1 ? "" : "s",
-                   refused ? "; the last reload was refused, an older configuration is in force" : "",
-                   lacks_standby ? "; no standby follows this core: the log says why" : "");
+    supervision->said_core = core;
+    service_notify("STATUS=%s%s%zu session%s%s", core ? core : "", core ? "; " : "", sessions, sessions == 1 ? "" : "s",
+                   refused ? "; the last reload was refused, an older configuration is in force" : "");
 }
 
 /* Sends the watchdog message from the event loop, and only while the render thread is alive: if either hangs, the service manager
@@ -111,11 +110,11 @@ void supervision_tick(struct supervision *supervision, const struct net_status *
 {
     int64_t now_ns = clock_mono_ns(), every_ns = supervision->watchdog_ns ? supervision->watchdog_ns / 4 : CHECK_INTERVAL_NS;
     if (!supervision->ready && render_service_ready(status->render_service))
-        say_ready(supervision);
+        say_ready(supervision, status->core);
     if (!supervision->ready || now_ns - supervision->looked_ns < (every_ns < CHECK_INTERVAL_NS ? every_ns : CHECK_INTERVAL_NS))
         return;
     supervision->looked_ns = now_ns;
-    say_status(supervision, status->sessions, status->lacks_standby);
+    say_status(supervision, status->sessions, status->core);
     look(supervision, status->render_service, now_ns);
     if (status->certificate_ends_s)
         counter_set(counters_add(supervision->all, "plantcast_certificate_expiry_timestamp_seconds", "gauge",

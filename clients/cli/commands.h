@@ -22,6 +22,8 @@ int cmd_history(int argc, char **argv);
 int cmd_ready(int argc, char **argv);
 /* Makes a daemon on this machine send its sessions to other daemons. */
 int cmd_drain(int argc, char **argv);
+/* Begins or ends the maintenance of a standby core. */
+int cmd_standby(int argc, char **argv);
 /* Makes a daemon on this machine reload its plant, and prints the result. */
 int cmd_reload(int argc, char **argv);
 /* Copies history, journal and configuration of a plant into a folder. */

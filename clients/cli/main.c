@@ -47,6 +47,7 @@ static const struct cli_command {
     { "init", "set up the systemd service plantcastd@NAME with a certificate and first tokens", cmd_init },
     { "ready", "check whether a daemon serves pictures; the exit status is the answer", cmd_ready },
     { "drain", "move all user sessions of a daemon on this machine to other daemons", cmd_drain },
+    { "standby", "let a leading core lead alone while its standby is down for maintenance", cmd_standby },
     { "reload", "let a daemon on this machine reload its plant file and tag list, and print the result", cmd_reload },
     { "history", "add readings to the recorded history of a plant, or export them as CSV", cmd_history },
     { "backup", "back up a plant or all files of a service plantcastd@NAME; the daemon may run", cmd_backup },

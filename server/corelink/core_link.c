@@ -43,7 +43,7 @@ struct core_link {
     struct core_link_params params;
     char authorization[TOKEN_BYTES + 16]; /* value of the HTTP authorization header; empty: none */
     int stop_fd;
-    counter *up, *connects, *refused, *behind;
+    counter *up[CORE_URLS], *connects, *refused, *behind;
     /* --- below: used only by the link's thread */
     struct mirrored *readings; /* buffer for one reading of each tag */
     struct text in;
@@ -342,7 +342,7 @@ static void set_up(struct core_link *link)
     link->is_up = true;
     link->up_index = link->turn.index;
     pthread_mutex_unlock(&link->thread.lock);
-    counter_set(link->up, 1 + link->turn.index);
+    counter_set(link->up[link->turn.index], 1);
     counter_inc(link->connects, 1);
     host_turn_succeeded(&link->turn);
     log_info(link->params.log, "core: %s: receiving readings", link->params.urls[link->turn.index]);
@@ -678,7 +678,7 @@ static void lost(struct core_link *link)
     for (size_t i = 0; i < plant->source_count; i++)
         store_link_lost(link->params.store, (int)i, now_ns);
     mem_free(all);
-    counter_set(link->up, 0);
+    counter_set(link->up[link->turn.index], 0);
     answer_waiting(link);
     char *said = link->hosts[link->turn.index].said[link->address];
     if (strcmp(link->why, said) != 0)
@@ -732,6 +732,15 @@ static bool read_token(struct core_link *link)
     return good;
 }
 
+static void add_up_counters(struct core_link *link)
+{
+    for (int i = 0; i < CORE_URLS && link->params.urls[i]; i++) {
+        char *name = mem_printf("plantcast_core_up{core=\"%s\"}", link->params.urls[i]);
+        link->up[i] = counters_add(link->params.counters, name, "gauge", CORE_UP_HELP);
+        mem_free(name);
+    }
+}
+
 struct core_link *core_link_start(const struct core_link_params *params)
 {
     struct core_link *link = mem_new(sizeof(*link));
@@ -739,7 +748,7 @@ struct core_link *core_link_start(const struct core_link_params *params)
     link->params = *params;
     link->last_arrival = &link->arrivals;
     link->readings = mem_array(params->plant->tag_count + 1, sizeof(*link->readings));
-    link->up = counters_add(c, "plantcast_core_up", "gauge", "Number of the core that sends readings: 1 is the first, 0 none.");
+    add_up_counters(link);
     link->connects = counters_add(c, "plantcast_core_connects_total", "counter", "Connections to a core that delivered readings.");
     link->refused =
         counters_add(c, "plantcast_core_refused_total", "counter", "Connections refused: the core does not belong to this renderer.");

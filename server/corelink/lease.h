@@ -7,8 +7,9 @@
    follower may bid for the row only if it has seen the row unchanged for LEASE_NS, no promise of its own binds it, and the row names it
    as standby or names no standby. A bid changes the row only if the row is still as the bidder saw it, so one of two bids wins, and a
    leader that has renewed meanwhile stays. The leader counts only promises of the node that the row names as its standby, as confirmed
-   by a renewal: no other node may bid. LEASE_HOLD_NS is shorter than LEASE_NS by more than the clocks of two machines can drift apart in
-   that time. Clocks of different machines are never compared. */
+   by a renewal: no other node may bid. A leader whose standby is in maintenance names itself as standby, and promises itself without a
+   message. LEASE_HOLD_NS is shorter than LEASE_NS by more than the clocks of two machines can drift apart in that time. Clocks of
+   different machines are never compared. */
 #ifndef CORELINK_LEASE_H
 #define CORELINK_LEASE_H
 #include <stdbool.h>

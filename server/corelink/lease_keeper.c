@@ -31,12 +31,12 @@ struct lease_keeper {
     timer_t timer; /* kernel timer that ends the process when the lease expires */
     bool has_timer;
     struct {
-        counter *active, *epoch, *age, *database, *standby, *differs;
+        counter *active, *here, *epoch, *age, *database, *standby, *differs, *maintenance;
     } counters;
     /* --- below: used by the keeper's thread only */
     struct postgres_link *link; /* connection to the database; NULL: none */
     bool looks;                 /* true: the present row is unknown and must be read from the database */
-    bool told_won, told_lost;
+    bool told_won, told_lost, told_alone;
     char said[POSTGRES_WHY_BYTES], led_by[LEASE_NODE_BYTES];
     /* `beat` of the row when it first named another core that has this node's name; -1: that core turned out to be alive, which was
        logged; 0: the row has never named such a core */
@@ -266,14 +266,34 @@ static void bid(struct lease_keeper *keeper)
     }
 }
 
+/* Extends the lease without the database while the row names this core itself as its standby: then no other core may bid. */
+static void promise_itself(struct lease_keeper *keeper)
+{
+    pthread_mutex_lock(&keeper->thread.lock);
+    lease_promised(&keeper->lease, keeper->node, now_of_lease());
+    set_timer(keeper);
+    pthread_mutex_unlock(&keeper->thread.lock);
+}
+
+static void tell_maintenance(struct lease_keeper *keeper, bool alone)
+{
+    if (alone && !keeper->told_alone)
+        log_warn(keeper->params.log,
+                 "lease: standby: maintenance: this core leads alone, also without PostgreSQL; no other core takes over");
+    if (!alone && keeper->told_alone)
+        log_info(keeper->params.log, "lease: standby: normal: a standby that follows may take over");
+    keeper->told_alone = alone;
+}
+
 static void renew(struct lease_keeper *keeper)
 {
     char standby[LEASE_NODE_BYTES];
+    bool alone = keeper->params.maintenance_path && access(keeper->params.maintenance_path, F_OK) == 0;
     pthread_mutex_lock(&keeper->thread.lock);
     if (keeper->gone_ns && now_of_lease() - keeper->gone_ns >= STANDBY_GRACE_NS)
         keeper->standby[0] = 0;
-    memcpy(standby, keeper->standby, sizeof(standby));
-    bool is_there = standby[0] && !keeper->gone_ns, follows = is_there && keeper->follows;
+    bool is_there = keeper->standby[0] && !keeper->gone_ns, follows = is_there && keeper->follows;
+    snprintf(standby, sizeof(standby), "%s", alone ? keeper->node : keeper->standby);
     lease_renew(&keeper->lease, standby);
     struct lease_row seen = keeper->lease.row;
     pthread_mutex_unlock(&keeper->thread.lock);
@@ -286,6 +306,7 @@ static void renew(struct lease_keeper *keeper)
         pthread_mutex_unlock(&keeper->thread.lock);
         counter_set(keeper->counters.standby, follows);
         counter_set(keeper->counters.differs, is_there && !follows);
+        tell_maintenance(keeper, alone);
     } else if (changed == 0) {
         look(keeper);
     }
@@ -298,6 +319,7 @@ static void tell(struct lease_keeper *keeper)
     pthread_mutex_lock(&keeper->thread.lock);
     const struct lease *lease = &keeper->lease;
     bool acts = lease_acts(lease, now_ns), lost = lease->lost, leads = lease->leads && lease->until_ns;
+    bool alone = acts && !strcmp(lease->counts, keeper->node);
     bool ends = lost || (leads && now_ns > lease->until_ns - SHUTDOWN_NS);
     int64_t until_ns = lease->until_ns;
     if (lost)
@@ -305,6 +327,8 @@ static void tell(struct lease_keeper *keeper)
     pthread_mutex_unlock(&keeper->thread.lock);
     counter_set(keeper->counters.age, leads ? (now_ns + LEASE_HOLD_NS - until_ns) / 1000 : 0);
     counter_set(keeper->counters.active, acts);
+    counter_set(keeper->counters.here, acts);
+    counter_set(keeper->counters.maintenance, alone);
     if (acts && !keeper->told_won) {
         keeper->told_won = true;
         log_info(keeper->params.log, "lease: this core leads, epoch %lld", (long long)lease->row.epoch);
@@ -325,6 +349,7 @@ static int64_t take_turn(struct lease_keeper *keeper)
     pthread_mutex_lock(&keeper->thread.lock);
     bool leads = keeper->lease.leads;
     pthread_mutex_unlock(&keeper->thread.lock);
+    promise_itself(keeper);
     if (!keeper->told_lost && connect_now(keeper)) {
         if (keeper->looks || !leads)
             look(keeper);
@@ -333,6 +358,7 @@ static int64_t take_turn(struct lease_keeper *keeper)
         else if (keeper->link && !leads)
             bid(keeper);
     }
+    promise_itself(keeper); /* connecting may have taken a second */
     tell(keeper);
     pthread_mutex_lock(&keeper->thread.lock);
     int64_t next_ns = began_ns + (leads ? LEASE_RENEW_NS : LEASE_LOOK_NS), last_ns = keeper->lease.until_ns - SHUTDOWN_NS + 1;
@@ -399,6 +425,14 @@ void lease_keeper_promised(struct lease_keeper *keeper, const char *node, uint64
     pthread_mutex_unlock(&keeper->thread.lock);
 }
 
+bool lease_keeper_is_alone(struct lease_keeper *keeper)
+{
+    pthread_mutex_lock(&keeper->thread.lock);
+    bool alone = lease_acts(&keeper->lease, now_of_lease()) && !strcmp(keeper->lease.counts, keeper->node);
+    pthread_mutex_unlock(&keeper->thread.lock);
+    return alone;
+}
+
 const char *lease_keeper_id(const struct lease_keeper *keeper)
 {
     return keeper->node + name_bytes(keeper->node) + 1;
@@ -418,6 +452,7 @@ static void add_counters(struct lease_keeper *keeper)
 {
     struct counters *c = keeper->params.counters;
     keeper->counters.active = counters_add(c, "plantcast_core_active", "gauge", "1 while this core leads: polls devices, owns alarms.");
+    keeper->counters.here = counters_add(c, "plantcast_core_up{core=\"this\"}", "gauge", CORE_UP_HELP);
     keeper->counters.epoch =
         counters_add(c, "plantcast_core_epoch", "gauge", "Epoch of the lease: rises each time that another core takes the lead.");
     keeper->counters.age =
@@ -427,6 +462,8 @@ static void add_counters(struct lease_keeper *keeper)
     keeper->counters.standby = counters_add(c, "plantcast_core_standby", "gauge", "1 while a named standby follows this core.");
     keeper->counters.differs = counters_add(c, "plantcast_core_standby_differs", "gauge",
                                             "1 while the other core differs in version or configuration and cannot be standby.");
+    keeper->counters.maintenance = counters_add(c, "plantcast_core_standby_maintenance", "gauge",
+                                                "1 while this core leads alone and no other core may take over (plantcast standby).");
 }
 
 static bool make_timer(struct lease_keeper *keeper)
@@ -444,6 +481,7 @@ struct lease_keeper *lease_keeper_create(const struct lease_keeper_params *param
     const struct plant_postgres *postgres = params->postgres;
     int64_t instance = 0;
     keeper->params = *params;
+    keeper->params.maintenance_path = params->maintenance_path ? mem_strdup(params->maintenance_path) : NULL;
     keeper->postgres.url = mem_strdup(postgres->url);
     keeper->postgres.schema = mem_strdup(postgres->schema);
     keeper->postgres.login = postgres->login ? mem_strdup(postgres->login) : NULL;
@@ -487,6 +525,7 @@ void lease_keeper_destroy(struct lease_keeper **pointer)
     if (keeper->stop_fd >= 0)
         close(keeper->stop_fd);
     thread_finish(&keeper->thread);
+    mem_free((char *)keeper->params.maintenance_path);
     mem_free(keeper->postgres.url);
     mem_free(keeper->postgres.schema);
     mem_free(keeper->postgres.login);

@@ -8,13 +8,19 @@
 #include "corelink/lease.h"
 #include "plant/plant.h"
 
+/* help text of the metric plantcast_core_up, which a link and the keeper set */
+#define CORE_UP_HELP "1 while this core leads: it sends readings to this daemon, or (core=\"this\") it is this daemon."
+#define LEASE_MAINTENANCE_FILE "standby-maintenance" /* in the folder of the history; `plantcast standby` makes it */
+
 struct lease_keeper_params {
     struct log *log;
     struct counters *counters;
     const struct plant_postgres *postgres; /* database with the row; copied */
     const char *plant, *node;              /* plant: name of the plant; node: unique name of this node (lease_name()). Both are copied */
-    void (*won)(void *arg);                /* called by the keeper's thread once: this node leads from now on */
-    void (*lost)(void *arg);               /* called by the keeper's thread once: this node no longer leads and the process must end; the
+    /* while this file exists, the leader names itself as standby, so that no other core may bid (copied; NULL: never) */
+    const char *maintenance_path;
+    void (*won)(void *arg);  /* called by the keeper's thread once: this node leads from now on */
+    void (*lost)(void *arg); /* called by the keeper's thread once: this node no longer leads and the process must end; the
                                               kernel ends it soon */
     void *arg;
 };
@@ -31,6 +37,8 @@ bool lease_keeper_start(struct lease_keeper *keeper); /* starts the thread. Retu
    is fine; sets *keeper to NULL. */
 void lease_keeper_destroy(struct lease_keeper **keeper);
 bool lease_keeper_leads(struct lease_keeper *keeper); /* Returns whether this node leads. */
+
+bool lease_keeper_is_alone(struct lease_keeper *keeper); /* Returns whether this node leads and no other core may take over. */
 
 /* --- for a leader: its connected standby --- */
 /* Sets the connected standby; "": its connection has ended. The standby's promises count once the row names it. The row names it for

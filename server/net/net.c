@@ -114,6 +114,19 @@ static void look_around(struct net *net, int64_t now_ns)
     net->server.session_context.cpu_used = 1 - cpu_meter_free(&net->cpu, stat);
 }
 
+/* Returns what the service manager's status says about this core of a pair (static text); NULL: nothing. */
+static const char *core_standing(const struct server_context *server)
+{
+    struct lease_keeper *keeper = server->params.keeper;
+    if (!keeper)
+        return NULL;
+    if (!core_end_leads(server))
+        return server->session_context.core_up ? "standby: follows the core that leads" : "standby: another core leads, or none yet";
+    return lease_keeper_is_alone(keeper)     ? "leads; standby: maintenance, no other core takes over"
+           : !renderers_have_standby(server) ? "leads; no standby follows this core: the log says why"
+                                             : "leads; a standby follows";
+}
+
 static void say_status(const struct server_context *server)
 {
     if (server->params.tick)
@@ -123,7 +136,7 @@ static void say_status(const struct server_context *server)
                                 .sessions = (size_t)server->stream_count,
                                 .busy_percent = admission_busy_percent(&server->admission),
                                 .has_core = !server->params.plant.core_link || server->session_context.core_up,
-                                .lacks_standby = server->params.keeper && core_end_leads(server) && !renderers_have_standby(server),
+                                .core = core_standing(server),
                                 .drains = server->drain_ns != 0,
                                 .certificate_ends_s = server->tls ? tls_ends_s(server->tls) : 0,
                             });
@@ -382,7 +395,7 @@ static void add_counters(struct server_context *server)
         counters_add(c, "plantcast_logins_held_total", "counter", "Log-ins refused unchecked: the address is slowed.");
     server->counters.logins_slowed =
         counters_add(c, "plantcast_logins_slowed_addresses", "gauge", "Addresses slowed after ten wrong tokens within a minute.");
-    server->counters.renderers = counters_add(c, "plantcast_renderers", "gauge", "Renderers connected to this core.");
+    server->counters.renderers = counters_add(c, "plantcast_renderers", "gauge", "Renderers connected to this core, without its standby.");
     server->counters.requests = counters_add(c, "plantcast_http_requests_total", "counter", "HTTP requests.");
 }
 

@@ -26,7 +26,7 @@ struct net_status { /* state of the event loop, passed to the callback at each t
     size_t sessions;
     int busy_percent;           /* percentage of the render thread's time spent on frames that a client waits for */
     bool has_core;              /* true: readings arrive from the core; always true without --role render */
-    bool lacks_standby;         /* true: this core leads a pair of cores, but the other core does not follow it */
+    const char *core;           /* part of this core in a pair of cores (static text); NULL: there is no pair */
     bool drains;                /* true: sessions are being closed so that their clients move to other daemons (drain) */
     int64_t certificate_ends_s; /* expiry of the certificate in force, seconds of UTC since 1970; 0: no certificate */
 };

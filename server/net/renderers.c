@@ -131,7 +131,7 @@ static void count(struct server_context *server)
 {
     int taken = 0;
     for (const struct renderer_peer *renderer = server->renderers; renderer; renderer = renderer->next)
-        taken += renderer->state == RENDERER_TAKEN;
+        taken += renderer->state == RENDERER_TAKEN && !renderer->stands_by;
     counter_set(server->counters.renderers, taken);
 }
 

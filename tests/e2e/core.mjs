@@ -176,7 +176,7 @@ test('another version, and another plant of the same tags, are named by both; th
         await sleep(2500); // the peer retries several times
         assert.equal(core.program.said.split(`renderer ${name}: refused`).length, 2, 'it is said once');
         assert.ok(Object.values(await renderer.tags()).every(({ value }) => value === null));
-        assert.equal(await renderer.metric('plantcast_core_up'), 0);
+        assert.equal(await renderer.metric(`plantcast_core_up{core="${core.url}"}`), 0);
         await renderer.stop();
     }
     assert.equal((await a.tags())['TI-1'].quality_name, 'Good', 'others go on');

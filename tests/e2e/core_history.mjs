@@ -157,7 +157,7 @@ test('without its core a renderer says that it has no history, once in its log; 
     const path = `/api/v1/history?tags=TI-1&${range}&points=50`, before_ = await body(renderer, path), { port } = core;
     const picture = `/snapshot.png?width=240&height=160&at=${iso(77)}`;
     await core.stop('SIGKILL');
-    await until('its loss', async () => await renderer.metric('plantcast_core_up') === 0);
+    await until('its loss', async () => await renderer.metric(`plantcast_core_up{core="${core.url}"}`) === 0);
     for (const one of [path, path, path, picture, `/api/v1/history/gaps?${range}`, '/api/v1/alarms/journal']) {
         const answer = await renderer.fetch(one);
         assert.deepEqual([answer.status, Number(answer.headers.get('retry-after')) > 0], [503, true], one);

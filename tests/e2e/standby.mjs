@@ -2,8 +2,9 @@
 // Two cores and a database: one polls and owns the alarms, the other takes over within 5 s of a kill -9. The two never poll at the same
 // time, whatever is cut, stopped or killed; no operator action is lost, and no notification is sent twice.
 import assert from 'node:assert/strict';
-import { spawnSync } from 'node:child_process';
+import { spawn, spawnSync } from 'node:child_process';
 import { linkSync, renameSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { PlainClient } from './support/plain_client.mjs';
 import { PostgresServer } from './support/postgres_server.mjs';
@@ -67,6 +68,10 @@ test('one of two leads, the other follows and is not ready; a renderer finds who
     assert.equal((await two.other(core).node.fetch('/healthz')).status, 200);
     assert.equal(await core.node.metric('plantcast_core_active'), 1);
     assert.equal(await two.other(core).node.metric('plantcast_core_active'), 0);
+    const link = ({ toOther }) => `plantcast_core_up{core="ws://127.0.0.1:${toOther.port}"}`, here = 'plantcast_core_up{core="this"}';
+    assert.deepEqual([await core.node.metric(here), await core.node.metric(link(core))], [1, 0]);
+    assert.deepEqual([await two.other(core).node.metric(here), await two.other(core).node.metric(link(two.other(core)))], [0, 1]);
+    assert.equal(await core.node.metric('plantcast_renderers'), 1, 'a standby is no renderer');
     assert.deepEqual(await two.network.overlaps(), []);
     assert.equal(terms(two.other(core)), 0);
     t.diagnostic(`${core.name} leads`);
@@ -282,4 +287,58 @@ test('a core of another version or configuration keeps no seat, and a renderer\'
     assert.equal(await core.node.metric('plantcast_core_standby_differs'), 0);
     assert.equal(await (await core.node.fetch('/readyz')).text(), 'ok; a standby follows\n');
     await voter.until('its end', ({ closed }) => closed);
+});
+
+// Receives what a service tells its manager (sd_notify): { said, child }.
+function manager(path) {
+    const told = { said: '' };
+    told.child = spawn('python3', ['-c', `import socket
+s = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+s.bind("${path}")
+while True:
+    print(s.recv(4096).decode(), flush=True)`]);
+    told.child.stdout.on('data', (text) => { told.said += text; });
+    return told;
+}
+
+test('maintenance of the standby: the leader polls on without the database, and no other core takes over', options, async (t) => {
+    const core = await two.leader(), other = two.other(core), history = join(two.plant.folder, core.name, 'history');
+    const standby = (word) => assert.equal(runProgram('plantcast', ['standby', word, history]).code, 0);
+    const alone = (is) => two.waitsFor(`maintenance ${is}`, async () =>
+        await core.node.metric('plantcast_core_standby_maintenance') === is);
+    await two.followed(core);
+    await other.program.stop();
+    standby('maintenance');
+    await alone(1);
+    await core.program.line(/lease: standby: maintenance: this core leads alone/);
+    const since = two.network.now();
+    await server.kill();
+    await core.program.line(/lease: PostgreSQL does not answer/);
+    await sleep(5000); // longer than a lease
+    assert.ok(await two.ready(core));
+    const pause_ms = await two.network.longestPause(since);
+    t.diagnostic(`${pause_ms.toFixed(0)} ms without a poller`);
+    assert.ok(pause_ms < 2000, `${pause_ms}`);
+    await server.restart();
+    const told = manager(join(two.plant.folder, 'notify'));
+    t.after(() => told.child.kill());
+    other.before = ['env', `NOTIFY_SOCKET=${join(two.plant.folder, 'notify')}`];
+    await two.start(other.name);
+    delete other.before;
+    await until('its status', () => /^STATUS=standby: follows the core that leads; 0 sessions$/m.test(told.said));
+    assert.doesNotMatch(told.said, /STATUS=ready/);
+    await two.waitsFor('the database', async () => await core.node.metric('plantcast_core_lease_database_up') === 1);
+    await core.program.stop('SIGKILL');
+    await sleep(5000);
+    assert.equal(await two.ready(other), false, 'the row names the leader alone');
+    await two.start(core.name);
+    await two.leader();
+    assert.ok(await two.ready(core));
+    standby('normal');
+    await alone(0);
+    await two.followed(core);
+    const { pause_ms: change_ms } = await two.takeOver(t, core, kill(core, 'SIGKILL'));
+    t.diagnostic(`${change_ms.toFixed(0)} ms without a poller`);
+    assert.deepEqual(await two.network.overlaps(), []);
+    await two.restart(core);
 });

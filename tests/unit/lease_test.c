@@ -30,6 +30,7 @@ struct lease_node {
     int64_t ahead_ns, sent_ns; /* sent: on its own clock */
     double rate;
     bool waits;
+    bool alone; /* its standby is in maintenance */
     int64_t waits_since_ns;
     int times_led;
 };
@@ -209,7 +210,9 @@ static void ask_database(struct lease_world *world, struct lease_node *node, int
 static void lead(struct lease_world *world, struct lease_node *node, int i)
 {
     int follower = follower_of(world, i);
-    const char name[2] = { follower < 0 ? 0 : (char)('a' + follower), 0 };
+    const char own[2] = { (char)('a' + i), 0 }, other[2] = { follower < 0 ? 0 : (char)('a' + follower), 0 };
+    const char *name = node->alone ? own : other;
+    lease_promised(&node->lease, own, clock_of(world, node));
     /* after a lost connection the node does not know whether its last request arrived */
     if (!node->waits && chance(world, 10) == 0 && node->sent_ns && !world->calm) {
         ask_database(world, node, i, LOOK, "");
@@ -284,7 +287,7 @@ static void disturb(struct lease_world *world)
     if (world->calm || chance(world, 40))
         return;
     int i = chance(world, NODES + 1), k = chance(world, NODES + 1);
-    switch (chance(world, 6)) {
+    switch (chance(world, 7)) {
     case 0:
     case 1: world->cut[i][k] ^= i != k; break;
     case 2: memset(world->cut, 0, sizeof(world->cut)); break;
@@ -295,6 +298,10 @@ static void disturb(struct lease_world *world)
     case 4:
         if (i < NODES)
             world->nodes[i].wakes_ns = world->now_ns + chance(world, 10000) * MS;
+        break;
+    case 5:
+        if (i < NODES)
+            world->nodes[i].alone ^= true;
         break;
     default: world->frozen_ns = world->now_ns + chance(world, 8000) * MS; break;
     }
@@ -335,6 +342,8 @@ TEST(never_two_and_one_in_the_end)
         world->calm = true;
         memset(world->cut, 0, sizeof(world->cut));
         world->frozen_ns = 0;
+        for (int i = 0; i < NODES; i++)
+            world->nodes[i].alone = false;
         run(world, 30 * S);
         if (leaders(world) != 1)
             fail_msg("round %d of seed %u: %d lead after half a minute of calm", round, seed, leaders(world));
@@ -406,6 +415,27 @@ TEST(a_leader_counts_the_standby_that_the_row_names)
     lease_saw(&a, &other, 4 * S);
     assert_true(a.lost);
     assert_false(lease_acts(&a, 4 * S));
+}
+
+TEST(in_maintenance_a_leader_promises_itself_and_no_other_may_bid)
+{
+    const struct lease_row none = { 0 };
+    struct lease a = follower("a", &none, S);
+    lease_bid(&a);
+    lease_won(&a, S);
+    lease_promised(&a, "a", 2 * S);
+    assert_false(lease_acts(&a, 3 * S)); /* the row does not say so yet */
+    lease_renew(&a, "a");
+    lease_renewed(&a, "a", 2 * S);
+    lease_promised(&a, "a", 100 * S); /* without the database */
+    assert_true(lease_acts(&a, 102 * S - 1));
+    assert_false(lease_acts(&a, 102 * S)); /* a process that hangs makes no promise */
+    struct lease b = follower("b", &a.row, 10 * S), restarted = follower("a", &a.row, 10 * S);
+    assert_false(lease_may_bid(&b, 1000 * S));
+    assert_true(lease_may_bid(&restarted, 13 * S));
+    lease_renew(&a, "b"); /* maintenance ends: b may lead as soon as the row names b */
+    lease_promised(&a, "a", 101 * S);
+    assert_false(lease_acts(&a, 102 * S));
 }
 
 /* A restored database has an old row of the same leader: some node may win it next without anybody having seen the leader's later row. */

@@ -20,10 +20,21 @@ static int alive(struct server_context *server, struct http_exchange *request)
     return request_answer_text(request, HTTP_STATUS_OK, "ok\n");
 }
 
+/* Returns whether a load balancer asks whether this daemon may draw for a core (/readyz?role=render). */
+static bool is_asked_as_renderer(struct http_exchange *request)
+{
+    char argument[16];
+    return lws_hdr_copy_fragment(request->wsi, argument, sizeof(argument), WSI_TOKEN_HTTP_URI_ARGS, 0) > 0 &&
+           !strcmp(argument, "role=render");
+}
+
 static int ready(struct server_context *server, struct http_exchange *request)
 {
     if (server->params.keeper && !core_end_leads(server))
         return request_answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "this core is standby: another core leads, or none yet\n");
+    if (is_asked_as_renderer(request) && !server->params.is_core && !server->params.plant.core_link)
+        return request_answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE,
+                                   "not a renderer: this daemon was started without --role render and polls the devices itself\n");
     if (render_service_ready(server->params.plant.render_service))
         return request_answer_text(request, HTTP_STATUS_OK,
                                    !server->params.keeper           ? "ok\n"
