@@ -29,7 +29,8 @@ install: all
 	install -m 755 $(filter-out $(bin)/plantcast-sim,$(programs)) $(root)/bin
 	$(if $(video),install -m 755 $(video) $(root)/bin)
 	install -m 755 $(scripts) $(root)/bin
-	install -m 755 $(modules) deploy/systemd/certbot-hook deploy/systemd/kiosk $(root)/lib/plantcast
+	install -m 755 $(modules) deploy/systemd/certbot-hook deploy/systemd/renew-certificate deploy/systemd/kiosk $(root)/lib/plantcast
+	install -m 755 deploy/prometheus/add $(root)/lib/plantcast/prometheus-add
 	$(if $(readers),install -m 755 $(readers) $(root)/libexec/plantcast)
 	[ ! -d $(bin)/plantcast-import-ifc ] || cp -r $(bin)/plantcast-import-ifc $(root)/libexec/plantcast/
 	cp -r clients/web $(root)/share/plantcast/

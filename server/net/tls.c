@@ -4,6 +4,7 @@
 
 #include <errno.h>
 #include <openssl/err.h>
+#include <openssl/pem.h>
 #include <openssl/x509v3.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,6 +12,7 @@
 #include <sys/stat.h>
 #include <time.h>
 
+#include "base/files/atomic_file.h"
 #include "base/mem.h"
 #include "access/file_watch.h"
 
@@ -127,8 +129,47 @@ void tls_destroy(struct tls **tls_ptr)
     *tls_ptr = NULL;
 }
 
+/* Writes a certificate and its chain, which are public, to a file that all users can read. Returns 0 or -errno. */
+static int write_chain(const SSL_CTX *context, const char *path)
+{
+    STACK_OF(X509) *chain = NULL;
+    struct atomic_file file;
+    char *bytes;
+    BIO *pem = BIO_new(BIO_s_mem());
+    bool good = pem && PEM_write_bio_X509(pem, SSL_CTX_get0_certificate(context)) == 1;
+    SSL_CTX_get0_chain_certs((SSL_CTX *)context, &chain);
+    for (int i = 0; good && i < sk_X509_num(chain); i++)
+        good = PEM_write_bio_X509(pem, sk_X509_value(chain, i)) == 1;
+    long count = good ? BIO_get_mem_data(pem, &bytes) : 0;
+    int error = count > 0 ? atomic_file_begin(&file, path, 0644) : -ENOMEM;
+    if (!error) {
+        error = fchmod(file.fd, 0644) != 0 ? -errno : atomic_file_write(&file, bytes, (size_t)count);
+        if (error)
+            atomic_file_abandon(&file);
+        else
+            error = atomic_file_commit(&file, false);
+    }
+    BIO_free(pem);
+    return error;
+}
+
+/* Puts the certificate in force into the service's folder in /run, where Prometheus and other programs of this machine find the one to
+   trust. */
+static void publish(const struct tls *tls)
+{
+    const char *runtime = getenv("RUNTIME_DIRECTORY");
+    if (!runtime || !*runtime)
+        return;
+    char *path = mem_printf("%.*s/certificate.pem", (int)strcspn(runtime, ":"), runtime);
+    int error = write_chain(tls->checked, path);
+    if (error)
+        log_warn(tls->log, "%s: %s", path, strerror(-error));
+    mem_free(path);
+}
+
 void tls_serve(struct tls *tls, SSL_CTX *context)
 {
+    publish(tls);
     SSL_CTX_set_min_proto_version(context, TLS1_2_VERSION);
     /* TLS 1.2 is used without CBC ciphers; all ciphers of TLS 1.3 are good */
     SSL_CTX_set_cipher_list(context, "ECDHE+AESGCM:ECDHE+CHACHA20");
@@ -145,6 +186,7 @@ void tls_look(struct tls *tls)
     bool cert = file_watch_changed(&tls->cert_watch, tls->cert_path), key = file_watch_changed(&tls->key_watch, tls->key_path);
     if ((!cert && !key) || !check(tls) || !tls->served)
         return;
+    publish(tls);
     if (load(tls->served, tls, &at))
         log_info(tls->log, "TLS: %s: serving the new certificate", tls->cert_path);
     else

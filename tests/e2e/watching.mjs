@@ -2,12 +2,12 @@
 // Monitoring: the rules of deploy/prometheus and the panels of deploy/grafana, in a real Prometheus that reads a real daemon.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
-import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { mkdtempSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { test } from 'node:test';
 import { freePort } from './support/ports.mjs';
-import { missing, TinyPlant } from './support/tiny_plant.mjs';
+import { BIN, missing, Program, TinyPlant } from './support/tiny_plant.mjs';
 
 const RULES = resolve('deploy/prometheus'), absent = missing();
 const noPrometheus = spawnSync('promtool', ['--version']).status !== 0 && 'prometheus is not installed';
@@ -16,7 +16,7 @@ const promtool = (...args) => spawnSync('promtool', args, { cwd: RULES, encoding
 
 test('every rule is one to promtool, fires when it should, and has its place in the runbook', { skip: noPrometheus }, () => {
     for (const args of [['check', 'rules', 'rules.yml'], ['test', 'rules', 'rules.test.yml'], ['check', 'config', 'prometheus.yml'],
-        ['check', 'config', '--syntax-only', 'prometheus-tls.yml']]) {
+        ...['tls', 'cores'].map((name) => ['check', 'config', '--syntax-only', `prometheus-${name}.yml`])]) {
         const { status, stdout, stderr } = promtool(...args);
         assert.equal(status, 0, `${args.join(' ')}: ${stdout}${stderr}`);
     }
@@ -27,8 +27,8 @@ test('every rule is one to promtool, fires when it should, and has its place in 
     assert.deepEqual([...runbook.matchAll(/^## (\w+)$/gm)].map(([, name]) => name), alerts);
 });
 
-// Metrics that are empty for a plant without notifications, certificate, backup and clients.
-const EMPTY = /notify|certificate|backup|histogram_quantile|\[1d|predict_linear/;
+// Metrics that are empty for a plant of one daemon without notifications, certificate, backup and clients.
+const EMPTY = /plantcast_core|plantcast_renderers|notify|certificate|backup|histogram_quantile|\[1d|predict_linear/;
 
 test('Prometheus reads a daemon, takes the rules, and every panel asks for what there is',
     { skip: noPrometheus || (absent.length > 0 ? `not built: ${absent.join(', ')}` : false), timeout: 200000 }, async () => {
@@ -48,7 +48,7 @@ test('Prometheus reads a daemon, takes the rules, and every panel asks for what 
             const { data: { groups } } = await ask('rules');
             for (const rule of groups.flatMap(({ rules }) => rules))
                 assert.equal(rule.health, 'ok', `${rule.name}: ${rule.lastError}`);
-            for (const name of ['operations', 'alarms']) {
+            for (const name of ['operations', 'cores', 'alarms']) {
                 const { panels, templating } = JSON.parse(readFileSync(resolve(`deploy/grafana/${name}.json`), 'utf8'));
                 assert.deepEqual(templating.list.map(({ type }) => type), ['datasource', 'query']);
                 for (const { title, targets } of panels)
@@ -65,7 +65,75 @@ test('Prometheus reads a daemon, takes the rules, and every panel asks for what 
         }
     });
 
-const DASHBOARDS = ['operations', 'alarms', 'trends'];
+// The file of Debian's package: other jobs, and commented rules.
+const STOCK = `global:
+  scrape_interval:     1s # Set the scrape interval.
+rule_files:
+  # - "first_rules.yml"
+scrape_configs:
+  - job_name: 'prometheus'
+    static_configs:
+      - targets: ['localhost:9090']
+`;
+
+test('prometheus-add keeps the file\'s other jobs, and scraping survives the site\'s own certificate',
+    { skip: noPrometheus || (absent.length > 0 ? `not built: ${absent.join(', ')}` : false), timeout: 200000 }, async (t) => {
+        const plant = await TinyPlant.create(), root = mkdtempSync(join(tmpdir(), 'plantcast-monitored-')), run = join(root, 'run');
+        const etc = (...names) => join(root, 'etc', ...names), port = await freePort(), own = await freePort();
+        let daemon, prometheus;
+        t.after(async () => {
+            prometheus?.kill();
+            await daemon?.stop();
+            await plant.destroy();
+            rmSync(root, { recursive: true, force: true });
+        });
+        const shell = (script) => {
+            const { status, stdout, stderr } = spawnSync('sh', ['-euc', script], { encoding: 'utf8', cwd: root,
+                env: { ...process.env, PATH: `${BIN}:${process.env.PATH}`, PLANTCAST_ROOT: root, PLANTCAST_RUN: run } });
+            assert.equal(status, 0, stderr);
+            return stdout;
+        };
+        shell(`plantcast init one --plant ${plant.folder} --host plant.example --port ${port} --root ${root}; mkdir run etc/prometheus`);
+        writeFileSync(etc('prometheus/prometheus.yml'), STOCK);
+        const add = resolve('deploy/prometheus/add');
+        shell(`${add} one`);
+        const config = readFileSync(etc('prometheus/prometheus.yml'), 'utf8');
+        for (const line of STOCK.split('\n'))
+            assert.ok(config.includes(line), line);
+        shell(`${add} one`);
+        assert.equal(readFileSync(etc('prometheus/prometheus.yml'), 'utf8'), config, 'a second run changes nothing');
+        assert.equal(statSync(etc('prometheus/plantcast-one.token')).mode & 0o077, 0);
+        const [, options] = readFileSync(etc('plantcast/one/options'), 'utf8').match(/^PLANTCAST_OPTIONS="(.*)"$/m);
+        shell(`plantcast-prep -o prepared etc/plantcast/one/plant.yaml`);
+        daemon = new Program('plantcastd', [etc('plantcast/one/plant.yaml'), '--prepared', join(root, 'prepared'),
+            ...options.split(' ')], { env: { ...process.env, RUNTIME_DIRECTORY: run } });
+        await daemon.line(/ready/);
+        prometheus = spawn('prometheus', [`--config.file=${etc('prometheus/prometheus.yml')}`,
+            `--storage.tsdb.path=${join(root, 'data')}`, `--web.listen-address=127.0.0.1:${own}`], { stdio: 'ignore' });
+        const scrapes = async (since) => { // waits until the daemon was scraped after that time
+            for (const end = Date.now() + 60000; ; await sleep(200)) {
+                const { data } = await fetch(`http://127.0.0.1:${own}/api/v1/targets`).then((answer) => answer.json()).catch(() => ({}));
+                const target = data?.activeTargets.find(({ labels }) => labels.plant === 'one');
+                if (target?.health === 'up' && Date.parse(target.lastScrape) > since)
+                    return target.labels;
+                assert.ok(Date.now() < end, JSON.stringify(target));
+            }
+        };
+        assert.equal((await scrapes(0)).job, 'plantcast');
+        shell(`cd etc/plantcast/one/tls
+            openssl req -x509 -newkey ec -pkeyopt ec_paramgen_curve:prime256v1 -nodes -keyout ca.key -out ca.pem -days 9 \\
+                -subj "/CN=Works CA"
+            openssl req -newkey ec -pkeyopt ec_paramgen_curve:prime256v1 -nodes -keyout new.key -out new.csr -subj "/CN=plant.example" \\
+                -addext "subjectAltName=DNS:plant.example"
+            openssl x509 -req -in new.csr -CA ca.pem -CAkey ca.key -CAcreateserial -copy_extensions copy -days 9 -out new.pem
+            cat new.pem ca.pem >fullchain.pem; cat new.key >privkey.pem`);
+        await daemon.line(/serving the new certificate/);
+        const renewed = Date.now();
+        await scrapes(renewed);
+        assert.equal(statSync(join(run, 'certificate.pem')).mode & 0o777, 0o644);
+    });
+
+const DASHBOARDS = ['operations', 'cores', 'alarms', 'trends'];
 const TYPES = ['row', 'stat', 'timeseries', 'table', 'state-timeline', 'bargauge', 'gauge', 'piechart', 'barchart'];
 test('dashboards are what Grafana reads: panels in their grid, variables that are there', () => {
     for (const name of DASHBOARDS) {
