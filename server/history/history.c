@@ -168,6 +168,17 @@ static void drop_edges(struct history_points *points, int64_t from_us, int64_t t
     points->count = last - first;
 }
 
+/* Drops buckets before the range except the last one: each month's file contributed such a bucket. */
+static void drop_early_buckets(struct history_buckets *buckets, int64_t from_us)
+{
+    size_t first = 0;
+    while (first + 1 < buckets->count && buckets->at[first + 1].t_us <= from_us)
+        first++;
+    for (size_t i = first; i < buckets->count; i++)
+        buckets->at[i - first] = buckets->at[i];
+    buckets->count -= first;
+}
+
 static void shorten(struct history_series *out, int64_t stretch_us)
 {
     struct gather gather = { .out = out, .length_us = stretch_us };
@@ -209,11 +220,12 @@ int history_series(struct history_reader *reader, const char *tag, int64_t from_
            it */
         bool leads = i + 1 < count && months[i] < first && months[i + 1] >= first;
         bool follows = i > 0 && months[i] > last && months[i - 1] <= last;
-        if ((months[i] >= first && months[i] <= last) || (level < 0 && (leads || follows)))
+        if ((months[i] >= first && months[i] <= last) || leads || (level < 0 && follows))
             error = read_month(reader, months[i], tag, level, from_us, to_us, &gather);
     }
     if (!error && level < 0)
         drop_edges(&out->points, from_us, to_us);
+    drop_early_buckets(&out->buckets, from_us);
     if (!error && level < 0 && out->points.count > (size_t)max_points + 2)
         shorten(out, stretch_us);
     mem_free(months);

@@ -25,7 +25,8 @@ struct history_series {
     bool step;
     struct history_points points; /* points, ascending; including the last one before and the first one after the requested time span */
     int64_t bucket_us;            /* length of a bucket; 0: the series consists of points, not buckets */
-    /* buckets, ascending. Between two buckets that do not adjoin, the line is straight (of a step tag, the value holds) */
+    /* buckets, ascending; the first one begins at or before the requested time span if there is such a bucket. Between two buckets that do
+       not adjoin, the line is straight (of a step tag, the value holds) */
     struct history_buckets buckets;
 };
 /* Reads the series of a tag between two times: its points if they are at most max_points, else buckets. */

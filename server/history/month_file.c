@@ -65,7 +65,8 @@ static const char *const sql[SQL_COUNT] = {
     [SQL_RECENT_OF] = "SELECT t, v, q FROM recent WHERE tag = ?",
     [SQL_HELD_OF] = "SELECT t, v, q FROM held WHERE tag = ?",
     [SQL_ROLLUPS] = "SELECT t, low, high, mean, first, last, good_us, bad_us, q FROM rollup"
-                    " WHERE level_s = ? AND tag = ? AND t > ? AND t <= ? ORDER BY t",
+                    " WHERE level_s = ?1 AND tag = ?2 AND t <= ?4 AND t >= coalesce((SELECT max(t) FROM rollup"
+                    " WHERE level_s = ?1 AND tag = ?2 AND t <= ?3), ?3) ORDER BY t",
     [SQL_RECENT_ALL] = "SELECT tag, t, v, q FROM recent UNION ALL SELECT tag, t, v, q FROM held",
     [SQL_ALL_TAGS] = "SELECT id FROM tag",
     [SQL_CUT_SAMPLES] = "DELETE FROM sample WHERE tag = ? AND t < ?",

@@ -97,7 +97,8 @@ void month_file_end_read(struct month_file *file);
 /* Appends the points of a tag between two times, ascending, with the last point before and the first point after that span if the file
    has them. */
 int month_file_points(struct month_file *file, const char *tag, int64_t from_us, int64_t to_us, struct history_points *out);
-/* Appends the rollup buckets of a tag that overlap from_us..to_us. *until_us receives the end of the last existing bucket. */
+/* Appends the rollup buckets of a tag that begin in from_us..to_us, and the last bucket that begins before. *until_us receives the end of
+   the last existing bucket. */
 int month_file_buckets(struct month_file *file, const char *tag, enum history_level level, int64_t from_us, int64_t to_us,
                        struct history_buckets *out, int64_t *until_us);
 /* A time span in which nothing was recorded: the daemon did not run, or the clock was set forward. */

@@ -167,7 +167,7 @@ int month_file_buckets(struct month_file *file, const char *tag, enum history_le
     sqlite3_stmt *rollups = month_sql(file, SQL_ROLLUPS);
     sqlite3_bind_int64(rollups, 1, length_us / US_PER_S);
     sqlite3_bind_int64(rollups, 2, id);
-    sqlite3_bind_int64(rollups, 3, from_us - length_us);
+    sqlite3_bind_int64(rollups, 3, from_us);
     sqlite3_bind_int64(rollups, 4, to_us);
     int code;
     while ((code = database_step(&file->db, rollups)) == SQLITE_ROW) {

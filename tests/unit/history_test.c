@@ -290,6 +290,29 @@ CASE(an_import_is_rolled_up_again)
     mem_free(points);
 }
 
+/* A steady tag has few points: the bucket before the requested span says that the tag has a value at its beginning. */
+CASE(a_span_between_sparse_points_begins_with_the_bucket_before)
+{
+    enum { COUNT = 400, APART_S = 1000 };
+    struct history_point *points = mem_array(COUNT, sizeof(*points));
+    struct history_series series;
+    for (int i = 0; i < COUNT; i++)
+        points[i] = (struct history_point){ NOVEMBER + (i - COUNT / 2) * APART_S * S, i, 0 }; /* half of them in October */
+    for (int month = 0; month < 2; month++) {
+        struct month_file *file = open_file(s, month == 0 ? NOVEMBER - S : NOVEMBER);
+        assert_int_equal(month_file_import(file, 0, points + month * COUNT / 2, COUNT / 2), 0);
+        month_file_close(&file);
+    }
+    for (int64_t from_us = NOVEMBER - 2500 * S; from_us < NOVEMBER + 2500 * S; from_us += 500 * S) {
+        assert_int_equal(history_series(s->reader, "TT-1", from_us, from_us + 1200 * S, 20, &series), 0);
+        assert_int_equal(series.bucket_us, 120 * S);
+        assert_true(series.buckets.count >= 2 && series.buckets.at[0].t_us <= from_us);
+        assert_true(series.buckets.at[1].t_us + series.bucket_us > from_us);
+        history_series_finish(&series);
+    }
+    mem_free(points);
+}
+
 /* No line spans the time between two runs. */
 CASE(a_restart_leaves_a_gap)
 {
