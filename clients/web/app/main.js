@@ -58,7 +58,7 @@ function refresh() {
 const BUTTONS = { fit: 'fit', home: 'home', measure: 'measure', snapshot: 'snapshot', theme: 'theme', hold: 'hold', 'share-open': 'share',
     'help-open': 'help', 'account-open': 'account', 'time-toggle': 'past', 'alarm-strip': 'alarms', 'views-toggle': 'views',
     'picture-toggle': 'picture', 'engineer-toggle': 'engineer', 'import-toggle': 'import', 'assets-toggle': 'assets',
-    'display-toggle': 'display', 'more-toggle': 'more' };
+    'split-toggle': 'split', 'display-toggle': 'display', 'more-toggle': 'more' };
 for (const [id, name] of Object.entries(BUTTONS))
     byId(id).addEventListener('click', does(name));
 
@@ -113,6 +113,8 @@ session.on('params', async () => {
     refresh();
     if ([params.hidden, params.isolate, params.ghost].some((ids) => ids?.length > 0))
         modules.get('shown');
+    if (params.split)
+        modules.get('split');
     for (const half of [params, params.split ?? {}]) {
         if (half.isolines?.length > 0 || session.model?.group(half.group)?.directed)
             modules.get('isolines');

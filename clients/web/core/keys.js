@@ -11,7 +11,7 @@ const SHIFTED = { ArrowLeft: 'KeyA', ArrowRight: 'KeyD', ArrowUp: 'KeyW', ArrowD
 const COMMANDS = {
     f: 'fit', h: 'home', '?': 'help', b: 'assets', '/': 'search', Escape: 'escape', Backspace: 'back',
     t: 'top', i: 'corner', o: 'projection', v: 'views', p: 'picture', x: 'hide', g: 'ghost', l: 'only', u: 'showAll', m: 'timings',
-    e: 'alarms', y: 'past', n: 'live', ' ': 'hold', r: 'measure', c: 'snapshot', k: 'share', z: 'theme',
+    e: 'alarms', y: 'past', n: 'live', ' ': 'hold', r: 'measure', c: 'snapshot', k: 'share', z: 'theme', j: 'split',
 };
 export const TAP_S = 1 / 15; // each press of a key immediately causes this many seconds of motion; a key held for longer moves steadily
 export const HOLD_S = 0.25;

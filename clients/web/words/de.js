@@ -30,7 +30,8 @@ lines: Isolinien
 look: Schattierung
 show: Zeigen
 views: Ansichten, Schnitt, sichtbare Anlagenteile
-picture: Bild: Vergleich, Licht, geteilte Ansicht
+picture: Bild: Vergleich, Licht
+split: Geteilte Ansicht
 history: Verlauf
 fit: Einpassen
 home: Grundansicht

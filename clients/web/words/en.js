@@ -30,7 +30,8 @@ lines: Contour lines
 look: Shading
 show: Show
 views: Views, section, visible equipment
-picture: Picture: comparison, light, split view
+picture: Picture: comparison, light
+split: Split view
 history: History
 fit: Fit to picture
 home: Home view

@@ -30,7 +30,8 @@ lines: 등치선
 look: 음영
 show: 보기
 views: 시점, 단면, 설비 표시
-picture: 화면: 비교, 조명, 화면 분할
+picture: 화면: 비교, 조명
+split: 화면 분할
 history: 이력
 fit: 화면에 맞춤
 home: 기본 시점

@@ -75,8 +75,6 @@ height: Höhe
 height.why: Höhenwinkel der Sonne, Grad
 around: Umgebung
 around.why: Umgebung
-split: Geteilte Ansicht
-right: Rechte Seite
 
 [arrows]
 title: Richtungen
@@ -99,8 +97,8 @@ neighbours: Aus Nachbarn
 neighbours.why: Gefüllt und gepunktet
 
 [split]
-one: Einzeln
-two: Nebeneinander
+right: Was die rechte Hälfte zeigt
+end: Geteilte Ansicht beenden
 
 [environment]
 sky: Himmel
@@ -360,11 +358,53 @@ day: Tag
 day.why: Letzte 24 Stunden
 week: Woche
 week.why: Letzte 7 Tage
+month: 30 Tage
+month.why: Letzte 30 Tage
+range: Zeitraum
+range.why: Zeitraum eingeben, zum Beispiel: letzte 8 h, gestern 22:00 bis 06:00, 2026-11-20 bis 2026-11-21
+last: letzte {span}
+between: {from} bis {to}
+example.minutes: letzte 15 min
+example.hours: letzte 8 h
+example.today: heute
+example.yesterday: gestern
+example.night: gestern 22:00 bis 06:00
+unread: „{text}“ ist kein Zeitraum in der Vergangenheit. Zum Beispiel: {example}
+earlier: Früher
+later: Später
+in: Vergrößern
+out: Verkleinern
+back: Voriger Zeitraum
+add: Tag hinzufügen
+none: Kein Tag passt zu „{text}“
+full: Höchstens {count} Tags: zuerst einen entfernen
+tag: Tag
+at: Fadenkreuz
+now: Jetzt
+then: Gezeigt
+min: Min
+mean: Mittel
+max: Max
+known: Bekannt
+focus: Diese Kurve hervorheben und ihre Grenzen zeigen
+chart: Diagramme. Pfeiltasten bewegen das Fadenkreuz, Plus und Minus zoomen, Bildtasten verschieben, Enter zeigt den Zeitpunkt.
+table: Werte und Statistik
+raised: {alarm}, ausgelöst {time}
 remove: {tag} entfernen
 gaps: Schraffiert: kein Wert von {tags}
 failed: Kein Trend: {why}
 unsaved: Nicht exportiert: {why}
 uncharted: dieser Server wurde ohne Diagramme gebaut (npm fehlte)
+
+[compare]
+title: Zwei Zeiten vergleichen
+why: Eine zweite Hälfte zu einer anderen Zeit zeigen, mit derselben Kamera
+right: Diese Hälfte zeigt
+ago: Zeit dieser Hälfte
+at: In dieser Hälfte zu einer Zeit gehen
+chosen: gewählte Zeit
+earlier: {span} früher
+end: Vergleich beenden
 
 [time]
 before: Vorheriger Alarm
@@ -381,6 +421,7 @@ live: Zurück zu Live
 now: Jetzt
 ago: {instant} · vor {age}
 lost: {source}: ausgefallen
+uncounted: Zu viele Alarme, um sie hier zu zählen
 unrecorded: nicht aufgezeichnet
 raised(one): {count} Alarm gekommen
 raised(other): {count} Alarme gekommen

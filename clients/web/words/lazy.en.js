@@ -74,8 +74,6 @@ height: Elevation
 height.why: Elevation of the sun, degrees
 around: Backdrop
 around.why: Backdrop
-split: Split view
-right: Right side
 
 [arrows]
 title: Directions
@@ -98,8 +96,8 @@ neighbours: From neighbours
 neighbours.why: Filled and dotted
 
 [split]
-one: Single
-two: Side by side
+right: What the right half shows
+end: End split view
 
 [environment]
 sky: Sky
@@ -359,11 +357,53 @@ day: Day
 day.why: Last 24 hours
 week: Week
 week.why: Last 7 days
+month: 30 days
+month.why: Last 30 days
+range: Time range
+range.why: Type a range, such as: last 8 h, yesterday 22:00 to 06:00, 2026-11-20 to 2026-11-21
+last: last {span}
+between: {from} to {to}
+example.minutes: last 15 min
+example.hours: last 8 h
+example.today: today
+example.yesterday: yesterday
+example.night: yesterday 22:00 to 06:00
+unread: “{text}” is not a time range in the past. Type for example: {example}
+earlier: Earlier
+later: Later
+in: Zoom in
+out: Zoom out
+back: Previous range
+add: Add a tag
+none: No tag matches “{text}”
+full: At most {count} tags: remove one first
+tag: Tag
+at: Crosshair
+now: Now
+then: Time shown
+min: Min
+mean: Mean
+max: Max
+known: Known
+focus: Emphasise this curve and show its limits
+chart: Charts. Arrow keys move the crosshair, plus and minus zoom, Page keys move the range, Enter shows that instant.
+table: Values and statistics
+raised: {alarm}, raised {time}
 remove: Remove {tag}
 gaps: Hatched: no value of {tags}
 failed: No trend: {why}
 unsaved: Not exported: {why}
 uncharted: this server was built without charts (npm was missing)
+
+[compare]
+title: Compare two times
+why: Show a second half at another time, with the same camera
+right: This half shows
+ago: Time of this half
+at: Go to a time in this half
+chosen: chosen time
+earlier: {span} earlier
+end: End the comparison
 
 [time]
 before: Previous alarm
@@ -380,6 +420,7 @@ live: Back to live
 now: Now
 ago: {instant} · {age} ago
 lost: {source}: lost
+uncounted: Too many alarms to count them here
 unrecorded: not recorded
 raised(one): {count} alarm raised
 raised(other): {count} alarms raised

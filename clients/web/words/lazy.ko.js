@@ -74,8 +74,6 @@ height: 고도
 height.why: 태양의 고도, 각도
 around: 배경
 around.why: 배경
-split: 화면 분할
-right: 오른쪽 화면
 
 [arrows]
 title: 방향
@@ -98,8 +96,8 @@ neighbours: 이웃 값
 neighbours.why: 채우고 점으로 표시
 
 [split]
-one: 한 화면
-two: 좌우 분할
+right: 오른쪽 화면에 표시할 것
+end: 화면 분할 끝내기
 
 [environment]
 sky: 하늘
@@ -356,11 +354,53 @@ day: 하루
 day.why: 지난 24시간
 week: 일주일
 week.why: 지난 7일
+month: 30일
+month.why: 지난 30일
+range: 시간 범위
+range.why: 범위를 입력하세요. 예: 최근 8시간, 어제 22:00 ~ 06:00, 2026-11-20 ~ 2026-11-21
+last: 최근 {span}
+between: {from} ~ {to}
+example.minutes: 최근 15분
+example.hours: 최근 8시간
+example.today: 오늘
+example.yesterday: 어제
+example.night: 어제 22:00 ~ 06:00
+unread: “{text}”은(는) 과거의 시간 범위가 아닙니다. 예: {example}
+earlier: 이전
+later: 이후
+in: 확대
+out: 축소
+back: 앞선 범위
+add: 태그 추가
+none: “{text}”와(과) 일치하는 태그가 없습니다
+full: 태그는 최대 {count}개입니다. 먼저 하나를 제거하세요
+tag: 태그
+at: 십자선
+now: 현재
+then: 표시 시각
+min: 최소
+mean: 평균
+max: 최대
+known: 유효
+focus: 이 곡선을 강조하고 한계값 표시
+chart: 차트. 화살표 키로 십자선 이동, 더하기와 빼기로 확대·축소, Page 키로 이동, Enter로 그 시각 표시.
+table: 값과 통계
+raised: {alarm}, {time} 발생
 remove: {tag} 제거
 gaps: 빗금: {tags} 값 없음
 failed: 추세 없음: {why}
 unsaved: 내보내지 못함: {why}
 uncharted: 이 서버는 차트 없이 빌드되었습니다 (npm이 없었음)
+
+[compare]
+title: 두 시각 비교
+why: 같은 카메라로 다른 시각의 화면을 나란히 표시
+right: 이 화면의 시각
+ago: 이 화면의 시각
+at: 이 화면에서 시각으로 이동
+chosen: 선택한 시각
+earlier: {span} 전
+end: 비교 끝내기
 
 [time]
 before: 이전 알람
@@ -377,6 +417,7 @@ live: 실시간으로
 now: 지금
 ago: {instant} · {age} 전
 lost: {source}: 끊김
+uncounted: 알람이 너무 많아 여기서는 세지 않습니다
 unrecorded: 기록 없음
 raised(other): 알람 {count}건 발생
 

@@ -20,7 +20,7 @@ const WALKS = sweep([['dark', RULES], ['light', RULES]], [['dark', RULES, 'light
 const THEMES = { dark: RULES, light: sweep(RULES, COLOURS) };
 // Parts that have opened, by the name of the step: by default the rest of the page is not checked again.
 const PARTS = {
-    card: '#card', place: '#place', picture: '#picture-panel', split: '#picture-panel', views: '#views', display: '#display',
+    card: '#card', place: '#place', picture: '#picture-panel', split: '#split-bar', views: '#views', display: '#display',
     trend: '.lower', alarms: '#alarms', shelve: '#shelve',
     timings: '#timings', help: '#help', cut: '#viewport', measure: '#viewport', share: '#share',
     'engineer-place': '#engineer', 'engineer-gaps': '#engineer', 'engineer-prove': '#engineer', token: '#token',

@@ -106,13 +106,15 @@ test('desktop: two sets of parameters side by side, each with legend and markers
         return clientWidth < 150 || (id === 'health' && scrollWidth > clientWidth);
     }));
     assert.deepEqual(whole, [], 'name and state of the plant have room');
-    await page.locator('#picture-toggle').click();
-    await page.locator('#split-on label').nth(1).click();
-    await page.locator('#legend-right').waitFor();
+    await page.locator('#viewport').focus();
+    await page.keyboard.press('j');
+    await page.locator('#split-bar').waitFor();
+    assert.equal(await page.locator('#right-group').inputValue(), 'pressure', 'the halves differ from the start');
+    await choose('right-group', 'temperature');
+    await page.waitForFunction(() => document.querySelectorAll('.legend:not([hidden])').length === 1);
     assert.deepEqual(await page.locator('.legend:visible').evaluateAll((all) => all.map(({ id }) => id)), ['legend-right'],
         'halves that say the same share one legend');
     await choose('right-group', 'pressure');
-    await page.keyboard.press('Escape');
     await choose('isolines', { index: 2 });
     await settle(page);
     const legends = await page.locator('.legend:visible h2').allTextContents();
@@ -120,6 +122,8 @@ test('desktop: two sets of parameters side by side, each with legend and markers
     const [left, right] = await Promise.all(['#legend', '#legend-right'].map((id) => page.locator(id).boundingBox()));
     const box = await page.locator('#viewport').boundingBox(), middle = box.x + box.width / 2;
     assert.ok(left.x + left.width <= middle && right.x > middle, 'each legend in its half');
+    const bar = await page.locator('#split-bar').boundingBox();
+    assert.ok(bar.x > middle && bar.x + bar.width <= box.x + box.width && bar.y + bar.height <= box.y + box.height, 'in the right half');
     const places = await page.evaluate(() =>
         globalThis.plantcast.overlay.markers.map(({ tag, x, half, alarm }) => ({ group: tag.group, x, half, alarm: Boolean(alarm) })));
     for (const { group, x, half, alarm } of places) {
@@ -128,8 +132,15 @@ test('desktop: two sets of parameters side by side, each with legend and markers
     }
     assert.ok(places.some(({ half }) => half === 0) && places.some(({ half }) => half === 1));
     await shoot(page, 'split');
+    await page.locator('#split-bar button').click();
+    await page.locator('#groups label', { hasText: 'Vibration' }).click();
+    await page.locator('#groups label', { hasText: 'Temperature' }).click();
+    await page.locator('#viewport').focus();
+    await page.keyboard.press('j');
+    await page.waitForFunction(() => document.getElementById('right-group').value === 'vibration'); // the quantity shown before
+    await page.keyboard.press('j');
+    await page.locator('#split-bar').waitFor({ state: 'hidden' });
     await page.locator('#picture-toggle').click();
-    await page.locator('#split-on label').nth(0).click();
     await choose('environment', 'sky');
     await page.locator('#sun-turn').fill('90');
     await choose('show', 'distance');

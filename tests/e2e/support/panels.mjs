@@ -17,7 +17,8 @@ export async function startAlarmed(arrange = () => {}) {
     return [plant, `http://127.0.0.1:${plant.port}/`];
 }
 
-const PARTS = { picture: '#picture-panel.open', views: '#views.open', trend: '#timeline', alarms: '#alarms', timings: '#timings' };
+const PARTS = { picture: '#picture-panel.open', views: '#views.open', split: '#split-bar', trend: '#timeline', alarms: '#alarms',
+    timings: '#timings' };
 
 // Opens everything, one after the other; calls f for each.
 export async function everyPanel(page, f) {
@@ -53,10 +54,9 @@ export async function everyPanel(page, f) {
     await f('place');
     await press('Escape', 'closed');
     await press('p', 'picture');
-    await page.locator('#split-on label').nth(1).click();
-    await f('split');
-    await page.locator('#split-on label').nth(0).click();
     await press('Escape', 'closed');
+    await press('j', 'split');
+    await press('j', 'closed');
     await press('v', 'views');
     await press('Escape', 'closed');
     if (await page.locator('#display-toggle').isVisible()) {

@@ -22,6 +22,7 @@ const ROWS = [
     ['time.title', '', '', 'help.history.keys'],
     ['timings', '', '', '[M]'],
     ['bar.hold', '', '', '[␣]'],
+    ['bar.split', '', '', '[J]'],
     ['bar.measure', '', '', '[R]'],
     ['bar.snapshot', '', '', '[C]'],
     ['bar.share', '', '', '[K]'],

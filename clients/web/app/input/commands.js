@@ -182,6 +182,7 @@ function commandsOf({ session, modules, selection, overlay, saveAddress, refresh
         hold: () => session.recorded && travel(session, session.time.atUs === null ? session.clockUs() - HELD_US : null),
         display: (event) => modules.use('toolbarOverflow', ({ display }) => display.toggle(event), 'display'),
         more: (event) => modules.use('toolbarOverflow', ({ more }) => more.toggle(event), 'more'),
+        split: opens('split'),
         measure: opens('measure'),
         snapshot: () => modules.use('snapshot', (snapshot) => snapshot.save()),
         share: () => modules.use('share', (share) => share.open()),

@@ -1,22 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The panel of the picture: baselines to compare with, scale and range, light, and the right half of a split view.
-import { quantityText, title, zoneClock } from '../../core/format.js';
+// The panel of the picture: baselines to compare with, scale and range, and light.
+import { title, zoneClock } from '../../core/format.js';
 import { sunOf, sunText, towardsSun } from '../../core/sun.js';
 import { say, sayIfKnown } from '../../core/words.js';
 import { sensorsOf } from '../input/commands.js';
-import { byId, make, setText } from '../common/dom.js';
-import { distances, interpolations, Range } from '../common/number_fields.js';
+import { byId, setText } from '../common/dom.js';
+import { Range } from '../common/number_fields.js';
 import { fillSegments, fillSelect, markSegment } from '../common/choices.js';
 import { collapsiblePanel } from '../common/collapsible.js';
 import { Directions } from './directions.js';
 import { Disagreeing } from '../cards/neighbours.js';
-import { LOOKS, SHOWS } from '../toolbar/toolbar.js';
-
-const HALF = {
-    group: 'bar.quantity', show: 'bar.show', distance: 'bar.distance', interpolation: 'bar.interpolation', colormap: 'bar.colours',
-    look: 'bar.look',
-};
-const ENGINEERS_HALF = ['distance', 'interpolation'];
 
 export class Picture {
     constructor({ session, selection, modules, selectTag }) {
@@ -33,7 +26,6 @@ export class Picture {
         byId('baseline-name').addEventListener('keydown', (event) => event.key === 'Enter' && this.keep());
         for (const id of ['sun-turn', 'sun-height'])
             byId(id).addEventListener('input', () => this.moveSun());
-        this.addHalf();
         this.range = new Range(this);
         modules.use('coverage', (coverage) => coverage.fill());
         this.disagreeing = new Disagreeing({ session, selectTag });
@@ -84,42 +76,6 @@ export class Picture {
         setText(byId('sun-text'), say('picture.light', { where: sunText(sun) }));
     }
 
-    // --- the right half
-
-    addHalf() {
-        const choose = (name) => ({ target }) => this.session.setParams({ split: { [name]: target.value } });
-        this.half = Object.fromEntries(Object.keys(HALF).map((name) =>
-            [name, make('select', { id: `right-${name}`, onchange: choose(name) })]));
-        const labels = Object.entries(HALF).map(([name, key]) =>
-            make('label', { class: 'choice' }, make('span', {}, say(key)), this.half[name]));
-        byId('right-half').append(make('div', { class: 'pairs' }, ...labels));
-        fillSegments(byId('split-on'), 'split-on', [['', say('split.one')], ['on', say('split.two')]], (value) =>
-            this.session.setParams({ split: value ? {} : null }));
-    }
-
-    updateHalf({ model, params }) {
-        markSegment(byId('split-on'), params.split ? 'on' : '');
-        byId('right-half').hidden = !params.split;
-        if (!params.split)
-            return;
-        const right = { ...params, ...params.split };
-        const plain = (choices) => choices.map(([value, text]) => [value, text]);
-        const needs = SHOWS.filter(([value]) => ['value', 'operator', right.show].includes(value) ||
-            (value === 'distance' && params.sensor) || (value === 'difference' && params.baseline));
-        const choices = {
-            group : model.groups.map((group) => [group.id, quantityText(group)]),
-            show : plain(needs),
-            distance : plain(distances(model.group(right.group))),
-            interpolation : plain(interpolations(model.group(right.group))),
-            colormap : model.colormaps.map(({ name }) => [name, title(name)]),
-            look : plain(LOOKS),
-        };
-        for (const name of Object.keys(HALF))
-            fillSelect(this.half[name], choices[name], right[name]);
-        for (const name of ENGINEERS_HALF)
-            this.half[name].parentElement.hidden = this.session.role !== 'engineer';
-    }
-
     update() {
         const { model, params } = this.session;
         if (!model || !this.panel.classList.contains('open'))
@@ -134,7 +90,6 @@ export class Picture {
         byId('scale').disabled = !(this.session.range[0] > 0) || params.show === 'operator';
         markSegment(byId('scale'), params.scale ?? 'linear');
         this.updateLight(this.session);
-        this.updateHalf(this.session);
         this.range.update();
     }
 

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Compares two times side by side: the right half of the stage embeds the page without its controls, at another instant. Both halves have
+// one camera and the same parameters.
+import { addressOf } from '../../core/address.js';
+import { same } from '../../core/camera.js';
+import { fieldInstant, fieldText } from '../../core/instant.js';
+import { travel } from '../../core/requests.js';
+import { PARAMS } from '../../core/session.js';
+import { say } from '../../core/words.js';
+import { fillSelect } from '../common/choices.js';
+import { byId, icon, make, setText } from '../common/dom.js';
+
+const AGO_S = [3600, 8 * 3600, 86400, 7 * 86400], FIRST_S = 86400, TICK_MS = 250, HOUR_S = 3600;
+const SHARED = PARAMS.filter((name) => !['split', 'backdrop'].includes(name));
+
+export class Compare {
+    constructor(page) {
+        Object.assign(this, { page, session: page.session, frame: null, atUs: null });
+        const { session } = this;
+        this.date = make('input', { type: 'datetime-local', step: 1, id: 'compare-date', 'aria-label': say('compare.at'),
+            onchange: () => this.go(fieldInstant(this.date.value, this.zone)) });
+        this.ago = make('select', { id: 'compare-ago', 'aria-label': say('compare.ago'), onchange: () => this.choose() });
+        this.said = make('b', {});
+        this.bar = make('section', { class: 'compare-bar', id: 'compare-bar', 'aria-label': say('compare.title') },
+            make('span', {}, say('compare.right')), this.ago, this.date, this.said,
+            make('button', { type: 'button', class: 'icon small', 'aria-label': say('compare.end'), title: say('compare.end'),
+                onclick: () => this.toggle() }, icon('i-close')));
+        session.on('camera', () => this.tellCamera());
+        session.on('params', () => this.tellParams());
+        setInterval(() => this.tick(), TICK_MS);
+    }
+
+    get zone() {
+        return this.session.model.plant.time_zone;
+    }
+
+    // The session in the right half; null until its first picture.
+    get other() {
+        const page = this.frame?.contentWindow?.plantcast;
+        return page?.session.welcomed && page.session.picture ? page.session : null;
+    }
+
+    toggle() {
+        if (this.frame)
+            this.close();
+        else
+            this.open();
+    }
+
+    // Opens the right half a day before the left one, or at the present if the left half shows the past.
+    open() {
+        const { session } = this, { atUs, fromUs } = session.time, now = session.clockUs();
+        session.setParams({ split: null });
+        this.atUs = atUs === null ? Math.max(now - FIRST_S * 1e6, fromUs ?? 0) : null;
+        const choices = [['', say('compare.chosen')], ['now', say('time.now')], ...AGO_S.map((s) => [String(s),
+            say('compare.earlier', { span: say(s < 86400 ? 'age.h' : 'age.d', { n: s / (s < 86400 ? HOUR_S : 86400) }) })])];
+        fillSelect(this.ago, choices, this.atUs === null ? 'now' : '');
+        const time = { atUs: this.atUs }, { camera, params, ownParams } = session;
+        const query = new URLSearchParams(location.search);
+        query.set('theme', document.documentElement.dataset.theme);
+        query.set('pane', 'compare');
+        this.frame = make('iframe', { class: 'compare', src: `./?${query}${addressOf({ camera, params, time, ownParams }, null)}`,
+            title: say('compare.title'), onload: () => this.furnish() });
+        byId('viewport').after(make('div', { class: 'compare-half', id: 'compare-half' }, this.frame, this.bar));
+        document.querySelector('.stage').classList.add('compares');
+        byId('time-compare')?.setAttribute('aria-pressed', 'true');
+        this.show();
+    }
+
+    close() {
+        this.frame = null;
+        byId('compare-half').remove();
+        document.querySelector('.stage').classList.remove('compares');
+        byId('time-compare')?.setAttribute('aria-pressed', 'false');
+    }
+
+    // Removes the controls of the embedded page.
+    furnish() {
+        const { contentDocument: inner } = this.frame;
+        inner.body.classList.add('compared');
+        inner.head.append(inner.importNode(make('link', { rel: 'stylesheet', href: new URL('compared.css', import.meta.url).href })));
+    }
+
+    // Connects the embedded page once it shows a picture: its camera moves this one, and its keys act here.
+    connect(page) {
+        this.connected = page;
+        page.session.on('camera', () => this.frame && this.session.setCamera(page.session.camera));
+        Object.assign(page.handlers, { command: this.page.handlers.command, group: this.page.handlers.group });
+        this.told = null;
+        this.tellCamera();
+        this.tellParams();
+    }
+
+    tick() {
+        const page = this.frame?.contentWindow?.plantcast;
+        if (this.other && this.connected !== page)
+            this.connect(page);
+        if (this.frame)
+            this.show();
+    }
+
+    tellCamera() {
+        if (this.other && this.connected && !same(this.other.camera, this.session.camera))
+            this.other.setCamera(this.session.camera);
+    }
+
+    // Passes on parameters that have changed.
+    tellParams() {
+        if (!this.other || !this.connected)
+            return;
+        if (this.session.params.split)
+            return void this.close();
+        const { params } = this.session, told = this.told ?? this.other.params;
+        const changed = SHARED.filter((name) => JSON.stringify(params[name] ?? null) !== JSON.stringify(told[name] ?? null));
+        this.told = params;
+        if (changed.length > 0)
+            this.other.setParams(Object.fromEntries(changed.map((name) => [name, params[name] ?? null])));
+    }
+
+    choose() {
+        const now = this.session.clockUs(), left = this.session.time.atUs ?? now;
+        if (this.ago.value)
+            this.go(this.ago.value === 'now' ? null : left - Number(this.ago.value) * 1e6, this.ago.value);
+    }
+
+    // us: the instant of the right half; null: the present.
+    go(us, chosen = '') {
+        this.atUs = us;
+        this.ago.value = chosen;
+        if (this.other)
+            travel(this.other, us);
+        this.show();
+    }
+
+    show() {
+        if (document.activeElement !== this.date)
+            this.date.value = this.atUs === null ? '' : fieldText(this.atUs, this.zone);
+        setText(this.said, this.atUs === null ? say('time.now') : '');
+    }
+}

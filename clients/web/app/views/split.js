@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Split view: the same view twice, with a bar over the right half that chooses what the right half shows.
+import { quantityText, title } from '../../core/format.js';
+import { say } from '../../core/words.js';
+import { fillSelect } from '../common/choices.js';
+import { byId, icon, make } from '../common/dom.js';
+import { distances, interpolations } from '../common/number_fields.js';
+import { LOOKS, SHOWS } from '../toolbar/toolbar.js';
+
+const CHOICES = { group: 'bar.quantity', show: 'bar.show', colormap: 'bar.colours', look: 'bar.look', distance: 'bar.distance',
+    interpolation: 'bar.interpolation' };
+const ENGINEERS = ['distance', 'interpolation'];
+
+export class Split {
+    constructor({ session, viewport }) {
+        Object.assign(this, { session, group: null, last: null });
+        const choose = (name) => ({ target }) => session.setParams({ split: { [name]: target.value } });
+        this.selects = Object.fromEntries(Object.keys(CHOICES).map((name) =>
+            [name, make('select', { id: `right-${name}`, onchange: choose(name) })]));
+        const labels = Object.entries(CHOICES).map(([name, key]) =>
+            make('label', { class: `choice ${name}` }, make('span', {}, say(key)), this.selects[name]));
+        this.element = make('section', { class: 'split-bar', id: 'split-bar', hidden: true, 'aria-label': say('split.right') }, ...labels,
+            make('button', { type: 'button', class: 'icon small', 'aria-label': say('split.end'), title: say('split.end'),
+                onclick: () => this.toggle() }, icon('i-close')));
+        viewport.element.append(this.element);
+        session.on('params', () => this.update());
+        session.on('welcome', () => this.update());
+        this.update();
+    }
+
+    toggle() {
+        const { params } = this.session;
+        this.session.setParams({ split: params.split ? null : this.first() });
+    }
+
+    // Returns what the right half shows first: the quantity that was shown last, else the next one, or of the only quantity the limits.
+    first() {
+        const { model, params } = this.session, { groups } = model, now = groups.findIndex(({ id }) => id === params.group);
+        const last = model.group(this.last)?.id ?? groups[(now + 1) % groups.length].id;
+        return last === params.group ? { show: params.show === 'operator' ? 'value' : 'operator' } : { group: last };
+    }
+
+    update() {
+        const { model, params, role } = this.session;
+        if (!model)
+            return;
+        if (this.group !== params.group)
+            this.last = this.group;
+        this.group = params.group;
+        this.element.hidden = !params.split;
+        byId('split-toggle').setAttribute('aria-pressed', String(Boolean(params.split)));
+        if (!params.split)
+            return;
+        const right = { ...params, ...params.split }, group = model.group(right.group);
+        const plain = (choices) => choices.map(([value, text]) => [value, text]);
+        const choices = {
+            group: model.groups.map((one) => [one.id, quantityText(one)]),
+            show: plain(SHOWS.filter(([value]) => ['value', 'operator', right.show].includes(value) ||
+                (value === 'distance' && params.sensor) || (value === 'difference' && params.baseline))),
+            colormap: model.colormaps.map(({ name }) => [name, title(name)]),
+            look: plain(LOOKS),
+            distance: plain(distances(group)),
+            interpolation: plain(interpolations(group)),
+        };
+        for (const [name, select] of Object.entries(this.selects)) {
+            fillSelect(select, choices[name], right[name]);
+            select.parentElement.hidden = ENGINEERS.includes(name) && role !== 'engineer';
+        }
+    }
+}
