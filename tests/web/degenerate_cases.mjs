@@ -26,6 +26,8 @@ import * as section from '../../clients/web/core/section.js';
 import * as splitView from '../../clients/web/core/split_view.js';
 import * as sun from '../../clients/web/core/sun.js';
 import * as timings from '../../clients/web/core/timings.js';
+import * as trendRange from '../../clients/web/core/trend_range.js';
+import * as trendValues from '../../clients/web/core/trend_values.js';
 import * as vector from '../../clients/web/core/vector.js';
 import * as wall from '../../clients/web/core/wall.js';
 import * as wire from '../../clients/web/core/wire.js';
@@ -37,7 +39,7 @@ import * as toolbar from '../../clients/web/app/toolbar/toolbar.js';
 
 const MODULES = { address, approach, callouts, camera, camera_flight: cameraFlight, camera_moves: cameraMoves, clip_gizmo: clipGizmo,
     declutter, format, gestures, history, instant, labels, legend, list_window: listWindow, measure, meters, nearest, patterns, query,
-    scroll, section, split_view: splitView, sun, timings, vector, wall, wire,
+    scroll, section, split_view: splitView, sun, timings, trend_range: trendRange, trend_values: trendValues, vector, wall, wire,
     'app/alarm_bar': alarmBar, 'app/chart_style': chartStyle, 'app/drift': drift, 'app/toolbar': toolbar };
 globalThis.devicePixelRatio = 1; // charts are drawn in device pixels
 export const CASES = [];
@@ -170,11 +172,17 @@ for (const one of [series, buckets]) {
     add('history', 'line', [one, 0, 10e6], ENDS);
     add('history', 'gaps', [one, 0, 10e6]);
     add('history', 'lost', [[one, one], 0, 10e6]);
+    add('trend_values', 'bands', [one], ENDS);
+    add('trend_values', 'statistics', [one, 0, 10e6], ENDS);
+    add('trend_values', 'valueAt', [one, 1.5e6], ENDS);
 }
 add('history', 'limitLines', [[{ limits: { H: 80, L: 20 } }]], { call: (tags) => history.limitLines(tags, () => 0) });
 add('history', 'nextTo', [marks, 1.5e6, false], ENDS);
 add('history', 'clustered', [marks, 2e6], ENDS);
+add('history', 'density', [marks, 0, 10e6, 20], ENDS);
 add('history', 'arrowS', [3600], ENDS);
+add('trend_range', 'zoomed', [[0, 100e6], 0.5, 25e6, 200e6], ENDS);
+add('trend_range', 'panned', [[0, 100e6], 0.5, 200e6], ENDS);
 add('history', 'ticks', [0, 600e6, 6, 3600e6]);
 add('list_window', 'stack', [[20, 30, 20]], { ends: true });
 add('list_window', 'rowAt', [[0, 20, 50, 70], 30]);
@@ -225,13 +233,15 @@ add('wire', 'pictureSize', [640, 360]);
 function drawing(draw, ...given) {
     const at = [], note = (...numbers) => { at.push(numbers); };
     const ctx = { canvas: HD, moveTo: note, lineTo: note, fillRect: note };
-    for (const name of ['save', 'restore', 'beginPath', 'rect', 'clip', 'stroke'])
+    for (const name of ['save', 'restore', 'beginPath', 'rect', 'clip', 'stroke', 'fill', 'closePath'])
         ctx[name] = () => {};
     draw(ctx, ...given, '#000');
     return at;
 }
+add('app/chart_style', 'hatchAlong', [[10, 20], [300, 90]],
+    { ends: true, call: (...given) => drawing(chartStyle.hatchAlong, ...given).length });
+add('app/chart_style', 'triangle', [10, 20], { ends: true, call: (...given) => drawing(chartStyle.triangle, ...given).length });
 add('app/chart_style', 'hatch', [10, 20, 300, 90], { ends: true, call: (...given) => drawing(chartStyle.hatch, ...given).length });
-add('app/chart_style', 'dots', [10, 300, 20], { ends: true, call: (...given) => drawing(chartStyle.dots, ...given).length });
 add('app/drift', 'residuals', [[[0, 3, 2], [1, 4, 4]]], ENDS);
 add('app/drift', 'stretches', [[1, 2, 3, 2], 0.5], { call: (values, sigma) =>
     drift.stretches(values.filter(Number.isFinite), sigma).join(' ').split(/[ ,]/).filter(Boolean).map(Number) });
@@ -241,7 +251,8 @@ add('app/alarm_bar', 'limitText', [{ model, time: { atUs: null } }, { tag: { ind
 
 // Functions that take texts, messages or objects of the page, and classes that represent a session.
 const OTHERS = ['address.addressOf', 'address.readAddress', 'format.unitText', 'format.zoneOf', 'format.qualityText', 'format.title',
-    'format.quantityText', 'format.worst', 'history.ask', 'history.witnesses', 'history.raised', 'instant.fieldInstant',
+    'format.quantityText', 'format.worst', 'history.ask', 'history.witnesses', 'history.raised', 'history.severityOf',
+    'trend_range.readRange', 'trend_values.alarmSpans', 'app/chart_style.strokeAlong', 'instant.fieldInstant',
     'query.readNumbers', 'query.readSensors', 'sun.sunText', 'wall.readWall', 'wire.WireError', 'wire.decodeFrame', 'wire.isGivenUp',
     'app/alarm_bar.AlarmBar', 'app/alarm_bar.asOf', 'app/alarm_bar.badge', 'app/drift.driftCurve', 'app/drift.driftOf',
     'app/drift.driftText',

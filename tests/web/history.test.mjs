@@ -5,9 +5,11 @@ import { test } from 'node:test';
 import { residuals, stretches } from '../../clients/web/app/cards/drift.js';
 import { readAddress, writeAddress } from '../../clients/web/core/address.js';
 import {
-    arrowS, ask, BAD, clustered, gaps, limitLines, line, lost, nextTo, raised, ticks, UNCERTAIN, witnesses,
+    arrowS, ask, BAD, clustered, density, gaps, limitLines, line, lost, nextTo, raised, ticks, UNCERTAIN, witnesses,
 } from '../../clients/web/core/history.js';
 import { fieldInstant, fieldText } from '../../clients/web/core/instant.js';
+import { LEAST_US, panned, readRange, zoomed } from '../../clients/web/core/trend_range.js';
+import { alarmSpans, bands, statistics, valueAt } from '../../clients/web/core/trend_values.js';
 
 const GOOD_CODE = 0, UNCERTAIN_CODE = 0x408f0000, BAD_CODE = 0x80050000;
 const points = (...list) => ({ step: false, bucket_us: 0, points: list });
@@ -26,17 +28,83 @@ test('steps are steps', () => {
     assert.ok(xs[1] < 3 && xs[1] > 2.99);
 });
 
-test('a stretch keeps its spike, and its gap', () => {
-    const stretch = (us, ...rest) => [us, ...rest];
-    const none = stretch(20e6, null, null, null, null, null, 10e6, BAD_CODE);
-    const series = { step: false, bucket_us: 10e6, points: [stretch(0, 1, 99, 5, 2, 3, 0, GOOD_CODE), none] };
-    const [, ys] = line(series, 0, 40e6);
-    assert.deepEqual([Math.max(...ys), Math.min(...ys.filter((y) => y !== null)), ys.at(-1)], [99, 1, null]);
-    const lost = { step: false, bucket_us: 10e6, points: [stretch(0, 1, 2, 1, 2, null, 4e6, BAD_CODE)] };
+test('the line of intervals is that of their means, the band keeps spikes, and a gap breaks both', () => {
+    const none = [20e6, null, null, null, null, null, 10e6, BAD_CODE];
+    const series = { step: false, bucket_us: 10e6, points: [[0, 1, 99, 5, 2, 3, 0, GOOD_CODE], [10e6, 2, 4, 3, 3, 4, 0, GOOD_CODE], none] };
+    assert.deepEqual(line(series, 0, 40e6), [[0, 5, 15, 19.999998, 20], [2, 5, 3, 4, null]]);
+    assert.deepEqual(bands(series), [[[0, 10, 1, 99], [10, 20, 2, 4]]]);
+    const lost = { step: false, bucket_us: 10e6, points: [[0, 1, 2, 1, 2, null, 4e6, BAD_CODE]] };
     assert.equal(line(lost, 0, 10e6)[1].at(-1), null);
-    const ended = { ...lost, points: [stretch(0, 1, 2, 1, 2, null, 0, BAD_CODE)] };
-    assert.equal(line(ended, 0, 40e6)[1].at(-1), null, 'the series ends with the bucket: nothing is known afterwards');
+    const ended = { ...lost, points: [[0, 1, 2, 1, 2, null, 0, BAD_CODE]] };
+    assert.equal(line(ended, 0, 40e6)[1].at(-1), null, 'the series ends with the interval: nothing is known afterwards');
     assert.deepEqual(gaps(lost, 0, 20e6), [{ from: 6, to: 20, severity: BAD }]);
+    assert.deepEqual(bands(points([0, 5, GOOD_CODE])), [], 'points have no band');
+    const apart = { step: false, bucket_us: 10e6, points: [[0, 1, 3, 2, 1, 3, 0, GOOD_CODE], [30e6, 5, 5, 5, 5, 5, 0, GOOD_CODE]] };
+    assert.equal(bands(apart).length, 2, 'intervals that do not adjoin');
+    assert.deepEqual(line(apart, 0, 40e6)[1], [1, 2, 3, 5, 5, 5, 5], 'straight from the last value to the next first one');
+});
+
+test('statistics are means over time, and say for which part of it they are', () => {
+    const of = (...given) => statistics(...given);
+    assert.deepEqual(of(points([0, 0, GOOD_CODE], [10e6, 10, GOOD_CODE]), 0, 20e6), { min: 0, max: 10, mean: 7.5, known: 1 });
+    const holed = points([0, 4, GOOD_CODE], [5e6, null, BAD_CODE], [15e6, 8, UNCERTAIN_CODE]);
+    assert.deepEqual(of(holed, 0, 20e6), { min: 4, max: 8, mean: 6, known: 0.5 });
+    assert.equal(of({ ...points([0, 0, GOOD_CODE], [10e6, 10, GOOD_CODE]), step: true }, 0, 20e6).mean, 5, 'a step holds');
+    assert.deepEqual(of(points([-10e6, 0, GOOD_CODE], [10e6, 20, GOOD_CODE]), 0, 10e6), { min: 10, max: 20, mean: 15, known: 1 }, 'cut');
+    assert.equal(of(points(), 0, 1e6), null);
+    const intervals = { step: false, bucket_us: 10e6, points: [[0, 1, 99, 5, 2, 4, 0, GOOD_CODE], [30e6, 6, 10, 8, 6, 10, 5e6, BAD_CODE]] };
+    const { min, max, mean, known } = of(intervals, 0, 40e6);
+    assert.deepEqual([min, max, known], [1, 99, 35 / 40]);
+    assert.ok(Math.abs(mean - (5 * 10 + 5 * 20 + 8 * 5) / 35) < 1e-9, 'with the straight line between the intervals');
+});
+
+test('the value at an instant is that of the drawn line', () => {
+    const series = points([0, 0, GOOD_CODE], [10e6, 10, GOOD_CODE], [20e6, null, BAD_CODE], [30e6, 7, GOOD_CODE]);
+    assert.deepEqual([-1, 5e6, 15e6, 25e6, 35e6].map((us) => valueAt(series, us)), [null, 5, 10, null, 7]);
+    assert.equal(valueAt({ ...series, step: true }, 9e6), 0);
+    const intervals = { step: false, bucket_us: 10e6, points: [[0, 1, 99, 5, 2, 4, 0, GOOD_CODE], [30e6, 6, 10, 8, 6, 10, 0, GOOD_CODE]] };
+    assert.deepEqual([3e6, 20e6, 31e6].map((us) => valueAt(intervals, us)), [5, 5, 8]);
+});
+
+test('alarms last from when they were raised until they returned, were shelved, or still do', () => {
+    const row = (us, event, before, state, tag = 'A') => ({ time_us: us, event, before, state, tag, kind: 'H', priority: 2, value: 9,
+        limit: 8 });
+    const rows = [row(9, 'raise', 'normal', 'unacknowledged'), row(7, 'clear', 'acknowledged', 'normal'),
+        row(5, 'ack', 'unacknowledged', 'acknowledged'), row(4, 'raise', 'normal', 'unacknowledged'),
+        row(3, 'raise', 'normal', 'suppressed', 'B'), row(2, 'clear', 'unacknowledged', 'returned', 'B')];
+    assert.deepEqual(alarmSpans(rows).map(({ us, endUs, tag }) => [us, endUs, tag]), [[4, 7, 'A'], [9, null, 'A']]);
+});
+
+test('ranges are read as people write them, in three languages', () => {
+    const now = Date.parse('2026-11-26T03:00:00Z') * 1000, iso = (us) => new Date(us / 1000).toISOString().slice(0, 16);
+    const read = (text, zone = 'UTC', at = now) => {
+        const range = readRange(text, at, zone);
+        return range && (range.spanS ?? `${iso(range.fromUs)} ${iso(range.toUs)}`);
+    };
+    for (const text of ['last 8 h', '8h', 'Past 8 hours', 'letzte 8 h', 'die letzten 8 Stunden', '최근 8시간', '지난 8 시간',
+        '480 min'])
+        assert.equal(read(text), 28800, text);
+    assert.deepEqual(['last 30 d', 'letzte 2 Wochen', '최근 15분', '1,5 h'].map((text) => read(text)), [2592000, 1209600, 900, 5400]);
+    const night = '2026-11-25T22:00 2026-11-26T03:00'; // the present is before 06:00
+    for (const text of ['yesterday 22:00 to 06:00', 'gestern 22:00 bis 06:00', 'von gestern 22:00 bis 06:00 Uhr', '어제 22:00 ~ 06:00',
+        '어제 22:00부터 06:00까지', '22:00 to 06:00', 'yesterday 22:00 to now', '2026-11-25 22:00 - today 06:00'])
+        assert.equal(read(text), night, text);
+    assert.equal(read('yesterday 22:00 to 06:00', 'UTC', now + 9 * 3600e6), '2026-11-25T22:00 2026-11-26T06:00');
+    assert.equal(read('yesterday'), '2026-11-25T00:00 2026-11-26T00:00');
+    assert.equal(read('yesterday', 'Asia/Seoul'), '2026-11-24T15:00 2026-11-25T15:00', 'by the clock of the plant');
+    assert.equal(read('2026-11-20 to 2026-11-21'), '2026-11-20T00:00 2026-11-22T00:00', 'whole days');
+    assert.equal(read('2026-11-20T06:30 to 07:15'), '2026-11-20T06:30 2026-11-20T07:15');
+    for (const text of ['', 'noon', 'last h', 'last 9999 d', '22:00', 'tomorrow', '2027-01-01 to 2027-01-02', '25:00 to 26:00', 'to',
+        '1 x'])
+        assert.equal(read(text), null, text);
+});
+
+test('zoom keeps the instant under the pointer, pan the length, and neither goes beyond the present', () => {
+    assert.deepEqual(zoomed([0, 100e6], 0.5, 25e6, 1e12), [12.5e6, 62.5e6]);
+    assert.deepEqual(zoomed([900e6, 1000e6], 2, 950e6, 1000e6), [800e6, 1000e6]);
+    assert.equal(zoomed([0, 100e6], 1e-9, 50e6, 1e12)[1] - zoomed([0, 100e6], 1e-9, 50e6, 1e12)[0], LEAST_US);
+    assert.deepEqual(panned([100e6, 200e6], -0.5, 1e12), [50e6, 150e6]);
+    assert.deepEqual(panned([100e6, 200e6], 5, 250e6), [150e6, 250e6]);
 });
 
 test('gaps are when there was no value; uncertain ones are told apart', () => {
@@ -110,6 +178,12 @@ test('from alarm to alarm, and marks that stand in one place as one', () => {
     assert.deepEqual(clustered(marks, 5).map(({ us, priority, of }) => [us, priority, of.length]), [[10, 3, 1], [20, 1, 2], [50, 4, 1]]);
     assert.deepEqual(clustered([], 5), []);
     assert.deepEqual([900, 3600, 86400, 2592000].map(arrowS), [1, 4, 60, 60], 'a minute at most, also of 30 days');
+});
+
+test('the density counts alarms in equal parts of a span, by the most urgent', () => {
+    const marks = [[-5, 1], [0, 3], [1, 2], [99, 4], [100, 1]].map(([us, priority]) => ({ us, priority }));
+    const { bins, most } = density(marks, 0, 100, 10);
+    assert.deepEqual([bins.length, most, bins[0], bins[9]], [10, 2, { count: 2, priority: 2 }, { count: 1, priority: 4 }]);
 });
 
 test('a date field is by the clock of the plant', () => {

@@ -5,7 +5,7 @@ import { answerText } from './refusals.js';
 import { say } from './words.js';
 
 export const BAD = 2, UNCERTAIN = 1; // severity of a quality: the top two bits of an OPC UA status code
-const severity = (quality) => Math.min(BAD, quality >>> 30);
+export const severityOf = (quality) => Math.min(BAD, quality >>> 30);
 
 // Requests a path with a query, and with the token if there is one. Returns a promise of the response.
 export async function ask(path, query, token, fetcher = fetch) {
@@ -19,10 +19,10 @@ export async function ask(path, query, token, fetcher = fetch) {
     return response;
 }
 
-// Converts a series to seconds and values for a chart; null breaks the line. Spikes stay visible: of a bucket the first, lowest, highest
-// and last value are drawn.
+// Converts a series to seconds and values for a chart; null breaks the line. The line of intervals is that of their means (trend_values.js
+// has the band between lowest and highest value).
 export function line(series, fromUs, toUs) {
-    const xs = [], ys = [];
+    const xs = [], ys = [], { points, bucket_us: length } = series;
     const put = (us, value) => {
         const x = us / 1e6, last = xs.length - 1;
         if (last >= 0 && x <= xs[last])
@@ -30,36 +30,39 @@ export function line(series, fromUs, toUs) {
         xs.push(x);
         ys.push(value);
     };
-    for (const point of series.points) {
-        if (series.bucket_us > 0)
-            putStretch(put, point, series.bucket_us);
+    points.forEach((point, i) => {
+        if (length > 0)
+            putInterval(put, point, length, points[i - 1], points[i + 1]);
         else
             putPoint(put, point, series.step, ys);
-    }
+    });
     const last = ys.findLast((value) => value !== undefined);
-    if (series.points.length > 0 && last !== null && xs.at(-1) < toUs / 1e6)
+    if (points.length > 0 && last !== null && xs.at(-1) < toUs / 1e6)
         put(toUs, last);
     return [xs, ys];
 }
 
 // Adds a point. Of a step tag, a value holds until the next point, so the old value is added just before that point as well.
 function putPoint(put, [us, value, quality], step, ys) {
-    const shown = severity(quality) === BAD ? null : value;
+    const shown = severityOf(quality) === BAD ? null : value;
     const before = ys.at(-1);
     if (step && shown !== null && before !== null && before !== undefined)
         put(us - 1, before);
     put(us, shown);
 }
 
-// Adds a bucket. A bucket that ends without a value (`last` null) breaks the line, even at the end of the series.
-function putStretch(put, [us, low, high, , first, last], lengthUs) {
+// Adds an interval: its mean, and its first and last value where no other interval adjoins. An interval that ends without a value (`last`
+// null) breaks the line, even at the end of the series.
+function putInterval(put, [us, low, , mean, first, last], length, before, after) {
+    const adjoins = (other) => other && other[1] !== null && Math.abs(other[0] - us) <= length * 1.001;
     if (low === null)
         return put(us, null);
-    const falls = (first ?? low) > (last ?? high);
-    put(us, first ?? low);
-    put(us + lengthUs / 3, falls ? high : low);
-    put(us + 2 * lengthUs / 3, falls ? low : high);
-    put(us + lengthUs - 2, last);
+    if (!adjoins(before) || before[5] === null)
+        put(us, first ?? mean);
+    put(us + length / 2, mean);
+    if (!adjoins(after) || last === null)
+        put(us + length - 2, last);
+    return undefined;
 }
 
 // Returns the periods without a value, or with an uncertain one: [{ from, to (seconds), severity }].
@@ -81,10 +84,10 @@ export function gaps(series, fromUs, toUs) {
         add(fromUs, points[0][0], BAD);
     points.forEach((point, i) => {
         const next = points[i + 1]?.[0] ?? toUs, quality = length > 0 ? point[7] : point[2];
-        if (length > 0 && point[6] > 0 && severity(quality) !== BAD)
+        if (length > 0 && point[6] > 0 && severityOf(quality) !== BAD)
             add(point[0], point[0] + point[6], BAD); // marks the whole bucket, because the gap is at an unknown instant within it
-        add(length > 0 && severity(quality) === BAD ? Math.max(point[0], point[0] + length - point[6]) : point[0], next,
-            length > 0 || point[1] !== null ? severity(quality) : BAD);
+        add(length > 0 && severityOf(quality) === BAD ? Math.max(point[0], point[0] + length - point[6]) : point[0], next,
+            length > 0 || point[1] !== null ? severityOf(quality) : BAD);
     });
     return out;
 }
@@ -131,9 +134,12 @@ export function raised(rows) {
         .sort((a, b) => a.us - b.us);
 }
 
-// Returns the first mark of raised() after a time, or with `backwards` the last one before it; null if there is none.
-export const nextTo = (marks, us, backwards) =>
-    (backwards ? marks.findLast((mark) => mark.us < us) : marks.find((mark) => mark.us > us)) ?? null;
+// Returns the first mark of raised() after a time, or with `backwards` the last one before it, of several at one instant the most urgent;
+// null if there is none.
+export function nextTo(marks, us, backwards) {
+    const found = backwards ? marks.findLast((mark) => mark.us < us) : marks.find((mark) => mark.us > us);
+    return marks.filter((mark) => mark.us === found?.us).sort((a, b) => a.priority - b.priority)[0] ?? null;
+}
 
 // Groups marks that are closer together than nearUs: { us, priority (both of the most urgent mark), of: all marks of the group }.
 export function clustered(marks, nearUs) {
@@ -146,6 +152,19 @@ export function clustered(marks, nearUs) {
             out.push({ of: [mark] });
     }
     return out.map(({ of }) => ({ ...of.reduce((gravest, mark) => (mark.priority < gravest.priority ? mark : gravest)), of }));
+}
+
+const MOST_BINS = 5000;
+
+// Counts marks in `count` equal parts of a span: { bins: [{ count, priority (of the most urgent) }], most (in one part) }.
+export function density(marks, fromUs, toUs, count) {
+    const bins = Array.from({ length: Math.max(1, Math.min(MOST_BINS, Math.floor(count) || 1)) }, () => ({ count: 0, priority: Infinity }));
+    for (const { us, priority } of marks) {
+        const bin = bins[Math.floor(((us - fromUs) / (toUs - fromUs)) * bins.length)];
+        if (bin)
+            Object.assign(bin, { count: bin.count + 1, priority: Math.min(bin.priority, priority) });
+    }
+    return { bins, most: bins.reduce((most, bin) => Math.max(most, bin.count), 0) };
 }
 
 // Returns by how many seconds an arrow key moves a slider over that span; at most a minute.

@@ -111,7 +111,8 @@ test('desktop: two sets of parameters side by side, each with legend and markers
     await page.locator('#split-bar').waitFor();
     assert.equal(await page.locator('#right-group').inputValue(), 'pressure', 'the halves differ from the start');
     await choose('right-group', 'temperature');
-    await page.waitForFunction(() => document.querySelectorAll('.legend:not([hidden])').length === 1);
+    await page.locator('#legend').waitFor({ state: 'hidden' });
+    await page.locator('#legend-right').waitFor();
     assert.deepEqual(await page.locator('.legend:visible').evaluateAll((all) => all.map(({ id }) => id)), ['legend-right'],
         'halves that say the same share one legend');
     await choose('right-group', 'pressure');

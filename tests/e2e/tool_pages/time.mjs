@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { openPage, PHONE, settle, shoot, TABLET, travel, waitForHealth, waitForPicture } from '../support/browser.mjs';
+import { arrive, openPage, PHONE, settle, shoot, TABLET, travel, waitForHealth, waitForPicture } from '../support/browser.mjs';
 import { contrastRatio } from '../support/pixels.mjs';
 import { notBuilt, runProgram, TinyPlant } from '../support/tiny_plant.mjs';
 
@@ -106,11 +106,11 @@ test('several tags are compared, each by its unit, and exported', options, async
     assert.ok(await page.locator('#card .add-trend').isHidden(), 'it is there already');
     for (const name of ['TI-2', 'PI-1']) {
         await page.evaluate((tag) => globalThis.plantcast.selectTag(globalThis.plantcast.session.model.tag(tag)), name);
-        assert.equal(await page.locator('#trend-tags li').count(), name === 'TI-2' ? 1 : 2, 'what is only chosen replaces nothing');
+        assert.equal(await page.locator('#trend-tags tbody tr').count(), name === 'TI-2' ? 1 : 2, 'what is only chosen replaces nothing');
         await page.locator('#card .add-trend').click();
     }
-    await page.waitForFunction(() => document.querySelectorAll('#trend-chart .u-legend .u-series').length === 4);
-    assert.equal(await page.locator('#trend-tags li').count(), 3);
+    await page.waitForFunction(() => globalThis.plantcast.trends.series.length === 3);
+    assert.equal(await page.locator('#trend-tags tbody tr').count(), 3);
     const axes = await page.evaluate(() => globalThis.plantcast.trends.chart.axes.filter((axis) => axis.show)
         .map((axis) => axis.label ?? 'time'));
     assert.deepEqual(axes, ['time', '°C', 'bar']);
@@ -128,10 +128,137 @@ test('several tags are compared, each by its unit, and exported', options, async
     await shoot(page, 'trends');
     await page.locator('#trend-span label', { hasText: '1 h' }).click();
     await page.locator('#card .trend').click();
-    assert.deepEqual(await page.locator('#trend-tags li b').allTextContents(), ['PI-1'], 'alone again');
+    assert.deepEqual(await page.locator('#trend-tags tbody b').allTextContents(), ['PI-1'], 'alone again');
     await page.evaluate(() => globalThis.plantcast.showTrend(globalThis.plantcast.session.model.tag('TI-1')));
     for (const name of ['TI-2', 'PI-1'])
         await page.evaluate((tag) => globalThis.plantcast.addTrend(globalThis.plantcast.session.model.tag(tag)), name);
+});
+
+const rangeOf = () => page.evaluate(() => globalThis.plantcast.trends.range);
+const drawn = ([from, to]) => page.waitForFunction((span) => { // the values of that range are drawn
+    const { trends: { span: now, isAsking } } = globalThis.plantcast;
+    return !isAsking && now.every((us, i) => Math.abs(us - span[i]) < 3e6);
+}, [from, to]);
+
+test('a drag zooms, the wheel zooms about the pointer, a drag of the axis pans, and each is undone', options, async () => {
+    await page.waitForFunction(() => globalThis.plantcast.trends.series.length === 3 && globalThis.plantcast.trends.chart);
+    const box = await page.locator('#trend-chart .u-over').boundingBox(), y = box.y + box.height / 2;
+    const [from, to] = await rangeOf(), at = (x) => from + ((to - from) * (x - box.x)) / box.width;
+    const [a, b] = [0.3, 0.7].map((part) => Math.round(box.x + part * box.width));
+    await page.mouse.move(a, y);
+    await page.mouse.down();
+    await page.mouse.move(b, y, { steps: 4 });
+    await page.mouse.up();
+    const zoomed = await rangeOf();
+    assert.ok([a, b].every((x, i) => Math.abs(at(x) - zoomed[i]) < 12e6), JSON.stringify([[a, b].map(at), zoomed]));
+    assert.equal((await shown()).past, false, 'a drag is no click');
+    await drawn(zoomed);
+    assert.match(await page.locator('#trend-range').inputValue(), /^\d{4}-\d\d-\d\d \d\d:\d\d.* to /);
+    await page.mouse.move(box.x + box.width / 4, y);
+    await page.mouse.wheel(0, -200);
+    await page.waitForFunction((long) => { const [begin, end] = globalThis.plantcast.trends.range; return end - begin < long; },
+        (zoomed[1] - zoomed[0]) * 0.9);
+    const closer = await rangeOf(), kept = (range) => range[0] + (range[1] - range[0]) / 4;
+    assert.ok(Math.abs(kept(closer) - kept(zoomed)) < 1e6, 'about the pointer');
+    const axis = await page.locator('#trend-chart .u-axis').first().boundingBox();
+    await page.mouse.move(axis.x + 300, axis.y + axis.height / 2);
+    await page.mouse.down();
+    await page.mouse.move(axis.x + 400, axis.y + axis.height / 2, { steps: 4 });
+    await page.mouse.up();
+    const moved = await rangeOf();
+    assert.ok(moved[0] < closer[0] && Math.abs(moved[1] - moved[0] - closer[1] + closer[0]) < 1, 'earlier, and as long');
+    await drawn(moved);
+    await shoot(page, 'trend-zoomed');
+    for (let i = 0; i < 4 && await page.locator('#trend-back').isEnabled(); i++)
+        await page.locator('#trend-back').click();
+    await page.waitForFunction(() => globalThis.plantcast.trends.fixed === null);
+});
+
+test('a range is typed, statistics are of it, and the crosshair is shared with the time bar', options, async () => {
+    const date = (s) => new Date(s * 1000).toISOString().slice(0, 19).replace('T', ' ');
+    await page.locator('#trend-range').fill(`${date(BEGIN_S + 1100)} to ${date(BEGIN_S + 1600)}`);
+    await page.keyboard.press('Enter');
+    await drawn([(BEGIN_S + 1100) * 1e6, (BEGIN_S + 1600) * 1e6]);
+    const cells = await page.locator('#trend-tags tbody tr').first().locator('td').allTextContents();
+    const [, , min, mean, max, known] = cells.map((text) => Number(text.replace('−', '-').replace(' %', '')));
+    const wave = Array.from({ length: 500 }, (_, i) => 1100 + i).filter((s) => s < 1200 || s >= 1500)
+        .map((s) => 50 + 30 * Math.sin(s / 300));
+    assert.ok(Math.abs(min - Math.min(...wave)) < 1 && Math.abs(max - Math.max(...wave)) < 1, `${cells}`);
+    assert.ok(Math.abs(mean - wave.reduce((sum, value) => sum + value) / wave.length) < 1 && Math.abs(known - 40) <= 2, `${cells}`);
+    await page.locator('#trend-range').fill('noon');
+    await page.keyboard.press('Enter');
+    assert.match(await page.locator('#trend-note').textContent(), /“noon” is not a time range/);
+    await page.locator('#time-toggle').click();
+    await page.locator('#time-track').waitFor();
+    await page.locator('#trend-span label', { hasText: '1 h' }).click();
+    const box = await page.locator('#trend-chart .u-over').boundingBox();
+    await page.mouse.move(box.x + box.width / 2, box.y + 20);
+    await page.locator('#time-track .cross').waitFor({ state: 'attached' });
+    assert.match(await page.locator('#trend-at').textContent(), /\d\d:\d\d:\d\d/);
+    const track = await page.locator('#time-slider').boundingBox();
+    await page.mouse.move(track.x + track.width * 0.8, track.y + track.height / 2);
+    await page.waitForFunction(() => {
+        const { trends } = globalThis.plantcast, [from, to] = trends.range;
+        return Math.abs((trends.crosshairUs - from) / (to - from) - 0.8) < 0.03 && trends.chart.cursor.left > 0;
+    });
+    await page.locator('#time-toggle').click();
+});
+
+test('keys move the crosshair, zoom and pan, and the camera stays', options, async () => {
+    const eye = () => page.evaluate(() => globalThis.plantcast.session.camera.eye);
+    await page.locator('#time-toggle').click();
+    await arrive(page); // the picture has become smaller, for which the camera moves
+    const before = await eye();
+    await page.locator('#trend-chart').focus();
+    const [from, to] = await rangeOf();
+    await page.keyboard.press('ArrowLeft');
+    await page.waitForFunction(() => globalThis.plantcast.trends.crosshairUs);
+    await page.keyboard.press('+');
+    const closer = await rangeOf();
+    assert.ok(closer[1] - closer[0] < 0.7 * (to - from));
+    await page.keyboard.press('PageUp');
+    assert.ok((await rangeOf())[0] < closer[0]);
+    await page.keyboard.press('Home');
+    await page.waitForFunction(() => globalThis.plantcast.trends.fixed === null);
+    await page.locator('#time-slider').focus();
+    await page.keyboard.press('ArrowLeft');
+    await waitForHealth(page, 'past');
+    await page.keyboard.press('ArrowDown');
+    assert.deepEqual(await eye(), before, 'arrow keys on the slider do not turn the camera');
+    await page.locator('#time-live').click();
+    await waitForHealth(page, 'live');
+    await page.locator('#time-toggle').click();
+});
+
+test('tags come by typing, and by dragging a marker or a row of the list', options, async () => {
+    const names = () => page.locator('#trend-tags tbody b').allTextContents();
+    for (const name of ['TI-2', 'PI-1'])
+        await page.locator('#trend-tags tr', { hasText: name }).locator('.drop').click();
+    assert.deepEqual(await names(), ['TI-1']);
+    await page.locator('#trend-add').fill('pump');
+    await page.keyboard.press('Enter');
+    assert.deepEqual(await names(), ['TI-1', 'PI-1'], 'by its description');
+    await page.evaluate(() => {
+        globalThis.plantcast.session.setParams({ group: 'temperature' });
+        globalThis.plantcast.selectTag(null); // its card may cover the marker
+    });
+    await arrive(page);
+    const [from, to] = await page.evaluate(() => {
+        const { session, overlay } = globalThis.plantcast, chart = document.getElementById('trend-chart').getBoundingClientRect();
+        const marker = overlay.marker(session.model.tag('TI-2')), box = document.getElementById('overlay').getBoundingClientRect();
+        return [[box.left + marker.x, box.top + marker.y], [chart.left + 200, chart.top + 40]];
+    });
+    const before = await page.evaluate(() => globalThis.plantcast.session.camera.eye);
+    await page.mouse.move(...from);
+    await page.locator('#viewport.pointing').waitFor();
+    await page.mouse.down();
+    await page.mouse.move(...to, { steps: 5 });
+    await page.locator('.drag-ghost', { hasText: 'TI-2' }).waitFor();
+    await page.mouse.up();
+    assert.deepEqual(await names(), ['TI-1', 'PI-1', 'TI-2']);
+    assert.deepEqual(await page.evaluate(() => globalThis.plantcast.session.camera.eye), before, 'the camera did not turn');
+    await page.locator('#trend-tags tr', { hasText: 'PI-1' }).locator('.drop').click();
+    await page.evaluate(() => globalThis.plantcast.addTrend(globalThis.plantcast.session.model.tag('PI-1')));
 });
 
 test('in the dark theme the chart is dark, and its lines and limits are read', options, async () => {
@@ -262,6 +389,10 @@ test('marks lead to their instant, from alarm to alarm, and to a date', options,
     await waitForHealth(page, 'live');
     await page.locator('#time-before').click();
     await instantOf(raises.at(-1));
+    assert.match(await page.locator('#moment').textContent(), /TI-2 High/, 'it names the alarm');
+    await page.waitForFunction(() => globalThis.plantcast.selection.tag === 'TI-2');
+    await page.locator('#time-track .bar').first().waitFor({ state: 'attached' });
+    await shoot(page, 'time-before');
     for (const us of [...new Set(raises)].slice(0, -1).reverse()) {
         await page.locator('#time-before').click();
         await instantOf(us);
@@ -285,6 +416,30 @@ test('marks lead to their instant, from alarm to alarm, and to a date', options,
     await page.locator('#time-span').selectOption('3600');
     await page.locator('#time-live').click();
     await waitForHealth(page, 'live');
+});
+
+test('two times are compared side by side, with one camera', options, async () => {
+    const us = (BEGIN_S + 900) * 1e6, inner = () => page.frames().find((frame) => frame.url().includes('pane=compare'));
+    if (!await page.locator('#timeline').isVisible())
+        await page.locator('#time-toggle').click();
+    await page.locator('#time-compare').click();
+    await page.waitForFunction(() => globalThis.plantcast.modules.there('compare')?.connected);
+    await page.locator('#compare-date').fill(timeText(us));
+    await inner().waitForFunction((at) => globalThis.plantcast.session.picture.dataTimeUs === at, us);
+    assert.equal((await shown()).past, false, 'the left half still shows the present');
+    await page.evaluate(() => globalThis.plantcast.session.setCamera({ eye: [9, -14, 6], target: [0, 0, 0], up: [0, 0, 1], fov: 30 }));
+    await inner().waitForFunction(() => globalThis.plantcast.session.camera.eye[0] === 9);
+    await inner().evaluate(() => globalThis.plantcast.session.setCamera({ eye: [8, -12, 5], target: [0, 0, 0], up: [0, 0, 1], fov: 30 }));
+    await page.waitForFunction(() => globalThis.plantcast.session.camera.eye[0] === 8);
+    await page.evaluate(() => globalThis.plantcast.session.setParams({ group: 'pressure' }));
+    await inner().waitForFunction(() => globalThis.plantcast.session.shown.group === 'pressure');
+    assert.equal(await inner().locator('.toolbar').isVisible(), false);
+    const [left, right] = await Promise.all(['#viewport', '#compare-half'].map((id) => page.locator(id).boundingBox()));
+    assert.ok(right.x >= left.x + left.width - 1 && Math.abs(right.width - left.width) < 8, JSON.stringify([left, right]));
+    await shoot(page, 'compare');
+    await page.locator('#compare-bar button').click();
+    await page.locator('#compare-half').waitFor({ state: 'detached' });
+    await page.evaluate(() => globalThis.plantcast.session.setParams({ group: 'temperature' }));
 });
 
 test('while the daemon did not run nothing looks recorded: hatched, without data, without rings of before', options, async () => {

@@ -25,12 +25,12 @@ export class Moment {
         setInterval(() => this.say(), 500);
     }
 
-    // alarm: { tag, kind, priority, us (microseconds, time of the raise) }
-    show(alarm) {
+    // alarm: { tag, kind, priority, us (microseconds, time of the raise) }. afterUs: how long after the raise the shown instant is.
+    show(alarm, afterUs = -BEFORE_US) {
         Object.assign(this, { alarm, arrived: false });
         this.mark.replaceChildren(badge(alarm.priority));
         setText(this.name, `${alarm.tag.name} ${say(`kind.${alarm.kind}`)}`);
-        this.go(-BEFORE_US);
+        this.go(afterUs);
         this.element.hidden = false;
         this.say();
         if (alarm.tag.index !== null)

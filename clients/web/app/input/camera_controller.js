@@ -140,11 +140,11 @@ export class CameraController {
     }
 
     keydown(event) {
-        if (document.querySelector('dialog[open]') || event.target.closest(WRITTEN))
-            return;
+        if (event.defaultPrevented || document.querySelector('dialog[open]') || event.target.closest(WRITTEN))
+            return; // defaultPrevented: a control, such as the time slider, has acted on the key
         const meaning = keyMeaning(event);
-        if (!meaning || (meaning.motion?.startsWith('Arrow') && event.target.closest('fieldset')))
-            return; // leaves arrow keys to the browser within a group of radio buttons
+        if (!meaning || (meaning.motion?.startsWith('Arrow') && event.target.closest('fieldset, [type="range"]')))
+            return; // leaves arrow keys to the browser within radio buttons and sliders
         if (event.key === ' ' && event.target.closest('button, input, a'))
             return; // leaves the space bar to the button or link that has the focus
         event.preventDefault();

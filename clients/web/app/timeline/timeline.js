@@ -2,26 +2,30 @@
 // The time bar: a slider over recorded history with gaps, lost sources and raised alarms, which can be clicked; playback, speed, a date
 // field, and the way back to the present.
 import { ageText, zoneClock } from '../../core/format.js';
-import { arrowS, ask, clustered, lost, nextTo, raised, ticks, witnesses } from '../../core/history.js';
+import { arrowS, ask, clustered, density, lost, nextTo, raised, ticks, witnesses } from '../../core/history.js';
 import { fieldInstant, fieldText } from '../../core/instant.js';
 import { travel } from '../../core/requests.js';
 import { say } from '../../core/words.js';
+import { onCrosshair, pointAtInstant } from '../common/crosshair.js';
 import { byId, makeSvg, setText } from '../common/dom.js';
 import { fillSelect } from '../common/choices.js';
 
 const SPANS = [[900, 'min', 15], [3600, 'h', 1], [28800, 'h', 8], [86400, 'h', 24], [604800, 'd', 7], [2592000, 'd', 30]];
 const SPEEDS = [1, 10, 60, 300, 600, 3600];
 // NOW_US: an instant less than this many microseconds ago counts as now
-const MARKS_MS = 15000, MARKS_MOST = 2000, HAND_MS = 400, NOW_US = 3.5e6;
+const MARKS_MS = 15000, MARKS_MOST = 10000, MARK_PAGES = 5, HAND_MS = 400, NOW_US = 3.5e6;
 // LOST_POINTS: number of history points per tag with which periods of lost sources are found
-const TRACK = { top: 15, height: 10 }, LOST_POINTS = 300;
+// BARS: where the bars of alarm density stand; full: number of alarms in a bar of full height, at least
+const TRACK = { top: 15, height: 10 }, BARS = { bottom: 58, height: 14, full: 10 }, BAR_PX = 5, LOST_POINTS = 300;
 // MARK_PX: smallest distance between two alarm marks; SEARCH_MOST: journal rows per request; PAGES: maximum number of requests for a search
+const THUMB_PX = 9; // half the width of the slider's thumb, by which its ends are inside the track
 const MARK_PX = 9, SEARCH_MOST = 10000, PAGES = 24, NAMED = 8;
 
 export class Timeline {
     // tell(text): shows a message to the user.
-    constructor({ session, tell }) {
-        Object.assign(this, { session, tell, open: false, toUs: null, marks: [], gaps: [], lost: [], wanted: null, draggedAt: -Infinity });
+    constructor({ session, modules, tell }) {
+        Object.assign(this, { session, modules, tell, open: false, toUs: null, marks: [], gaps: [], lost: [], wanted: null,
+            draggedAt: -Infinity });
         this.slider = byId('time-slider');
         fillSelect(byId('time-span'), SPANS.map(([seconds, unit, n]) => [seconds, say(`age.${unit}`, { n })]), 3600);
         fillSelect(byId('time-speed'), SPEEDS.map((speed) => [speed, `${speed}×`]), 60);
@@ -29,11 +33,15 @@ export class Timeline {
         byId('time-speed').addEventListener('change', () => session.time.speed && travel(session, undefined, this.speed));
         byId('time-play').addEventListener('click', () => this.play());
         byId('time-live').addEventListener('click', () => travel(session, null));
+        byId('time-compare').addEventListener('click', () => modules.use('compare', (compare) => compare.toggle(), 'toggle'));
         this.slider.addEventListener('input', () => this.drag());
         this.slider.addEventListener('keydown', (event) => this.press(event));
         byId('time-before').addEventListener('click', () => this.goToAlarm(true));
         byId('time-after').addEventListener('click', () => this.goToAlarm(false));
         byId('time-date').addEventListener('change', () => this.goToDate());
+        this.slider.addEventListener('pointermove', ({ offsetX }) => pointAtInstant(this.instantAt(offsetX), this));
+        this.slider.addEventListener('pointerleave', () => pointAtInstant(null, this));
+        onCrosshair((us) => this.cross(us));
         session.greeted(() => { this.clock = zoneClock(session.model.plant.time_zone); });
         session.on('time', () => this.hear());
         this.hear();
@@ -143,9 +151,15 @@ export class Timeline {
         const here = this.atUs ?? this.session.clockUs();
         const found = await this.alarmFrom(here, backwards).catch(() => null);
         if (found)
-            travel(this.session, found.us);
+            this.showAlarm(found);
         else
             this.tell(say(backwards ? 'time.first' : 'time.last'));
+    }
+
+    // Goes to the instant at which an alarm was raised, flies to its tag, and names the alarm over the picture.
+    showAlarm({ us, tag: name, kind, priority }) {
+        const tag = this.session.model.tag(name) ?? { name, index: null };
+        this.modules.use('moment', (moment) => moment.show({ us, tag, kind, priority }, 0), 'moment');
     }
 
     // Returns the alarm raised next after an instant, or with `backwards` the one before it; null: none. The journal returns its newest
@@ -190,12 +204,36 @@ export class Timeline {
         this.askedAt = performance.now();
         const span = { from: (this.toUs - this.spanUs) / 1e6, to: this.toUs / 1e6 }, { token } = this.session;
         const [marks, gaps, all] = await Promise.all([
-            this.journal({ ...span, limit: MARKS_MOST }).then(({ rows }) => raised(rows)),
+            this.askRaised(span),
             ask('api/v1/history/gaps', span, token).then((answer) => answer.json()).then((said) => said.gaps),
             this.askLost(span),
         ].map((one) => one.catch(() => []))); // marks of a kind whose request failed or was refused are not drawn
         Object.assign(this, { marks, gaps, lost: all });
         this.draw();
+    }
+
+    // Returns a promise of the raised alarms of a span. If there are too many, `marks.sinceUs` is the oldest instant from which they are
+    // complete.
+    async askRaised(span) {
+        const all = [];
+        let before = null, page = null;
+        for (let i = 0; i < MARK_PAGES && (i === 0 || before !== null); i++) {
+            page = await this.journal({ ...span, limit: MARKS_MOST, ...(before === null ? {} : { before }) });
+            all.push(...page.rows);
+            before = page.next_before;
+        }
+        return Object.assign(raised(all), { sinceUs: before === null ? null : all.at(-1)?.time_us ?? null });
+    }
+
+    // Draws the number of raised alarms over time as bars; their heights are on a logarithmic scale, so that one alarm is still visible.
+    densityBars(from, width) {
+        const inner = width - 2 * THUMB_PX, count = Math.max(1, Math.floor(inner / BAR_PX));
+        const { bins, most } = density(this.marks, from, this.toUs, count), step = inner / count;
+        return bins.flatMap(({ count: n, priority }, i) => {
+            const height = n > 0 ? Math.max(2, (BARS.height * Math.log1p(n)) / Math.log1p(Math.max(most, BARS.full))) : 0;
+            return n === 0 ? [] : [makeSvg('rect', { class: `bar p${priority}`, x: THUMB_PX + i * step, width: Math.max(1, step - 1),
+                y: BARS.bottom - height, height }, makeSvg('title', {}, say('time.raised', { count: n })))];
+        });
     }
 
     // Returns a promise of [{ source, spans }]: the periods in which sources delivered nothing.
@@ -237,15 +275,31 @@ export class Timeline {
         this.draw();
     }
 
+    instantAt(left) {
+        const width = byId('time-track').clientWidth;
+        return this.toUs - this.spanUs + ((left - THUMB_PX) * this.spanUs) / (width - 2 * THUMB_PX);
+    }
+
+    // Draws a line at the instant at which the pointer points here or in a trend; null: none.
+    cross(us) {
+        const track = byId('time-track'), width = track.clientWidth, from = this.toUs - this.spanUs;
+        track.querySelector('.cross')?.remove();
+        if (!this.open || us === null || us < from || us > this.toUs)
+            return;
+        const x = THUMB_PX + ((width - 2 * THUMB_PX) * (us - from)) / this.spanUs, { time } = this.clock(us / 1000);
+        const side = x > width / 2 ? { x: x - 4, 'text-anchor': 'end' } : { x: x + 4 };
+        track.append(makeSvg('g', { class: 'cross' }, makeSvg('path', { d: `M${x} 0v34` }), makeSvg('text', { y: 10, ...side }, time)));
+    }
+
     // Draws alarm marks, ticks, gaps and periods of lost sources (one row for each source) along the slider.
     draw() {
         const track = byId('time-track'), width = track.clientWidth;
         if (!this.open || !this.clock || width === 0)
             return;
-        const from = this.toUs - this.spanUs, x = (us) => 9 + (width - 18) * (us - from) / this.spanUs;
-        const nodes = [], { fromUs } = this.session.time, begin = Math.max(from, fromUs ?? from);
+        const from = this.toUs - this.spanUs, x = (us) => THUMB_PX + (width - 2 * THUMB_PX) * (us - from) / this.spanUs;
+        const nodes = this.densityBars(from, width), { fromUs } = this.session.time, begin = Math.max(from, fromUs ?? from);
         const strip = (begins, ends, place, ...more) => {
-            const left = x(Math.max(begins, from)), long = Math.max(2, Math.min(x(ends), width - 9) - left);
+            const left = x(Math.max(begins, from)), long = Math.max(2, Math.min(x(ends), width - THUMB_PX) - left);
             nodes.push(makeSvg('rect', { fill: 'url(#time-gap)', x: left, width: long, ...place }, ...more));
             return [left, long];
         };
@@ -262,10 +316,13 @@ export class Timeline {
         };
         if (begin > from)
             hatch(from, begin);
+        if (this.marks.sinceUs > from)
+            strip(from, this.marks.sinceUs, { class: 'uncounted', y: BARS.bottom - BARS.height, height: BARS.height },
+                makeSvg('title', {}, say('time.uncounted')));
         for (const [begins, ends] of this.gaps)
             hatch(begins, ends);
         const thumb = x(from + Number(this.slider.value) * 1e6); // draws the slider's thumb again, which the hatching would cover
-        if (nodes.some((node) => node.localName === 'rect'))
+        if (nodes.some((node) => node.classList.contains('lost') || node.classList.contains('unrecorded')))
             nodes.push(makeSvg('circle', { class: 'thumb', cx: thumb, cy: 20, r: 8 }));
         for (const us of ticks(from, this.toUs, Math.max(2, width / 110))) {
             const { day, time } = this.clock(us / 1000), text = this.spanUs > 2 * 86400e6 ? day : time.slice(0, 5);
@@ -273,14 +330,15 @@ export class Timeline {
             if (x(us) > 30 && x(us) < width - 30)
                 nodes.push(makeSvg('text', { x: x(us), y: 42, 'text-anchor': 'middle' }, text));
         }
-        const groups = clustered(this.marks, MARK_PX * this.spanUs / (width - 18)), words = ({ us, tag, kind }) =>
+        const groups = clustered(this.marks, MARK_PX * this.spanUs / (width - 2 * THUMB_PX)), words = ({ us, tag, kind }) =>
             `${tag} ${kind}, ${this.clock(us / 1000).time}`;
         for (const { us, priority, of } of groups.sort((a, b) => b.priority - a.priority)) { // the most urgent on top
             const all = of.slice(0, NAMED).map(words).concat(of.length > NAMED ? [say('alarms.more', { count: of.length - NAMED })] : []);
             const look = { class: `alarm p${priority}`, d: `M${x(us)} 15l-5.5-11h11z` };
-            nodes.push(makeSvg('path', { ...look, onclick: () => travel(this.session, us) }, makeSvg('title', {}, all.join('\n'))));
+            const gravest = of.find((mark) => mark.priority === priority);
+            nodes.push(makeSvg('path', { ...look, onclick: () => this.showAlarm(gravest) }, makeSvg('title', {}, all.join('\n'))));
         }
-        track.replaceChildren(...nodes);
+        track.replaceChildren(...nodes, ...track.querySelectorAll('.cross'));
         const here = this.marks.filter(({ us }) => us === this.atUs).map(({ tag, kind }) => `${tag} ${kind}`).join(', ');
         setText(byId('time-alarms'), here || (this.marks.length > 0 ? say('time.raised', { count: this.marks.length }) : ''));
     }

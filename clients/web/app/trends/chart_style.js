@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Colours of charts for each theme, and patterns for missing values.
 
-// must equal the line colours in trends.css
 export const LOOKS = {
     light: { ground: '#ffffff', ink: '#4d5964', rule: '#d8dce0', gap: '#8b949c', grave: '#a31515', limit: '#8a5a00', then: '#5b2d8e',
-        lines: ['#0b5c93', '#b34a00', '#00734f', '#8a3a73', '#5b5b00', '#4b4f56'] },
+        edge: '#1d252d',
+        lines: ['#0b5c93', '#b34a00', '#00734f', '#8a3a73', '#5b5b00', '#4b4f56', '#006a78', '#6b4226'] },
     dark: { ground: '#363d44', ink: '#c3cad0', rule: '#515a63', gap: '#8b949c', grave: '#ff9d94', limit: '#f0c265', then: '#cdb4f0',
-        lines: ['#84c1f2', '#ffb27a', '#66d6a6', '#e8a5d6', '#d9d977', '#d5dbe0'] },
+        edge: '#1d252d',
+        lines: ['#84c1f2', '#ffb27a', '#66d6a6', '#e8a5d6', '#d9d977', '#d5dbe0', '#7fd8e8', '#d9b793'] },
 };
 
 // Draws a hatched rectangle, clipped to the canvas: a gap of days in a chart of seconds would be millions of pixels wide.
@@ -30,8 +31,48 @@ export function hatch(ctx, left, top, width, height, colour) {
     ctx.restore();
 }
 
-export function dots(ctx, left, right, y, colour) {
-    ctx.fillStyle = colour;
-    for (let x = Math.max(left, 0); x < Math.min(right, ctx.canvas.width); x += 6 * devicePixelRatio)
-        ctx.fillRect(x, y, 3 * devicePixelRatio, 3 * devicePixelRatio);
+// Draws a hatched band along a line from one position [x, y] to another.
+export function hatchAlong(ctx, [left, begin], [right, end], colour) {
+    const half = 8 * devicePixelRatio, top = Math.min(begin, end) - half, height = Math.abs(end - begin) + 2 * half;
+    ctx.save();
+    ctx.beginPath();
+    ctx.moveTo(left, begin - half);
+    ctx.lineTo(right, end - half);
+    ctx.lineTo(right, end + half);
+    ctx.lineTo(left, begin + half);
+    ctx.clip();
+    hatch(ctx, left, top, right - left, height, colour);
+    ctx.restore();
+}
+
+// Draws along the path of a chart's series between two positions, where the series has values.
+export function strokeAlong(chart, index, left, right, { colour, width, dash = [], alpha = 1 }) {
+    const { ctx, bbox } = chart, { stroke, clip } = chart.series[index]._paths ?? {};
+    if (!stroke)
+        return;
+    ctx.save();
+    ctx.beginPath();
+    ctx.rect(Math.max(left, bbox.left), bbox.top, Math.min(right, bbox.left + bbox.width) - Math.max(left, bbox.left), bbox.height);
+    ctx.clip();
+    if (clip)
+        ctx.clip(clip);
+    Object.assign(ctx, { strokeStyle: colour, lineWidth: width * devicePixelRatio, globalAlpha: alpha, lineJoin: 'round' });
+    ctx.setLineDash(dash.map((px) => px * devicePixelRatio));
+    ctx.stroke(stroke);
+    ctx.restore();
+}
+
+// Draws a triangle that points down to a position.
+export function triangle(ctx, x, y, colour, edge) {
+    const px = devicePixelRatio;
+    ctx.save();
+    ctx.beginPath();
+    ctx.moveTo(x, y - 3 * px);
+    ctx.lineTo(x - 5.5 * px, y - 13 * px);
+    ctx.lineTo(x + 5.5 * px, y - 13 * px);
+    ctx.closePath();
+    Object.assign(ctx, { fillStyle: colour, strokeStyle: edge, lineWidth: px });
+    ctx.fill();
+    ctx.stroke();
+    ctx.restore();
 }

@@ -1,22 +1,39 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Trend charts of tags: recorded values of the last hour, shift, day or week, with limits, gaps and units. Several tags can be compared.
-import { decimalsFor, numberText, shortNumberText, unitText, zoneClock, zoneOf } from '../../core/format.js';
-import { ask, BAD, gaps, limitLines, line } from '../../core/history.js';
+// Trends of up to eight tags: recorded values over a relative or absolute range, which users zoom and pan. Plot draws the curves, two units
+// to a chart; TrendTable shows numbers.
+import { decimalsFor, unitText, zoneClock, zoneOf } from '../../core/format.js';
+import { ask, BAD, gaps } from '../../core/history.js';
+import { fieldText } from '../../core/instant.js';
 import { travel } from '../../core/requests.js';
+import { panned, readRange, zoomed } from '../../core/trend_range.js';
+import { alarmSpans } from '../../core/trend_values.js';
 import { say } from '../../core/words.js';
+import { onCrosshair } from '../common/crosshair.js';
 import { byId, make, setText } from '../common/dom.js';
 import { fillSegments, markSegment } from '../common/choices.js';
-import { dots, hatch, LOOKS } from './chart_style.js';
+import { LOOKS } from './chart_style.js';
+import { listenToDrags } from './drag_in.js';
+import { Plot } from './plot.js';
+import { listenToGestures } from './trend_gestures.js';
+import { TrendTable } from './trend_table.js';
 
-const SPANS = [['3600', 'hour'], ['28800', 'shift'], ['86400', 'day'], ['604800', 'week']];
-const DASHES = [[], [8, 4], [2, 3], [10, 3, 2, 3], [5, 5], [1, 4]];
-const MOST = DASHES.length, FRESH_MS = 5000, AXIS_PX = 58;
-const EXPAND = 2; // uPlot's mode in which gaps (nulls) extend to neighbouring instants
-const LIMIT_PX = 15;
+const SPANS = [['3600', 'hour'], ['28800', 'shift'], ['86400', 'day'], ['604800', 'week'], ['2592000', 'month']];
+const EXAMPLES = ['minutes', 'hours', 'today', 'yesterday', 'night'];
+const MOVES = ['earlier', 'later', 'in', 'out', 'back'];
+const MOST = LOOKS.light.lines.length, UNITS_PER_PLOT = 2, FRESH_MS = 5000, NOW_MS = 1000, SETTLED_MS = 250, PAN = 0.5, ZOOM = 2;
+const ALARM_ROWS = 2000, MATCHES = 30, MOST_BACK = 50, ALMOST_US = 2e6;
+const HEAD_PX = 24, ROW_PX = 22; // heights in the table
 // true: this page is a trend pane of a wall, and the chart fills the pane
 const isPane = () => document.body.classList.contains('pane-trend');
-const highPx = () => (isPane() ? Math.max(80, byId('trend-chart').clientHeight)
-    : Math.round(Math.max(120, Math.min(210, 0.2 * innerHeight)))); // must equal the height of #trend-chart in the style sheet
+
+// Returns the height of each of `count` charts next to a table of `rows` rows.
+function heightOf(count, rows) {
+    if (isPane())
+        return Math.max(80, byId('trend-chart').clientHeight / count);
+    const least = Math.max(120, Math.min(210, 0.2 * innerHeight)); // must equal the height of #trend-chart in the style sheet
+    const one = Math.max(least, Math.min(0.26 * innerHeight, HEAD_PX + ROW_PX * rows)); // as high as the table
+    return Math.round(count === 1 ? one : Math.max(96, one * 0.7));
+}
 
 // Loads the chart library with the first trend. If that fails, the next refresh tries again.
 let library;
@@ -37,26 +54,48 @@ function load() {
 }
 
 export class Trends {
-    constructor({ session }) {
-        Object.assign(this, { session, tags: [], spanS: 3600, series: [], number: 0, pending: 0 });
+    constructor({ session, overlay, handlers }) {
+        Object.assign(this, { session, tags: [], spanS: 3600, fixed: null, before: [], series: [], plots: [], focus: null,
+            isAsking: false });
+        this.alarms = new Map(); // tag -> alarms of the range
         this.element = byId('trends');
-        const spans = SPANS.map(([seconds, name]) => [seconds, say(`trends.${name}`), say(`trends.${name}.why`)]);
-        fillSegments(byId('trend-span'), 'trend-span', spans, (span) => {
-            this.spanS = Number(span);
-            this.refresh();
-        });
-        byId('trend-close').addEventListener('click', () => this.close());
-        byId('trend-csv').addEventListener('click', () => this.save());
-        session.on('time', () => this.chart?.redraw(false));
-        session.on('params', () => this.chart && this.theme !== this.shownTheme && this.draw(globalThis.uPlot));
+        this.addControls();
+        this.table = new TrendTable(this);
+        session.on('time', () => this.onTime());
+        session.on('params', () => this.plots.length > 0 && this.theme !== this.shownTheme && this.rebuild());
         session.greeted(() => {
             this.zone = zoneOf(session.model.plant.time_zone);
             this.clock = zoneClock(this.zone);
-            this.tags = this.tags.map(({ name }) => session.model.tag(name)).filter(Boolean);
+            this.setTags(this.tags.map(({ name }) => session.model.tag(name)).filter(Boolean));
         });
-        setInterval(() => this.isOpen && !document.hidden && !this.pending && this.refresh(), FRESH_MS);
+        onCrosshair((us, from) => this.onCrosshair(us, from));
+        setInterval(() => this.isOpen && !document.hidden && this.isLive && !this.isAsking && this.refresh(), FRESH_MS);
+        setInterval(() => this.isOpen && !document.hidden && session.model && this.table.fill(), NOW_MS);
         new ResizeObserver(() => this.resize()).observe(byId('trend-chart'));
+        listenToGestures(this, byId('trend-chart'));
+        listenToDrags({ trends: this, session, overlay, handlers });
     }
+
+    addControls() {
+        const spans = SPANS.map(([seconds, name]) => [seconds, say(`trends.${name}`), say(`trends.${name}.why`)]);
+        fillSegments(byId('trend-span'), 'trend-span', spans, (span) => this.goTo({ spanS: Number(span) }));
+        for (const name of MOVES)
+            byId(`trend-${name}`).addEventListener('click', () => this.step(name));
+        byId('trend-close').addEventListener('click', () => this.close());
+        byId('trend-csv').addEventListener('click', () => this.save());
+        byId('trend-ranges').append(...EXAMPLES.map((name) => make('option', { value: say(`trends.example.${name}`) })));
+        const range = byId('trend-range'), add = byId('trend-add');
+        // the list of examples is filtered by the field's text, so the text becomes the placeholder while the field has the focus
+        range.addEventListener('focus', () => Object.assign(range, { placeholder: range.value, value: '' }));
+        range.addEventListener('blur', () => { range.value ||= range.placeholder; });
+        add.addEventListener('input', () => this.offer(add.value));
+        for (const [field, f] of [[range, () => this.typeRange()], [add, () => this.typeTag()]]) {
+            field.addEventListener('change', f);
+            field.form.addEventListener('submit', (event) => { event.preventDefault(); f(); });
+        }
+    }
+
+    // --- for Plot and TrendTable
 
     get theme() {
         return document.documentElement.dataset.theme;
@@ -66,26 +105,66 @@ export class Trends {
         return LOOKS[this.theme] ?? LOOKS.light;
     }
 
+    get priorities() {
+        const style = getComputedStyle(document.documentElement);
+        return [1, 2, 3, 4].map((priority) => style.getPropertyValue(`--p${priority}`).trim());
+    }
+
+    colourOf(tag) {
+        return this.look.lines[this.tags.indexOf(tag)] ?? this.look.ink;
+    }
+
+    unitOf(tag) {
+        return unitText(tag.unit || this.session.model.group(tag.group)?.unit);
+    }
+
+    decimalsOf(tag) {
+        const group = this.session.model.group(tag.group);
+        return group ? decimalsFor(group.max - group.min) : 2;
+    }
+
+    setFocus(tag) {
+        this.focus = tag;
+        this.table.build();
+        this.redraw();
+    }
+
+    travel(us) {
+        if (this.session.recorded && Number.isFinite(us))
+            travel(this.session, us);
+    }
+
+    // --- tags
+
     get isOpen() {
         return !this.element.hidden;
     }
 
+    setTags(tags) {
+        this.tags = tags;
+        if (!tags.includes(this.focus))
+            this.focus = tags[0] ?? null;
+    }
+
     // Shows this tag alone.
     only(tag) {
-        this.tags = [tag];
+        this.setTags([tag]);
         this.open();
     }
 
     // Shows these tags, over the given span.
     compare(tags, spanS) {
-        Object.assign(this, { tags: tags.slice(0, MOST), spanS });
+        Object.assign(this, { spanS, fixed: null });
+        this.setTags(tags.slice(0, MOST));
         this.open();
     }
 
     // Adds a tag to the chart.
     add(tag) {
         if (this.takes(tag))
-            this.tags = [...this.tags, tag];
+            this.setTags([...this.tags, tag]);
+        else if (this.isOpen && this.tags.length >= MOST)
+            this.note(say('trends.full', { count: MOST }));
         this.open();
     }
 
@@ -94,18 +173,147 @@ export class Trends {
         return this.isOpen && this.tags.length < MOST && !this.tags.includes(tag);
     }
 
-    open() {
-        this.element.hidden = false;
-        this.show();
+    remove(tag) {
+        this.setTags(this.tags.filter((one) => one !== tag));
+        if (this.tags.length === 0)
+            return this.close();
+        this.table.build();
+        return this.refresh();
+    }
+
+    // Fills the list of tags that match a typed text.
+    offer(text) {
+        const wanted = text.trim().toLowerCase(), { tags } = this.session.model;
+        this.matches = wanted ? tags.filter((tag) => !this.tags.includes(tag) &&
+            `${tag.name} ${tag.description ?? ''}`.toLowerCase().includes(wanted)).slice(0, MATCHES) : [];
+        byId('trend-names').replaceChildren(...this.matches.map((tag) => make('option', { value: tag.name }, tag.description ?? '')));
+    }
+
+    typeTag() {
+        const field = byId('trend-add'), text = field.value.trim();
+        this.offer(text);
+        const tag = this.session.model.tag(text) ?? this.matches[0];
+        if (!text)
+            return;
+        if (tag)
+            this.add(tag);
+        else
+            this.note(say('trends.none', { text }));
+        field.value = '';
+    }
+
+    // --- range
+
+    get nowUs() {
+        return this.session.clockUs() ?? Date.now() * 1000;
+    }
+
+    // Time range of the charts: a fixed one, or up to now, or around the shown instant of the past.
+    get range() {
+        if (this.fixed)
+            return this.fixed;
+        const now = this.nowUs, { atUs } = this.session.time, span = this.spanS * 1e6;
+        const to = atUs !== null && atUs < now - span ? Math.min(now, atUs + span / 2) : now;
+        return [to - span, to];
+    }
+
+    get spanUs() {
+        const [from, to] = this.range;
+        return to - from;
+    }
+
+    get isLive() {
+        return !this.fixed || this.fixed[1] > this.nowUs - FRESH_MS * 1000;
+    }
+
+    // Goes to a range as readRange() returns it.
+    goTo({ spanS, fromUs, toUs }, isUndone = false) {
+        if (!isUndone)
+            this.before = [...this.before.slice(1 - MOST_BACK), { spanS: this.spanS, fixed: this.fixed }];
+        Object.assign(this, spanS ? { spanS, fixed: null } : { fixed: [fromUs, toUs] });
+        this.showRange();
+        this.plots.forEach((plot) => plot.move(this.range));
         this.refresh();
     }
 
-    remove(tag) {
-        this.tags = this.tags.filter((one) => one !== tag);
-        if (this.tags.length === 0)
-            return this.close();
-        this.show();
-        return this.refresh();
+    zoomTo([fromUs, toUs]) {
+        const [from, to] = zoomed([fromUs, toUs], 1, (fromUs + toUs) / 2, this.nowUs);
+        this.goTo({ fromUs: from, toUs: to });
+    }
+
+    zoomBy(factor, at) {
+        this.adjust(zoomed(this.range, factor, at, this.nowUs));
+    }
+
+    // Moves by a part of the range; positive: later.
+    pan(part) {
+        this.adjust(panned(this.range, part, this.nowUs));
+    }
+
+    // Goes to a range by small steps of a gesture, of which one is undone as a whole.
+    adjust([fromUs, toUs]) {
+        if (!Number.isFinite(fromUs + toUs))
+            return;
+        const isNext = performance.now() - (this.adjustedAt ?? -Infinity) < NOW_MS;
+        this.adjustedAt = performance.now();
+        const isSpan = toUs > this.nowUs - ALMOST_US && Math.abs(toUs - fromUs - this.spanS * 1e6) < ALMOST_US;
+        this.goTo(isSpan ? { spanS: this.spanS } : { fromUs, toUs }, isNext);
+    }
+
+    back() {
+        const last = this.before.pop();
+        if (last)
+            this.goTo(last.fixed ? { fromUs: last.fixed[0], toUs: last.fixed[1] } : last, true);
+    }
+
+    step(name) {
+        const [from, to] = this.range;
+        ({ earlier: () => this.pan(-PAN), later: () => this.pan(PAN), back: () => this.back(),
+            in: () => this.zoomBy(1 / ZOOM, (from + to) / 2), out: () => this.zoomBy(ZOOM, (from + to) / 2) })[name]();
+    }
+
+    typeRange() {
+        const field = byId('trend-range'), text = field.value.trim();
+        if (!text)
+            return;
+        const range = readRange(text, this.nowUs, this.zone);
+        field.toggleAttribute('aria-invalid', !range);
+        if (!range)
+            return void this.note(say('trends.unread', { text, example: say('trends.example.night') }));
+        this.note('');
+        this.goTo(range);
+        field.blur();
+    }
+
+    // Returns the range as a text that readRange() reads.
+    rangeText() {
+        if (!this.fixed) {
+            const [unit, n] = this.spanS % 86400 === 0 ? ['d', this.spanS / 86400] : this.spanS % 3600 === 0 ? ['h', this.spanS / 3600]
+                : this.spanS % 60 === 0 ? ['min', this.spanS / 60] : ['s', this.spanS];
+            return say('trends.last', { span: say(`age.${unit}`, { n }) });
+        }
+        const isLong = this.spanUs > 3600e6;
+        const [from, to] = this.fixed.map((us) => fieldText(us, this.zone).replace('T', ' ').replace(isLong ? /:\d\d$/ : /:00$/, ''));
+        return say('trends.between', { from, to });
+    }
+
+    showRange() {
+        const field = byId('trend-range'), text = this.zone ? this.rangeText() : '';
+        if (document.activeElement !== field)
+            field.value = text;
+        field.placeholder = text;
+        markSegment(byId('trend-span'), this.fixed ? '' : String(this.spanS));
+        byId('trend-back').disabled = this.before.length === 0;
+        byId('trend-later').disabled = this.isLive && this.session.time.atUs === null;
+    }
+
+    // --- values
+
+    open() {
+        this.element.hidden = false;
+        this.table.build();
+        this.showRange();
+        this.refresh();
     }
 
     close() {
@@ -114,58 +322,58 @@ export class Trends {
     }
 
     drop() {
-        this.chart?.destroy();
-        this.chart = null;
+        this.plots.forEach((plot) => plot.drop());
+        this.plots = [];
+        this.shape = null;
     }
 
-    show() {
-        markSegment(byId('trend-span'), String(this.spanS));
-        byId('trend-tags').replaceChildren(...this.tags.map((tag, i) => {
-            const title = say('trends.remove', { tag: tag.name }), unit = this.unitOf(tag);
-            const sample = make('span', { class: `sample s${i}`, 'aria-hidden': 'true' });
-            return make('li', {}, sample, make('b', {}, tag.name), ` ${tag.description ?? ''}${unit ? ` [${unit}]` : ''}`,
-                make('button', { type: 'button', class: 'drop', 'aria-label': title, onclick: () => this.remove(tag) }, '×'));
-        }));
-    }
-
-    unitOf(tag) {
-        return unitText(tag.unit || this.session.model.group(tag.group)?.unit);
-    }
-
-    // Time range of the chart: up to now or, while the past is shown, around that instant.
-    get window() {
-        const now = this.session.clockUs(), { atUs } = this.session.time, span = this.spanS * 1e6;
-        const to = atUs !== null && atUs < now - span ? Math.min(now, atUs + span / 2) : now;
-        return [to - span, to];
+    onTime() {
+        const { atUs } = this.session.time, [from, to] = this.span ?? [0, 0];
+        this.redraw();
+        if (this.isOpen && !this.fixed && atUs !== null && (atUs < from || atUs > to))
+            this.refresh();
     }
 
     query([from, to]) {
         return { tags: this.tags.map(({ name }) => name).join(','), from: (from / 1e6).toFixed(3), to: (to / 1e6).toFixed(3) };
     }
 
-    // Requests and draws the values. `pending` counts requests without an answer; while there are any, the timer sends no further one. It
-    // would discard the answer to the pending one, so that on a slow link no answer would ever be drawn.
+    // Requests and draws the values. While a request is under way no other one starts, or on a slow link none would ever be drawn: the last
+    // range that was asked for meanwhile follows.
     async refresh() {
-        if (this.tags.length === 0 || !this.session.model)
+        if (this.isAsking)
+            this.isLate = true;
+        if (this.tags.length === 0 || !this.session.model || this.isAsking)
             return;
-        this.pending++;
-        const number = ++this.number, span = this.window, points = Math.max(200, Math.round(byId('trend-chart').clientWidth / 2));
+        this.isAsking = true;
+        this.isLate = false;
+        const span = this.range, { tags } = this, points = Math.max(200, Math.round(byId('trend-chart').clientWidth / 2));
         try {
             const answer = ask('api/v1/history', { ...this.query(span), points }, this.session.token);
             const [uPlot, response] = await Promise.all([load(), answer]);
             const { series } = await response.json();
-            if (number !== this.number || !this.isOpen)
-                return;
-            this.span = span;
-            this.series = series;
-            setText(byId('trend-note'), this.words());
-            this.draw(uPlot);
+            if (this.isOpen && tags === this.tags)
+                this.take(uPlot, span, series);
         } catch (error) {
-            if (number === this.number)
-                setText(byId('trend-note'), say('trends.failed', { why: error.message }));
+            this.note(say('trends.failed', { why: error.message }));
         } finally {
-            this.pending--;
+            this.isAsking = false;
         }
+        if (this.isLate && this.isOpen)
+            this.refresh();
+    }
+
+    take(uPlot, span, series) {
+        Object.assign(this, { span, series });
+        this.note(this.words());
+        this.draw(uPlot);
+        this.table.count(series, span);
+        clearTimeout(this.alarmTimer);
+        this.alarmTimer = setTimeout(() => this.askAlarms(), SETTLED_MS);
+    }
+
+    note(text) {
+        setText(byId('trend-note'), text);
     }
 
     words() {
@@ -174,178 +382,80 @@ export class Trends {
         return lacking.length > 0 ? say('trends.gaps', { tags: lacking.join(', ') }) : '';
     }
 
-    data(uPlot) {
-        const tables = this.series.map((one) => line(one, ...this.span));
-        const filled = tables.map((table) => (table[0].length > 0 ? table : [[this.span[0] / 1e6], [null]]));
-        return uPlot.join(filled, filled.map(() => [EXPAND, EXPAND])); // a gap in one series must extend over the instants of the others
+    // Requests the alarms of the tags: those of the range, and earlier ones, which may last into the range.
+    async askAlarms() {
+        const { tags, span } = this, { token } = this.session;
+        const all = await Promise.all(tags.map(async ({ name }) => {
+            const query = { tag: name, to: (span[1] / 1e6).toFixed(3), limit: ALARM_ROWS };
+            const answer = await ask('api/v1/alarms/journal', query, token).catch(() => null);
+            return answer ? alarmSpans((await answer.json()).rows).filter(({ endUs }) => endUs === null || endUs > span[0]) : [];
+        }));
+        if (tags !== this.tags || !this.isOpen)
+            return;
+        this.alarms = new Map(tags.map((tag, i) => [tag, all[i]]));
+        this.plots.forEach((plot) => plot.rows.forEach((row) => { row.alarms = this.alarms.get(row.tag); }));
+        this.redraw();
+    }
+
+    // --- charts
+
+    // The first chart, for tests.
+    get chart() {
+        return this.plots[0]?.chart ?? null;
     }
 
     draw(uPlot) {
-        const shape = JSON.stringify([this.tags.map(({ name }) => name), this.spanS, this.theme]);
-        const [min, max] = this.span.map((us) => us / 1e6);
-        if (this.chart && this.shape === shape) {
-            this.chart.setData(this.data(uPlot), false);
-            this.chart.setScale('x', { min, max });
-            return;
+        const units = [...new Set(this.tags.map((tag) => this.unitOf(tag) || '–'))], shape = JSON.stringify([units, this.theme]);
+        const element = byId('trend-chart'), width = Math.max(200, element.clientWidth);
+        if (shape !== this.shape) {
+            this.drop();
+            const count = Math.ceil(units.length / UNITS_PER_PLOT), height = heightOf(count, this.tags.length);
+            this.plots = Array.from({ length: count }, (_, i) => new Plot({ view: this, element, width, height, isWide: units.length > 1,
+                isLast: i === count - 1, units: units.slice(i * UNITS_PER_PLOT, (i + 1) * UNITS_PER_PLOT) }));
+            Object.assign(this, { shape, shownTheme: this.theme });
         }
-        this.drop();
-        this.shape = shape;
-        this.shownTheme = this.theme;
-        this.chart = new uPlot(this.options(), this.data(uPlot), byId('trend-chart'));
-        this.chart.setScale('x', { min, max });
+        const rows = this.tags.map((tag, i) => ({ tag, series: this.series[i], alarms: this.alarms.get(tag) }));
+        this.resize();
+        for (const plot of this.plots)
+            plot.show(uPlot, rows.filter(({ tag }) => plot.units.includes(this.unitOf(tag) || '–')), this.span, this.range);
+    }
+
+    redraw() {
+        this.plots.forEach(({ chart }) => chart?.redraw(false));
+    }
+
+    rebuild() {
+        this.draw(globalThis.uPlot);
+        this.table.build();
     }
 
     resize() {
-        const width = byId('trend-chart').clientWidth;
-        if (this.chart && width > 0 && (width !== this.chart.width || highPx() !== this.chart.height))
-            this.chart.setSize({ width, height: highPx() });
+        const width = byId('trend-chart').clientWidth, height = heightOf(this.plots.length, this.tags.length);
+        for (const { chart } of this.plots)
+            if (chart && width > 0 && (width !== chart.width || height !== chart.height))
+                chart.setSize({ width, height });
     }
 
-    // --- drawing
-
-    options() {
-        const units = [...new Set(this.tags.map((tag) => this.unitOf(tag) || '–'))];
-        const { ink, rule: stroke } = this.look, rule = { stroke, width: 1 }, font = '12px system-ui, sans-serif';
-        const axis = { stroke: ink, grid: rule, ticks: rule, font, labelFont: font };
-        const scales = Object.fromEntries(units.map((unit) => [unit, { range: (_, low, high) => this.range(unit, low, high) }]));
-        const dateOf = (s) => this.clock(s * 1000);
-        const tickText = (s) => (this.spanS > 2 * 86400 ? dateOf(s).day : dateOf(s).time.slice(0, 5));
-        return {
-            width: Math.max(200, byId('trend-chart').clientWidth), height: highPx(),
-            tzDate: (s) => globalThis.uPlot.tzDate(new Date(s * 1000), this.zone),
-            scales: { x: { time: true }, ...scales },
-            cursor: { drag: { x: false, y: false } },
-            legend: { live: true },
-            series: [{ label: say('trends.time'), value: (_, s) => (s === null ? '–' : `${dateOf(s).date} ${dateOf(s).time}`) },
-                ...this.tags.map((tag, i) => this.lineOf(tag, i))],
-            axes: [{ ...axis, values: (_, all) => all.map(tickText), space: 70, size: 28 }, ...units.map((unit, i) => ({
-                ...axis, scale: unit, label: unit, labelSize: 16, size: AXIS_PX, side: i % 2 ? 1 : 3,
-                show: i < 2, grid: { ...rule, show: i === 0 },
-            }))],
-            hooks: { drawAxes: [(u) => this.drawGaps(u), (u) => this.drawLimits(u)],
-                draw: [(u) => this.nameLimits(u), (u) => this.drawInstant(u)],
-                ready: [(u) => u.over.addEventListener('click', () => this.goTo(u))] },
-        };
-    }
-
-    lineOf(tag, i) {
-        const group = this.session.model.group(tag.group), decimals = group ? decimalsFor(group.max - group.min) : 2;
-        return {
-            label: tag.name, scale: this.unitOf(tag) || '–', stroke: this.look.lines[i], dash: DASHES[i], width: 1.75,
-            points: { show: false },
-            value: (_, value) => (value === null || value === undefined ? '–' : `${numberText(value, decimals)} ${this.unitOf(tag)}`),
-        };
-    }
-
-    // Returns the range of an axis. It includes limits that are near the values; distant limits would only flatten the curve.
-    range(unit, low, high) {
-        if (low === null || high === null)
-            return [0, 1];
-        let [min, max] = [low, high];
-        const reach = Math.max(high - low, Math.abs(high) * 0.02, 1e-6);
-        for (const tag of this.tags.filter((one) => (this.unitOf(one) || '–') === unit))
-            for (const limit of Object.values(tag.limits ?? {}).filter(Number.isFinite)) {
-                if (limit > low - 2 * reach && limit < high + 2 * reach)
-                    [min, max] = [Math.min(min, limit), Math.max(max, limit)];
-            }
-        const margin = Math.max((max - min) * 0.08, reach * 0.1);
-        return [min - margin, max + margin];
-    }
-
-    // Draws periods without a value hatched, as in the plant's picture, and uncertain ones dotted along the bottom. With several tags, each
-    // has a row.
-    drawGaps({ ctx, bbox, valToPos }) {
-        const rows = this.series.length;
-        ctx.save();
-        ctx.beginPath();
-        ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
-        ctx.clip();
-        this.series.forEach((one, i) => {
-            const top = bbox.top + bbox.height * i / rows, height = bbox.height / rows;
-            for (const { from, to, severity } of gaps(one, ...this.span)) {
-                const left = valToPos(from, 'x', true), right = Math.max(left + 2, valToPos(to, 'x', true));
-                if (severity === BAD)
-                    hatch(ctx, left, top, right - left, height, rows > 1 ? this.look.lines[i] : this.look.gap);
-                else
-                    dots(ctx, left, right, top + height - 5, this.look.lines[i]);
-            }
-        });
-        ctx.restore();
-    }
-
-    limitsOf({ scales, valToPos }) {
-        return limitLines(this.tags, (tag) => this.unitOf(tag) || '–').filter(({ scale, value }) =>
-            value >= scales[scale]?.min && value <= scales[scale]?.max).map(({ scale, name, value, tags }) => ({
-            y: Math.round(valToPos(value, scale, true)), words: [...tags.map((tag) => tag.name), name, shortNumberText(value, 3)].join(' '),
-            colour: tags.length > 0 ? this.look.lines[this.tags.indexOf(tags[0])] : name.length > 1 ? this.look.grave : this.look.limit,
-        })).sort((a, b) => a.y - b.y);
-    }
-
-    drawLimits(chart) {
-        const { ctx, bbox } = chart;
-        ctx.save();
-        ctx.lineWidth = devicePixelRatio;
-        ctx.setLineDash([6 * devicePixelRatio, 4 * devicePixelRatio]);
-        for (const { y, colour } of this.limitsOf(chart)) {
-            ctx.strokeStyle = colour;
-            ctx.beginPath();
-            ctx.moveTo(bbox.left, y);
-            ctx.lineTo(bbox.left + bbox.width, y);
-            ctx.stroke();
-        }
-        ctx.restore();
-    }
-
-    // Writes the name of each limit at its line, over everything else. If lines are close together, a name goes next to the previous one.
-    nameLimits(chart) {
-        const { ctx, bbox } = chart, px = devicePixelRatio, height = LIMIT_PX * px, placed = [];
-        ctx.save();
-        ctx.font = `${11 * px}px system-ui, sans-serif`;
-        ctx.textAlign = 'left';
-        ctx.textBaseline = 'middle';
-        for (const { y, words, colour } of this.limitsOf(chart)) {
-            const near = placed.filter((other) => Math.abs(other.y - y) < height);
-            const left = Math.max(bbox.left, ...near.map((other) => other.right)) + 5 * px;
-            const right = left + ctx.measureText(words).width + 6 * px;
-            const middle = Math.max(bbox.top + height / 2, y);
-            placed.push({ y, right });
-            ctx.fillStyle = this.look.ground;
-            ctx.fillRect(left, middle - height / 2, right - left, height);
-            ctx.fillStyle = colour;
-            ctx.fillText(words, left + 3 * px, middle);
-        }
-        ctx.restore();
-    }
-
-    drawInstant({ ctx, bbox, valToPos }) {
-        const { atUs } = this.session.time;
-        if (atUs === null || atUs < this.span[0] || atUs > this.span[1])
+    onCrosshair(us, from) {
+        this.crosshairUs = us;
+        if (!this.isOpen)
             return;
-        const x = Math.round(valToPos(atUs / 1e6, 'x', true));
-        ctx.save();
-        ctx.strokeStyle = this.look.then;
-        ctx.lineWidth = 2 * devicePixelRatio;
-        ctx.beginPath();
-        ctx.moveTo(x, bbox.top);
-        ctx.lineTo(x, bbox.top + bbox.height);
-        ctx.stroke();
-        ctx.restore();
-    }
-
-    goTo(chart) {
-        const seconds = chart.posToVal(chart.cursor.left, 'x');
-        if (this.session.recorded && Number.isFinite(seconds))
-            travel(this.session, seconds * 1e6);
+        this.plots.forEach((plot) => plot !== from && plot.follow(us));
+        this.table.point(us, this.series);
+        const { date, time } = us === null ? {} : this.clock(us / 1000);
+        const alarms = us === null ? [] : this.plots.flatMap((plot) => plot.alarmsNear(us));
+        setText(byId('trend-at'), us === null ? '' : [`${date} ${time}`, ...alarms.map(({ us: raised, tag, kind }) =>
+            say('trends.raised', { alarm: `${tag} ${say(`kind.${kind}`)}`, time: this.clock(raised / 1000).time }))].join(' · '));
     }
 
     async save() {
         try {
-            const response = await ask('api/v1/history', { ...this.query(this.window), points: 20000, format: 'csv' }, this.session.token);
+            const response = await ask('api/v1/history', { ...this.query(this.range), points: 20000, format: 'csv' }, this.session.token);
             const url = URL.createObjectURL(await response.blob());
             make('a', { href: url, download: `${this.tags.map(({ name }) => name).join('_')}.csv` }).click();
             setTimeout(() => URL.revokeObjectURL(url), 10000);
         } catch (error) {
-            setText(byId('trend-note'), say('trends.unsaved', { why: error.message }));
+            this.note(say('trends.unsaved', { why: error.message }));
         }
     }
 }

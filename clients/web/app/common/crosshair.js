@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The instant under the pointer, which all trend charts and the time slider show together.
+
+let shownUs = null;
+const listeners = new Set();
+
+// f(us, from): us is null if the pointer points at no instant; from: the object that called pointAtInstant().
+export const onCrosshair = (f) => listeners.add(f);
+
+export function pointAtInstant(us, from) {
+    if (us === shownUs)
+        return;
+    shownUs = us;
+    listeners.forEach((f) => f(us, from));
+}

@@ -1,0 +1,320 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One chart of a trend: the curves of at most two units over one time axis, with bands, gaps, uncertain stretches, limits and alarms.
+import { shortNumberText } from '../../core/format.js';
+import { BAD, gaps, limitLines, line, UNCERTAIN } from '../../core/history.js';
+import { bands, valueAt } from '../../core/trend_values.js';
+import { pointAtInstant } from '../common/crosshair.js';
+import { hatch, hatchAlong, strokeAlong, triangle } from './chart_style.js';
+
+const EXPAND = 2; // uPlot's mode in which gaps (nulls) extend to neighbouring instants
+const AXIS_PX = 58, UNIT_PX = 16, TIME_PX = 28, LINE_PX = 1.75, BOLD_PX = 3, LABEL_PX = 15, BADGE_PX = 13, DRAGGED_PX = 4;
+const DAYS_S = 2 * 86400; // length of a range from which ticks are days
+const FONT = 'system-ui, sans-serif';
+
+export class Plot {
+    // view: the trends, with look, clock, zone, session, spanUs, colourOf(tag), unitOf(tag), decimalsOf(tag), focus, travel(us),
+    // zoomTo([from, to]) and priorities (colours). units: of the chart, at most two. isWide: another chart has two axes. isLast: has the
+    // labels of the time axis.
+    constructor({ view, units, isWide, isLast, element, width, height }) {
+        Object.assign(this, { view, units, isWide, isLast, rows: [], marks: [] });
+        this.shape = { width, height };
+        this.element = element;
+    }
+
+    // rows: [{ tag, series, alarms }] of this chart's units; span: the time of the values, in microseconds.
+    show(uPlot, rows, span, window) {
+        const names = JSON.stringify(rows.map(({ tag }) => tag.name));
+        Object.assign(this, { rows, span });
+        const tables = rows.map(({ series }) => line(series, ...span))
+            .map((table) => (table[0].length > 0 ? table : [[span[0] / 1e6], [null]]));
+        // a gap in one series must extend over the instants of the others
+        const data = uPlot.join(tables, tables.map(() => [EXPAND, EXPAND]));
+        this.bands = rows.map(({ series }) => bands(series));
+        if (this.chart && this.names === names) {
+            this.chart.setData(data, false);
+        } else {
+            this.drop();
+            this.names = names;
+            this.chart = new uPlot(this.options(), data, this.element);
+        }
+        this.move(window);
+    }
+
+    move([from, to]) {
+        this.chart?.setScale('x', { min: from / 1e6, max: to / 1e6 });
+    }
+
+    drop() {
+        this.chart?.destroy();
+        this.chart = null;
+    }
+
+    // --- pointer
+
+    // Shows the instant that another chart or the time slider points at; null: none.
+    follow(us) {
+        if (!this.chart)
+            return;
+        const left = us === null ? -10 : this.chart.valToPos(us / 1e6, 'x');
+        this.chart.setCursor({ left, top: left < 0 ? -10 : 0 }, false);
+    }
+
+    instantAt(left) {
+        return this.chart.posToVal(left, 'x') * 1e6;
+    }
+
+    listen({ over }) {
+        let pressed = null;
+        over.addEventListener('pointerdown', ({ clientX }) => { pressed = clientX; });
+        over.addEventListener('click', ({ clientX, offsetX }) => {
+            if (pressed !== null && Math.abs(clientX - pressed) < DRAGGED_PX)
+                this.view.travel(this.instantAt(offsetX));
+        });
+    }
+
+    onCursor({ cursor }) {
+        const isOver = cursor.left >= 0 && cursor.left <= this.chart?.over.clientWidth;
+        pointAtInstant(isOver ? this.instantAt(cursor.left) : null, this);
+    }
+
+    onSelect(chart) {
+        const { left, width } = chart.select;
+        if (width > DRAGGED_PX)
+            this.view.zoomTo([this.instantAt(left), this.instantAt(left + width)]);
+        chart.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
+    }
+
+    // --- drawing
+
+    options() {
+        const { ink, rule: stroke } = this.view.look, rule = { stroke, width: 1 }, font = `12px ${FONT}`;
+        const axis = { stroke: ink, grid: rule, ticks: rule, font, labelFont: font }, { units } = this;
+        const scales = Object.fromEntries(units.map((unit) => [unit, { range: (_, low, high) => this.range(unit, low, high) }]));
+        const right = this.isWide && units.length < 2 ? AXIS_PX + UNIT_PX : null;
+        const onlyPlain = (chart, target, handler) => (event) => !event.shiftKey && event.button === 0 && handler(event);
+        return {
+            ...this.shape, padding: [null, right, null, null],
+            tzDate: (s) => globalThis.uPlot.tzDate(new Date(s * 1000), this.view.zone),
+            scales: { x: { time: true }, ...scales },
+            cursor: { y: false, points: { show: false }, drag: { x: true, y: false, setScale: false }, bind: { mousedown: onlyPlain,
+                dblclick: () => null } },
+            legend: { show: false },
+            series: [{}, ...this.rows.map(({ tag }) => ({ label: tag.name, scale: this.view.unitOf(tag) || '–', width: LINE_PX,
+                stroke: this.view.colourOf(tag), points: { show: false } }))],
+            axes: [{ ...axis, values: (_, all) => all.map((s) => this.tickText(s)), space: 70, size: this.isLast ? TIME_PX : 8,
+                ...(this.isLast ? {} : { values: (_, all) => all.map(() => '') }) },
+            ...units.map((unit, i) => ({
+                ...axis, scale: unit, label: unit, labelSize: UNIT_PX, size: AXIS_PX, side: i % 2 ? 1 : 3, grid: { ...rule, show: i === 0 },
+                values: (_, all) => all.map((value) => shortNumberText(value, 6)),
+            }))],
+            hooks: { drawAxes: [(u) => this.drawGaps(u), (u) => this.drawLimits(u), (u) => this.drawBands(u)],
+                drawSeries: [(u, i) => this.drawQuality(u, i)],
+                draw: [(u) => this.drawAlarms(u), (u) => this.nameLimits(u), (u) => this.drawBadges(u), (u) => this.drawInstant(u)],
+                setCursor: [(u) => this.chart === u && this.onCursor(u)], setSelect: [(u) => this.onSelect(u)],
+                ready: [(u) => this.listen(u)] },
+        };
+    }
+
+    tickText(s) {
+        const { day, time } = this.view.clock(s * 1000), spanS = this.view.spanUs / 1e6;
+        if (spanS > DAYS_S)
+            return time.startsWith('00:00') || spanS > 7 * DAYS_S ? day : time.slice(0, 5);
+        return spanS < 300 ? time : time.slice(0, 5);
+    }
+
+    // Returns the range of an axis. It includes bands, and limits that are near the values; distant limits would only flatten the curve.
+    range(unit, low, high) {
+        let [min, max] = [low ?? Infinity, high ?? -Infinity];
+        this.rows.forEach(({ tag }, i) => (this.view.unitOf(tag) || '–') === unit && this.bands[i].flat().forEach(([, , least, most]) => {
+            [min, max] = [Math.min(min, least), Math.max(max, most)];
+        }));
+        if (!(min <= max))
+            return [0, 1];
+        const [from, to] = [min, max], reach = Math.max(to - from, Math.abs(to) * 0.02, 1e-6);
+        for (const { scale, value } of this.limits())
+            if (scale === unit && value > from - 2 * reach && value < to + 2 * reach)
+                [min, max] = [Math.min(min, value), Math.max(max, value)];
+        const margin = Math.max((max - min) * 0.08, reach * 0.1);
+        return [min - margin, max + margin];
+    }
+
+    // Draws periods without a value hatched, as in the plant's picture: with one tag over the whole height, with several where the curve
+    // would be.
+    drawGaps({ ctx, bbox, valToPos }) {
+        ctx.save();
+        ctx.beginPath();
+        ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
+        ctx.clip();
+        for (const { tag, series } of this.rows) {
+            for (const { from, to } of gaps(series, ...this.span).filter(({ severity }) => severity === BAD)) {
+                const left = valToPos(from, 'x', true), right = Math.max(left + 2, valToPos(to, 'x', true));
+                if (this.view.tags.length === 1) {
+                    hatch(ctx, left, bbox.top, right - left, bbox.height, this.view.look.gap);
+                    continue;
+                }
+                const ends = [valueAt(series, from * 1e6 - 1), valueAt(series, to * 1e6 + 1)];
+                const known = ends.filter((value) => value !== null);
+                const ys = ends.map((value) => (known.length > 0 ? valToPos(value ?? known[0], this.view.unitOf(tag) || '–', true)
+                    : bbox.top + bbox.height / 2));
+                hatchAlong(ctx, [left, ys[0]], [right, ys[1]], this.view.colourOf(tag));
+            }
+        }
+        ctx.restore();
+    }
+
+    drawBands({ ctx, bbox, valToPos }) {
+        ctx.save();
+        ctx.beginPath();
+        ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
+        ctx.clip();
+        ctx.globalAlpha = 0.22;
+        this.rows.forEach(({ tag }, i) => {
+            const scale = this.view.unitOf(tag) || '–', x = (s) => valToPos(s, 'x', true), y = (value) => valToPos(value, scale, true);
+            ctx.fillStyle = this.view.colourOf(tag);
+            for (const stretch of this.bands[i]) {
+                ctx.beginPath();
+                stretch.forEach(([from, to, , high]) => { ctx.lineTo(x(from), y(high)); ctx.lineTo(x(to), y(high)); });
+                [...stretch].reverse().forEach(([from, to, low]) => { ctx.lineTo(x(to), y(low)); ctx.lineTo(x(from), y(low)); });
+                ctx.fill();
+            }
+        });
+        ctx.restore();
+    }
+
+    // Draws a curve broken where its values are uncertain, and thicker if its row of the table has the focus.
+    drawQuality(chart, index) {
+        const { tag, series } = this.rows[index - 1] ?? {};
+        if (!tag)
+            return;
+        const { bbox, valToPos } = chart, colour = this.view.colourOf(tag), x = (s) => valToPos(s, 'x', true);
+        const width = this.view.focus === tag && this.view.tags.length > 1 ? BOLD_PX : LINE_PX;
+        if (width > LINE_PX)
+            strokeAlong(chart, index, bbox.left, bbox.left + bbox.width, { colour, width });
+        for (const { from, to } of gaps(series, ...this.span).filter(({ severity }) => severity === UNCERTAIN))
+            strokeAlong(chart, index, x(from), x(to), { colour: this.view.look.ground, width: width + 1, dash: [4, 5] });
+    }
+
+    // Draws the time of each alarm as a broad line below the curve, and a triangle where the alarm was raised.
+    drawAlarms(chart) {
+        const { ctx, bbox, valToPos, posToVal } = chart, found = [];
+        this.rows.forEach(({ tag, alarms = [] }, i) => {
+            const scale = this.view.unitOf(tag) || '–', x = (us) => valToPos(us / 1e6, 'x', true);
+            for (const alarm of [...alarms].sort((a, b) => b.priority - a.priority)) { // the most urgent on top
+                const colour = this.view.priorities[alarm.priority - 1], left = x(Math.max(alarm.us, this.span[0]));
+                const right = x(alarm.endUs ?? this.span[1]), edge = { colour: this.view.look.edge, width: 7.5, alpha: 0.5 };
+                for (const pen of [edge, { colour, width: 6 }, { colour: this.view.colourOf(tag), width: LINE_PX }])
+                    strokeAlong(chart, i + 1, left, right, pen);
+                if (left < bbox.left || left > bbox.left + bbox.width || alarm.us < this.span[0])
+                    continue;
+                const value = alarm.value ?? alarm.limit, y = Math.min(Math.max(valToPos(value ?? posToVal(0, scale), scale, true),
+                    bbox.top + 14 * devicePixelRatio), bbox.top + bbox.height);
+                triangle(ctx, left, y, colour, this.view.look.edge);
+                found.push({ alarm, us: alarm.us });
+            }
+        });
+        this.marks = found;
+    }
+
+    // Returns the alarms that were raised within some pixels of an instant.
+    alarmsNear(us, px = 6) {
+        const near = (px * this.view.spanUs) / Math.max(1, this.chart?.over.clientWidth ?? 1);
+        return this.marks.filter((mark) => Math.abs(mark.us - us) <= near).map(({ alarm }) => alarm);
+    }
+
+    // Returns the limits to draw: those of the tag with the focus, and those that all tags of an axis share.
+    limits() {
+        const { view } = this, scaleOf = (tag) => view.unitOf(tag) || '–', tags = this.rows.map(({ tag }) => tag);
+        const isShared = ({ scale, name, value }) => {
+            const all = tags.filter((tag) => scaleOf(tag) === scale);
+            return (all.length > 1 || view.tags.length === 1) && all.every((tag) => tag.limits?.[name] === value);
+        };
+        return limitLines(tags, scaleOf).map((one) => ({ ...one, tags: one.tags.length > 0 ? one.tags : tags }))
+            .filter((one) => isShared(one) || one.tags.includes(view.focus))
+            .map((one) => ({ ...one, tags: isShared(one) ? [] : [view.focus] }));
+    }
+
+    limitsOf({ scales, valToPos }) {
+        const { look } = this.view;
+        return this.limits().filter(({ scale, value }) => value >= scales[scale]?.min && value <= scales[scale]?.max)
+            .map(({ scale, name, value, tags }) => ({
+                y: Math.round(valToPos(value, scale, true)),
+                words: [...tags.map((tag) => tag.name), name, shortNumberText(value, 3)].join(' '),
+                colour: tags.length > 0 ? this.view.colourOf(tags[0]) : name.length > 1 ? look.grave : look.limit,
+            })).sort((a, b) => a.y - b.y);
+    }
+
+    drawLimits(chart) {
+        const { ctx, bbox } = chart;
+        ctx.save();
+        ctx.lineWidth = devicePixelRatio;
+        ctx.setLineDash([6 * devicePixelRatio, 4 * devicePixelRatio]);
+        for (const { y, colour } of this.limitsOf(chart)) {
+            ctx.strokeStyle = colour;
+            ctx.beginPath();
+            ctx.moveTo(bbox.left, y);
+            ctx.lineTo(bbox.left + bbox.width, y);
+            ctx.stroke();
+        }
+        ctx.restore();
+    }
+
+    // Writes the name of each limit at its line, over everything else. If lines are close together, a name goes next to the previous one.
+    nameLimits(chart) {
+        const { ctx, bbox } = chart, px = devicePixelRatio, height = LABEL_PX * px, placed = [];
+        ctx.save();
+        ctx.font = `${11 * px}px ${FONT}`;
+        ctx.textAlign = 'left';
+        ctx.textBaseline = 'middle';
+        for (const { y, words, colour } of this.limitsOf(chart)) {
+            const near = placed.filter((other) => Math.abs(other.y - y) < height);
+            const left = Math.max(bbox.left, ...near.map((other) => other.right)) + 5 * px;
+            const right = left + ctx.measureText(words).width + 6 * px;
+            const middle = Math.max(bbox.top + height / 2, y);
+            placed.push({ y, right });
+            ctx.fillStyle = this.view.look.ground;
+            ctx.fillRect(left, middle - height / 2, right - left, height);
+            ctx.fillStyle = colour;
+            ctx.fillText(words, left + 3 * px, middle);
+        }
+        ctx.restore();
+    }
+
+    // Draws the number of each curve at its end, as in the table, so that curves are told apart without their colours.
+    drawBadges(chart) {
+        const { ctx, bbox, valToPos, data } = chart, px = devicePixelRatio, size = BADGE_PX * px, { min, max } = chart.scales.x;
+        if (this.view.tags.length < 2)
+            return;
+        const ends = this.rows.map(({ tag }, i) => {
+            const k = data[i + 1].findLastIndex((value, n) => Number.isFinite(value) && data[0][n] <= max && data[0][n] >= min);
+            return k < 0 ? null : { tag, x: Math.min(valToPos(data[0][k], 'x', true), bbox.left + bbox.width - size / 2),
+                y: valToPos(data[i + 1][k], this.view.unitOf(tag) || '–', true) };
+        }).filter(Boolean).sort((a, b) => a.y - b.y);
+        ctx.save();
+        Object.assign(ctx, { font: `600 ${10 * px}px ${FONT}`, textAlign: 'center', textBaseline: 'middle' });
+        let below = -Infinity;
+        ends.forEach((end, i) => {
+            const room = (ends.length - 1 - i) * size, most = bbox.top + bbox.height - size / 2 - room;
+            const y = Math.min(Math.max(end.y, below + size, bbox.top + size / 2), most);
+            below = y;
+            ctx.fillStyle = this.view.colourOf(end.tag);
+            ctx.fillRect(end.x - size / 2, y - size / 2, size, size - px);
+            ctx.fillStyle = this.view.look.ground;
+            ctx.fillText(String(this.view.tags.indexOf(end.tag) + 1), end.x, y);
+        });
+        ctx.restore();
+    }
+
+    drawInstant({ ctx, bbox, valToPos }) {
+        const { atUs } = this.view.session.time, x = Math.round(valToPos(atUs / 1e6, 'x', true));
+        if (atUs === null || x < bbox.left || x > bbox.left + bbox.width)
+            return;
+        ctx.save();
+        ctx.strokeStyle = this.view.look.then;
+        ctx.lineWidth = 2 * devicePixelRatio;
+        ctx.beginPath();
+        ctx.moveTo(x, bbox.top);
+        ctx.lineTo(x, bbox.top + bbox.height);
+        ctx.stroke();
+        ctx.restore();
+    }
+}

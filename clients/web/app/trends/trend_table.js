@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The table next to the trend charts: for each tag its value at the crosshair, its present or shown value, and minimum, mean and maximum
+// of the shown period.
+import { numberText } from '../../core/format.js';
+import { statistics, valueAt } from '../../core/trend_values.js';
+import { say } from '../../core/words.js';
+import { byId, make, setText, setVariable } from '../common/dom.js';
+
+const COLUMNS = ['at', 'now', 'min', 'mean', 'max'], FULL = 0.995;
+
+export class TrendTable {
+    // view: see Plot, and remove(tag), setFocus(tag).
+    constructor(view) {
+        this.view = view;
+        this.rows = new Map(); // tag -> { cells by column }
+        this.stats = new Map();
+        this.head = byId('trend-tags').querySelector('thead');
+        this.body = byId('trend-tags').querySelector('tbody');
+    }
+
+    // Makes the rows of the view's tags.
+    build() {
+        const { view } = this, head = (name) => make('th', { class: name, scope: 'col' });
+        const heads = Object.fromEntries([...COLUMNS, 'known'].map((name) => [name, head(name)]));
+        this.heads = heads;
+        this.head.replaceChildren(make('tr', {}, make('th', { scope: 'col' }, say('trends.tag')), ...Object.values(heads),
+            make('td')));
+        this.rows.clear();
+        this.body.replaceChildren(...view.tags.map((tag, i) => this.rowOf(tag, i)));
+        this.fill();
+    }
+
+    rowOf(tag, i) {
+        const { view } = this, unit = view.unitOf(tag), title = say('trends.remove', { tag: tag.name });
+        const cells = Object.fromEntries([...COLUMNS, 'known'].map((name) => [name, make('td', { class: name })]));
+        this.rows.set(tag, cells);
+        const badge = make('span', { class: 'badge', 'aria-hidden': 'true' }, String(i + 1));
+        setVariable(badge, '--colour', view.colourOf(tag));
+        const name = make('button', { type: 'button', class: 'name', 'aria-pressed': String(view.focus === tag), title: say('trends.focus'),
+            onclick: () => view.setFocus(tag) }, badge, make('b', {}, tag.name), unit ? ` [${unit}]` : '');
+        return make('tr', {}, make('th', { scope: 'row', title: tag.description ?? '' }, name, make('small', {}, tag.description ?? '')),
+            ...Object.values(cells), make('td', {}, make('button', { type: 'button', class: 'drop', 'aria-label': title, title,
+                onclick: () => view.remove(tag) }, '×')));
+    }
+
+    // Computes the statistics of the shown period.
+    count(series, [from, to]) {
+        this.stats = new Map(this.view.tags.map((tag, i) => [tag, series[i] ? statistics(series[i], from, to) : null]));
+        this.fill();
+    }
+
+    fill() {
+        const { view } = this, { session } = view, isPast = session.time.atUs !== null;
+        for (const name of COLUMNS)
+            setText(this.heads[name], say(`trends.${name === 'now' && isPast ? 'then' : name}`));
+        setText(this.heads.known, say('trends.known'));
+        const lacks = [...this.stats.values()].some((one) => one && one.known < FULL);
+        byId('trend-tags').classList.toggle('lacks', lacks);
+        for (const [tag, cells] of this.rows) {
+            const decimals = view.decimalsOf(tag), { value, quality } = session.model.readings[tag.index], stats = this.stats.get(tag);
+            const text = (number) => numberText(number ?? null, decimals);
+            setText(cells.now, quality === 'bad' ? say('novalue') : text(value));
+            for (const name of ['min', 'mean', 'max'])
+                setText(cells[name], text(stats?.[name]));
+            setText(cells.known, stats ? `${numberText(Math.floor(100 * stats.known), 0)} %` : '0 %');
+        }
+    }
+
+    // Shows the values at the crosshair; null: none.
+    point(us, series) {
+        this.view.tags.forEach((tag, i) => {
+            const cell = this.rows.get(tag)?.at;
+            if (cell)
+                setText(cell, numberText(us === null || !series[i] ? null : valueAt(series[i], us), this.view.decimalsOf(tag)));
+        });
+    }
+}
