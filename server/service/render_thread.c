@@ -302,7 +302,8 @@ static bool has_left(const struct request_ticket *ticket, void *arg)
     return !client || client->left || (client->pending && client->request.urgency == URGENCY_INPUT);
 }
 
-/* Removes clients that no longer want the frame from the long job (a frame drawn in steps); abandons the job once it has no clients. */
+/* Removes clients that no longer want the frame from the long job (a frame drawn in steps); abandons the job once it has no clients. Its
+   time is charged all the same: otherwise an address that gives up each of its frames would always go first. */
 static void long_job_leave(struct render_thread *thread)
 {
     struct render_service *service = thread->service;
@@ -310,6 +311,8 @@ static void long_job_leave(struct render_thread *thread)
         return;
     pthread_mutex_lock(&service->lock);
     request_group_split(&thread->long_job.group, has_left, service, &thread->same);
+    if (thread->long_job.group.count == 0)
+        time_accounts_charge(&service->accounts, thread->long_job.account, SCHEDULER_LONG, thread->long_job.spent_ns);
     pthread_mutex_unlock(&service->lock);
     render_service_answer_without_frame(service, &thread->same, FRAME_SKIPPED);
     if (thread->long_job.group.count > 0)
@@ -537,8 +540,6 @@ static void turn(struct render_thread *thread, struct scheduler *scheduler, stru
 {
     enum urgency urgency = group->count > 0 ? group->tickets[0].request.urgency : thread->long_job.urgency;
     bool done = true;
-    if (!thread->long_job.split && thread->parked.split)
-        long_job_swap(thread);
     long_job_leave(thread);
     if (group->count == 0 && !thread->long_job.split && thread->in_flight.count > 0) {
         finish_oldest(thread);
@@ -553,6 +554,9 @@ static void turn(struct render_thread *thread, struct scheduler *scheduler, stru
         scheduler_stepped(scheduler);
     if (done && !(urgency >= URGENCY_REFINE && thread->long_job.split))
         scheduler_done(scheduler, urgency, clock_mono_ns());
+    /* here and not at the beginning: without other requests there would be no next turn */
+    if (!thread->long_job.split && thread->parked.split)
+        long_job_swap(thread);
 }
 
 void *render_thread_main(void *arg)

@@ -48,14 +48,12 @@ bool render_thread_overtakes(const struct render_thread *thread, const struct re
     return px * OVERTAKE_SMALLER <= long_job->px && client->account->spent_ns[kind] < long_job->account_spent_ns + long_job->spent_ns;
 }
 
-/* Returns whether the client goes before the other, because it was charged less drawing time. Compares the totals of their addresses; for
-   clients of one address, their own. kind: share of drawing time (scheduler_share()). The caller holds the lock. */
+/* Returns whether the client goes before the other, because it was charged less drawing time. kind: share of drawing time
+   (scheduler_share()). The caller holds the lock. */
 static bool has_had_less(const struct render_client *client, const struct render_client *other, int kind)
 {
-    const int64_t *a = client->account->spent_ns, *b = other->account->spent_ns;
-    if (client->account == other->account)
-        a = client->spent_ns, b = other->spent_ns;
-    return scheduler_before(a[kind], client->request.asked_ns, b[kind], other->request.asked_ns);
+    return time_claim_before(&(struct time_claim){ client->account, client->spent_ns[kind], client->request.asked_ns },
+                             &(struct time_claim){ other->account, other->spent_ns[kind], other->request.asked_ns }, kind);
 }
 
 /* Returns whether the client's request can be drawn now and before that of `other` (NULL: none). The caller holds the lock. */
@@ -68,6 +66,15 @@ static bool goes_before(const struct render_thread *thread, const struct render_
     if (thread->long_job.split && urgency >= URGENCY_REFINE && !render_thread_overtakes(thread, client))
         return false;
     return !other || has_had_less(client, other, scheduler_share(urgency));
+}
+
+/* Refined frames and snapshots are charged to one share, so only one of both goes first. Otherwise the refined frames of an address, one
+   after the other, would keep its snapshots waiting as long as another address's large frame is drawn. The caller holds the lock. */
+static void choose_long(struct render_client **first)
+{
+    struct render_client **refined = &first[URGENCY_REFINE], **snapshot = &first[URGENCY_SNAPSHOT];
+    if (*refined && *snapshot)
+        *(has_had_less(*snapshot, *refined, SCHEDULER_LONG) ? refined : snapshot) = NULL;
 }
 
 /* Chooses what the render thread does in its next turn: draw a step of the long job (a frame drawn in steps), or serve a client. The caller
@@ -84,6 +91,7 @@ static struct render_turn next_turn(const struct render_thread *thread, const st
         if (goes_before(thread, client, first[client->request.urgency], now_ns))
             first[client->request.urgency] = client;
     }
+    choose_long(first);
     for (int i = 0; i < URGENCY_COUNT; i++)
         asked_ns[i] = busy && thread->long_job.urgency == (enum urgency)i ? thread->long_job.asked_ns
                       : first[i]                                          ? first[i]->request.asked_ns

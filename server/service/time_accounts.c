@@ -59,6 +59,21 @@ void time_accounts_served(struct time_accounts *accounts, const struct time_acco
     accounts->served_ns[kind] = scheduler_asked(account->spent_ns[kind], accounts->served_ns[kind]);
 }
 
+void time_accounts_charge(struct time_accounts *accounts, uint64_t id, int kind, int64_t ns)
+{
+    struct time_account *account = time_accounts_join(accounts, id);
+    time_accounts_asked(accounts, account, kind);
+    account->spent_ns[kind] += ns;
+    time_accounts_leave(accounts, &account);
+}
+
+bool time_claim_before(const struct time_claim *a, const struct time_claim *b, int kind)
+{
+    bool own = a->account == b->account;
+    return scheduler_before(own ? a->spent_ns : a->account->spent_ns[kind], a->asked_ns, own ? b->spent_ns : b->account->spent_ns[kind],
+                            b->asked_ns);
+}
+
 void time_accounts_finish(struct time_accounts *accounts)
 {
     for (size_t i = 0; i < accounts->count; i++)

@@ -152,6 +152,43 @@ TEST(test_a_small_picture_overtakes_a_large_one_of_another)
         render_service_forget(service, asked[i].client);
 }
 
+/* While a large frame of another address is drawn, a snapshot is not held up by a later refined frame of its own address. */
+TEST(test_a_snapshot_goes_before_a_later_refinement)
+{
+    if (hardware)
+        skip();
+    int64_t steps = count_of("plantcast_render_steps_total");
+    static const uint64_t clients[] = { REFINER, PICKER, MOVER };
+    struct frame_request requests[3];
+    enum request_outcome outcomes[3];
+    for (int i = 0; i < 3; i++) {
+        requests[i] = (struct frame_request){ .codec = WIRE_CODEC_JPEG,
+                                              .quality = { .quality = 80 },
+                                              .urgency = i == 2 ? URGENCY_REFINE : URGENCY_SNAPSHOT,
+                                              .asked_ns = clock_mono_ns() + i,
+                                              .account = i > 0 ? 2 : 1,
+                                              .always = true };
+        view_default(&toy->scene, i > 0 ? 320 : 2400, i > 0 ? 200 : 1600, &requests[i].view);
+        requests[i].view.tier = TIER_REFINED;
+        requests[i].view.camera.eye_m[0] += 17 + i;
+    }
+    render_service_request_all(service, 1, clients, requests, outcomes);
+    render_service_wake(service);
+    await_step(steps + 2);
+    render_service_request_all(service, 2, clients + 1, requests + 1, outcomes + 1);
+    render_service_wake(service);
+    uint64_t sum = 0;
+    for (int i = 0; i < 3; i++) {
+        struct encoded_frame *encoded = next();
+        assert_true(encoded->packet && (i > 0 || encoded->client == PICKER));
+        sum += encoded->client;
+        encoded_frame_destroy(&encoded);
+    }
+    assert_int_equal(sum, REFINER + MOVER + PICKER); /* the large frame continues although nobody requests anything more */
+    for (int i = 0; i < 3; i++)
+        render_service_forget(service, clients[i]);
+}
+
 TEST(test_mover_gives_its_own_refinement_up)
 {
     if (hardware)

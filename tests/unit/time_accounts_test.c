@@ -55,3 +55,39 @@ TEST(who_comes_anew_owes_what_it_had)
     assert_int_equal(greedy->spent_ns[SHARE], accounts.served_ns[SHARE]);
     time_accounts_finish(&accounts);
 }
+
+/* An address draws large frames one after the other and gives each of them up. Another address, which was charged more, refines a session
+   all the time and requests one snapshot. */
+TEST(no_request_waits_for_frames_without_end)
+{
+    enum { GREEDY, SESSION, SNAPSHOT, CLAIMS };
+    static const int64_t cost_ns[CLAIMS] = { 900 * NS_PER_MS, 300 * NS_PER_MS, 50 * NS_PER_MS };
+    struct time_accounts accounts = { 0 };
+    struct time_account *greedy = time_accounts_join(&accounts, 1), *other = time_accounts_join(&accounts, 2);
+    struct time_claim claims[CLAIMS] = { { greedy, 0, 0 }, { other, 0, 1 }, { other, 0, 2 } };
+    int64_t served_ns = 0;
+    int turns[CLAIMS] = { 0 }, first = GREEDY;
+    other->spent_ns[SCHEDULER_LONG] = 5 * NS_PER_S;
+    for (int64_t now = CLAIMS; first != SNAPSHOT && now < 100; now++) {
+        first = GREEDY;
+        for (int i = 1; i < CLAIMS; i++)
+            if (time_claim_before(&claims[i], &claims[first], SCHEDULER_LONG))
+                first = i;
+        struct time_claim *claim = &claims[first];
+        struct time_account *account = first == GREEDY ? greedy : other;
+        turns[first]++;
+        served_ns = scheduler_asked(claim->spent_ns, served_ns);
+        time_accounts_served(&accounts, account, SCHEDULER_LONG);
+        if (first == GREEDY)
+            time_accounts_charge(&accounts, 1, SCHEDULER_LONG, cost_ns[GREEDY]); /* given up: only the address is charged */
+        else
+            account->spent_ns[SCHEDULER_LONG] += cost_ns[first];
+        claim->spent_ns = scheduler_asked(claim->spent_ns + (first == GREEDY ? 0 : cost_ns[first]), served_ns);
+        claim->asked_ns = now;
+        time_accounts_asked(&accounts, account, SCHEDULER_LONG);
+    }
+    assert_int_equal(turns[SNAPSHOT], 1);
+    assert_in_range(turns[GREEDY], 1, 7); /* up to what the other address had had before: 5 s of its 0.9 s */
+    assert_in_range(turns[SESSION], 0, 1);
+    time_accounts_finish(&accounts);
+}
