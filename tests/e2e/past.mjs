@@ -260,6 +260,11 @@ test('an imported gap, blanks and state words are no data, in pictures, readings
     const joined = await told('TI-1', day, day + 60); // the points before and after
     assert.deepEqual(joined.map(([, value, quality]) => [value, quality]), [[12, 0], [80, 0]]);
 
+    const without = runProgram('plantcast', ['history', 'export', plant.file, '--tags', 'TI-1', '--from', String(from + 65), '--to',
+        String(from + 2 * day + 5), '--points', '1000000']);
+    assert.match(without.out, /TI-1,[^,]*,12,0x00000000,°C\r\nTI-1,[^,]*,80,0x00000000/);
+    assert.doesNotMatch(without.out, /TI-1,[^,]*,,0x80310000/);
+
     // Its Stale s, 1 s, is shorter than ten times the spacing: 3 s without a sample are no data.
     const steps = Array.from({ length: 20 }, (_, i) => [i / 2 + (i > 9 ? 3 : 0), 50]);
     assert.match(bring('TI-2', steps), /Gaps without data: 1 \(longer than 1 s\)/);

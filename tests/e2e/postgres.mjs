@@ -163,6 +163,14 @@ test('a gap and a Bad sample of an import are there, and a later import removes 
     bring('--longest-gap', '2d');
     await until('the gap is gone', async () => rows().some(([s, value]) => s === 40.000001 && value === '10'));
     assert.deepEqual(rows().filter(([, , quality]) => quality === none), [[86410.000001, '', none]]);
+
+    // The Stale s of TI-2, 1 s: the 3.5 s after 4.5 s are no data.
+    writeFileSync(file, `Time,TI-2\n${Array.from({ length: 20 }, (_, i) => `${from + i / 2 + (i > 9 ? 3 : 0)},50`).join('\n')}\n`);
+    bring();
+    const without = () => server.ask(`SELECT extract(epoch FROM time)::numeric(20, 6) - ${from} FROM plantcast.history
+        WHERE tag = 'TI-2' AND time < to_timestamp(${from + 60}) AND quality = '${none}' ORDER BY time`).map(([s]) => Number(s));
+    await until('the end of the series is sent', async () => without().includes(12.500001));
+    assert.deepEqual(without(), [4.500001, 12.500001]);
 });
 
 // Replaces Grafana's macros and variables, with these plants, tags and units chosen.
