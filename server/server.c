@@ -23,6 +23,7 @@
 #include "corelink/node_id.h"
 #include "encode/encoder.h"
 #include "scene/far_sensors.h"
+#include "scene/manifest.h"
 #include "field/colormap.h"
 #include "plant_runtime.h"
 #include "provenance/signing_key.h"
@@ -575,16 +576,40 @@ static void print_wrong_view(void *arg, const struct named_view *view, const cha
     printf("%s:%d: warning: view %s: %s\n", (const char *)arg, view->line, view->id, wrong);
 }
 
+/* Prints which textures and extensions of the plant's models are not drawn, as plantcast-prep found. */
+static void print_left_out(struct log *log, const struct plant *plant, const char *folder)
+{
+    enum { SHOWN = 20 };
+    struct manifest manifest;
+    if (!manifest_read(log, folder, &manifest))
+        return;
+    for (size_t a = 0; a < plant->asset_count; a++) {
+        const struct plant_asset *asset = &plant->assets[a];
+        const struct manifest_entry *entry = manifest_find(&manifest, asset->id);
+        size_t count = entry ? entry->left_out_count : 0;
+        for (size_t i = 0; i < count && i < SHOWN; i++)
+            printf("%s:%d: warning: model %s: left out: %s\n", plant->path, asset->line, asset->model, entry->left_out[i]);
+        if (count > SHOWN)
+            printf("%s:%d: warning: model %s: %zu more textures or extensions are left out\n", plant->path, asset->line, asset->model,
+                   count - SHOWN);
+    }
+    manifest_finish(&manifest);
+}
+
 static int check_prepared(const struct server_params *params, const struct plant *plant)
 {
     char *folder = plant_runtime_prepared_folder(params, plant);
     bool exists = access(folder, F_OK) == 0;
-    if (!exists)
+    struct log *log = log_create(LOG_WARN);
+    if (exists)
+        print_left_out(log, plant, folder);
+    else
         printf("%s: not prepared yet (%s)\n", params->plant_path, folder);
     mem_free(folder);
-    if (!exists)
+    if (!exists) {
+        log_destroy(&log);
         return 0;
-    struct log *log = log_create(LOG_WARN);
+    }
     struct scene *scene = plant_runtime_open_scene(log, params, plant);
     int status = scene ? 0 : 1;
     for (size_t i = 0; scene && i < scene->asset_count; i++)

@@ -200,8 +200,26 @@ static void add_resolved(json_t *asset, const char *folder, uint64_t key)
     mem_free(text);
 }
 
-static char *manifest_text(const char *folder, const struct folder_entry *entries, size_t count)
+/* Adds the model's losses. If this run did not parse the model, takes the texts of the old manifest's asset of the same recipe. */
+static void add_left_out(json_t *asset, const struct folder_entry *entry, const json_t *old_assets)
 {
+    json_t *texts = entry->left_out ? json_array() : NULL;
+    for (size_t i = 0; entry->left_out && i < entry->left_out_count; i++)
+        json_array_append_new(texts, json_string(entry->left_out[i]));
+    for (size_t i = 0; !entry->left_out && !texts && i < json_array_size(old_assets); i++) {
+        json_t *old = json_array_get(old_assets, i);
+        if (json_equal(json_object_get(old, "id"), json_object_get(asset, "id")) &&
+            json_equal(json_object_get(old, "recipe"), json_object_get(asset, "recipe")))
+            texts = json_incref(json_object_get(old, "left_out"));
+    }
+    if (json_array_size(texts) > 0)
+        json_object_set(asset, "left_out", texts);
+    json_decref(texts);
+}
+
+static char *manifest_text(const char *folder, const struct folder_entry *entries, size_t count, const char *old)
+{
+    json_t *old_root = old ? json_loads(old, 0, NULL) : NULL;
     json_t *assets = json_array(), *root = json_pack("{s:i, s:o}", "format", 2, "assets", assets);
     for (size_t i = 0; i < count; i++) {
         char key[KEY_DIGITS + 1], recipe[KEY_DIGITS + 1], *file = folder_file_name(entries[i].key);
@@ -219,11 +237,13 @@ static char *manifest_text(const char *folder, const struct folder_entry *entrie
             json_object_set_new(asset, "missing", missing ? missing : json_string("the folder cannot be used for preparing"));
         add_surface(asset, folder, entries[i].geometry_key);
         add_resolved(asset, folder, entries[i].key);
+        add_left_out(asset, &entries[i], json_object_get(old_root, "assets"));
         json_array_append_new(assets, asset);
         mem_free(file);
     }
     char *text = json_dumps(root, JSON_COMPACT);
     json_decref(root);
+    json_decref(old_root);
     return text;
 }
 
@@ -280,9 +300,9 @@ static void remove_left_overs(const char *folder, const struct folder_entry *ent
 
 int folder_finish(const char *folder, const struct folder_entry *entries, size_t count, size_t *removed)
 {
-    char *path = mem_printf("%s/" MANIFEST, folder), *text = manifest_text(folder, entries, count);
+    char *path = mem_printf("%s/" MANIFEST, folder);
     size_t size = 0;
-    char *old = text_read_file(path, MANIFEST_MAX_BYTES, &size);
+    char *old = text_read_file(path, MANIFEST_MAX_BYTES, &size), *text = manifest_text(folder, entries, count, old);
     int status = text ? 0 : -ENOMEM;
     if (text && (!old || size != strlen(text) || memcmp(old, text, size) != 0))
         status = atomic_file_put(path, text, strlen(text));

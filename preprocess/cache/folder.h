@@ -63,6 +63,10 @@ struct folder_entry {
     const double *placement; /* matrix of 16 numbers, column-major: transform from the asset frame to the plant frame */
     const char *const *tags; /* tags of the asset's sensors, in the order of the asset file */
     size_t tag_count;
+    /* textures and extensions of the model that are not drawn, for plantcastd --check; NULL: this run did not parse the model, so the
+     * manifest keeps its texts */
+    const char *const *left_out;
+    size_t left_out_count;
 };
 /* Writes manifest.json for these entries, unless it is unchanged. Then deletes files whose key no entry has; *removed receives their number
  * (removed NULL: deletes nothing). Returns 0 or -errno. */

@@ -518,6 +518,21 @@ static bool any_good(const struct prepare *prepare)
     return false;
 }
 
+/* Names the losses of the asset's model, if this run parsed the model. Only a model's first asset has texts, because a plant may have
+ * thousands of assets of one model. */
+static void name_left_out(const struct prepare *prepare, size_t index, struct folder_entry *entry)
+{
+    static const char *const none[] = { NULL };
+    const struct model_file *model = &prepare->models.at[prepare->assets[index].model];
+    size_t first = 0;
+    while (prepare->assets[first].model != prepare->assets[index].model)
+        first++;
+    if (!model->was_parsed)
+        return;
+    entry->left_out = first == index && model->left_out ? (const char *const *)model->left_out : none;
+    entry->left_out_count = first == index ? model->left_out_textures : 0;
+}
+
 static void write_manifest(struct prepare_run *run)
 {
     struct prepare *prepare = run->prepare;
@@ -537,6 +552,7 @@ static void write_manifest(struct prepare_run *run)
                                             .missing = asset->missing,
                                             .tags = next,
                                             .tag_count = asset->sensor_count };
+        name_left_out(prepare, i, &entries[i]);
         next += asset->sensor_count;
     }
     int status = folder_finish(run->params->folder, entries, prepare->asset_count, run->failed ? NULL : &prepare->removed);

@@ -52,6 +52,13 @@ static bool read_entry(struct log *log, struct manifest *manifest, size_t index,
                                       .missing = missing ? mem_strdup(missing) : NULL,
                                       .recipe = strtoull(recipe, NULL, 16) };
     entry->resolved_levels = (uint64_t)json_integer_value(json_object_get(item, "resolved_levels"));
+    const json_t *left_out = json_object_get(item, "left_out");
+    entry->left_out = mem_array(json_array_size(left_out) + 1, sizeof(*entry->left_out));
+    for (size_t i = 0; i < json_array_size(left_out); i++) {
+        const char *text = json_string_value(json_array_get(left_out, i));
+        if (text)
+            entry->left_out[entry->left_out_count++] = mem_strdup(text);
+    }
     manifest->count = index + 1;
     return true;
 }
@@ -87,6 +94,9 @@ void manifest_finish(struct manifest *manifest)
         mem_free(manifest->entries[i].file);
         mem_free(manifest->entries[i].surface);
         mem_free(manifest->entries[i].missing);
+        for (size_t t = 0; t < manifest->entries[i].left_out_count; t++)
+            mem_free(manifest->entries[i].left_out[t]);
+        mem_free(manifest->entries[i].left_out);
     }
     mem_free(manifest->entries);
     mem_free(manifest->path);

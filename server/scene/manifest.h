@@ -16,6 +16,8 @@ struct manifest {
         char *missing;            /* reason why the asset could not be prepared and has no file; NULL: it was prepared */
         uint64_t recipe;          /* hash of the inputs of its preparation (plant/recipe.h) */
         uint64_t resolved_levels; /* as in struct asset */
+        char **left_out; /* textures and extensions of the asset's model that are not drawn; only at the first asset of a model */
+        size_t left_out_count;
     } * entries;
     size_t count;
 };

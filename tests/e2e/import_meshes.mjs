@@ -140,6 +140,14 @@ test('glTF: names of files with percent signs and accents, required looks, missi
     assert.equal(status, 0, stderr);
     assert.match(stdout, /left out: the file requires KHR_texture_basisu, which only affects its looks/);
     assert.match(stdout, /left out: material 0 'paint': its base colour texture: the texture's image is missing: 'none\.png'/);
+    // The check names the same, also after a second run, which does not read the model.
+    for (let run = 0; run < 2; run++) {
+        const ran = (program, ...args) => spawnSync(join(BIN, program), [...args, join(folder, 'plant/plant.yaml')], { encoding: 'utf8' });
+        assert.equal(ran('plantcast-prep').status, 0);
+        const checked = ran('plantcastd', '--check').stdout;
+        assert.match(checked, /plant\.yaml:\d+: warning: model .*look\.glb: left out: the file requires KHR_texture_basisu/);
+        assert.match(checked, /warning: model .*look\.glb: left out: material 0 'paint': its base colour texture/);
+    }
     writeFileSync(join(folder, 'r.gltf'), gltf('a.bin', { extensionsRequired: ['CESIUM_RTC'] }));
     assert.match(plantcast('import', join(folder, 'r.gltf'), '-o', join(folder, 'other')).stderr,
         /requires the extension CESIUM_RTC, which is not supported/);
