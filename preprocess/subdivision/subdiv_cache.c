@@ -75,7 +75,8 @@ static void list_sensors(const struct linear_error *linear, struct text *list)
             text_add_bytes(list, &sensor, sizeof(sensor));
         }
     }
-    qsort(list->at, list->length / sizeof(struct sensor), sizeof(struct sensor), compare_sensors);
+    if (list->length > 0)
+        qsort(list->at, list->length / sizeof(struct sensor), sizeof(struct sensor), compare_sensors);
 }
 
 static uint32_t column_of(const struct linear_error *linear, const struct sensor *sensor)

@@ -14,6 +14,7 @@
 #include "scene/framing.h"
 #include "scene/scene_create.h"
 #include "tests/support/rig.h"
+#include "tests/support/sweep.h"
 #include "tests/support/synthetic.h"
 #include "value/quality.h"
 
@@ -169,7 +170,8 @@ static void assert_exact(const struct pick_tally *tally)
     assert_true(tally->worst_px < 1e-3);
     assert_in_range(tally->differ, 0, tally->compared / 200); /* rims of hatching */
     assert_in_range(tally->moved, 0, tally->compared / 50);   /* picks may differ at silhouettes and at railings thinner than a pixel */
-    assert_true(tally->longest_ms < 10);
+    if (sweep_is_whole())
+        assert_true(tally->longest_ms < 10);
 }
 
 static void stand_site(struct stand *stand, struct pick_case *site)
