@@ -176,6 +176,7 @@ struct loop_check_request {
 
 struct note_request {
     char id[NOTE_ID_BYTES], text[NOTE_TEXT_BYTES], name[ALARM_NAME_BYTES - 24];
+    /* id: the note to remove; in `note`: the note to replace, or "" */
     int tag, asset; /* index of the tag or asset to which the note is attached; -1: none */
     bool has_position;
     double position_m[3];

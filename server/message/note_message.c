@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads and carries out messages about notes. Each note is attached to one thing: a tag, an asset or a position. */
+/* Reads and carries out messages about notes. A note is attached to a tag, an asset, a position or the whole plant. */
 #include "message/note_message.h"
 
 #include "base/mem.h"
@@ -26,17 +26,19 @@ bool note_parse(const struct plant *plant, const json_t *o, struct message *out,
 {
     struct note_request *note = &out->note;
     double until_us = 0;
+    bool replaces;
     if (!need_seq(o, &out->seq, error) || !need_words(o, "text", true, note->text, sizeof(note->text), error) ||
         !need_words(o, "name", false, note->name, sizeof(note->name), error) ||
+        !may_text(o, "replaces", note->id, sizeof(note->id), &replaces, error) ||
         !find_named(o, plant, "tag", plant_find_tag, REFUSAL_NO_TAG, &note->tag, error) ||
         !find_named(o, plant, "asset", plant_find_asset, REFUSAL_NO_ASSET, &note->asset, error) ||
         !may_vector(o, "position", note->position_m, &note->has_position, error) ||
         !may_number(o, "until_us", 1, 9e15, &until_us, NULL, error))
         return false;
     note->until_us = (int64_t)until_us;
-    if ((note->tag >= 0) + (note->asset >= 0) + note->has_position == 1)
+    if ((note->tag >= 0) + (note->asset >= 0) + note->has_position + replaces <= 1)
         return true;
-    message_fail(error, "bad_field", "tag, asset, position: expected one of them");
+    message_fail(error, "bad_field", "tag, asset, position, replaces: expected at most one of them");
     return false;
 }
 
@@ -60,6 +62,7 @@ char *note_do(struct notes *notes, const struct plant *plant, const struct messa
                                .tag = request->tag >= 0 ? plant->tags[request->tag].name : NULL,
                                .asset = request->asset >= 0 ? plant->assets[request->asset].id : NULL,
                                .position_m = request->has_position ? request->position_m : NULL,
+                               .replaces = request->id[0] ? request->id : NULL,
                                .until_us = request->until_us };
     bool adds = message->type == MESSAGE_NOTE;
     enum refusal_code why = adds ? notes_add(notes, &note, person, now_us, id) : notes_end(notes, request->id, person, now_us);

@@ -83,10 +83,12 @@ char *session_note_what(const struct session *session, const struct message *mes
     const struct note_request *note = &message->note;
     const struct plant *plant = session->context->plant;
     bool adds = message->type == MESSAGE_NOTE;
-    const char *at = !adds              ? note->id
-                     : note->tag >= 0   ? plant->tags[note->tag].name
-                     : note->asset >= 0 ? plant->assets[note->asset].id
-                                        : "a place";
+    const char *at = !adds                ? note->id
+                     : note->tag >= 0     ? plant->tags[note->tag].name
+                     : note->asset >= 0   ? plant->assets[note->asset].id
+                     : note->id[0]        ? note->id
+                     : note->has_position ? "a place"
+                                          : "the plant";
     return mem_printf("%s %s%s%s%s%s", adds ? "at" : "remove", at, note->name[0] ? " as " : "", note->name, adds ? ": " : "",
                       adds ? note->text : "");
 }

@@ -10,7 +10,8 @@
 #include "views/kept_list.h"
 
 struct notes {
-    struct kept_list kept; /* { id, text, tag or asset or position, by, time_us, until_us, ended_us, ended_by }; absent times are 0 */
+    struct kept_list
+        kept; /* { id, text, tag or asset or position or none, by, time_us, until_us, ended_us, ended_by }; absent times are 0 */
 };
 
 static int64_t time_of(const json_t *note, const char *name)
@@ -34,7 +35,7 @@ static bool has_ended(const json_t *note, int64_t now_us)
 static bool good_place(const json_t *note)
 {
     const json_t *position = json_object_get(note, "position");
-    if (json_is_string(json_object_get(note, "tag")) || json_is_string(json_object_get(note, "asset")))
+    if (!position || json_is_string(json_object_get(note, "tag")) || json_is_string(json_object_get(note, "asset")))
         return true;
     return json_array_size(position) == 3 && json_is_number(json_array_get(position, 0)) && json_is_number(json_array_get(position, 1)) &&
            json_is_number(json_array_get(position, 2));
@@ -56,7 +57,7 @@ static bool good_list(const json_t *list)
     return true;
 }
 
-static const struct kept_list_kind KIND = { NOTES_FILE, "notes", "id, text, a place, by, time_us, until_us and ended_us", good_list };
+static const struct kept_list_kind KIND = { NOTES_FILE, "notes", "id, text, by, time_us, until_us and ended_us", good_list };
 
 struct notes *notes_open(struct log *log, const char *folder, struct file_writer *writer)
 {
@@ -103,13 +104,49 @@ static void make_id(const json_t *list, int64_t now_us, char id[NOTE_ID_BYTES])
     while (kept_list_find(list, id) < json_array_size(list));
 }
 
+/* Sets *at to the index of the note in force that `id` names. Returns REFUSAL_NONE, or why it cannot be changed. */
+static enum refusal_code find_in_force(const json_t *list, const char *id, int64_t now_us, size_t *at)
+{
+    *at = kept_list_find(list, id);
+    return *at == json_array_size(list) || has_ended(json_array_get(list, *at), now_us) ? REFUSAL_NOTELESS : REFUSAL_NONE;
+}
+
+/* Replaces the note at an index by a copy that ends now. */
+static void end_at(json_t *list, size_t at, const char *who, int64_t now_us)
+{
+    json_t *note = json_copy(json_array_get(list, at)), *by = json_string(who);
+    json_object_set_new(note, "ended_us", json_integer(now_us));
+    json_object_set_new(note, "ended_by", by ? by : json_string(""));
+    json_array_set_new(list, at, note);
+}
+
+/* Gives a new note its place: that of the note that it replaces, or the one that the user chose. */
+static void set_place(json_t *entry, const struct note *note, const json_t *replaced)
+{
+    static const char *const members[] = { "tag", "asset", "position" };
+    for (size_t i = 0; i < 3; i++)
+        if (json_object_get(replaced, members[i]))
+            json_object_set(entry, members[i], json_object_get(replaced, members[i]));
+    if (!replaced && note->position_m)
+        json_object_set_new(entry, "position", json_pack("[f,f,f]", note->position_m[0], note->position_m[1], note->position_m[2]));
+    else if (!replaced && (note->tag || note->asset))
+        json_object_set_new(entry, note->tag ? "tag" : "asset", json_string(note->tag ? note->tag : note->asset));
+}
+
 enum refusal_code notes_add(struct notes *notes, const struct note *note, const char *who, int64_t now_us, char id[NOTE_ID_BYTES])
 {
     enum refusal_code why = kept_list_refusal(&notes->kept);
+    json_t *newest = kept_list_newest(&notes->kept), *replaced = NULL;
+    size_t at = 0;
+    if (!why && note->replaces)
+        why = find_in_force(newest, note->replaces, now_us, &at);
     if (why)
         return why;
-    json_t *newest = kept_list_newest(&notes->kept);
-    if (count(newest, now_us, false) >= NOTES)
+    if (note->replaces)
+        replaced = json_array_get(newest, at);
+    if (replaced && strcmp(json_string_value(json_object_get(replaced, "by")), who) != 0)
+        return REFUSAL_NOTE_OTHERS;
+    if (!replaced && count(newest, now_us, false) >= NOTES)
         return REFUSAL_NOTES;
     if (note->until_us && note->until_us <= now_us)
         return REFUSAL_NOTE_ENDED;
@@ -118,11 +155,10 @@ enum refusal_code notes_add(struct notes *notes, const struct note *note, const 
                               "until_us", (json_int_t)note->until_us, "ended_us", (json_int_t)0, "ended_by", "");
     if (!entry)
         return REFUSAL_NOT_UTF8;
-    if (note->position_m)
-        json_object_set_new(entry, "position", json_pack("[f,f,f]", note->position_m[0], note->position_m[1], note->position_m[2]));
-    else
-        json_object_set_new(entry, note->tag ? "tag" : "asset", json_string(note->tag ? note->tag : note->asset));
+    set_place(entry, note, replaced);
     json_t *list = json_copy(newest);
+    if (replaced)
+        end_at(list, at, who, now_us);
     json_array_append_new(list, entry);
     forget_oldest(list, now_us);
     return kept_list_put(&notes->kept, list);
@@ -132,13 +168,13 @@ enum refusal_code notes_end(struct notes *notes, const char *id, const char *who
 {
     enum refusal_code why = kept_list_refusal(&notes->kept);
     json_t *newest = kept_list_newest(&notes->kept);
-    size_t at = kept_list_find(newest, id);
-    if (why || at == json_array_size(newest) || has_ended(json_array_get(newest, at), now_us))
-        return why ? why : REFUSAL_NOTELESS;
-    json_t *list = json_copy(newest), *note = json_copy(json_array_get(list, at)), *by = json_string(who);
-    json_object_set_new(note, "ended_us", json_integer(now_us));
-    json_object_set_new(note, "ended_by", by ? by : json_string(""));
-    json_array_set_new(list, at, note);
+    size_t at;
+    if (!why)
+        why = find_in_force(newest, id, now_us, &at);
+    if (why)
+        return why;
+    json_t *list = json_copy(newest);
+    end_at(list, at, who, now_us);
     forget_oldest(list, now_us);
     return kept_list_put(&notes->kept, list);
 }

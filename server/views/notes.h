@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Notes of users on a position, an asset or a tag, with an optional end; stored in notes.json in the history's folder. Notes that have
- * expired or been removed stay in the file for the next shift. Thread: the loop. */
+/* Notes of users on a position, an asset, a tag or the whole plant, with an optional end; stored in notes.json in the history's folder.
+ * Notes that have expired or been removed stay in the file for the next shift. Thread: the loop. */
 #ifndef VIEWS_NOTES_H
 #define VIEWS_NOTES_H
 #include <jansson.h>
@@ -16,9 +16,11 @@ enum { NOTES = 100, NOTES_ENDED = 400, NOTE_TEXT_BYTES = 401, NOTE_ID_BYTES = 24
 
 struct note {
     const char *text;
-    const char *tag, *asset; /* id of the tag or of the asset to which the note is attached; both NULL: it is attached to position_m */
+    /* place of the note: at most one of a tag, the id of an asset, and a position; all NULL: the whole plant */
+    const char *tag, *asset;
     const double *position_m;
-    int64_t until_us; /* time at which the note ends, UTC in microseconds; 0: it has no end */
+    const char *replaces; /* id of a note of the same user, which ends, and whose place the new note gets; NULL: none */
+    int64_t until_us;     /* time at which the note ends, UTC in microseconds; 0: it has no end */
 };
 
 struct notes;

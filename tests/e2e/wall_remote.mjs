@@ -52,7 +52,7 @@ test('a note is seen by all, and on the wall, until it is removed', options, asy
     await desk.page.locator('#note-at option', { hasText: 'E-101' }).waitFor({ state: 'attached' });
     await desk.page.selectOption('#note-at', { label: 'E-101' });
     await desk.page.keyboard.press('Tab');
-    await desk.page.locator('#note-form button').click();
+    await desk.page.locator('#note-form button[type=submit]').click();
     await desk.page.locator('#notes-list li', { hasText: 'Manhole open' }).waitFor();
     assert.match(await desk.page.locator('#notes-list small').textContent(), /E-101 · local, .*until/);
     await desk.page.locator('.note-pin', { hasText: 'Manhole' }).waitFor();
@@ -155,7 +155,7 @@ test('it is held, and given back', options, async () => {
     await desk.page.click('#remote-back');
     await title().filter({ hasText: 'Whole unit' }).waitFor({ timeout: 60000 });
     assert.doesNotMatch(await title().textContent(), /Desk 2/);
-    await desk.page.locator('#notes-list li button').click();
+    await desk.page.locator('#notes-list li .end').click();
     await desk.page.locator('.note-pin').waitFor({ state: 'detached' });
     await inPane().locator('.note-pin').waitFor({ state: 'detached', timeout: 60000 });
 });

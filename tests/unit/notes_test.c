@@ -120,6 +120,33 @@ CASE(they_are_at_what_they_say)
     mem_free(text);
 }
 
+CASE(a_note_of_the_whole_plant_has_no_place)
+{
+    assert_int_equal(notes_add(f->notes, &(struct note){ .text = "shift" }, "kim", NOON, f->id), REFUSAL_NONE);
+    open_again(f);
+    char *text = notes_text(f->notes, NOON);
+    assert_non_null(strstr(text, "shift"));
+    assert_null(strstr(text, "position"));
+    mem_free(text);
+}
+
+CASE(an_author_replaces_a_note_and_the_past_keeps_the_old_one)
+{
+    char first[NOTE_ID_BYTES];
+    assert_int_equal(notes_add(f->notes, &(struct note){ .text = "drips", .asset = "E-1" }, "kim", NOON, f->id), REFUSAL_NONE);
+    strcpy(first, f->id);
+    const struct note better = { .text = "drips-a-lot", .replaces = first, .until_us = NOON + 3600 * S };
+    assert_int_equal(notes_add(f->notes, &better, "lee", NOON + S, f->id), REFUSAL_NOTE_OTHERS);
+    assert_int_equal(notes_add(f->notes, &better, "kim", NOON + 10 * S, f->id), REFUSAL_NONE);
+    assert_int_equal(notes_add(f->notes, &better, "kim", NOON + 11 * S, f->id), REFUSAL_NOTELESS); /* the first note has ended */
+    open_again(f);
+    assert_notes(notes_text_between(f->notes, NOON + 5 * S, NOON + 5 * S), "drips");
+    assert_notes(notes_text(f->notes, NOON + 20 * S), "drips-a-lot");
+    char *text = notes_text(f->notes, NOON + 20 * S);
+    assert_non_null(strstr(text, "\"asset\":\"E-1\""));
+    mem_free(text);
+}
+
 CASE(what_cannot_be_read_is_not_written_over)
 {
     static const char *const files[] = { "{", "{\"notes\":[{\"id\":\"a\"}]}",

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Shift notes: their positions in the plant, and until when they are valid.
+import { say } from './words.js';
 
 // Returns the note's position [x, y, z], or null if this plant no longer has its tag or equipment.
 export function placeOf(model, { position, tag, asset }) {
@@ -9,8 +10,14 @@ export function placeOf(model, { position, tag, asset }) {
     return min ? [(min[0] + max[0]) / 2, (min[1] + max[1]) / 2, max[2]] : null;
 }
 
-// Returns the name of the note's tag or equipment; null: the note is at a point.
+// Returns the name of the note's tag or equipment; null: the note is at a point or about the whole plant.
 export const whereOf = (model, { tag, asset }) => tag ?? (asset ? model.asset(asset)?.tag || asset : null);
+
+// Returns true if a note is about the whole plant.
+export const isOfPlant = ({ tag, asset, position }) => !tag && !asset && !position;
+
+// Returns the name of what a note is about.
+export const whereText = (model, note) => whereOf(model, note) ?? say(isOfPlant(note) ? 'notes.plant' : 'notes.place');
 
 // Returns the notes that are valid now, or at the past instant atUs.
 export const inForce = (notes, nowUs, atUs = null) => notes.filter(({ time_us: from, until_us: until, ended_us: ended }) => (atUs === null

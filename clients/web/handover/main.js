@@ -7,7 +7,7 @@ import { decimalsFor, numberText, unitText, zoneClock } from '../core/format.js'
 import { hearAlarms, readJournal, sortJournal } from '../core/handover.js';
 import { ask } from '../core/history.js';
 import { Model } from '../core/model.js';
-import { whereOf } from '../core/notes.js';
+import { whereText } from '../core/notes.js';
 import { language, learnWords, say } from '../core/words.js';
 import { byId, make } from '../app/common/dom.js';
 import { store, stored } from '../app/common/storage.js';
@@ -89,7 +89,7 @@ function pageOf(model, notes, journal, [fromUs, toUs], missing) {
         aboutOf(model, model.tag(tag)), String(priority), String(count), dayTimeOf(last), valueOf(model, model.tag(tag), row)];
     const endOf = ({ ended_us: us, ended_by: who, until_us: until }) =>
         (us ? say('handover.ended', { who, time: dayTimeOf(us) }) : until ? dayTimeOf(until) : '');
-    const noteOf = (note) => [dayTimeOf(note.time_us), whereOf(model, note) ?? say('notes.place'), note.text, note.by, endOf(note)];
+    const noteOf = (note) => [dayTimeOf(note.time_us), whereText(model, note), note.text, note.by, endOf(note)];
     const counts = [['active', active], ['waiting', waiting], ['raised', raised.reduce((sum, { count }) => sum + count, 0)],
         ['acknowledged', acknowledged.length]];
     const title = say('handover.title', { plant: model.plant.name });

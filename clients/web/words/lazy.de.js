@@ -161,9 +161,13 @@ at: Anheften an
 until: Sichtbar bis
 save: Notiz anlegen
 place: diese Stelle
-choose: Apparat oder Messstelle wählen
 ends: bis {time}
 handover: Schichtübergabe
+plant: Ganze Anlage
+edit: Ändern
+end: Beenden
+change: Änderung speichern
+cancel: Abbrechen
 
 [until]
 shift: 8 Stunden

@@ -160,9 +160,13 @@ at: Attach to
 until: Visible until
 save: Add note
 place: this location
-choose: Choose equipment or a tag
 ends: until {time}
 handover: Shift handover
+plant: The whole plant
+edit: Change
+end: End
+change: Save change
+cancel: Cancel
 
 [until]
 shift: 8 hours

@@ -158,9 +158,13 @@ at: 대상
 until: 표시 기한
 save: 메모 추가
 place: 이 위치
-choose: 설비나 태그를 선택하세요
 ends: {time}까지
 handover: 교대 인수인계
+plant: 플랜트 전체
+edit: 수정
+end: 종료
+change: 수정 저장
+cancel: 취소
 
 [until]
 shift: 8시간

@@ -39,6 +39,7 @@ views: die Höchstzahl an Ansichten ist erreicht: erst eine entfernen
 notes: die Höchstzahl an Notizen ist erreicht: erst eine entfernen
 note_ended: das Ende der Notiz ist schon vorbei
 noteless: diese Notiz wurde von jemand anderem entfernt oder ist abgelaufen
+note_others: nur wer diese Notiz geschrieben hat, kann sie ändern
 computed: {tag} wird aus anderen Messstellen berechnet: diese prüfen
 far: {tag}: dieser Ort ist zu weit von {asset} entfernt
 groupless: {tag} gehört zu keiner Gruppe; nennen Sie eine in der Messstellenliste

@@ -3,7 +3,8 @@
 // points.
 import { projector } from '../../core/camera.js';
 import { zoneClock } from '../../core/format.js';
-import { inForce, placeOf, whereOf } from '../../core/notes.js';
+import { ask } from '../../core/history.js';
+import { inForce, isOfPlant, placeOf, whereOf, whereText } from '../../core/notes.js';
 import { refusalText } from '../../core/refusals.js';
 import { halves } from '../../core/split_view.js';
 import { say } from '../../core/words.js';
@@ -19,23 +20,30 @@ export class Notes {
         this.pins = new Map(); // pins of notes: id -> { element, position }
         this.pointer = null;   // position at which a desk points: { element, position, until }; null: nothing
         this.list = make('ul', { id: 'notes-list' });
+        this.ofPlant = make('ul', { id: 'plant-notes', hidden: true }); // notes about the whole plant, over the picture
+        viewport.element.append(this.ofPlant);
+        this.edited = null; // the note that the form changes; null: the form adds a note
         this.text = make('input', { maxlength: LONGEST, placeholder: say('notes.text'), 'aria-label': say('notes.text'), id: 'note-text' });
         this.at = make('select', { id: 'note-at', 'aria-label': say('notes.at') });
         this.until = make('select', { id: 'note-until', 'aria-label': say('notes.until') });
         fillSelect(this.until, UNTIL.map((name) => [name, say(`until.${name}`)]), 'shift');
+        this.button = make('button', { type: 'submit' }, say('notes.save'));
+        this.cancel = make('button', { type: 'button', hidden: true, onclick: () => this.edit(null) }, say('notes.cancel'));
         this.form = make('form', { id: 'note-form', onsubmit: (event) => this.onSave(event) }, this.text,
-            make('div', { class: 'line' }, this.at, this.until, make('button', { type: 'submit' }, say('notes.save'))));
+            make('div', { class: 'line' }, this.at, this.until, this.cancel, this.button));
         this.element = make('fieldset', { id: 'notes' }, make('legend', {}, say('notes.legend')), this.list, this.form,
             make('a', { id: 'notes-handover', href: 'handover.html', target: '_blank', rel: 'opener' }, say('notes.handover')));
         byId('views').append(this.element);
         session.on('notes', () => this.hear());
         for (const name of ['welcome', 'time'])
             session.on(name, () => this.hear());
+        session.greeted(() => this.askName());
         session.on('pointed', () => this.point());
         session.on('params', () => this.offer());
         session.on('noted', ({ kept, why, refusal }) => (kept ? this.onKept() : tell(refusalText(why, refusal))));
         setInterval(() => this.tick(), TICK_MS);
         this.hear();
+        this.offer();
         this.point();
     }
 
@@ -44,9 +52,16 @@ export class Notes {
         return MAY.includes(this.session.role) && this.session.time.atUs === null;
     }
 
+    // Asks for the name under which the server stores this user's notes; only the author may change a note.
+    async askName() {
+        const answer = await ask('api/v1/me', {}, this.session.token).then((said) => said.json()).catch(() => null);
+        this.name = answer && (answer.name ?? 'local');
+        this.hear();
+    }
+
     // --- making a note
 
-    // Returns the things to which a note can be attached now: the selected tag, equipment or point.
+    // Returns the things to which a note can be attached now: the selected tag, equipment or point, and the whole plant.
     get places() {
         const { model, params } = this.session, picked = this.modules.there('place')?.picked, out = [];
         if (model?.tag(this.selection.tag))
@@ -55,22 +70,33 @@ export class Notes {
             out.push(['place', { position: picked.position }, say('notes.place')]);
         if (model?.asset(params.selected))
             out.push(['asset', { asset: params.selected }, whereOf(model, { asset: params.selected })]);
-        return out;
+        return [...out, ['plant', {}, say('notes.plant')]];
     }
 
     offer() {
-        const { places } = this, now = JSON.stringify(places);
+        const places = this.edited ? [['', {}, whereText(this.session.model, this.edited)]] : this.places, now = JSON.stringify(places);
         if (now === this.offered)
             return;
         this.offered = now;
-        fillSelect(this.at, places.length > 0 ? places.map(([name, , words]) => [name, words]) : [['', say('notes.choose')]],
-            places[0]?.[0] ?? '');
-        this.form.querySelector('button').disabled = places.length === 0;
+        fillSelect(this.at, places.map(([name, , words]) => [name, words]), places[0][0]);
+        this.at.disabled = Boolean(this.edited);
+    }
+
+    // Fills the form with a note to change, or with null empties it.
+    edit(note) {
+        this.edited = note;
+        this.text.value = note?.text ?? '';
+        this.cancel.hidden = !note;
+        setText(this.button, say(note ? 'notes.change' : 'notes.save'));
+        this.offer();
+        if (note)
+            this.text.focus();
     }
 
     onSave(event) {
         event.preventDefault();
-        const { session } = this, text = this.text.value.trim(), [, place] = this.places.find(([name]) => name === this.at.value) ?? [];
+        const { session, edited } = this, text = this.text.value.trim();
+        const place = edited ? { replaces: edited.id } : this.places.find(([name]) => name === this.at.value)?.[1];
         if (!text || !place)
             return;
         const hours = HOURS[this.until.value], until = hours ? { until_us: Math.round(session.clockUs() + hours * 3600e6) } : {};
@@ -78,7 +104,7 @@ export class Notes {
     }
 
     onKept() {
-        this.text.value = '';
+        this.edit(null);
         this.text.blur();
     }
 
@@ -106,6 +132,11 @@ export class Notes {
         this.form.hidden = byId('notes-handover').hidden = !this.may;
         this.element.hidden = notes.length === 0 && !this.may;
         this.list.replaceChildren(...notes.map((note) => this.rowOf(note)));
+        if (this.edited && !notes.some(({ id }) => id === this.edited.id))
+            this.edit(null); // somebody ended the note meanwhile
+        const ofPlant = model ? notes.filter(isOfPlant) : [];
+        this.ofPlant.hidden = ofPlant.length === 0;
+        this.ofPlant.replaceChildren(...ofPlant.map((note) => make('li', { title: this.aboutOf(note) }, note.text)));
         this.pins.forEach(({ element }) => element.remove());
         this.pins.clear();
         for (const note of model ? notes : []) {
@@ -129,14 +160,15 @@ export class Notes {
     }
 
     aboutOf({ by, time_us: us, until_us: until, ...note }) {
-        const made = say('named.by', { who: by, time: this.timeOf(us) }), at = whereOf(this.session.model, note) ?? say('notes.place');
+        const made = say('named.by', { who: by, time: this.timeOf(us) }), at = whereText(this.session.model, note);
         return [at, made, until ? say('notes.ends', { time: this.timeOf(until) }) : null].filter(Boolean).join(' · ');
     }
 
     rowOf(note) {
-        const remove = () => this.remove(note.id);
+        const button = (name, f) => make('button', { type: 'button', class: name, onclick: f }, say(`notes.${name}`));
         return make('li', { 'data-id': note.id }, make('b', {}, note.text), make('small', {}, this.aboutOf(note)),
-            this.may ? make('button', { type: 'button', onclick: remove }, say('named.remove')) : null);
+            this.may && note.by === this.name ? button('edit', () => this.edit(note)) : null,
+            this.may ? button('end', () => this.remove(note.id)) : null);
     }
 
     lookAt({ tag, asset }) {
