@@ -4,6 +4,7 @@
 import { showAll } from '../../core/section.js';
 import { say } from '../../core/words.js';
 import { byId, make, setText, setVariable } from '../common/dom.js';
+import { isHidden } from '../viewport/overlay.js';
 
 const AWAY_PX = 8;
 
@@ -23,9 +24,8 @@ export class Shown {
     }
 
     show() {
-        const { model, params } = this.session, { hidden = [], ghost = [], isolate = [] } = params;
-        const isHidden = ({ id }) => hidden.includes(id) || (isolate.length > 0 && !isolate.includes(id) && !ghost.includes(id));
-        const all = model?.assets ?? [], gone = all.filter(isHidden).length;
+        const { model, params } = this.session, { hidden = [], ghost = [] } = params;
+        const all = model?.assets ?? [], gone = all.filter(({ id }) => isHidden(params, id)).length;
         const ghosts = all.filter(({ id }) => ghost.includes(id) && !hidden.includes(id)).length;
         this.element.hidden = gone + ghosts === 0;
         setText(this.words, [gone > 0 && say('shown.hidden', { hidden: gone, all: all.length }),

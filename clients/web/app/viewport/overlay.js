@@ -31,6 +31,10 @@ function markerRadius(markers) {
     return markers.length < 2 ? 4.5 : Math.max(2.75, Math.min(4.5, 0.12 * Math.sqrt(area / markers.length)));
 }
 
+// Returns true if the user has hidden the asset, or has isolated others.
+export const isHidden = ({ hidden = [], isolate = [], ghost = [] }, id) =>
+    hidden.includes(id) || (isolate.length > 0 && !isolate.includes(id) && !ghost.includes(id));
+
 export class Overlay {
     constructor({ canvas, viewport, session, selection }) {
         Object.assign(this, { canvas, viewport, session, selection });
@@ -74,7 +78,8 @@ export class Overlay {
         const project = projector(picture.camera, width, picture.fullHeight);
         const markers = [];
         for (const tag of model.tags) {
-            const alarm = model.alarms.gravest(tag.index), shown = tag.group === params.group;
+            const shown = tag.group === params.group;
+            const alarm = tag.asset && isHidden(params, tag.asset) ? null : model.alarms.gravest(tag.index);
             const unsaid = known && shown ? undefined : { occluded: false, quality: null };
             const said = (shown && known?.get(`${tag.index}/${number}`)) || (alarm ? { occluded: true, quality: null } : unsaid);
             const place = said && (shown || alarm) && tag.position ? project(tag.position) : null;
