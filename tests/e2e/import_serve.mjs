@@ -347,6 +347,7 @@ after(async () => {
 test('an empty plant opens the panel; a model and a tag list make a plant', options, async () => {
     await waitForPicture(page);
     await page.locator('#import.new .drop').waitFor();
+    await page.locator('.drop-zone').waitFor(); // instead of a picture with nothing but a person in it
     assert.equal(await page.locator('#import .measures').isVisible(), false, 'there is nothing to be measured');
     assert.deepEqual(await assetsOf(page), ['person']);
     await settle(page);
@@ -354,6 +355,7 @@ test('an empty plant opens the panel; a model and a tag list make a plant', opti
     await choose(page, [{ name: 'plant.gltf', text: boxes(NAMES) }, { name: 'tags.csv', text: TAGS }]);
     await inForce(page);
     assert.deepEqual(await assetsOf(page), NAMES);
+    assert.ok(await page.locator('.drop-zone').isHidden());
     assert.equal(existsSync(join(served.folder, 'plant.yaml.1')), false, 'nothing was there that a person wrote');
     const counts = await page.locator('#import .segments b').allTextContents();
     assert.deepEqual(counts.map(Number), [10, 3, 6, 1, 3], 'all, matched, doubtful, unmatched, unplaced');

@@ -49,7 +49,7 @@ export class Import {
     }
 
     build() {
-        this.pick = make('input', { type: 'file', multiple: true, class: 'unseen', onchange: () => {
+        this.pick = make('input', { type: 'file', id: 'import-pick', multiple: true, class: 'unseen', onchange: () => {
             this.upload([...this.pick.files]);
             this.pick.value = '';
         } });
@@ -87,6 +87,10 @@ export class Import {
                     make('div', { class: 'line' }, this.phase, this.cancel, this.again), this.wrong),
                 this.report.element, this.measures, this.source.element, this.table.element));
         byId('viewport').parentElement.append(this.element);
+        // covers the picture of a plant that has no model yet
+        this.zone = make('label', { class: 'drop-zone', for: this.pick.id, hidden: true }, make('span', { class: 'frame' },
+            make('b', {}, say('import.drop')), make('span', {}, say('import.formats'))));
+        byId('viewport').append(this.zone);
     }
 
     get open() {
@@ -122,6 +126,7 @@ export class Import {
         this.isNew = assets.length === 1 && assets[0].id === PLACEHOLDER;
         this.filesFold.open = this.isNew;
         this.element.classList.toggle('new', this.isNew);
+        this.zone.hidden = !this.isNew;
         if (this.isNew && !this.open)
             this.toggle();
         this.showSize();
