@@ -80,6 +80,19 @@ test('whatever group and way of showing is chosen, it stays marked and counted',
     await page.evaluate(() => globalThis.plantcast.session.setParams({ group: 'temperature', show: 'value' }));
 });
 
+test('isolating other equipment hides its ring, not its count', options, async () => {
+    const before = await words();
+    const other = await page.evaluate((hot) => globalThis.plantcast.session.model.assets.find(({ id, tags: on }) => on.length > 0 &&
+        id !== globalThis.plantcast.session.model.tag(hot).asset).id, HOT);
+    await page.evaluate((id) => globalThis.plantcast.session.setParams({ isolate: [id] }), other);
+    await page.waitForFunction((hot) => globalThis.plantcast.session.shown.isolate?.length > 0 &&
+        globalThis.plantcast.overlay.markers.every(({ tag, alarm }) => tag.name !== hot || !alarm), HOT);
+    assert.equal(await words(), before);
+    await shoot(page, 'alarms-isolated');
+    await page.evaluate(() => globalThis.plantcast.session.setParams({ isolate: [] }));
+    await waitForRing(HOT);
+});
+
 test('an acknowledgement is done once, for everybody', options, async () => {
     const other = await openPage(`${plant.url}?wall`, { viewport: { width: 1280, height: 720 } });
     try {

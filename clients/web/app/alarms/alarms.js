@@ -13,6 +13,7 @@ import { asOf } from './alarm_bar.js';
 import { actionButton, AlarmTable, momentButton, refreshCells, rowOf } from './alarm_table.js';
 
 const SHOWN = 200; // maximum number of rows in the document
+const WIDE = window.matchMedia('(min-width: 1200px)'); // narrower screens show the list over the equipment (alarms.css)
 const WHICH = ['all', 'waiting', 'active', 'gone'];
 const FILTERS = { words: 'alarms-words', which: 'alarms-which', priority: 'alarms-priority', area: 'alarms-area' };
 
@@ -72,6 +73,7 @@ export class AlarmList {
     setOpen(open) {
         for (const name of open ? ['engineer', 'import'] : [])
             this.modules.there(name)?.close(); // closes other panels that use the same space
+        this.shareRoom(open);
         byId('alarms').hidden = !open;
         byId('alarm-strip').setAttribute('aria-expanded', open);
         this.show();
@@ -79,6 +81,18 @@ export class AlarmList {
             byId('alarms-close').focus();
         else
             byId('alarm-strip').focus();
+    }
+
+    // Closes the equipment list while the table is open, so that the picture keeps room, and opens it again afterwards.
+    shareRoom(open) {
+        const assets = this.modules.there('assets');
+        if (open && assets?.open && WIDE.matches) {
+            assets.setOpen(false);
+            this.borrowed = true;
+        } else if (!open && this.borrowed) {
+            assets.setOpen(true);
+            this.borrowed = false;
+        }
     }
 
     // Shows the journal or the present alarms.
