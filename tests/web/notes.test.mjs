@@ -2,7 +2,7 @@
 // Notes: their positions in the plant, and until when they are in force.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { inForce, placeOf, whereOf } from '../../clients/web/core/notes.js';
+import { inForce, isOfPlant, placeOf, whereOf } from '../../clients/web/core/notes.js';
 import { makeSession, vector } from './fixtures.mjs';
 
 const { connection, session, sockets } = makeSession();
@@ -19,6 +19,8 @@ test('a note is at a place, a tag or an asset; or at nothing that is there', () 
     assert.deepEqual([placeOf(model, { tag: 'gone' }), placeOf(model, { asset: 'gone' })], [null, null]);
     const where = [{ position: [1, 2, 3] }, { tag: 'T' }, { asset: 'gone' }].map((note) => whereOf(model, note));
     assert.deepEqual(where, [null, 'T', 'gone']);
+    assert.equal(placeOf(model, { text: 'of the whole plant' }), null);
+    assert.deepEqual([{ text: 'x' }, { position: [0, 0, 0] }, { tag: 'T' }, { asset: 'A' }].map(isOfPlant), [true, false, false, false]);
 });
 
 test('one whose time is over does not count, whatever the server said last', () => {

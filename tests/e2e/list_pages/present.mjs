@@ -115,6 +115,28 @@ test('a note is shown at an instant if it was there then', options, async () => 
     await waitForPins();
 });
 
+test('a note for the whole shift needs no place; its author changes and ends it', options, async () => {
+    const { page } = desk, rows = page.locator('#notes-list li');
+    await page.locator('#viewport').focus();
+    await page.keyboard.press('v');
+    await page.locator('#note-text').fill('Flare work until 02:00');
+    await page.locator('#note-at').selectOption('plant');
+    await page.locator('#note-form button[type=submit]').click();
+    await page.locator('#plant-notes li', { hasText: 'Flare work until 02:00' }).waitFor();
+    assert.match(await rows.textContent(), /The whole plant · local, .* · until /);
+    await german.page.locator('#plant-notes li', { hasText: 'Flare work until 02:00' }).waitFor();
+    await rows.locator('.edit').click();
+    assert.equal(await page.locator('#note-text').inputValue(), 'Flare work until 02:00');
+    await page.locator('#note-text').fill('Flare work until 04:00');
+    await shoot(page, 'present-note-changed');
+    await page.locator('#note-form button[type=submit]').click();
+    await page.locator('#plant-notes li', { hasText: 'Flare work until 04:00' }).waitFor();
+    assert.equal(await rows.count(), 1);
+    await rows.locator('.end').click();
+    await page.locator('#plant-notes').waitFor({ state: 'hidden' });
+    await page.keyboard.press('Escape');
+});
+
 test('a lost device raises an alarm of its own; rings keep their names and say since when they are held', options, async () => {
     await plant.tell('set TI-1 95.5');
     await plant.tell('set TI-2 95.5');

@@ -45,7 +45,12 @@ test('it says what was noted, raised, acknowledged and shelved', options, async 
     }
     const rows = (name) => page.locator(`[data-part=${name}] tbody tr`).allTextContents();
     assert.match((await rows('notes')).join(), /P-101A.*<seal> drips.*kim \(local\)/);
-    assert.match((await rows('raised')).join(), /TI-1 · High/);
+    assert.match((await rows('raised')).join(), /TI-1 · High.*95\.\d+ \(90\.\d+\) °C/);
+    const counts = Object.fromEntries((await page.locator('.counts span').allTextContents()).map((text) => text.split(': ')));
+    const standing = await rows('standing');
+    assert.equal(Number(counts['Active now']), standing.filter((text) => !text.includes('Returned')).length);
+    assert.match((await rows('asides')).join(), /TI-1 · High.*Shelved.*sensor is checked/);
+    assert.equal((await rows('acknowledged')).filter((text) => text.includes('TI-1')).length, 1, 'one action counts once');
     assert.match((await rows('acknowledged')).join(), /TI-1.*kim \(local\)/);
     assert.match((await rows('shelved')).join(), /TI-1.*kim \(local\).*sensor is checked/);
     await shoot(page, 'handover');

@@ -144,7 +144,7 @@ export class AlarmList {
 
     showList() {
         const all = this.alarms.list().map(this.rowOf), aside = asideOf(this.alarms).map(this.rowOf);
-        this.showChoices(all, [...all, ...aside]);
+        this.showChoices(all);
         const passing = (row) => isIn(row, this.filter) && passes(row, this.textOf(row), { ...this.filter, which: 'all' });
         const list = this.table.sorted(all.filter((row) => passing(row) && passes(row, '', { which: this.filter.which, words: '' })));
         const asides = this.table.sorted(aside.filter(passing));
@@ -161,14 +161,16 @@ export class AlarmList {
     }
 
     // Offers areas, and tells how many alarms each choice of a state has.
-    showChoices(all, known) {
+    showChoices(all) {
         const choices = WHICH.map((name) => [name, `${say(`which.${name}`)} (${all.filter((row) => passes(row, '',
             { which: name, words: '' })).length})`]);
         fillSelect(byId('alarms-which'), choices, this.filter.which);
         setText(byId('alarms-count'), String(all.length));
-        const areas = this.session.model.assets.map(({ id }) => ({ area: areaOf(this.session.model, { asset: id }) }));
-        const offered = areas.some(({ area }) => area) ? areasOf(areas) : areasOf(known);
-        fillSelect(byId('alarms-area'), [['', say('alarms.areas')], ...offered.map((area) => [area, area])], this.filter.area);
+        if (this.offeredOf !== this.session.model) {
+            this.offeredOf = this.session.model;
+            this.offered = areasOf(this.session.model.assets.map(({ id }) => ({ area: areaOf(this.session.model, { asset: id }) })));
+        }
+        fillSelect(byId('alarms-area'), [['', say('alarms.areas')], ...this.offered.map((area) => [area, area])], this.filter.area);
     }
 
     showAsideHead(count) {

@@ -136,7 +136,7 @@ export class Notes {
             this.edit(null); // somebody ended the note meanwhile
         const ofPlant = model ? notes.filter(isOfPlant) : [];
         this.ofPlant.hidden = ofPlant.length === 0;
-        this.ofPlant.replaceChildren(...ofPlant.map((note) => make('li', { title: this.aboutOf(note) }, note.text)));
+        this.ofPlant.replaceChildren(...ofPlant.map((note) => make('li', {}, note.text, ' ', make('small', {}, this.authorOf(note)))));
         this.pins.forEach(({ element }) => element.remove());
         this.pins.clear();
         for (const note of model ? notes : []) {
@@ -157,6 +157,11 @@ export class Notes {
     timeOf(us) {
         const { date, time } = zoneClock(this.session.model.plant.time_zone)(us / 1000);
         return `${date} ${time.slice(0, 5)}`;
+    }
+
+    // Returns who wrote a note, and until when it is in force.
+    authorOf({ by, until_us: until }) {
+        return [by, until ? say('notes.ends', { time: this.timeOf(until) }) : null].filter(Boolean).join(' · ');
     }
 
     aboutOf({ by, time_us: us, until_us: until, ...note }) {

@@ -157,7 +157,8 @@ export class Overlay {
     // Returns the boxes of the HTML elements that lie over the picture.
     blocked() {
         const origin = this.viewport.element.getBoundingClientRect();
-        const boxes = [...this.viewport.element.querySelectorAll('.legend, .banner, .card, .simulated-note, .chip, .note-pin')]
+        const over = '.legend, .banner, .card, .simulated-note, .chip, .note-pin, #plant-notes, .moment';
+        const boxes = [...this.viewport.element.querySelectorAll(over)]
             .map((e) => e.getBoundingClientRect());
         const { unit } = this;
         const own = boxes.filter((box) => box.width > 0).map((box) => ({
