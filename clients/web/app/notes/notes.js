@@ -54,6 +54,8 @@ export class Notes {
 
     // Asks for the name under which the server stores this user's notes; only the author may change a note.
     async askName() {
+        if (!MAY.includes(this.session.role))
+            return;
         const answer = await ask('api/v1/me', {}, this.session.token).then((said) => said.json()).catch(() => null);
         this.name = answer && (answer.name ?? 'local');
         this.hear();
