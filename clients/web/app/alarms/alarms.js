@@ -215,6 +215,15 @@ export class AlarmList {
         this.showChosen();
     }
 
+    // Selects a row; with the Shift key also the rows between it and the row that was pressed before.
+    chooseUpTo(row, on, isRange) {
+        const at = (name) => this.rows.findIndex(({ tag }) => tag.name === name), here = at(row.tag.name);
+        const from = isRange && at(this.pressed) >= 0 ? at(this.pressed) : here;
+        this.pressed = row.tag.name;
+        for (const one of this.rows.slice(Math.min(from, here), Math.max(from, here) + 1).filter(this.can))
+            this.choose(one, on);
+    }
+
     chooseAll(on) {
         for (const row of this.rows.filter(this.can))
             this.choose(row, on);
@@ -287,7 +296,8 @@ export class AlarmList {
     draw(row) {
         const { tag, kind, state } = row, actions = rowActions(row, this.alarms.mode, this.role);
         const choose = make('input', { type: 'checkbox', class: 'choose', value: tag.name,
-            'aria-label': say('alarms.choose', { tag: tag.name }), onchange: ({ target }) => this.choose(row, target.checked) });
+            'aria-label': say('alarms.choose', { tag: tag.name }),
+            onclick: ({ target, shiftKey }) => this.chooseUpTo(row, target.checked, shiftKey) });
         const buttons = actions.map((action) => actionButton(action, () => this.act(action, row)));
         const back = this.session.recorded && row.us !== null ? [momentButton(() => this.showMoment(row))] : [];
         return rowOf(this.session, row, this.overlay.fresh, {
