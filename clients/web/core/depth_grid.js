@@ -29,8 +29,7 @@ export function readHeader(data) {
     need(columns * rows <= MAX_CELLS && columns * rows * maskSide * maskSide <= MAX_MASK_PX, `masks of ${maskSide}`);
     need(grid.levels >= 1 && grid.levels <= MAX_LEVELS, `${grid.levels} levels`);
     // Codes grow towards the eye: 1/z grows in a perspective picture, z shrinks in an orthographic one.
-    const grows = grid.parallel ? unit < 0 : unit > 0 && base > 0;
-    need(Number.isFinite(base) && Number.isFinite(unit) && grows, `depths from ${base} by ${unit}`);
+    need(Number.isFinite(base) && Number.isFinite(unit) && (grid.parallel ? unit < 0 : unit > 0), `depths from ${base} by ${unit}`);
     need(Number.isFinite(base + grid.levels * unit), 'depths beyond all numbers');
     return grid;
 }
@@ -91,6 +90,8 @@ function readMasks({ columns, rows, maskSide }, bytes, far, start) {
 export function readGrid(header, bytes) {
     need(bytes.length === header.dataBytes, `${bytes.length} bytes, ${header.dataBytes} stated`);
     const { near, far, at } = readCodes(header, bytes);
+    const isEmpty = near.every((code) => code === 0); // then the base has no meaning
+    need(header.parallel || header.base > 0 || isEmpty, `a depth of ${header.base}`);
     return { ...header, payload: null, near, far, masks: readMasks(header, bytes, far, at) };
 }
 

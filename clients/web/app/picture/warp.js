@@ -42,11 +42,11 @@ void main() {
 const LATTICE = `#version 300 es
 precision highp float;
 uniform vec2 greys;
-uniform float step;
+uniform float period;
 out vec4 colour;
 void main() {
-    vec2 line = mod(vec2(gl_FragCoord.x + gl_FragCoord.y, gl_FragCoord.x - gl_FragCoord.y), step);
-    colour = vec4(vec3(min(line.x, line.y) < 0.15 * step ? greys.x : greys.y), 1.0);
+    vec2 line = mod(vec2(gl_FragCoord.x + gl_FragCoord.y, gl_FragCoord.x - gl_FragCoord.y), period);
+    colour = vec4(vec3(min(line.x, line.y) < 0.15 * period ? greys.x : greys.y), 1.0);
 }`;
 const GREYS = { light: [0.72, 0.84], dark: [0.34, 0.24] }, LATTICE_PX = 14;
 
@@ -79,6 +79,7 @@ export class Warp {
         viewport.canvas.after(this.canvas);
         this.worker = new Worker(new URL('./warp_worker.js', import.meta.url), { type: 'module' });
         this.worker.onmessage = ({ data }) => this.take(data);
+        this.worker.onerror = () => this.giveUp();
         viewport.warp = this;
         session.on('frame', (frame) => this.prepare(frame));
         session.on('hello', () => this.forget());
@@ -119,7 +120,7 @@ export class Warp {
         return texture;
     }
 
-    // Shows pictures unwarped from now on, because WebGL is lost.
+    // Shows pictures unwarped from now on, because WebGL or the worker is lost.
     giveUp() {
         this.hide();
         this.viewport.warp = null;
@@ -148,8 +149,9 @@ export class Warp {
         if (parts) {
             entry.parts = parts;
         } else {
-            console.warn(why);
             entry.fails = true;
+            if (this.why !== why)
+                console.warn(this.why = why);
         }
         this.viewport.invalidate();
     }
@@ -174,11 +176,17 @@ export class Warp {
             this.source = null;
         else if (known?.parts && this.source?.picture !== picture)
             this.source = { picture, camera: picture.ownCamera, parts: known.parts, isLoaded: false };
-        if (!this.isWanted || !this.load())
-            return this.hide();
-        if (this.isShown && this.painted === this.source && same(camera, picture.camera))
-            return false;
-        this.paint(camera);
+        try {
+            if (!this.isWanted || !this.load())
+                return this.hide();
+            if (this.isShown && this.painted === this.source && same(camera, picture.camera))
+                return false;
+            this.paint(camera);
+        } catch (error) { // for example, a browser that takes no VideoFrame as a texture
+            console.warn(`pictures are not warped: ${error.message}`);
+            this.giveUp();
+            return true;
+        }
         picture.camera = camera;
         picture.moved = (x, y) => this.moved(x, y);
         this.updates++;
@@ -206,10 +214,11 @@ export class Warp {
         const { picture } = this.session;
         if (picture?.ownCamera)
             Object.assign(picture, { camera: picture.ownCamera, moved: null });
-        const was = this.isShown;
+        if (!this.isShown)
+            return false;
         this.isShown = false;
         this.canvas.style.display = 'none';
-        return Boolean(was);
+        return true;
     }
 
     // Hands the picture and its mesh to WebGL. Returns false if the picture is no longer on the canvas.
@@ -291,7 +300,7 @@ export class Warp {
         gl.viewport(0, 0, canvas.width, canvas.height);
         gl.useProgram(this.lattice.program);
         gl.uniform2fv(this.lattice.at('greys'), GREYS[this.session.shown.backdrop] ?? GREYS.light);
-        gl.uniform1f(this.lattice.at('step'), LATTICE_PX * window.devicePixelRatio * canvas.height / this.session.size.height);
+        gl.uniform1f(this.lattice.at('period'), LATTICE_PX * window.devicePixelRatio * canvas.height / this.session.size.height);
         gl.drawArrays(gl.TRIANGLES, 0, 3);
         this.isShown = true;
         this.painted = source;
@@ -301,7 +310,8 @@ export class Warp {
     paintPart(part, camera) {
         const { gl, canvas, source, mesh } = this, { grid, buffers } = part, { fullWidth, fullHeight } = source.picture;
         const across = canvas.width / fullWidth, up = canvas.height / fullHeight;
-        part.matrix = warpMatrix(grid, source.camera, camera, NEAREST / (grid.base + grid.levels * grid.unit));
+        const closest = Math.max(1e-6, grid.base + grid.levels * grid.unit); // at most so many times 1/m
+        part.matrix = warpMatrix(grid, source.camera, camera, NEAREST / closest);
         gl.viewport(grid.x * across, (fullHeight - grid.y - grid.height) * up, grid.width * across, grid.height * up);
         gl.uniformMatrix4fv(mesh.at('warp'), false, part.matrix);
         gl.uniform2f(mesh.at('origin'), grid.x, grid.y);
