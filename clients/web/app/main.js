@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Assembles the page: one session, the viewport, and the panels around it.
 import { watchSleep } from './common/clock.js';
-import { byId, setText } from './common/dom.js';
+import { byId, phone, setText } from './common/dom.js';
 import { address, connection, narrow, page, probeCodecs, session, viewport } from './startup.js';
 import { listenToInput } from './input/input.js';
 import { renewIfOld, serveInstalled } from './install.js';
@@ -262,6 +262,9 @@ if (!new URLSearchParams(location.search).has('pane'))
 const showAssets = () => !narrow.matches && !document.body.classList.contains('wall') && modules.get('assets');
 narrow.addEventListener('change', showAssets);
 showAssets();
+const useSheets = () => phone.matches && import('./common/sheet.js').catch(console.warn);
+phone.addEventListener('change', useSheets);
+useSheets();
 session.listen();
 refresh();
 

@@ -5,7 +5,7 @@ import { browserDecoding } from '../core/decoding.js';
 import { Session } from '../core/session.js';
 import { language } from '../core/words.js';
 import { clock } from './common/clock.js';
-import { byId, sayAll, styled } from './common/dom.js';
+import { byId, phone, sayAll, styled } from './common/dom.js';
 import { stored } from './common/storage.js';
 import { chooseTheme } from './common/theme.js';
 import { Viewport } from './viewport/viewport.js';
@@ -25,8 +25,10 @@ const backdrop = chooseTheme(query);
 export const narrow = window.matchMedia('(max-width: 1023px)'); // true on narrow screens, where the equipment list covers the picture
 // a device that a user can turn may become narrow later, when the server may be unreachable
 const turned = window.matchMedia('(any-pointer: coarse)');
-const fold = () => (narrow.matches || turned.matches) && styled('common/narrow').catch(() => {});
-narrow.addEventListener('change', fold);
+const fold = () => Promise.all([(narrow.matches || turned.matches) && styled('common/narrow'), phone.matches && styled('common/sheet')])
+    .catch(() => {});
+for (const screen of [narrow, phone])
+    screen.addEventListener('change', fold);
 document.querySelector('.stage').classList.toggle('without-assets', narrow.matches);
 await fold();
 if (query.has('wall'))

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Turns pointer and wheel events into camera moves. Positions are CSS pixels of the viewport. Each call returns a list of moves: { orbit:
-// [dx, dy] }, { pan: [dx, dy] }, { look: [dx, dy] }, { zoom: factor, at: [x, y] }, { click: [x, y] }. Moves end with the gesture, without
-// momentum.
+// [dx, dy] }, { orbitDeg: [about the vertical, up] }, { pan: [dx, dy] }, { look: [dx, dy] }, { zoom: factor, at: [x, y] }, { click: [x, y]
+// }. Moves end with the gesture, without momentum.
 
 const CLICK_MS = 500;
 const SLOP_PX = { mouse: 3, pen: 5, touch: 8 };
@@ -10,6 +10,8 @@ const WHEEL_PER_PX = 0.0016, PINCH_PER_PX = 0.01, MOST_PER_EVENT = 0.5;
 
 const centre = (all) => ['x', 'y'].map((axis) => all.reduce((sum, p) => sum + p[axis], 0) / all.length);
 const apart = ([a, b]) => Math.hypot(a.x - b.x, a.y - b.y);
+const angle = ([a, b]) => Math.atan2(b.y - a.y, b.x - a.x) * (180 / Math.PI);
+const TWIST_DEG = 8; // a twist of two fingers below this angle is taken for a tremble
 
 export class Gestures {
     constructor() {
@@ -26,6 +28,7 @@ export class Gestures {
         if (this.pointers.size === 1)
             this.first = { x, y, time, slop: SLOP_PX[kind] ?? SLOP_PX.mouse, button };
         this.moved = this.pointers.size > 1;
+        this.twisted = 0; // angle in degrees by which the two fingers have turned
         return [];
     }
 
@@ -50,13 +53,19 @@ export class Gestures {
         return [{ look: [to[0] - from[0], to[1] - from[1]] }];
     }
 
-    // Two fingers pan and zoom so that each stays on its point of the plant.
+    // Two fingers pan and zoom so that each stays on its point of the plant. A twist also turns the plant about the vertical.
     pinch(before) {
         const then = before.slice(0, 2), now = [...this.pointers.values()].slice(0, 2);
         const from = centre(then), to = centre(now);
         const moves = [{ pan: [to[0] - from[0], to[1] - from[1]] }];
-        if (apart(then) > 1 && apart(now) > 1)
+        if (apart(then) > 1 && apart(now) > 1) {
             moves.push({ zoom: apart(then) / apart(now), at: to });
+            const turned = ((angle(now) - angle(then) + 540) % 360) - 180, twisted = this.twisted + turned;
+            const beyond = (twist) => Math.sign(twist) * Math.max(0, Math.abs(twist) - TWIST_DEG);
+            if (beyond(twisted) !== beyond(this.twisted))
+                moves.push({ orbitDeg: [beyond(twisted) - beyond(this.twisted), 0] });
+            this.twisted = twisted;
+        }
         return moves;
     }
 

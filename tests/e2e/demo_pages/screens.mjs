@@ -203,6 +203,70 @@ test('phone: device pixels; choose equipment from the list, fly there, tap a sen
     await shoot(page, 'phone-card');
 }));
 
+const PHONES = [[390, 844], [844, 390], [360, 640]];
+const SHEETS = { 'alarm-strip': '#alarms', 'views-toggle': '#views', 'picture-toggle': '#picture-panel', 'display-toggle': '#display',
+    'assets-toggle': '#assets' };
+const boxOf = (page, selector) => page.locator(selector).boundingBox();
+
+test('phones: sheets of at most 40 % beside the picture, the legend a strip', options, () => withPage(PHONE, async (page) => {
+    for (const [width, height] of PHONES) {
+        const upright = height > width, name = `${width}x${height}`;
+        await page.setViewportSize({ width, height });
+        await page.waitForFunction((wide) => Math.abs(globalThis.plantcast.viewport.width - wide) < 2, width);
+        assert.equal((await boxOf(page, '#legend')).height, 28, name);
+        await page.locator('#legend').tap();
+        assert.ok((await boxOf(page, '#legend')).height > 60, 'a tap opens the legend');
+        await page.locator('#legend').tap();
+        for (const [button, sheet] of Object.entries(SHEETS)) {
+            await page.locator(`#${button}`).tap();
+            await page.waitForFunction(([one, side, whole]) => {
+                const box = document.querySelector(one).getBoundingClientRect();
+                return box[side] > 0 && box[side] <= 0.4 * whole + 1;
+            }, [sheet, upright ? 'height' : 'width', upright ? height : width]);
+            const [picture, box] = await Promise.all(['#viewport', sheet].map((one) => boxOf(page, one)));
+            const apart = upright ? box.y >= picture.y + picture.height - 1 : box.x >= picture.x + picture.width - 1;
+            assert.ok(apart, `${name} ${sheet}: ${JSON.stringify([picture, box])}`);
+            assert.ok(upright ? picture.height > 0.15 * height : picture.width > 0.55 * width, `${name} ${sheet}`);
+            if (upright && sheet === '#alarms') {
+                await page.touchscreen.tap(box.x + box.width / 2, box.y + 8); // the grip
+                await page.waitForFunction((most) => document.querySelector('#alarms').offsetHeight <= most, 0.2 * height + 1);
+                await page.touchscreen.tap(box.x + box.width / 2, (await boxOf(page, sheet)).y + 8);
+                await page.waitForFunction((least) => document.querySelector('#alarms').offsetHeight > least, 0.3 * height);
+            }
+            await page.locator(`#${button}`).tap();
+            await page.locator(sheet).waitFor({ state: 'hidden' });
+        }
+        const tag = await page.evaluate(() => {
+            const { session, showTag } = globalThis.plantcast, one = session.model.tags.find(({ group, position }) => group && position);
+            showTag(one);
+            return one.name;
+        });
+        await page.locator('#card').getByText(tag).first().waitFor();
+        const [picture, card] = await Promise.all(['#viewport', '#card'].map((one) => boxOf(page, one)));
+        assert.ok(upright ? card.y >= picture.y + picture.height - 1 && card.height <= 0.4 * height + 1
+            : card.x >= picture.x + picture.width - 1 && card.width <= 0.4 * width + 1, `${name} card`);
+        await page.evaluate(() => globalThis.plantcast.selectTag(null));
+        await page.locator('#card').waitFor({ state: 'hidden' });
+    }
+}));
+
+test('phone: pinch, twist and two fingers that pan', options, () => withPage(PHONE, async (page) => {
+    const box = await boxOf(page, '#viewport'), [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+    const hand = await touches(page), azimuth = ({ camera: { eye, target } }) => Math.atan2(eye[1] - target[1], eye[0] - target[0]);
+    const start = await view(page);
+    await hand.drag([[x - 40, y], [x + 40, y]], [[x - 110, y], [x + 110, y]]);
+    const pinched = await view(page);
+    assert.ok(distance(pinched) < distance(start) * 0.6, 'nearer');
+    assert.ok(Math.abs(azimuth(pinched) - azimuth(start)) < 1e-6, 'a pinch does not turn');
+    await hand.drag([[x - 80, y], [x + 80, y]], [[x, y - 80], [x, y + 80]], 20);
+    const twisted = await view(page), turned = ((azimuth(twisted) - azimuth(pinched)) * 180) / Math.PI;
+    assert.ok(Math.abs(turned) > 45 && Math.abs(turned) < 100, `a quarter turn of the fingers: ${turned} degrees`);
+    await hand.drag([[x - 40, y], [x + 40, y]], [[x - 40, y + 90], [x + 40, y + 90]]);
+    const panned = await view(page);
+    assert.ok(Math.abs(azimuth(panned) - azimuth(twisted)) < 1e-6 && Math.abs(distance(panned) / distance(twisted) - 1) < 0.1);
+    assert.notDeepEqual(panned.camera.target, twisted.camera.target);
+}));
+
 // [width, height]: a phone upright, one on its side, a small one, a folded one.
 const HELD = [[390, 844], [844, 390], [360, 740], [280, 653]];
 

@@ -1,19 +1,36 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Chooses the position of a card over the picture.
+// Chooses the position of a card over the picture, next to the point that the card describes and never over it.
 import { byId } from '../common/dom.js';
 
-const AWAY_PX = 16, WIDTH_PX = 248, RIM_PX = 8;
+const AWAY_PX = 16, RIM_PX = 8, TALLEST_PX = 280;
 
-// Positions the card next to the point `at` ([x, y] in CSS pixels): on the side where it does not cover the legend, else on the side with
-// more room, and below the status banner. If `at` is null, the card stands in a corner.
+// Returns the card's { left, top, most (largest height) } for the point `at` ([x, y]; null: none) within the free part of the picture
+// (left, top, right, bottom). The card stands on the side with more room; if neither side is wide enough, above or below the point. Pure.
+export function cardPlace({ wide, tall }, { left, top, right, bottom }, at) {
+    const within = (low, n, high) => Math.round(Math.max(low, Math.min(high, n))), height = Math.min(tall, TALLEST_PX, bottom - top);
+    if (!at)
+        return { left, top: within(top, bottom, bottom - height), most: Math.min(TALLEST_PX, bottom - top) };
+    const [x, y] = at, rooms = [x - AWAY_PX - left, right - x - AWAY_PX], most = Math.max(...rooms);
+    if (most >= wide || (x < left - AWAY_PX || x > right + AWAY_PX)) {
+        const beside = rooms[1] >= rooms[0] ? x + AWAY_PX : x - AWAY_PX - wide;
+        return { left: within(left, beside, right - wide), top: within(top, y - height / 2, bottom - height),
+            most: Math.min(TALLEST_PX, bottom - top) };
+    }
+    const above = y - AWAY_PX - top, below = bottom - y - AWAY_PX, room = Math.max(above, below);
+    const low = Math.min(height, room);
+    return { left: within(left, x - wide / 2, right - wide), top: Math.round(below >= above ? y + AWAY_PX : y - AWAY_PX - low),
+        most: Math.min(TALLEST_PX, room) };
+}
+
+// Positions the card next to the point `at` ([x, y] in CSS pixels), clear of the status banner and the legend. If `at` is null, the card
+// stands in a corner.
 export function standBeside(element, { width, height }, at) {
-    const banner = byId('banner'), top = RIM_PX + (banner.hidden ? 0 : banner.offsetTop + banner.offsetHeight);
-    element.style.maxHeight = `${Math.max(0, height - top - RIM_PX)}px`;
-    const tall = element.offsetHeight;
-    const sides = at && [at[0] + AWAY_PX, at[0] - AWAY_PX - WIDTH_PX], free = byId('legend').offsetLeft || width;
-    const clear = sides?.find((left) => left >= RIM_PX && left + WIDTH_PX + RIM_PX <= free);
-    const x = !at ? RIM_PX : clear ?? (at[0] < width / 2 ? sides[0] : sides[1]);
-    const within = (low, n, high) => Math.round(Math.max(low, Math.min(high, n)));
-    const left = within(RIM_PX, x, width - WIDTH_PX - RIM_PX), y = within(top, at ? at[1] - tall / 2 : height, height - tall - RIM_PX);
-    element.style.transform = `translate(${left}px, ${y}px)`;
+    const banner = byId('banner'), legend = byId('legend'), lies = legend.offsetWidth > width / 2;
+    const above = banner.hidden ? 0 : banner.offsetTop + banner.offsetHeight, strip = lies ? legend.offsetTop + legend.offsetHeight : 0;
+    const beside = lies || legend.hidden || legend.offsetLeft <= 0 ? width : legend.offsetLeft;
+    const free = { left: RIM_PX, top: RIM_PX + Math.max(above, strip), right: beside - RIM_PX, bottom: height - RIM_PX };
+    element.style.maxHeight = '';
+    const place = cardPlace({ wide: element.offsetWidth, tall: element.offsetHeight }, free, at);
+    element.style.maxHeight = `${Math.max(0, place.most)}px`;
+    element.style.transform = `translate(${place.left}px, ${place.top}px)`;
 }

@@ -4,7 +4,7 @@ import { decimalsFor, quantityText, shortNumberText, unitText } from '../../core
 import { colourOf, edges, LIMIT_BANDS, placeOf, scaleTicks, spread, valueAt } from '../../core/legend.js';
 import { hatchAt, patternPeriodPx, ruleAt, stippleAt } from '../../core/patterns.js';
 import { say } from '../../core/words.js';
-import { make, makeSvg, setVariable } from '../common/dom.js';
+import { make, makeSvg, phone, setVariable } from '../common/dom.js';
 
 const BAR_TEXELS = 1024;
 const css = ([r, g, b]) => `rgb(${r} ${g} ${b})`;
@@ -72,7 +72,7 @@ const LIMIT_PLACES = { LL: -2, L: -1, H: 1, HH: 2 };
 export class Legend {
     // paramsOf returns, from the picture's parameters, those of the half of the view that this legend explains, or null if the legend stays
     // empty.
-    constructor({ session, element, paramsOf, lying = window.matchMedia('(max-width: 719px)') }) {
+    constructor({ session, element, paramsOf, lying = phone }) {
         Object.assign(this, { session, element, paramsOf, lying });
         this.lying.addEventListener('change', () => this.show(true));
         this.shown = '';

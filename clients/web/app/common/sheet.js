@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sheets: on a phone, panels and cards stand below the picture, or at its side, instead of covering it (common/sheet.css). A sheet has two
+// heights, between which a tap or a drag on its grip changes. Also opens the legend's strip by a tap.
+import { byId, phone, setVariable } from './dom.js';
+
+const STOPS = ['20dvh', '40dvh'], GRIP_PX = 24, SLOP_PX = 8;
+const SHEETS = '.panel.open, .display.open, .alarms, .assets, .stage > .card', CARDS = ['card', 'place'].map(byId);
+
+let stop = 1, drag = null; // drag: { y: where it began, moved: 0, up or down in pixels }
+
+function stand() {
+    const parent = phone.matches ? document.querySelector('.stage') : byId('viewport');
+    CARDS.filter((card) => card.parentElement !== parent).forEach((card) => parent.append(card));
+    if (!phone.matches)
+        ['legend', 'legend-right'].forEach((id) => byId(id).classList.remove('whole'));
+}
+
+function setStop(number) {
+    stop = Math.max(0, Math.min(STOPS.length - 1, number));
+    setVariable(document.documentElement, '--sheet', STOPS[stop]);
+}
+
+// Returns true if a press is on the grip of a sheet. The event's target does not tell: browsers move a touch to a control nearby.
+const isGrip = ({ clientX: x, clientY: y }) => [...document.querySelectorAll(SHEETS)].some((sheet) => {
+    const { left, right, top, width } = sheet.getBoundingClientRect();
+    return width > 0 && x >= left && x <= right && y >= top && y < top + GRIP_PX;
+});
+
+document.addEventListener('pointerdown', (event) => {
+    if (!phone.matches || !isGrip(event) || event.target.closest('button, input'))
+        return;
+    drag = { y: event.clientY, moved: 0 };
+    event.stopPropagation();
+}, true);
+document.addEventListener('pointermove', (event) => {
+    if (drag)
+        drag.moved = event.clientY - drag.y;
+});
+// Prevents the sheet from scrolling during a drag.
+document.addEventListener('touchmove', (event) => drag && event.preventDefault(), { passive: false });
+document.addEventListener('pointerup', (event) => {
+    if (!drag)
+        return;
+    setStop(Math.abs(drag.moved) < SLOP_PX ? 1 - stop : stop - Math.sign(drag.moved));
+    drag = null;
+    event.stopPropagation();
+}, true);
+document.addEventListener('pointercancel', () => { drag = null; });
+for (const id of ['legend', 'legend-right'])
+    byId(id).addEventListener('click', () => byId(id).classList.toggle('whole', phone.matches && !byId(id).classList.contains('whole')));
+phone.addEventListener('change', stand);
+stand();
