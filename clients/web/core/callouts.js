@@ -95,19 +95,22 @@ export function placeRings(all, { area, unit, taken, measure }) {
         groups = joined;
     }
 
+    // Returns whether a box is near the rings of a group.
+    function isNear({ x, y, across, down }, { left, top, right, bottom }) {
+        const aside = Math.max(0, Math.max(left - x, x - right) - across), away = Math.max(0, Math.max(top - y, y - bottom) - down);
+        return Math.hypot(aside, away) <= FARTHEST * unit;
+    }
+
     // Returns the index of a free position; null: none is free nearby; Infinity: none is free, and there is no other label to merge with.
     function find(one, out, alone) {
         const free = (slot, more, over) => {
             const box = boxOf(one, slot, unit), owner = slot < SLOTS.length ? one.owner : null;
             const grown = { left: box.left - more, right: box.right + more, top: box.top - more, bottom: box.bottom + more };
-            return box.left >= area.left && box.top >= area.top && box.right <= area.right && box.bottom <= area.bottom &&
-                !taken.meets(grown, owner, over) && !out.some((other) => meets(grown, other.box));
+            const inside = box.left >= area.left && box.top >= area.top && box.right <= area.right && box.bottom <= area.bottom;
+            return inside && (alone || isNear(one, box)) && !taken.meets(grown, owner, over) &&
+                !out.some((other) => meets(grown, other.box));
         };
-        const near = (slot) => {
-            const box = boxOf(one, slot, unit), right = Math.max(0, Math.max(box.left - one.x, one.x - box.right) - one.across);
-            return Math.hypot(right, Math.max(0, Math.max(box.top - one.y, one.y - box.bottom) - one.down)) <= FARTHEST * unit;
-        };
-        if (one.held >= 0 && one.held < SLOTS.length + OFFSETS.length && (alone || near(one.held)) && free(one.held, 0, 1))
+        if (one.held >= 0 && one.held < SLOTS.length + OFFSETS.length && free(one.held, 0, 1))
             return one.held;
         for (const over of [0, 1]) {
             for (let slot = 0; slot < SLOTS.length; slot++) {
@@ -117,7 +120,7 @@ export function placeRings(all, { area, unit, taken, measure }) {
         }
         for (const over of alone ? [1, 2] : [1]) { // as a last resort, the label of a single ring may cover that ring
             for (let n = 0; n < OFFSETS.length; n++) {
-                if ((alone || near(SLOTS.length + n)) && free(SLOTS.length + n, CLEARANCE * unit, over))
+                if (free(SLOTS.length + n, CLEARANCE * unit, over))
                     return SLOTS.length + n;
             }
         }

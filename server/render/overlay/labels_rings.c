@@ -170,6 +170,14 @@ static struct label_box box_at(const struct rings *rings, const struct ring_grou
                                item->height };
 }
 
+/* Returns whether a label is near the rings of its group. */
+static bool is_near(const struct rings *rings, const struct ring_group *group, const struct label_box *box)
+{
+    double aside = fmax(0, fmax(box->x - group->item.x, group->item.x - box->x - box->width) - group->across);
+    double away = fmax(0, fmax(box->y - group->item.y, group->item.y - box->y - box->height) - group->down);
+    return hypot(aside, away) <= MAX_DISTANCE * rings->layout->area->unit;
+}
+
 /* Returns whether the label of a group of alarm rings, with `more` pixels of free space around, fits in this slot (candidate position
    around the group). Labels of earlier groups count as occupied. */
 static bool is_free(const struct rings *rings, const struct ring_group *group, int slot, double more, enum label_over over)
@@ -177,6 +185,8 @@ static bool is_free(const struct rings *rings, const struct ring_group *group, i
     struct label_box box = box_at(rings, group, slot);
     struct label_box grown = { box.x - more, box.y - more, box.width + 2 * more, box.height + 2 * more };
     int owner = slot < LABEL_SLOTS && group->count == 1 ? group->members[0] : LABEL_NONE - 1;
+    if (rings->group_count > 1 && !is_near(rings, group, &box))
+        return false;
     if (!layout_is_inside(rings->layout, &box) || !layout_is_free(rings->layout, &grown, owner, over))
         return false;
     for (const struct ring_group *other = rings->groups; other < group; other++)
@@ -186,22 +196,12 @@ static bool is_free(const struct rings *rings, const struct ring_group *group, i
     return true;
 }
 
-/* Returns whether the label of a group of alarm rings is near its rings in this slot. */
-static bool is_near(const struct rings *rings, const struct ring_group *group, int slot)
-{
-    struct label_box box = box_at(rings, group, slot);
-    double right = fmax(0, fmax(box.x - group->item.x, group->item.x - box.x - box.width) - group->across);
-    double down = fmax(0, fmax(box.y - group->item.y, group->item.y - box.y - box.height) - group->down);
-    return hypot(right, down) <= MAX_DISTANCE * rings->layout->area->unit;
-}
-
 static int find_slot(const struct rings *rings, const struct ring_group *group)
 {
     int held = group->item.held;
     bool alone = rings->group_count == 1;
     double clearance = LABEL_CLEARANCE * rings->layout->area->unit;
-    bool can_hold = held >= 0 && held < LABEL_SLOTS + OFFSETS && (alone || is_near(rings, group, held));
-    if (can_hold && is_free(rings, group, held, 0, OVER_MARKS))
+    if (held >= 0 && held < LABEL_SLOTS + OFFSETS && is_free(rings, group, held, 0, OVER_MARKS))
         return held;
     for (int i = 0; i < 2 * LABEL_SLOTS; i++)
         if (is_free(rings, group, i % LABEL_SLOTS, clearance, i < LABEL_SLOTS ? OVER_NOTHING : OVER_MARKS))
@@ -209,7 +209,7 @@ static int find_slot(const struct rings *rings, const struct ring_group *group)
     /* OVER_RINGS: as a last resort the label may cover the alarm rings of its own group */
     for (int over = OVER_MARKS; over <= (alone ? OVER_RINGS : OVER_MARKS); over++)
         for (int slot = LABEL_SLOTS; slot < LABEL_SLOTS + OFFSETS; slot++)
-            if ((alone || is_near(rings, group, slot)) && is_free(rings, group, slot, clearance, (enum label_over)over))
+            if (is_free(rings, group, slot, clearance, (enum label_over)over))
                 return slot;
     return alone ? FORCED : NOWHERE;
 }
