@@ -161,8 +161,11 @@ static void draw_leader(struct pen *pen, const struct label_item *item, const st
         return;
     cairo_move_to(pen->cairo, item->x + (x - item->x) * rim, item->y + (y - item->y) * rim);
     cairo_line_to(pen->cairo, x, y);
+    cairo_set_source_rgba(pen->cairo, 1, 1, 1, 0.85); /* light case, seen on dark ground */
+    cairo_set_line_width(pen->cairo, fmax(2.5, 2.5 * pen->unit));
+    cairo_stroke_preserve(pen->cairo);
     cairo_set_line_width(pen->cairo, fmax(1, pen->unit));
-    pen_ink(pen, 0.7);
+    pen_ink(pen, 1);
     cairo_stroke(pen->cairo);
 }
 

@@ -64,7 +64,7 @@ export class Snapshot {
         const { session } = this, { camera, size, time } = session;
         if (session.params.show === 'difference' && !session.params.baseline?.name)
             throw new Error(say('snapshot.unnamed'));
-        const query = { ...snapshotQuery({ carried: { ...session.carried(), backdrop: null }, camera, size, time }), language };
+        const query = { ...snapshotQuery({ carried: session.carried(), camera, size, time }), language };
         const answer = await ask('snapshot.png', query, session.token);
         return { blob: await answer.blob(), us: time.atUs ?? session.clockUs() };
     }
