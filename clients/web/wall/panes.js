@@ -103,14 +103,21 @@ function ViewsPane(pane, context) {
         return Boolean(group) && params.group !== group;
     }
 
+    // Shows the alarm's state and the value now, which may change while the alarm's position is shown.
+    function sayNow(alarm) {
+        setText(words.querySelector('.state'), `${say(`state.${alarm.state}`)} `);
+        setText(words.querySelector('.raised'), `${nowText(session, alarm)} `);
+    }
+
     function showAlarm(page, alarm) {
         const tag = page.session.model.tag(alarm.tag.name);
         // a view sent from a desk may hide the alarm's position or have another range of colours, so these are reset
         page.session.setParams({ ...(tag.group ? { group: tag.group } : {}), clip: null, split: null, range: null });
         page.flyToTag(tag);
         words.replaceChildren(badge(alarm.priority, isGone(alarm.state)), make('b', {}, ` ${say(`kind.${alarm.kind}`)} ${tag.name} `),
-            make('span', { class: 'raised' }, `${nowText(session, alarm)} `),
+            make('span', { class: 'state' }), make('span', { class: 'raised' }),
             make('span', {}, say('walls.since', { time: timeOf(session, alarm.raisedUs) })));
+        sayNow(alarm);
     }
 
     return { tick(now) {
@@ -139,7 +146,7 @@ function ViewsPane(pane, context) {
         element.classList.toggle('coming', Boolean(alarm) && ofOther(page.session, alarm)); // hides the legend of the previous quantity
         if (wanted === shown && page === shownIn) {
             if (alarm)
-                setText(words.querySelector('.raised'), `${nowText(session, alarm)} `);
+                sayNow(alarm);
             return;
         }
         [shown, shownIn] = [wanted, page];
@@ -184,7 +191,7 @@ function AlarmsPane(pane, { session, call, title, body }) {
         make('time', {}, timeOf(session, alarm.raisedUs)));
     const rowOfMany = ({ asset, count, worst }) => make('li', { class: 'waiting' }, badge(worst.priority),
         make('b', {}, asset ?? worst.tag.name), make('span', { class: 'what' },
-            say('walls.many', { count, worst: `${say(`kind.${worst.kind}`)} ${worst.tag.name}` })),
+            say('walls.many', { count, worst: `${worst.tag.name} ${worst.kind.length > 2 ? say(`kind.${worst.kind}`) : worst.kind}` })),
         make('time', {}, timeOf(session, worst.raisedUs)));
 
     // Shows as many rows as fit, and the number of the others.

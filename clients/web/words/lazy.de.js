@@ -132,8 +132,8 @@ held: festgehalten von {who} seit {time}
 sent: gesendet von {who}, {time}
 age: Daten {age} alt
 since: seit {time}
-many(one): {count} Alarm, höchster {worst}
-many(other): {count} Alarme, höchster {worst}
+many(one): {worst}, {count} Alarm
+many(other): {worst}, {count} Alarme
 more(one): und {count} weiterer
 more(other): und {count} weitere
 counts: {active} aktiv, {waiting} unquittiert

@@ -131,8 +131,8 @@ held: held by {who} since {time}
 sent: sent by {who}, {time}
 age: data {age} old
 since: since {time}
-many(one): {count} alarm, highest {worst}
-many(other): {count} alarms, highest {worst}
+many(one): {worst}, {count} alarm
+many(other): {worst}, {count} alarms
 more(one): and {count} more
 more(other): and {count} more
 counts: {active} active, {waiting} unacknowledged

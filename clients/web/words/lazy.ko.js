@@ -131,7 +131,7 @@ held: {who} 고정, {time}부터
 sent: {who} 보냄, {time}
 age: 데이터 {age} 경과
 since: {time}부터
-many(other): 알람 {count}건, 최고 {worst}
+many(other): {worst}, 알람 {count}건
 more(other): 외 {count}건
 counts: 활성 {active}건, 미확인 {waiting}건
 flood: 알람 폭주: 활성 {active}건, 미확인 {waiting}건
