@@ -262,7 +262,7 @@ if (!new URLSearchParams(location.search).has('pane'))
 const showAssets = () => !narrow.matches && !document.body.classList.contains('wall') && modules.get('assets');
 narrow.addEventListener('change', showAssets);
 showAssets();
-const useSheets = () => phone.matches && import('./common/sheet.js').catch(console.warn);
+const useSheets = () => phone.matches && !document.body.classList.contains('wall') && import('./common/sheet.js').catch(console.warn);
 phone.addEventListener('change', useSheets);
 useSheets();
 session.listen();
