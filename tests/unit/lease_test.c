@@ -246,8 +246,8 @@ static void run_node(struct lease_world *world, int i)
         start(world, i);
     if (!node->life)
         return;
-    /* the kernel ends a node whose lease has run out */
-    if (node->lease.leads && !lease_acts(&node->lease, clock_of(world, node)) && node->lease.until_ns) {
+    /* the kernel ends a node whose lease has run out; the keeper ends one that finds another leader in the row */
+    if (node->lease.lost || (node->lease.leads && !lease_acts(&node->lease, clock_of(world, node)) && node->lease.until_ns)) {
         end(world, node);
         return;
     }
