@@ -28,8 +28,8 @@ after(() => plant?.destroy());
 const settled = (client) => client.until('an answer', (c) => c.closed || c.texts.some((m) => m.type === 'welcome'), 30000);
 
 // Opens sessions from one address, admitted or not.
-async function crowd(count, from, hello) {
-    const clients = await Promise.all(Array.from({ length: count }, () => PlainClient.open(plant.port, from)));
+async function crowd(count, from, hello, port = plant.port) {
+    const clients = await Promise.all(Array.from({ length: count }, () => PlainClient.open(port, from)));
     for (const client of clients)
         client.say({ type: 'hello', codecs: ['jpeg'], ...hello });
     await Promise.all(clients.map(settled));
@@ -58,6 +58,31 @@ test('hidden views of the largest size leave room for another address', options,
     await other.frameWhere('the first', () => true);
     other.close();
     greedy.close();
+});
+
+test('32 hidden views of the largest size leave another address 5 frames a second', crowded, async () => {
+    const roomy = await TinyPlant.create();
+    try {
+        assert.equal(roomy.prepare().code, 0);
+        await roomy.startDaemon('--limit', 'pixels=1073741824', '--limit', 'address-pixels=1073741824');
+        const rate = async () => {
+            const other = await PlainClient.open(roomy.port, OTHER);
+            await other.hello({ width: 1920, height: 1080 });
+            const frames = await framesPerSecond(other, 4);
+            other.close();
+            return frames;
+        };
+        const alone = await rate(), greedy = await crowd(32, GREEDY, LARGE, roomy.port);
+        assert.equal(greedy.admitted.length, 32);
+        for (const client of greedy.admitted)
+            client.say({ type: 'visible', visible: false });
+        const beside = await rate();
+        console.log(`# 1920x1080: ${alone.toFixed(1)} frames/s alone, ${beside.toFixed(1)} beside 32 hidden views`);
+        greedy.close();
+        assert.ok(beside >= Math.min(5, alone / 5), `${beside.toFixed(1)} frames/s`);
+    } finally {
+        await roomy.destroy();
+    }
 });
 
 // Measures what another address gets: frames per second, and a small picture.
