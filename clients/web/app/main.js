@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Assembles the page: one session, the viewport, and the panels around it.
 import { watchSleep } from './common/clock.js';
-import { byId, phone, setText } from './common/dom.js';
+import { byId, phone, setText, styled } from './common/dom.js';
 import { address, connection, narrow, page, probeCodecs, session, viewport } from './startup.js';
 import { listenToInput } from './input/input.js';
 import { renewIfOld, serveInstalled } from './install.js';
@@ -250,6 +250,12 @@ watchSleep(() => {
     connection.retryNow();
     status.show();
 });
+// Loads the style sheet for forced colours and for more contrast if the system asks for either.
+for (const query of ['(forced-colors: active)', '(prefers-contrast: more)'].map((text) => window.matchMedia(text))) {
+    const wear = () => query.matches && styled('common/contrast').catch(() => {});
+    query.addEventListener('change', wear);
+    wear();
+}
 serveInstalled();
 async function watch() {
     const { watchMainThread } = await import('./common/watchdog.js');

@@ -250,6 +250,7 @@ test('a new alarm is announced once, with tag, state and value', options, async 
 
 test('in forced colours active and returned alarms still look different', options, async () => {
     await page.emulateMedia({ forcedColors: 'active' });
+    await page.waitForFunction(() => [...document.styleSheets].some(({ href }) => href?.endsWith('common/contrast.css')));
     const looks = await page.evaluate(() => ['priority p2', 'priority p2 hollow'].map((name) => {
         const element = document.createElement('span');
         element.className = name;
