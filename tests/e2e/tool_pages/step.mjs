@@ -6,12 +6,14 @@ import { after, before, test } from 'node:test';
 import { openPage, settle, shoot, TABLET, waitForPicture } from '../support/browser.mjs';
 import { Relay, relayMissing } from '../support/relay.mjs';
 import { sweep } from '../support/sweep.mjs';
+import { projector } from '../../../clients/web/core/camera.js';
 import { missing, TinyPlant } from '../support/tiny_plant.mjs';
 
 const absent = [...missing(), relayMissing()].filter(Boolean);
 const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 200000 };
 const LEAST_VIEWS = 10, LEAST_RUN_PX = 12;
 const MARK_PX = 1.5, PICTURE_PX = 5; // encoded edges bleed a little, more so while the picture moves
+const WARPED_PX = 8; // the depth's mask has one bit for 2 x 2 pixels of a preview, which is enlarged
 let plant, relay;
 
 before(async () => {
@@ -66,8 +68,8 @@ const watch = (page) => page.evaluate((LEAST_RUN_PX) => {
         return Math.min(...data) > 200;
     };
     globalThis.frames = [];
-    viewport.onDrawn = (isNew) => {
-        onDrawn(isNew);
+    viewport.onDrawn = (isNew, isWarped) => {
+        onDrawn(isNew, isWarped);
         if (!isNew)
             return;
         const shown = seenFrom(session.picture.camera), asked = seenFrom(session.camera);
@@ -129,8 +131,11 @@ const middle = async (page) => {
     return [box.x + box.width / 2, box.y + box.height / 2];
 };
 
+// Without WebGL 2, the page shows the server's pictures as they come.
+const withoutWarp = () => { delete globalThis.WebGL2RenderingContext; };
+
 test('by the mouse: turned, moved and zoomed', options, async (t) => {
-    const { page, errors, close } = await openPage(url('h264'), { viewport: { width: 1100, height: 700 } });
+    const { page, errors, close } = await openPage(url('h264'), { viewport: { width: 1100, height: 700 } }, withoutWarp);
     try {
         await look(page);
         const [x, y] = await middle(page);
@@ -152,7 +157,7 @@ test('by the mouse: turned, moved and zoomed', options, async (t) => {
 });
 
 sweep(test, () => {})('by fingers, on a tablet held upright', options, async (t) => {
-    const { page, errors, close } = await openPage(url('jpeg'), { ...TABLET, viewport: { width: 768, height: 1024 } });
+    const { page, errors, close } = await openPage(url('jpeg'), { ...TABLET, viewport: { width: 768, height: 1024 } }, withoutWarp);
     try {
         await look(page);
         const [x, y] = await middle(page), client = await page.context().newCDPSession(page);
@@ -165,5 +170,109 @@ sweep(test, () => {})('by fingers, on a tablet held upright', options, async (t)
         assert.deepEqual(errors, []);
     } finally {
         await close();
+    }
+});
+
+// Records every drawing of a picture from the page's own camera: how many animation frames after that camera was set, how far markers are
+// from where that camera has them, and the bounds of the coloured pixels and of the box.
+const watchWarped = (page) => page.evaluate((LEAST_RUN_PX) => {
+    const { viewport, session, overlay } = globalThis.plantcast, { onDrawn } = viewport, cameras = [];
+    let frame = 0;
+    const count = () => {
+        frame++;
+        requestAnimationFrame(count);
+    };
+    requestAnimationFrame(count);
+    session.on('camera', () => cameras.push({ camera: session.camera, frame }));
+    const colouredIn = (canvas) => {
+        const { width, height } = canvas, copy = new OffscreenCanvas(width, height).getContext('2d'), ends = [];
+        copy.drawImage(canvas, 0, 0);
+        const { data } = copy.getImageData(0, 0, width, height), across = viewport.width / width, down = viewport.height / height;
+        for (let y = 0; y < height; y++)
+            for (let x = 0, run = 0; x < width; x++) {
+                const i = 4 * (y * width + x), [r, g, b] = [data[i], data[i + 1], data[i + 2]];
+                run = Math.max(r, g, b) - Math.min(r, g, b) > 60 ? run + 1 : 0;
+                if (run === LEAST_RUN_PX)
+                    ends.push([(x - run + 1) * across, y * down]);
+                if (run >= LEAST_RUN_PX)
+                    ends.last = [(x + 1) * across, (y + 1) * down];
+                else if (ends.last)
+                    ends.push(ends.last) && delete ends.last;
+            }
+        return ends;
+    };
+    globalThis.warped = [];
+    viewport.onDrawn = (isNew, isWarped) => {
+        onDrawn(isNew, isWarped);
+        if (!isWarped || !viewport.warp.isShown)
+            return;
+        const asked = cameras.find(({ camera }) => camera === session.picture.camera);
+        const isFirst = asked && !asked.isSeen; // a newer picture is also drawn from a camera that was drawn before
+        if (asked)
+            asked.isSeen = true;
+        globalThis.warped.push({ frames: isFirst ? frame - asked.frame : 0, isNewest: session.picture.camera === session.camera,
+            isAhead: session.picture.cameraSeq !== session.cameraSeq, ends: colouredIn(viewport.warp.canvas), camera: session.camera,
+            markers: overlay.markers.filter(({ occluded }) => !occluded)
+                .map((marker) => ({ ...overlay.placeOf(marker), at: marker.tag.position })) });
+    };
+}, LEAST_RUN_PX);
+
+test('the picture follows the hand before the server answers; nothing is coloured where nothing was drawn', options, async (t) => {
+    const slow = await Relay.open(plant.port, { bytesPerS: 4e6, delayMs: 300 });
+    const { page, errors, close } = await openPage(`http://127.0.0.1:${slow.port}/?codec=jpeg`, { viewport: { width: 1100, height: 700 } });
+    try {
+        await look(page);
+        if (!await page.evaluate(() => globalThis.plantcast.session.reprojects)) {
+            t.skip('the server sends no depth grids');
+            return;
+        }
+        const [x, y] = await middle(page);
+        await page.mouse.move(x, y);
+        await page.mouse.down();
+        await page.mouse.move(x + 8, y);
+        await page.waitForFunction(() => globalThis.plantcast.viewport.warp);
+        await settle(page);
+        await page.waitForFunction(() => globalThis.plantcast.viewport.warp.grids.at(-1)?.parts);
+        await watchWarped(page);
+        for (let i = 1; i < 40; i++) {
+            await page.mouse.move(x + 8 + 2 * i, y + 12 * Math.sin(i / 9));
+            await page.evaluate(() => new Promise((done) => requestAnimationFrame(done)));
+        }
+        await shoot(page, 'warped');
+        await page.mouse.up();
+        const seen = await page.evaluate(() => globalThis.warped), { width, height } = await page.locator('#viewport').boundingBox();
+        const { min, max } = await page.evaluate(() => globalThis.plantcast.session.model.asset('E-101').bounds);
+        const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((n) => [0, 1, 2].map((i) => (n & (1 << i) ? max[i] : min[i])));
+        let off = 0, beyond = 0;
+        for (const { camera, ends, markers: marks } of seen) {
+            const project = projector(camera, width, height), places = corners.map(project);
+            for (const { at, x: left, y: top } of marks)
+                off = Math.max(off, Math.hypot(...project(at).slice(0, 2).map((v, i) => v - [left, top][i])));
+            for (const axis of [0, 1]) {
+                const box = places.map((p) => p[axis]), drawn = ends.map((p) => p[axis]);
+                beyond = Math.max(beyond, Math.min(...box) - Math.min(...drawn), Math.max(...drawn) - Math.max(...box));
+            }
+        }
+        t.diagnostic(`${seen.length} drawings; markers ${off.toFixed(2)} px off, colours ${beyond.toFixed(1)} px beyond the box`);
+        assert.ok(seen.length >= 10, `${seen.length} drawings`);
+        assert.ok(seen.every(({ isNewest, isAhead }) => isNewest && isAhead), 'each shows the newest camera, before the server does');
+        const late = seen.filter(({ frames }) => frames > 1);
+        assert.equal(late.length, 0, `frames from hand to picture: ${late.map(({ frames }) => frames)}`);
+        assert.ok(seen.every(({ ends }) => ends.length > 100), 'the box is seen');
+        assert.ok(off <= MARK_PX, `a marker ${off} px off`);
+        assert.ok(beyond <= WARPED_PX, `colours ${beyond} px beyond the box`);
+        await settle(page);
+        assert.equal(await page.evaluate(() => globalThis.plantcast.viewport.warp.isShown), false, "then the server's picture is shown");
+        const updates = await page.evaluate(() => globalThis.plantcast.viewport.warp.updates);
+        await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+        assert.equal(await page.evaluate(() => globalThis.plantcast.viewport.warp.updates), updates, 'a still view is not drawn again');
+        await page.evaluate(() => globalThis.plantcast.viewport.warp.gl.getExtension('WEBGL_lose_context').loseContext());
+        await page.waitForFunction(() => globalThis.plantcast.viewport.warp === null);
+        await page.mouse.wheel(0, -120);
+        await settle(page);
+        assert.deepEqual(errors, []);
+    } finally {
+        await close();
+        slow.close();
     }
 });

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How soon the page answers the hand: real pointer events in chromium over the demo plant, through a slow link. Prints one JSON object per
+// row. Arguments: WIDTHxHEIGHT (1920x1080), CODEC (auto), ROUND_TRIP_MS (0), BYTES_PER_S of the link (0: no limit).
+import { createRequire } from 'node:module';
+import { missing, startPlant } from '../e2e/support/plant.mjs';
+import { cpuMs, family } from '../e2e/support/processes.mjs';
+import { Relay, relayMissing } from '../e2e/support/relay.mjs';
+
+const { chromium } = createRequire(new URL('../e2e/package.json', import.meta.url))('playwright-core');
+const [size = '1920x1080', codec = 'auto', roundTripMs = '0', bytesPerS = '0'] = process.argv.slice(2);
+const [width, height] = size.split('x').map(Number);
+const SECONDS = Number(process.env.SECONDS) || 5, TRIES = Number(process.env.TRIES) || 20, HZ = 60, CALM_MS = 400;
+const ARGS = ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking'];
+const name = `hand_${size}_${codec}_${roundTripMs}ms${bytesPerS === '0' ? '' : `_${bytesPerS}Bps`}`;
+const say = (what, value, unit, more = {}) => console.log(JSON.stringify({ name: `${name}_${what}`, value, unit, ...more }));
+const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
+const round = (x) => Math.round(10 * x) / 10;
+const rank = (values, share) => round([...values].sort((a, b) => a - b)[Math.min(values.length - 1, Math.floor(share * values.length))]);
+
+// Runs in the page: records when pointer events happened, when the picture on the screen changed, and which frames were drawn.
+function record() {
+    const hand = globalThis.hand = { events: [], changes: [], frames: [], reads: false };
+    const { session, viewport } = globalThis.plantcast, { drawn } = session, { onDrawn } = viewport, small = new OffscreenCanvas(160, 90);
+    const context = small.getContext('2d', { willReadFrequently: true });
+    addEventListener('pointermove', ({ timeStamp }) => hand.events.push(timeStamp), { capture: true, passive: true });
+    session.drawn = (frame, ...rest) => {
+        drawn.call(session, frame, ...rest);
+        hand.frames.push({ at: performance.now(), last: frame.cameraSeq === session.cameraSeq && !session.cameraNews });
+    };
+    context.imageSmoothingEnabled = false;
+    let before = 0;
+    viewport.onDrawn = (...news) => {
+        onDrawn(...news);
+        if (!hand.reads || (viewport.warp?.isShown && !news[1]))
+            return; // nothing was drawn
+        context.drawImage(viewport.warp?.isShown ? viewport.warp.canvas : viewport.canvas, 0, 0, small.width, small.height);
+        const pixels = new Uint32Array(context.getImageData(0, 0, small.width, small.height).data.buffer);
+        const hash = pixels.reduce((sum, pixel) => (Math.imul(sum, 31) + pixel) | 0, 0);
+        if (hash !== before)
+            hand.changes.push(performance.now());
+        before = hash;
+    };
+}
+
+const look = (page) => page.evaluate(() => {
+    const { events, changes, frames } = globalThis.hand;
+    const { picture, size: { width: w }, cameraSeq } = globalThis.plantcast.session;
+    return { events, changes, frames, rests: picture.still && picture.fullWidth === w && picture.cameraSeq === cameraSeq };
+});
+const clear = (page, reads) => page.evaluate((on) =>
+    Object.assign(globalThis.hand, { events: [], changes: [], frames: [], reads: on }), reads);
+
+async function rest(page) {
+    for (let before = -1, now = 0; now !== before || now < 0;) {
+        before = now;
+        await sleep(CALM_MS);
+        const { changes, rests } = await look(page);
+        now = rests ? changes.length : -1;
+    }
+}
+
+// Moves the pressed pointer along a circle, without waiting for the page.
+async function circle(page, pointer, seconds) {
+    const began = performance.now(), count = seconds * HZ;
+    for (let n = 1; n <= count; n++) {
+        const angle = 2 * Math.PI * n / (3 * HZ);
+        pointer('mouseMoved', width / 2 + 150 * Math.sin(angle), height / 2 + 100 * (1 - Math.cos(angle)) / 2);
+        await sleep(Math.max(0, began + n * 1000 / HZ - performance.now()));
+    }
+}
+
+const cpuOf = (pids) => pids.reduce((sum, pid) => {
+    try {
+        return sum + cpuMs(pid);
+    } catch {
+        return sum; // the process has ended
+    }
+}, 0);
+
+async function measure(page, browserPid, daemonPid) {
+    const client = await page.context().newCDPSession(page);
+    const pointer = (type, x, y) => client.send('Input.dispatchMouseEvent', { type, x, y, button: 'left', buttons: 1, clickCount: 1 });
+    await page.evaluate(record);
+    await page.mouse.move(width / 2, height / 2);
+    await clear(page, true);
+    await pointer('mousePressed', width / 2, height / 2);
+    await circle(page, pointer, 2); // loads everything that the first drag loads
+    const firsts = [];
+    for (let n = 0; n < TRIES; n++) {
+        await rest(page);
+        await clear(page, true);
+        await pointer('mouseMoved', width / 2 + 20 * (1 + n % 2), height / 2 + n);
+        await page.waitForFunction(() => globalThis.hand.changes.some((at) => at > globalThis.hand.events[0]));
+        const { events, changes } = await look(page);
+        firsts.push(changes.find((at) => at > events[0]) - events[0]);
+    }
+    say('first_pixel_ms', rank(firsts, 0.5), 'ms', { p95: rank(firsts, 0.95) });
+    await clear(page, true);
+    await circle(page, pointer, SECONDS);
+    const seen = await look(page);
+    say('seen_per_s', round(seen.changes.length / SECONDS), '1/s');
+    say('pictures_per_s_read', round(seen.frames.length / SECONDS), '1/s');
+    await page.waitForFunction(() => globalThis.hand.frames.some(({ last, at }) => last && at > globalThis.hand.events.at(-1)));
+    const { frames, events } = await look(page);
+    say('last_picture_ms', round(frames.find(({ last, at }) => last && at > events.at(-1)).at - events.at(-1)), 'ms');
+    await clear(page, false);
+    const pids = family(browserPid), begun = cpuOf(pids), served = cpuMs(daemonPid), from = performance.now();
+    const updates = () => page.evaluate(() => globalThis.plantcast.viewport.warp?.updates ?? globalThis.hand.frames.length);
+    const before = await updates();
+    await circle(page, pointer, SECONDS);
+    const pictures = (await look(page)).frames.length, drawn = await updates() - before, seconds = (performance.now() - from) / 1000;
+    const cpu = cpuOf(pids) - begun;
+    say('pictures_per_s', round(pictures / seconds), '1/s');
+    say('updates_per_s', round(drawn / seconds), '1/s');
+    say('cpu_per_picture_ms', round(cpu / pictures), 'ms of a processor');
+    say('cpu_per_update_ms', round(cpu / drawn), 'ms of a processor');
+    say('cores', round(cpu / seconds / 100) / 10, 'cores', { server: round((cpuMs(daemonPid) - served) / seconds / 100) / 10 });
+    await pointer('mouseReleased', width / 2, height / 2);
+    if (process.env.SHOT)
+        await page.screenshot({ path: process.env.SHOT });
+}
+
+const why = missing() ?? relayMissing();
+if (why) {
+    say('seen_per_s', null, '1/s', { why });
+} else {
+    const plant = await startPlant();
+    const port = Number(new URL(plant.url).port);
+    const relay = await Relay.open(port, { bytesPerS: Number(bytesPerS), delayMs: Number(roundTripMs) / 2 });
+    const server = await chromium.launchServer({ executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium', args: ARGS });
+    try {
+        const browser = await chromium.connect(server.wsEndpoint());
+        const page = await browser.newPage({ viewport: { width: width + 300, height: height + 200 } });
+        await page.goto(`http://127.0.0.1:${roundTripMs === '0' && bytesPerS === '0' ? port : relay.port}/?codec=${codec}`);
+        await page.waitForFunction(() => globalThis.plantcast?.session.picture);
+        // The picture gets exactly the size that is measured.
+        await page.evaluate(([w, h]) => Object.assign(document.getElementById('viewport').style,
+            { position: 'fixed', inset: '0 auto auto 0', width: `${w}px`, height: `${h}px`, zIndex: 9 }), [width, height]);
+        await plant.freeze((await (await fetch(`${plant.url}api/v1/tags`)).json()).tags.map((tag) => tag.name));
+        await measure(page, server.process().pid, plant.pid);
+    } finally {
+        await server.close();
+        relay.close();
+        await plant.stop();
+    }
+}
