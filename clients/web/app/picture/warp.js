@@ -30,8 +30,14 @@ uniform sampler2D picture, masks;
 uniform vec2 origin, size;
 uniform float bit;
 out vec4 colour;
+bool isNear(float x, float y) {
+    return texelFetch(masks, ivec2(vec2(x, y) / bit), 0).r > 0.5;
+}
 void main() {
-    if (kind > 0.5 && (texelFetch(masks, ivec2(at / bit), 0).r > 0.5) != (kind < 1.5))
+    if (kind > 0.5 && isNear(at.x, at.y) != (kind < 1.5))
+        discard;
+    // leaves out pixels behind a step that have a part of the colour before it
+    if (kind > 1.5 && (isNear(at.x - bit, at.y) || isNear(at.x + bit, at.y) || isNear(at.x, at.y - bit) || isNear(at.x, at.y + bit)))
         discard;
     colour = texture(picture, (origin + at) / size);
 }`;
