@@ -3,6 +3,7 @@
 #include "plant_runtime.h"
 
 #include <string.h>
+#include <unistd.h>
 
 #include "base/clock.h"
 #include "base/mem.h"
@@ -16,7 +17,16 @@
 
 char *plant_runtime_prepared_folder(const struct server_params *params, const struct plant *plant)
 {
-    return params->prepared ? mem_strdup(params->prepared) : plant_prepared_folder(plant);
+    static const char installed[] = "/etc/plantcast/", name[] = "/plant.yaml";
+    size_t length = strlen(params->plant_path), before = sizeof(installed) - 1, after = sizeof(name) - 1;
+    if (params->prepared)
+        return mem_strdup(params->prepared);
+    char *folder = plant_prepared_folder(plant);
+    if (access(folder, F_OK) == 0 || length <= before + after || strncmp(params->plant_path, installed, before) != 0 ||
+        strcmp(params->plant_path + length - after, name) != 0)
+        return folder;
+    mem_free(folder); /* the service prepares into this folder (plantcastd@.service) */
+    return mem_printf("/var/lib/plantcast/%.*s/prepared", (int)(length - before - after), params->plant_path + before);
 }
 
 struct scene *plant_runtime_open_scene(struct log *log, const struct server_params *params, const struct plant *plant)

@@ -23,7 +23,7 @@
 enum {
     FIRST_SOCKET = 3 /* number of the first descriptor that systemd passes: sd_listen_fds(3) */,
     EXTENSION_S = 60,
-    EXTENSION_INTERVAL_S = 10,
+    EXTENSION_INTERVAL_S = 5,
     MIN_EXTENSIONS = 60 /* minimum number of requests for more time within limit_s seconds; with a short limit, the requests come more
                            often */
 };
@@ -142,11 +142,16 @@ static bool is_at_work(struct service_patience *patience)
 static void *extend_start(void *arg)
 {
     struct service_patience *patience = arg;
+    int64_t begin_ns = clock_mono_ns();
     bool works = true; /* true at first, so that more time is requested at least once and a quick start shows its status, too */
     pthread_mutex_lock(&patience->lock);
     do {
-        if (works && clock_mono_ns() - patience->since_ns < patience->limit_ns)
+        if (works && clock_mono_ns() - patience->since_ns < patience->limit_ns) {
             service_notify("EXTEND_TIMEOUT_USEC=%lld\nSTATUS=%s", EXTENSION_S * 1000000ll, patience->status);
+            int64_t for_ns = clock_mono_ns() - begin_ns;
+            if (for_ns > EXTENSION_INTERVAL_S * NS_PER_S / 2) /* the journal of a service shows that a long start continues */
+                fprintf(stderr, "%s: %s, for %.0f s so far\n", program_invocation_short_name, patience->status, (double)for_ns / 1e9);
+        }
         int64_t until_ns = clock_mono_ns() + patience->every_ns;
         struct timespec until = { until_ns / NS_PER_S, until_ns % NS_PER_S };
         works = patience->ending || pthread_cond_timedwait(&patience->wake, &patience->lock, &until) != ETIMEDOUT;
