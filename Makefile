@@ -26,7 +26,7 @@ bin := $(if $(filter release,$(config)),$(build),$(out)/bin)
 
 # What asks for no packages, and compiles nothing.
 no_packages := deps test-deps run test check test-long clean style layers deb bundle image test-deploy
-packages := yaml-0.1 jansson sqlite3 libpq libcurl libmodbus libmosquitto libprotobuf-c libwebsockets libssl libcrypto cjose \
+packages := yaml-0.1 jansson sqlite3 libzstd libpq libcurl libmodbus libmosquitto libprotobuf-c libwebsockets libssl libcrypto cjose \
             libturbojpeg \
             uchardet libutf8proc \
             libjpeg libpng zlib cairo cairo-ft fontconfig libxxhash OpenImageIO

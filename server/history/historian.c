@@ -26,13 +26,14 @@
 enum {
     QUEUE_MAX = 4000000,   /* maximum number of queued samples; the queue is emptied once a second */
     WAITING_MAX = 4000000, /* maximum number of rows held in memory while the disk cannot be written */
-    TIDY_ROWS = 200000,
+    TIDY_ROWS = 1000000, /* recorded points that wait for month_file_tidy() at most; readers keep them in memory */
     TAG_LEADS = -1,   /* marker in the queue, in place of a tag's index: the samples after it come from this daemon's own store */
     TAG_FOLLOWS = -2, /* marker in the queue, in place of a tag's index: the samples after it come over a new connection to the leading
                          daemon */
     RETRY_MAX_S = 30,
 };
-static const int64_t TICK_NS = NS_PER_S, TIDY_NS = 60 * NS_PER_S, KEEP_NS = 60 * NS_PER_S, STEP_NS = 2 * NS_PER_S, LOOK_NS = 20 * NS_PER_MS;
+static const int64_t TICK_NS = NS_PER_S, TIDY_NS = 1200 * NS_PER_S, KEEP_NS = 60 * NS_PER_S, STEP_NS = 2 * NS_PER_S,
+                     LOOK_NS = 20 * NS_PER_MS;
 
 struct historian_queue {
     struct sample_event *at; /* samples in order of arrival */
@@ -395,6 +396,8 @@ static int apply_retention(struct historian *historian, int64_t mono_ns, int64_t
         const struct plant_history *history = &historian->plant->history;
         const struct retention_limits limits = { history->keep_days, history->keep_gb * 1e9, historian->postgres != NULL };
         int64_t unsent;
+        if (!historian->kept_ns)
+            retention_check(historian->log, historian->folder, &limits);
         historian->kept_ns = mono_ns;
         counter_set(historian->counters.bytes, retention_apply(historian->log, historian->folder, &limits, utc_ns / 1000, &unsent));
         if (historian->postgres)

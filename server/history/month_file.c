@@ -5,11 +5,12 @@
 
 #include "base/mem.h"
 #include "history/month.h"
-#include "history/month_file_impl.h"
+#include "history/month_blocks.h"
+#include "history/month_seconds.h"
 
 enum { APPLICATION_ID = 0x50434849 /* "PCHI" */ };
 
-const int64_t history_level_us[LEVEL_COUNT] = { 10 * US_PER_S, 60 * US_PER_S, 600 * US_PER_S, 3600 * US_PER_S };
+const int64_t history_level_us[LEVEL_COUNT] = { 60 * US_PER_S, 600 * US_PER_S, 3600 * US_PER_S };
 
 /* Migrations: each version adds a list of statements that convert a file of the version before. */
 static const char schema_1[] =
@@ -31,7 +32,17 @@ static const char schema_2[] =
     " printf('0x%08X', s.q) AS quality FROM (SELECT * FROM sample UNION ALL SELECT * FROM recent UNION ALL SELECT * FROM held h"
     " WHERE NOT EXISTS (SELECT 1 FROM sample WHERE tag = h.tag AND t = h.t)"
     " AND NOT EXISTS (SELECT 1 FROM recent WHERE tag = h.tag AND t = h.t)) s JOIN tag ON tag.id = s.tag;";
-static const char *const schemas[HISTORY_VERSION] = { schema_1, schema_2 };
+/* Points go to compressed blocks, which SQL cannot read, so there is no view any more. Points of earlier versions stay in `sample`. */
+static const char schema_3[] =
+    "DROP VIEW history;"
+    "INSERT OR REPLACE INTO sample SELECT tag, t, v, q FROM recent;"
+    "DELETE FROM recent;"
+    "CREATE TABLE chunk(id INTEGER PRIMARY KEY AUTOINCREMENT, last INTEGER NOT NULL, times BLOB NOT NULL);"
+    "CREATE TABLE block(tag INTEGER NOT NULL, t INTEGER NOT NULL, last INTEGER NOT NULL, chunk INTEGER NOT NULL, data BLOB NOT NULL,"
+    " PRIMARY KEY(tag, t)) WITHOUT ROWID;"
+    "CREATE TABLE second(n INTEGER PRIMARY KEY, stamp INTEGER NOT NULL, data BLOB NOT NULL);"
+    "INSERT INTO second VALUES(0, 1099511627776, x'');"; /* stamps begin at 1 << 40, so that every stamp takes 6 bytes */
+static const char *const schemas[HISTORY_VERSION] = { schema_1, schema_2, schema_3 };
 
 static const char *const sql[SQL_COUNT] = {
     [SQL_BEGIN] = "BEGIN IMMEDIATE",
@@ -41,16 +52,9 @@ static const char *const sql[SQL_COUNT] = {
     [SQL_FIND_TAG] = "SELECT id, step, unit FROM tag WHERE name = ?",
     [SQL_ADD_TAG] = "INSERT INTO tag(name, unit, step, within) VALUES(?, ?, ?, ?) ON CONFLICT(name) DO UPDATE"
                     " SET unit = excluded.unit, step = excluded.step, within = excluded.within RETURNING id",
-    [SQL_ADD_RECENT] = "INSERT INTO recent(tag, t, v, q) VALUES(?, ?, ?, ?)",
     [SQL_HOLD] = "INSERT OR REPLACE INTO held(tag, t, v, q) VALUES(?, ?, ?, ?)",
-    [SQL_ADD_SAMPLE] = "INSERT OR REPLACE INTO sample(tag, t, v, q) VALUES(?, ?, ?, ?)",
     [SQL_ADD_ROLLUP] = "INSERT OR REPLACE INTO rollup(level_s, tag, t, low, high, mean, first, last, good_us, bad_us, q)"
                        " VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
-    [SQL_RECENT] = "SELECT tag, t, v, q FROM recent ORDER BY tag, t",
-    [SQL_CLEAR_RECENT] = "DELETE FROM recent",
-    [SQL_LAST_SAMPLE] = "SELECT t FROM sample WHERE tag = ? ORDER BY t DESC LIMIT 1",
-    [SQL_SAMPLES_FROM] = "SELECT t, v, q FROM sample WHERE tag = ?1"
-                         " AND t >= coalesce((SELECT max(t) FROM sample WHERE tag = ?1 AND t < ?2), ?2) ORDER BY t",
     [SQL_ALL_HELD] = "SELECT tag, t, v, q FROM held",
     [SQL_FORGET_GAPS] = "DELETE FROM sample WHERE t BETWEEN ? AND ? AND q = ?",
     [SQL_FORGET_GAP_NOTES] = "DELETE FROM event WHERE t BETWEEN ? AND ? AND kind = 'gap'",
@@ -67,7 +71,7 @@ static const char *const sql[SQL_COUNT] = {
     [SQL_ROLLUPS] = "SELECT t, low, high, mean, first, last, good_us, bad_us, q FROM rollup"
                     " WHERE level_s = ?1 AND tag = ?2 AND t <= ?4 AND t >= coalesce((SELECT max(t) FROM rollup"
                     " WHERE level_s = ?1 AND tag = ?2 AND t <= ?3), ?3) ORDER BY t",
-    [SQL_RECENT_ALL] = "SELECT tag, t, v, q FROM recent UNION ALL SELECT tag, t, v, q FROM held",
+    [SQL_RECENT_ALL] = "SELECT tag, t, v, q FROM recent",
     [SQL_ALL_TAGS] = "SELECT id FROM tag",
     [SQL_CUT_SAMPLES] = "DELETE FROM sample WHERE tag = ? AND t < ?",
     [SQL_CUT_ROLLUPS] = "DELETE FROM rollup WHERE level_s = ?2 AND tag = ?1 AND t < ?3",
@@ -75,7 +79,25 @@ static const char *const sql[SQL_COUNT] = {
     [SQL_SIZE] = "SELECT page_size, page_count, freelist_count, auto_vacuum FROM pragma_page_size, pragma_page_count,"
                  " pragma_freelist_count, pragma_auto_vacuum",
     [SQL_SHRINK] = "PRAGMA incremental_vacuum",
-    [SQL_WAITING] = "SELECT count(*) FROM recent",
+    [SQL_WAITING] = "SELECT count(*), max(stamp) FROM second WHERE n > 0 AND stamp > (SELECT stamp FROM second WHERE n = 0)",
+    [SQL_HAS_BLOCKS] = "SELECT 1 FROM sqlite_master WHERE type = 'table' AND name = 'block'",
+    [SQL_BLOCKS] = "SELECT chunk, data FROM block WHERE tag = ?1"
+                   " AND t >= coalesce((SELECT max(t) FROM block WHERE tag = ?1 AND t <= ?2), ?2) ORDER BY t",
+    [SQL_NEXT_BLOCK] = "SELECT chunk, data, t FROM block WHERE tag = ?1 AND t > ?2 AND t <= ?3 AND last >= ?4"
+                       " AND t >= coalesce((SELECT max(t) FROM block WHERE tag = ?1 AND t <= ?4), ?4) ORDER BY t LIMIT 1",
+    [SQL_ADD_BLOCK] = "INSERT INTO block(tag, t, last, chunk, data) VALUES(?, ?, ?, ?, ?)",
+    [SQL_DELETE_BLOCK] = "DELETE FROM block WHERE tag = ? AND t = ?",
+    [SQL_BLOCK_SPAN] = "SELECT min(a), max(b) FROM (SELECT (SELECT t FROM block WHERE tag = id ORDER BY t LIMIT 1) AS a,"
+                       " (SELECT last FROM block WHERE tag = id ORDER BY t DESC LIMIT 1) AS b FROM tag)",
+    [SQL_CUT_BLOCKS] = "DELETE FROM block WHERE tag = ?1 AND t < ?2 AND last < ?2",
+    [SQL_CHUNK] = "SELECT times FROM chunk WHERE id = ?",
+    [SQL_ADD_CHUNK] = "INSERT INTO chunk(last, times) VALUES(?, ?)",
+    [SQL_CUT_CHUNKS] = "DELETE FROM chunk WHERE last < ?",
+    [SQL_MARK] = "SELECT stamp FROM second WHERE n = 0",
+    [SQL_SET_MARK] = "UPDATE second SET stamp = ? WHERE n = 0",
+    [SQL_SECONDS] = "SELECT n, stamp, data FROM second WHERE n > ? ORDER BY n",
+    [SQL_ADD_SECOND] = "INSERT INTO second(n, stamp, data) VALUES(?1, ?2, ?3)",
+    [SQL_UPDATE_SECOND] = "UPDATE second SET stamp = ?2, data = ?3 WHERE n = ?1",
     [SQL_ADD_OUTBOX] = "INSERT INTO outbox(tag, t, v, q) VALUES(?, ?, ?, ?)",
     [SQL_HAS_OUTBOX] = "SELECT 1 FROM sqlite_master WHERE type = 'table' AND name = 'outbox'",
     /* the outbox has no index on time, so the deletion goes in order of insertion and stops at the first row that is not too old */
@@ -88,7 +110,8 @@ static const char *const sql[SQL_COUNT] = {
 static const struct database_format format = {
     APPLICATION_ID,
     HISTORY_VERSION,
-    "PRAGMA auto_vacuum = INCREMENTAL; PRAGMA cache_size = -16000; PRAGMA wal_autocheckpoint = 4000",
+    /* small pages: the row of each second changes only few bytes */
+    "PRAGMA page_size = 1024; PRAGMA auto_vacuum = INCREMENTAL; PRAGMA cache_size = -16000; PRAGMA wal_autocheckpoint = 32000",
     schemas,
     sql,
     SQL_COUNT,
@@ -108,6 +131,16 @@ int month_has_outbox(struct month_file *file, bool *has)
     sqlite3_reset(find);
     *has = code == SQLITE_ROW;
     return code == SQLITE_DONE ? 0 : database_fail(&file->db, code, "cannot be read");
+}
+
+bool month_has_blocks(struct month_file *file)
+{
+    if (!file->has_blocks) {
+        sqlite3_stmt *find = month_sql(file, SQL_HAS_BLOCKS);
+        file->has_blocks = database_step(&file->db, find) == SQLITE_ROW;
+        sqlite3_reset(find);
+    }
+    return file->has_blocks;
 }
 
 int month_run(struct month_file *file, sqlite3_stmt *statement, const char *doing)
@@ -136,8 +169,11 @@ static int count_waiting(struct month_file *file)
 {
     sqlite3_stmt *waiting = month_sql(file, SQL_WAITING);
     int code = database_step(&file->db, waiting);
-    if (code == SQLITE_ROW)
+    if (code == SQLITE_ROW) {
         file->waiting = (size_t)sqlite3_column_int64(waiting, 0);
+        file->slot = sqlite3_column_int64(waiting, 0);
+        file->stamp = sqlite3_column_int64(waiting, 1);
+    }
     sqlite3_reset(waiting);
     return code;
 }
@@ -154,6 +190,8 @@ static struct month_file *create(struct log *log, const char *folder, int month)
     char name[MONTH_NAME_BYTES];
     month_name(month, name);
     file->month = month;
+    file->chunk = mem_new(sizeof(*file->chunk));
+    file->seconds = mem_new(sizeof(*file->seconds));
     database_init(&file->db, log, mem_printf("%s/%s", folder, name), &format);
     return file;
 }
@@ -203,6 +241,10 @@ void month_file_close(struct month_file **file)
     if (!*file)
         return;
     database_finish(&(*file)->db);
+    month_seconds_finish(*file);
+    mem_free((*file)->seconds);
+    mem_free((*file)->chunk->times);
+    mem_free((*file)->chunk);
     mem_free((*file)->ids);
     mem_free((*file)->rollups);
     mem_free(*file);

@@ -10,8 +10,8 @@
 #include "history/rollup.h"
 #include "plant/plant.h"
 
-enum { HISTORY_VERSION = 2 };
-enum history_level { LEVEL_10_S, LEVEL_1_MIN, LEVEL_10_MIN, LEVEL_1_H, LEVEL_COUNT };
+enum { HISTORY_VERSION = 3 };
+enum history_level { LEVEL_1_MIN, LEVEL_10_MIN, LEVEL_1_H, LEVEL_COUNT };
 extern const int64_t history_level_us[LEVEL_COUNT];
 
 struct history_tag {
@@ -65,8 +65,8 @@ int month_file_write(struct month_file *file, const struct history_row *rows, si
 int month_file_use_outbox(struct month_file *file);
 /* Makes the next month_file_tidy() reload the rollups from the file, because another handle has imported points into it. */
 void month_file_forget_rollups(struct month_file *file);
-/* Moves the rows written since the last call into the table sorted by tag, and updates the rollups. The sibling month_file_waiting()
-   returns the number of rows not sorted yet. */
+/* Moves the points written since the last call into compressed blocks by tag, and updates the rollups. The sibling
+   month_file_waiting() returns about how many points wait for that. */
 int month_file_tidy(struct month_file *file);
 size_t month_file_waiting(const struct month_file *file);
 /* Writes points of one tag, ascending, anywhere in the month, and updates the rollups. */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Deletes the oldest points of a month's file. */
 #include "history/month.h"
-#include "history/month_file_impl.h"
+#include "history/month_blocks.h"
 
 int month_file_size(struct month_file *file, struct month_file_size *size)
 {
@@ -17,12 +17,30 @@ int month_file_size(struct month_file *file, struct month_file_size *size)
     return database_fail(&file->db, code, "cannot be measured");
 }
 
+static bool remove_before(void *arg, struct history_points *points)
+{
+    const int64_t *until_us = arg;
+    size_t kept = 0, before = points->count;
+    for (size_t i = 0; i < before; i++)
+        if (points->at[i].t_us >= *until_us)
+            points->at[kept++] = points->at[i];
+    points->count = kept;
+    return kept < before;
+}
+
 static int cut_tag(struct month_file *file, int64_t id, int64_t until_us)
 {
     sqlite3_stmt *samples = month_sql(file, SQL_CUT_SAMPLES);
     sqlite3_bind_int64(samples, 1, id);
     sqlite3_bind_int64(samples, 2, until_us);
     int error = month_run(file, samples, "cannot delete samples");
+    sqlite3_stmt *blocks = month_sql(file, SQL_CUT_BLOCKS);
+    sqlite3_bind_int64(blocks, 1, id);
+    sqlite3_bind_int64(blocks, 2, until_us);
+    if (!error)
+        error = month_run(file, blocks, "cannot delete blocks");
+    if (!error)
+        error = month_blocks_edit(file, id, until_us - 1, until_us - 1, remove_before, &until_us);
     for (int level = 0; level < LEVEL_COUNT && !error; level++) {
         sqlite3_stmt *rollups = month_sql(file, SQL_CUT_ROLLUPS);
         sqlite3_bind_int64(rollups, 1, id);
@@ -36,12 +54,16 @@ static int cut_tag(struct month_file *file, int64_t id, int64_t until_us)
 static int cut_tags(struct month_file *file, int64_t until_us)
 {
     sqlite3_stmt *tags = month_sql(file, SQL_ALL_TAGS), *events = month_sql(file, SQL_CUT_EVENTS);
+    sqlite3_stmt *chunks = month_sql(file, SQL_CUT_CHUNKS);
     int code = SQLITE_DONE, error = 0;
     while (!error && (code = database_step(&file->db, tags)) == SQLITE_ROW)
         error = cut_tag(file, sqlite3_column_int64(tags, 0), until_us);
     sqlite3_reset(tags);
     if (!error)
         error = database_fail(&file->db, code, "cannot read tags");
+    sqlite3_bind_int64(chunks, 1, until_us);
+    if (!error)
+        error = month_run(file, chunks, "cannot delete times");
     sqlite3_bind_int64(events, 1, until_us);
     return error ? error : month_run(file, events, "cannot delete events");
 }

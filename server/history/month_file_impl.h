@@ -8,10 +8,11 @@
 #include "history/month_file.h"
 
 enum month_statement {
-    SQL_BEGIN, SQL_BEGIN_READ, SQL_COMMIT, SQL_ROLLBACK, SQL_FIND_TAG, SQL_ADD_TAG, SQL_ADD_RECENT, SQL_HOLD, SQL_ADD_SAMPLE,
-    SQL_ADD_ROLLUP,
-    SQL_RECENT, SQL_CLEAR_RECENT, SQL_LAST_SAMPLE, SQL_SAMPLES_FROM, SQL_ALL_HELD, SQL_CLEAR_HELD, SQL_CLEAR_ROLLUPS, SQL_NOTE,
+    SQL_BEGIN, SQL_BEGIN_READ, SQL_COMMIT, SQL_ROLLBACK, SQL_FIND_TAG, SQL_ADD_TAG, SQL_HOLD, SQL_ADD_ROLLUP,
+    SQL_ALL_HELD, SQL_CLEAR_HELD, SQL_CLEAR_ROLLUPS, SQL_NOTE,
     SQL_BEFORE, SQL_AFTER, SQL_RANGE, SQL_RECENT_OF, SQL_HELD_OF, SQL_ROLLUPS, SQL_RECENT_ALL, SQL_WAITING, SQL_SPAN, SQL_EVENTS,
+    SQL_HAS_BLOCKS, SQL_BLOCKS, SQL_NEXT_BLOCK, SQL_ADD_BLOCK, SQL_DELETE_BLOCK, SQL_BLOCK_SPAN, SQL_CUT_BLOCKS,
+    SQL_CHUNK, SQL_ADD_CHUNK, SQL_CUT_CHUNKS, SQL_MARK, SQL_SET_MARK, SQL_SECONDS, SQL_ADD_SECOND, SQL_UPDATE_SECOND,
     SQL_ALL_TAGS, SQL_CUT_SAMPLES, SQL_CUT_ROLLUPS, SQL_CUT_EVENTS, SQL_SIZE, SQL_SHRINK, SQL_ADD_OUTBOX, SQL_HAS_OUTBOX, SQL_CUT_OUTBOX,
     SQL_FORGET_GAPS, SQL_FORGET_GAP_NOTES, SQL_FORGET_OUTBOX_GAPS,
     SQL_COUNT
@@ -26,12 +27,18 @@ struct month_file {
     struct database db;
     int month;
     bool has_outbox; /* true: recorded points are copied to the outbox */
+    bool has_blocks; /* true: the file is known to be of version 3 or later */
+    bool writes;     /* true: this handle has written a row of seconds */
     ino_t inode;
     const struct plant *shown_by; /* plant whose units values are converted to; NULL: not converted */
     const struct history_tag *tags;
     size_t tag_count, waiting;
     int64_t *ids;                  /* id in the file of each tag, by index of the tag; 0: not known yet */
     struct month_rollups *rollups; /* rollups in progress, by tag */
+    struct month_chunk *chunk;     /* the chunk that was read last */
+    struct month_seconds *seconds; /* the newest points that this handle has read */
+    int64_t slot, stamp;           /* number and stamp of the row of seconds that was written last */
+    int64_t slot_before, stamp_before; /* the same at the beginning of the transaction */
 };
 
 /* Returns a prepared statement of enum month_statement, ready to bind and step (base/files/database.h). */
@@ -42,8 +49,14 @@ int month_run(struct month_file *file, sqlite3_stmt *statement, const char *doin
 int month_has_outbox(struct month_file *file, bool *has);
 struct history_point month_point(sqlite3_stmt *statement, int first_column); /* Reads a point from the columns t, v, q of the current
                                                                                 row, the first of which is first_column. */
-/* Runs SQL_BEFORE or SQL_AFTER and reads its one row; out->t_us is INT64_MIN if there is none. Returns 0 or -errno. */
-int month_one_point(struct month_file *file, enum month_statement which, int64_t id, int64_t t_us, struct history_point *out);
+/* Returns whether the file has blocks and seconds: files of versions 1 and 2 have none until a writer converts them. */
+bool month_has_blocks(struct month_file *file);
+/* Returns the id of a tag in the file; 0: the file does not have the tag. *change receives the conversion from the file's unit to
+   `wanted` (NULL: none). */
+int64_t month_find_tag(struct month_file *file, const char *name, const char *wanted, bool *step, struct unit_change *change);
+/* Appends a tag's points of blocks and of the table `sample`, from the last one at or before from_us to the first one after to_us,
+   ascending. Returns 0 or -errno. */
+int month_stored_points(struct month_file *file, int64_t id, int64_t from_us, int64_t to_us, struct history_points *out);
 void history_points_add(struct history_points *points, const struct history_point *point);
 
 #endif

@@ -7,7 +7,8 @@
 
 #include "base/mem.h"
 #include "history/month.h"
-#include "history/month_file_impl.h"
+#include "history/month_blocks.h"
+#include "history/month_seconds.h"
 
 int month_file_begin_read(struct month_file *file)
 {
@@ -31,9 +32,7 @@ static const char *unit_shown(const struct month_file *file, const char *name)
     return tag >= 0 ? file->shown_by->tags[tag].unit : NULL;
 }
 
-/* Returns the id of a tag in the file; 0: the file does not have the tag. *change receives the conversion from the file's unit to
-   `wanted` (NULL: none). */
-static int64_t find_tag(struct month_file *file, const char *name, const char *wanted, bool *step, struct unit_change *change)
+int64_t month_find_tag(struct month_file *file, const char *name, const char *wanted, bool *step, struct unit_change *change)
 {
     *change = (struct unit_change){ 0 };
     sqlite3_stmt *find = month_sql(file, SQL_FIND_TAG);
@@ -49,7 +48,8 @@ static int64_t find_tag(struct month_file *file, const char *name, const char *w
     return id;
 }
 
-int month_one_point(struct month_file *file, enum month_statement which, int64_t id, int64_t t_us, struct history_point *out)
+/* Runs SQL_BEFORE or SQL_AFTER and reads its one row; out->t_us is INT64_MIN if there is none. */
+static int one_point(struct month_file *file, enum month_statement which, int64_t id, int64_t t_us, struct history_point *out)
 {
     sqlite3_stmt *statement = month_sql(file, which);
     out->t_us = INT64_MIN;
@@ -79,32 +79,33 @@ static int by_time(const void *a, const void *b)
     return (x->t_us > y->t_us) - (x->t_us < y->t_us);
 }
 
-/* Adds points from the rows that are not sorted by tag yet: points within the range, the last one before it and the first one after it. */
-static int add_recent(struct month_file *file, int64_t id, int64_t from_us, int64_t to_us, struct history_points *out)
+/* Adds the newest points of a tag, which are not in blocks yet, with its newest sample, ascending. */
+static int add_recent(struct month_file *file, int64_t id, struct history_points *out)
 {
-    struct history_points recent = { 0 };
+    const struct month_seconds *seconds = file->seconds;
     sqlite3_stmt *of = month_sql(file, SQL_RECENT_OF), *held = month_sql(file, SQL_HELD_OF);
     sqlite3_bind_int64(of, 1, id);
     sqlite3_bind_int64(held, 1, id);
-    int error = add_points(file, of, &recent);
+    int error = add_points(file, of, out);
     if (!error)
-        error = add_points(file, held, &recent);
-    if (recent.count)
-        qsort(recent.at, recent.count, sizeof(*recent.at), by_time);
-    for (size_t i = 0; i < recent.count; i++) {
-        bool before = recent.at[i].t_us < from_us && i + 1 < recent.count && recent.at[i + 1].t_us <= from_us;
-        bool after = recent.at[i].t_us > to_us && i > 0 && recent.at[i - 1].t_us > to_us;
-        if (!before && !after)
-            history_points_add(out, &recent.at[i]);
-    }
-    mem_free(recent.at);
+        error = month_seconds_read(file);
+    for (size_t i = 0; i < seconds->count && !error; i++)
+        if (seconds->rows[i].id == id)
+            history_points_add(out, &seconds->rows[i].point);
+    if (!error && (size_t)id < seconds->held_count && seconds->held[id].id)
+        history_points_add(out, &seconds->held[id].point);
+    else if (!error)
+        error = add_points(file, held, out);
+    if (out->count)
+        qsort(out->at, out->count, sizeof(*out->at), by_time);
     return error;
 }
 
+/* Adds points that versions 1 and 2 recorded. */
 static int add_samples(struct month_file *file, int64_t id, int64_t from_us, int64_t to_us, struct history_points *out)
 {
     struct history_point edge;
-    int error = month_one_point(file, SQL_BEFORE, id, from_us - 1, &edge);
+    int error = one_point(file, SQL_BEFORE, id, from_us - 1, &edge);
     if (error)
         return error;
     if (edge.t_us != INT64_MIN)
@@ -115,7 +116,7 @@ static int add_samples(struct month_file *file, int64_t id, int64_t from_us, int
     sqlite3_bind_int64(range, 3, to_us);
     error = add_points(file, range, out);
     if (!error)
-        error = month_one_point(file, SQL_AFTER, id, to_us, &edge);
+        error = one_point(file, SQL_AFTER, id, to_us, &edge);
     if (!error && edge.t_us != INT64_MIN)
         history_points_add(out, &edge);
     return error;
@@ -137,21 +138,37 @@ static void trim(struct history_points *points, size_t begin, int64_t from_us, i
     points->count = kept;
 }
 
+int month_stored_points(struct month_file *file, int64_t id, int64_t from_us, int64_t to_us, struct history_points *out)
+{
+    struct history_points samples = { 0 }, blocks = { 0 };
+    int error = add_samples(file, id, from_us, to_us, &samples);
+    if (!error)
+        error = month_blocks_read(file, id, from_us, to_us, &blocks);
+    size_t begin = out->count;
+    month_points_merge(&samples, &blocks, out);
+    trim(out, begin, from_us, to_us);
+    mem_free(samples.at);
+    mem_free(blocks.at);
+    return error;
+}
+
 int month_file_points(struct month_file *file, const char *tag, int64_t from_us, int64_t to_us, struct history_points *out)
 {
     size_t begin = out->count;
     struct unit_change change;
-    int64_t id = find_tag(file, tag, unit_shown(file, tag), &out->step, &change);
+    struct history_points stored = { 0 }, recent = { 0 };
+    int64_t id = month_find_tag(file, tag, unit_shown(file, tag), &out->step, &change);
     if (!id)
         return 0;
-    int error = add_samples(file, id, from_us, to_us, out);
+    int error = month_stored_points(file, id, from_us, to_us, &stored);
     if (!error)
-        error = add_recent(file, id, from_us, to_us, out);
-    if (out->count > begin)
-        qsort(out->at + begin, out->count - begin, sizeof(*out->at), by_time);
+        error = add_recent(file, id, &recent);
+    month_points_merge(&stored, &recent, out);
     trim(out, begin, from_us, to_us);
     for (size_t i = begin; i < out->count; i++)
         out->at[i].value = unit_change_value(&change, out->at[i].value);
+    mem_free(stored.at);
+    mem_free(recent.at);
     return error;
 }
 
@@ -160,7 +177,7 @@ int month_file_buckets(struct month_file *file, const char *tag, enum history_le
 {
     bool step;
     struct unit_change change;
-    int64_t id = find_tag(file, tag, unit_shown(file, tag), &step, &change), length_us = history_level_us[level];
+    int64_t id = month_find_tag(file, tag, unit_shown(file, tag), &step, &change), length_us = history_level_us[level];
     *until_us = from_us;
     if (!id)
         return 0;
@@ -211,7 +228,7 @@ static int *index_by_id(struct month_file *file, const struct history_tag *tags,
     int64_t *ids = mem_array(count ? count : 1, sizeof(*ids));
     *most = 0;
     for (size_t i = 0; i < count; i++) {
-        ids[i] = find_tag(file, tags[i].name, tags[i].unit, &pairs[i].step, &pairs[i].change);
+        ids[i] = month_find_tag(file, tags[i].name, tags[i].unit, &pairs[i].step, &pairs[i].change);
         if (ids[i] > *most)
             *most = ids[i];
     }
@@ -225,49 +242,94 @@ static int *index_by_id(struct month_file *file, const struct history_tag *tags,
     return index;
 }
 
+static void take_of(const int *index, int64_t most, int64_t id, const struct history_point *point, int64_t t_us, struct history_pair *pairs)
+{
+    if (id > 0 && id <= most && index[id] >= 0)
+        take(&pairs[index[id]], point, t_us);
+}
+
+/* Takes the newest points, which are not in blocks yet, and the newest samples. */
 static int take_recent(struct month_file *file, int64_t t_us, const int *index, int64_t most, struct history_pair *pairs)
 {
-    sqlite3_stmt *all = month_sql(file, SQL_RECENT_ALL);
-    int code;
-    while ((code = database_step(&file->db, all)) == SQLITE_ROW) {
-        int64_t id = sqlite3_column_int64(all, 0);
-        struct history_point point = month_point(all, 1);
-        if (id <= most && index[id] >= 0)
-            take(&pairs[index[id]], &point, t_us);
+    const struct month_seconds *seconds = file->seconds;
+    int code, error = month_seconds_read(file);
+    for (size_t i = 0; i < seconds->count && !error; i++)
+        take_of(index, most, seconds->rows[i].id, &seconds->rows[i].point, t_us, pairs);
+    for (size_t id = 1; id < seconds->held_count && !error; id++)
+        take_of(index, most, seconds->held[id].id, &seconds->held[id].point, t_us, pairs);
+    for (int table = 0; table < 2 && !error; table++) {
+        sqlite3_stmt *rows = month_sql(file, table ? SQL_ALL_HELD : SQL_RECENT_ALL);
+        while ((code = database_step(&file->db, rows)) == SQLITE_ROW) {
+            int64_t id = sqlite3_column_int64(rows, 0);
+            struct history_point point = month_point(rows, 1);
+            bool replaced = table && (size_t)id < seconds->held_count && seconds->held[id].id;
+            if (!replaced)
+                take_of(index, most, id, &point, t_us, pairs);
+        }
+        sqlite3_reset(rows);
+        error = database_fail(&file->db, code, "cannot be read");
     }
-    sqlite3_reset(all);
-    return database_fail(&file->db, code, "cannot be read");
+    return error;
 }
 
 int month_file_at(struct month_file *file, int64_t t_us, const struct history_tag *tags, size_t count, struct history_pair *pairs)
 {
     int64_t most;
+    struct history_points points = { 0 };
     int error = 0, *index = index_by_id(file, tags, count, pairs, &most);
     for (int64_t id = 1; index && id <= most && !error; id++) {
         struct history_pair *pair = index[id] >= 0 ? &pairs[index[id]] : NULL;
-        struct history_point point;
-        bool leads = pair && pair->before.t_us == INT64_MIN, follows = pair && pair->after.t_us == INT64_MIN;
-        if (leads && !(error = month_one_point(file, SQL_BEFORE, id, t_us, &point)))
-            take(pair, &point, t_us);
-        if (follows && !error && !(error = month_one_point(file, SQL_AFTER, id, t_us, &point)))
-            take(pair, &point, t_us);
+        if (!pair || (pair->before.t_us != INT64_MIN && pair->after.t_us != INT64_MIN))
+            continue;
+        points.count = 0;
+        error = month_stored_points(file, id, t_us, t_us, &points);
+        for (size_t i = 0; i < points.count; i++)
+            take(pair, &points.at[i], t_us);
     }
     if (index && !error)
         error = take_recent(file, t_us, index, most, pairs);
+    mem_free(points.at);
     mem_free(index);
     return error;
 }
 
-int month_file_span(struct month_file *file, int64_t *first_us, int64_t *last_us)
+static int widen_by(struct month_file *file, enum month_statement which, int64_t *first_us, int64_t *last_us)
 {
-    sqlite3_stmt *span = month_sql(file, SQL_SPAN);
+    sqlite3_stmt *span = month_sql(file, which);
     int code = database_step(&file->db, span);
     if (code == SQLITE_ROW && sqlite3_column_type(span, 0) != SQLITE_NULL) {
-        *first_us = sqlite3_column_int64(span, 0);
-        *last_us = sqlite3_column_int64(span, 1);
+        int64_t first = sqlite3_column_int64(span, 0), last = sqlite3_column_int64(span, 1);
+        *first_us = first < *first_us ? first : *first_us;
+        *last_us = last > *last_us ? last : *last_us;
     }
     sqlite3_reset(span);
     return database_fail(&file->db, code, "cannot be read");
+}
+
+static void widen(const struct month_row *rows, size_t count, int64_t *first_us, int64_t *last_us)
+{
+    for (size_t i = 0; i < count; i++)
+        if (rows[i].id) {
+            *first_us = rows[i].point.t_us < *first_us ? rows[i].point.t_us : *first_us;
+            *last_us = rows[i].point.t_us > *last_us ? rows[i].point.t_us : *last_us;
+        }
+}
+
+int month_file_span(struct month_file *file, int64_t *first_us, int64_t *last_us)
+{
+    int64_t first = INT64_MAX, last = INT64_MIN;
+    int error = widen_by(file, SQL_SPAN, &first, &last);
+    if (!error && month_has_blocks(file))
+        error = widen_by(file, SQL_BLOCK_SPAN, &first, &last);
+    if (!error)
+        error = month_seconds_read(file);
+    widen(file->seconds->rows, file->seconds->count, &first, &last);
+    widen(file->seconds->held, file->seconds->held_count, &first, &last);
+    if (first <= last) {
+        *first_us = first;
+        *last_us = last;
+    }
+    return error;
 }
 
 /* Parses the text of an event with which the historian recorded a gap. Returns false for other events. */

@@ -1,17 +1,21 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes a month's file. Rows are first written in order of time; later they are sorted by tag and reduced to rollups. */
+/* Writes a month's file. Points are first written in order of time; later they are sorted by tag, compressed and reduced to rollups. */
 #include <errno.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"
 #include "history/month.h"
-#include "history/month_file_impl.h"
+#include "history/month_blocks.h"
 #include "history/month_outbox.h"
+#include "history/month_seconds.h"
 
 /* --- transactions ------------------------------------------------------------------------------------------------------------- */
 
 static int begin(struct month_file *file)
 {
+    file->slot_before = file->slot;
+    file->stamp_before = file->stamp;
     return month_run(file, month_sql(file, SQL_BEGIN), "cannot begin to write");
 }
 
@@ -27,12 +31,24 @@ static int end(struct month_file *file, int error)
         database_run(&file->db, month_sql(file, SQL_ROLLBACK));
     memset(file->rollups, 0, file->tag_count * sizeof(*file->rollups));
     memset(file->ids, 0, file->tag_count * sizeof(*file->ids));
+    file->slot = file->slot_before;
+    file->stamp = file->stamp_before;
+    file->chunk->id = 0; /* the next chunk may get the id of one that was rolled back */
     return error;
 }
 
-/* Converts all values of a tag in this file to the unit in which the plant shows the tag now, if that is not the file's unit. */
-static int convert_unit(struct month_file *file, const struct history_tag *of)
+static bool convert_points(void *arg, struct history_points *points)
 {
+    for (size_t i = 0; i < points->count; i++)
+        points->at[i].value = unit_change_value(arg, points->at[i].value);
+    return true;
+}
+
+/* Converts all values of a tag in this file to the unit in which the plant shows the tag now, if that is not the file's unit. Seconds hold
+   no point of the tag: month_file_write() moves those of earlier handles to blocks first. */
+static int convert_unit(struct month_file *file, int tag)
+{
+    const struct history_tag *of = &file->tags[tag];
     sqlite3_stmt *find = month_sql(file, SQL_FIND_TAG);
     struct unit_change change = { 0 };
     int64_t id = 0;
@@ -56,7 +72,8 @@ static int convert_unit(struct month_file *file, const struct history_tag *of)
         error = database_exec(&file->db, sql, "cannot convert units");
         mem_free(sql);
     }
-    return error;
+    file->rollups[tag].loaded = false;
+    return error ? error : month_blocks_edit(file, id, INT64_MIN, INT64_MAX, convert_points, &change);
 }
 
 static int tag_id(struct month_file *file, int tag, int64_t *id)
@@ -65,7 +82,7 @@ static int tag_id(struct month_file *file, int tag, int64_t *id)
     *id = file->ids[tag];
     if (*id)
         return 0;
-    int unit_error = convert_unit(file, of);
+    int unit_error = convert_unit(file, tag);
     if (unit_error)
         return unit_error;
     sqlite3_stmt *add = month_sql(file, SQL_ADD_TAG);
@@ -91,37 +108,48 @@ static int put(struct month_file *file, enum month_statement which, int64_t id, 
     return month_run(file, statement, "cannot write");
 }
 
-/* Writes a new point to the table and to the outbox. To move an existing point, call put(), which writes to the table alone. */
-static int record(struct month_file *file, enum month_statement which, int64_t id, const struct history_point *point)
-{
-    int error = put(file, which, id, point);
-    return error || !file->has_outbox || which == SQL_HOLD ? error : put(file, SQL_ADD_OUTBOX, id, point);
-}
-
-static int put_rows(struct month_file *file, enum month_statement which, const struct history_row *rows, size_t count)
+/* Finds the ids of rows' tags. Returns rows with ids in *with_ids, which the caller frees. */
+static int find_ids(struct month_file *file, const struct history_row *rows, size_t count, struct month_row **with_ids)
 {
     int error = 0;
+    *with_ids = mem_array(count + 1, sizeof(**with_ids));
     for (size_t i = 0; i < count && !error; i++) {
-        int64_t id;
-        error = tag_id(file, rows[i].tag, &id);
-        if (!error)
-            error = record(file, which, id, &rows[i].point);
+        (*with_ids)[i].point = rows[i].point;
+        error = tag_id(file, rows[i].tag, &(*with_ids)[i].id);
     }
+    return error;
+}
+
+/* Copies recorded points to the outbox and newest samples to the table from which the outbox's reader takes them. */
+static int put_outbox(struct month_file *file, const struct month_row *rows, size_t count, const struct month_row *held, size_t held_count)
+{
+    int error = 0;
+    for (size_t i = 0; i < count && !error; i++)
+        error = put(file, SQL_ADD_OUTBOX, rows[i].id, &rows[i].point);
+    for (size_t i = 0; i < held_count && !error; i++)
+        error = put(file, SQL_HOLD, held[i].id, &held[i].point);
     return error;
 }
 
 int month_file_write(struct month_file *file, const struct history_row *rows, size_t count, const struct history_row *held,
                      size_t held_count)
 {
-    int error = begin(file);
-    if (error)
+    struct month_row *recorded = NULL, *newest = NULL;
+    int error = file->writes ? 0 : month_file_tidy(file); /* moves the points that an earlier handle left */
+    if (error || (error = begin(file)))
         return error;
-    error = put_rows(file, SQL_ADD_RECENT, rows, count);
+    error = find_ids(file, rows, count, &recorded);
     if (!error)
-        error = put_rows(file, SQL_HOLD, held, held_count);
+        error = find_ids(file, held, held_count, &newest);
+    if (!error)
+        error = month_seconds_write(file, recorded, count, newest, held_count);
+    if (!error && file->has_outbox)
+        error = put_outbox(file, recorded, count, newest, held_count);
     error = end(file, error);
-    if (!error)
-        file->waiting += count;
+    file->writes |= !error;
+    file->waiting += error ? 0 : count + 1;
+    mem_free(recorded);
+    mem_free(newest);
     return error;
 }
 
@@ -172,38 +200,43 @@ void month_file_forget_rollups(struct month_file *file)
     memset(file->rollups, 0, file->tag_count * sizeof(*file->rollups));
 }
 
-/* Computes the rollups from the samples that follow the beginning of from_us's hour, and from the last sample before it. Writes the
-   buckets to disk if `store`. */
-static int roll_from(struct month_file *file, int64_t id, int64_t from_us, struct month_rollups *rollups, bool store)
+/* Computes the rollups from the points that follow the beginning of from_us's hour, and from the last point before it. Writes the
+   complete buckets to disk. */
+static int roll_from(struct month_file *file, int64_t id, int64_t from_us, struct month_rollups *rollups)
 {
-    sqlite3_stmt *samples = month_sql(file, SQL_SAMPLES_FROM);
     int64_t hour_us = from_us - from_us % history_level_us[LEVEL_1_H];
-    int code, error = 0;
-    sqlite3_bind_int64(samples, 1, id);
-    sqlite3_bind_int64(samples, 2, hour_us);
-    while (!error && (code = database_step(&file->db, samples)) == SQLITE_ROW) {
-        struct history_point point = month_point(samples, 0);
+    struct history_points points = { 0 };
+    int error = month_stored_points(file, id, hour_us - 1, INT64_MAX, &points);
+    for (size_t i = 0; i < points.count; i++) {
         struct history_bucket closed;
         for (int level = 0; level < LEVEL_COUNT && !error; level++)
-            if (rollup_put(&rollups->level[level], &point, &closed) && store && closed.t_us >= hour_us)
+            if (rollup_put(&rollups->level[level], &points.at[i], &closed) && closed.t_us >= hour_us)
                 error = put_bucket(file, id, history_level_us[level], &closed);
     }
-    sqlite3_reset(samples);
-    return error ? error : database_fail(&file->db, code, "cannot read samples");
+    mem_free(points.at);
+    return error;
 }
 
-/* Restores the incomplete rollup buckets in memory from the samples that the previous writer left in the file. */
+/* Finds the newest point of a tag up to a time; t_us INT64_MIN: none. */
+static int find_before(struct month_file *file, int64_t id, int64_t t_us, struct history_point *before)
+{
+    struct history_points points = { 0 };
+    int error = month_stored_points(file, id, t_us, t_us, &points);
+    before->t_us = INT64_MIN;
+    for (size_t i = 0; i < points.count && points.at[i].t_us <= t_us; i++)
+        *before = points.at[i];
+    mem_free(points.at);
+    return error;
+}
+
+/* Restores the incomplete rollup buckets in memory from the points that the previous writer left in the file. */
 static int load_rollups(struct month_file *file, int tag, int64_t id)
 {
     struct month_rollups *rollups = &file->rollups[tag];
+    struct history_point last;
     reset_rollups(rollups, file->tags[tag].step);
-    sqlite3_stmt *last = month_sql(file, SQL_LAST_SAMPLE);
-    sqlite3_bind_int64(last, 1, id);
-    int code = database_step(&file->db, last);
-    int64_t t_us = code == SQLITE_ROW ? sqlite3_column_int64(last, 0) : INT64_MIN;
-    sqlite3_reset(last);
-    int error = database_fail(&file->db, code, "cannot read samples");
-    return error || t_us == INT64_MIN ? error : roll_from(file, id, t_us, rollups, false);
+    int error = find_before(file, id, INT64_MAX, &last);
+    return error || last.t_us == INT64_MIN ? error : roll_from(file, id, last.t_us, rollups);
 }
 
 static int roll_point(struct month_file *file, int tag, int64_t id, const struct history_point *point)
@@ -217,45 +250,107 @@ static int roll_point(struct month_file *file, int tag, int64_t id, const struct
     return error;
 }
 
-/* --- moving recent points to the table of samples ----------------------------------------------------------------------------- */
+/* --- moving the newest points to blocks --------------------------------------------------------------------------------------- */
 
-static int *tags_by_id(const struct month_file *file, int64_t *most)
+static int by_tag_and_time(const void *a, const void *b)
 {
-    *most = 0;
-    for (size_t i = 0; i < file->tag_count; i++)
-        if (file->ids[i] > *most)
-            *most = file->ids[i];
-    int *tags = mem_array((size_t)*most + 1, sizeof(*tags));
-    memset(tags, 0xff, ((size_t)*most + 1) * sizeof(*tags));
-    for (size_t i = 0; i < file->tag_count; i++)
-        if (file->ids[i])
-            tags[file->ids[i]] = (int)i;
-    return tags;
+    const struct month_row *x = a, *y = b;
+    if (x->id != y->id)
+        return x->id < y->id ? -1 : 1;
+    if (x->point.t_us != y->point.t_us)
+        return x->point.t_us < y->point.t_us ? -1 : 1;
+    return x->order < y->order ? -1 : 1;
 }
 
-static int move_row(struct month_file *file, int tag, int64_t id, const struct history_point *point)
+static int by_time(const void *a, const void *b)
+{
+    const int64_t *x = a, *y = b;
+    return (*x > *y) - (*x < *y);
+}
+
+/* Stores the times of all rows once. chunk->times is freed by the caller. */
+static int share_times(struct month_file *file, const struct month_row *rows, size_t count, struct month_chunk *chunk)
+{
+    chunk->times = mem_array(count + 1, sizeof(*chunk->times));
+    for (size_t i = 0; i < count; i++)
+        chunk->times[i] = rows[i].point.t_us;
+    qsort(chunk->times, count, sizeof(*chunk->times), by_time);
+    for (size_t i = 0; i < count; i++)
+        if (chunk->count == 0 || chunk->times[i] != chunk->times[chunk->count - 1])
+            chunk->times[chunk->count++] = chunk->times[i];
+    return month_chunk_store(file, chunk);
+}
+
+/* Writes the points of one tag to blocks. tag -1: the plant no longer has the tag, so there are no rollups. Uses `points` as a buffer. */
+static int move_tag(struct month_file *file, int tag, const struct month_chunk *chunk, const struct month_row *rows, size_t count,
+                    struct history_points *points)
 {
     int error = 0;
     if (tag >= 0 && !file->rollups[tag].loaded)
-        error = load_rollups(file, tag, id); /* the rollups must be loaded before the new sample is in the table */
-    if (!error)
-        error = put(file, SQL_ADD_SAMPLE, id, point);
-    return error || tag < 0 ? error : roll_point(file, tag, id, point);
+        error = load_rollups(file, tag, rows->id); /* the rollups must be loaded before the new points are in blocks */
+    points->count = 0;
+    for (size_t i = 0; i < count && !error; i++) {
+        if (points->count && points->at[points->count - 1].t_us == rows[i].point.t_us)
+            points->count--;
+        history_points_add(points, &rows[i].point);
+        if (tag >= 0)
+            error = roll_point(file, tag, rows->id, &rows[i].point);
+    }
+    return error ? error : month_blocks_write(file, rows->id, chunk, points->at, points->count);
 }
 
-static int move_rows(struct month_file *file)
+static int move_rows(struct month_file *file, struct month_row *rows, size_t count, const int *tags, int64_t id_max)
 {
-    int64_t most;
-    int code, error = 0, *tags = tags_by_id(file, &most);
-    sqlite3_stmt *recent = month_sql(file, SQL_RECENT);
-    while (!error && (code = database_step(&file->db, recent)) == SQLITE_ROW) {
-        int64_t id = sqlite3_column_int64(recent, 0);
-        struct history_point point = month_point(recent, 1);
-        error = move_row(file, id <= most ? tags[id] : -1, id, &point);
+    struct month_chunk chunk = { 0 };
+    struct history_points points = { 0 };
+    if (count)
+        qsort(rows, count, sizeof(*rows), by_tag_and_time);
+    int error = share_times(file, rows, count, &chunk);
+    for (size_t i = 0, end; i < count && !error; i = end) {
+        for (end = i; end < count && rows[end].id == rows[i].id;)
+            end++;
+        error = move_tag(file, rows[i].id <= id_max ? tags[rows[i].id] : -1, &chunk, rows + i, end - i, &points);
     }
-    sqlite3_reset(recent);
+    mem_free(chunk.times);
+    mem_free(points.at);
+    return error;
+}
+
+/* Finds the ids of the plant's tags that the file has. Does not use tag_id(), which converts units: the newest points, which are not in
+   blocks yet, have the unit of the file. Returns the indices of tags by id; -1: none. Free with mem_free(). */
+static int *tags_by_id(struct month_file *file, int64_t *id_max)
+{
+    int64_t *ids = mem_array(file->tag_count + 1, sizeof(*ids));
+    *id_max = 0;
+    for (size_t i = 0; i < file->tag_count; i++) {
+        bool step;
+        struct unit_change change;
+        ids[i] = file->ids[i] ? file->ids[i] : month_find_tag(file, file->tags[i].name, NULL, &step, &change);
+        *id_max = ids[i] > *id_max ? ids[i] : *id_max;
+    }
+    int *tags = mem_array((size_t)*id_max + 1, sizeof(*tags));
+    memset(tags, 0xff, ((size_t)*id_max + 1) * sizeof(*tags));
+    for (size_t i = 0; i < file->tag_count; i++)
+        if (ids[i])
+            tags[ids[i]] = (int)i;
+    mem_free(ids);
+    return tags;
+}
+
+static int move_seconds(struct month_file *file)
+{
+    struct month_seconds *seconds = file->seconds;
+    int error = month_seconds_read(file);
+    if (error)
+        return error;
+    int64_t id_max;
+    int *tags = tags_by_id(file, &id_max);
+    error = move_rows(file, seconds->rows, seconds->count, tags, id_max);
+    for (size_t id = 0; id < seconds->held_count && !error; id++)
+        if (seconds->held[id].id)
+            error = put(file, SQL_HOLD, (int64_t)id, &seconds->held[id].point);
     mem_free(tags);
-    return error ? error : database_fail(&file->db, code, "cannot read recent points");
+    return error ? error : month_seconds_clear(file);
 }
 
 int month_file_tidy(struct month_file *file)
@@ -265,15 +360,8 @@ int month_file_tidy(struct month_file *file)
     int error = begin(file);
     if (error)
         return error;
-    for (size_t i = 0; i < file->tag_count && !error; i++) {
-        int64_t id;
-        error = tag_id(file, (int)i, &id);
-    }
-    if (!error)
-        error = move_rows(file);
-    if (!error)
-        error = month_run(file, month_sql(file, SQL_CLEAR_RECENT), "cannot clear recent points");
-    error = end(file, error);
+    error = end(file, move_seconds(file));
+    month_seconds_finish(file);
     if (!error)
         file->waiting = 0;
     return error;
@@ -285,7 +373,7 @@ static int roll_again(struct month_file *file, int tag, int64_t id, int64_t from
 {
     struct month_rollups rollups;
     struct history_point before;
-    int error = month_one_point(file, SQL_BEFORE, id, from_us - 1, &before);
+    int error = find_before(file, id, from_us - 1, &before);
     if (before.t_us != INT64_MIN) /* the line of the point before from_us now ends at a new point, so its buckets change too */
         from_us = before.t_us;
     from_us -= from_us % history_level_us[LEVEL_1_H];
@@ -299,7 +387,7 @@ static int roll_again(struct month_file *file, int tag, int64_t id, int64_t from
     }
     reset_rollups(&rollups, file->tags[tag].step);
     if (!error)
-        error = roll_from(file, id, from_us, &rollups, true);
+        error = roll_from(file, id, from_us, &rollups);
     file->rollups[tag] = rollups;
     return error;
 }
@@ -312,9 +400,12 @@ int month_file_import(struct month_file *file, int tag, const struct history_poi
     int error = month_file_tidy(file);
     if (error || (error = begin(file)))
         return error;
+    static const struct month_chunk own = { 0 };
     error = tag_id(file, tag, &id);
-    for (size_t i = 0; i < count && !error; i++)
-        error = record(file, SQL_ADD_SAMPLE, id, &points[i]);
+    if (!error)
+        error = month_blocks_write(file, id, &own, points, count);
+    for (size_t i = 0; i < count && !error && file->has_outbox; i++)
+        error = put(file, SQL_ADD_OUTBOX, id, &points[i]);
     if (!error)
         error = roll_again(file, tag, id, points[0].t_us);
     return end(file, error);
@@ -330,13 +421,44 @@ static int forget(struct month_file *file, int which, int64_t from_us, int64_t t
     return month_run(file, s, "cannot forget a gap");
 }
 
+struct gap_points {
+    int64_t from_us, to_us;
+    uint32_t quality;
+};
+
+static bool remove_gaps(void *arg, struct history_points *points)
+{
+    const struct gap_points *gap = arg;
+    size_t kept = 0, before = points->count;
+    for (size_t i = 0; i < before; i++) {
+        const struct history_point *point = &points->at[i];
+        if (point->t_us < gap->from_us || point->t_us > gap->to_us || point->quality != gap->quality)
+            points->at[kept++] = *point;
+    }
+    points->count = kept;
+    return kept < before;
+}
+
+static int forget_in_blocks(struct month_file *file, struct gap_points *gap)
+{
+    sqlite3_stmt *tags = month_sql(file, SQL_ALL_TAGS);
+    int code = SQLITE_DONE, error = 0;
+    while (!error && (code = database_step(&file->db, tags)) == SQLITE_ROW)
+        error = month_blocks_edit(file, sqlite3_column_int64(tags, 0), gap->from_us, gap->to_us, remove_gaps, gap);
+    sqlite3_reset(tags);
+    return error ? error : database_fail(&file->db, code, "cannot read tags");
+}
+
 int month_file_forget_gaps(struct month_file *file, int64_t from_us, int64_t to_us, uint32_t gap_quality)
 {
+    struct gap_points gap = { from_us, to_us, gap_quality };
     bool has_outbox = false;
     int error = month_file_tidy(file);
     if (error || (error = month_has_outbox(file, &has_outbox)) || (error = begin(file)))
         return error;
     error = forget(file, SQL_FORGET_GAPS, from_us, to_us, gap_quality);
+    if (!error)
+        error = forget_in_blocks(file, &gap);
     if (!error)
         error = forget(file, SQL_FORGET_GAP_NOTES, from_us, to_us, gap_quality);
     if (!error && has_outbox) /* deletes the gap's point from the outbox too, so that it is not sent to PostgreSQL */
@@ -349,23 +471,33 @@ int month_file_forget_gaps(struct month_file *file, int64_t from_us, int64_t to_
 static int end_lines(struct month_file *file, uint32_t gap_quality, bool sends_gaps, int64_t *ended_us)
 {
     sqlite3_stmt *held = month_sql(file, SQL_ALL_HELD);
+    struct month_row *rows = NULL;
+    size_t capacity = 0, count = 0;
     int code, error = 0;
     while (!error && (code = database_step(&file->db, held)) == SQLITE_ROW) {
-        int64_t id = sqlite3_column_int64(held, 0);
-        struct history_point point = month_point(held, 1);
-        struct history_point gap = { .t_us = point.t_us + 1, .value = NAN, .quality = gap_quality };
-        bool ends = point.quality == gap_quality;
-        error = !ends || sends_gaps ? record(file, SQL_ADD_RECENT, id, &point) : put(file, SQL_ADD_RECENT, id, &point);
-        if (!error && !ends) {
-            error = sends_gaps ? record(file, SQL_ADD_RECENT, id, &gap) : put(file, SQL_ADD_RECENT, id, &gap);
-            file->waiting++;
+        struct month_row *row, newest = { .id = sqlite3_column_int64(held, 0), .point = month_point(held, 1) };
+        bool ends = newest.point.quality == gap_quality;
+        mem_grow(&rows, &capacity, count + 2, sizeof(*rows));
+        row = &rows[count++];
+        *row = newest;
+        if (!ends) {
+            rows[count] = newest;
+            rows[count++].point = (struct history_point){ .t_us = newest.point.t_us + 1, .value = NAN, .quality = gap_quality };
         }
-        file->waiting++;
-        if (point.t_us > *ended_us)
-            *ended_us = point.t_us;
+        for (; row < rows + count && !error && file->has_outbox; row++)
+            if (sends_gaps || row->point.quality != gap_quality)
+                error = put(file, SQL_ADD_OUTBOX, row->id, &row->point);
+        if (newest.point.t_us > *ended_us)
+            *ended_us = newest.point.t_us;
     }
     sqlite3_reset(held);
-    return error ? error : database_fail(&file->db, code, "cannot read held points");
+    if (!error)
+        error = database_fail(&file->db, code, "cannot read held points");
+    if (!error)
+        error = month_seconds_write(file, rows, count, NULL, 0);
+    file->waiting += error ? 0 : count;
+    mem_free(rows);
+    return error;
 }
 
 int month_file_clear_held(struct month_file *file)
@@ -375,16 +507,15 @@ int month_file_clear_held(struct month_file *file)
 
 int month_file_recover(struct month_file *file, uint32_t gap_quality, bool sends_gaps, int64_t *ended_us)
 {
-    size_t waiting = file->waiting;
-    int error = begin(file);
-    if (error)
-        return error;
     *ended_us = INT64_MIN;
+    int error = month_file_tidy(file);
+    if (error || (error = begin(file)))
+        return error;
     error = end_lines(file, gap_quality, sends_gaps, ended_us);
     if (!error)
         error = month_file_clear_held(file);
     error = end(file, error);
     if (error)
-        file->waiting = waiting;
+        file->waiting = 0;
     return error;
 }

@@ -3,6 +3,7 @@
 #include "history/retention.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -151,4 +152,32 @@ int64_t retention_apply(struct log *log, const char *folder, const struct retent
             left += part_bytes(folder, months[i], part);
     mem_free(months);
     return left;
+}
+
+/* Returns the used bytes per day of a month; 0: the month has less than a day of points. */
+static double bytes_per_day(struct log *log, const char *folder, int month, bool newest)
+{
+    int error;
+    int64_t first_us = INT64_MAX, last_us = INT64_MIN;
+    struct month_file *file = month_file_read(log, folder, month, &error);
+    bool good = file && month_file_span(file, &first_us, &last_us) == 0 && first_us <= last_us;
+    month_file_close(&file);
+    double days = good ? (double)(last_us - first_us) / (86400.0 * US_PER_S) : 0;
+    return days >= 1 ? (double)used_bytes(log, folder, month, newest) / days : 0;
+}
+
+double retention_check(struct log *log, const char *folder, const struct retention_limits *limits)
+{
+    size_t count;
+    double rate = 0;
+    int *months = month_list(folder, &count);
+    for (size_t i = count; i > 0 && rate <= 0; i--)
+        rate = bytes_per_day(log, folder, months[i - 1], i == count);
+    double days = limits->bytes > 0 && rate > 0 ? limits->bytes / rate : INFINITY;
+    if (days < limits->days)
+        log_warn(log, "history: keep_days is %g, but at %.2f GB a day keep_gb %g is full after %.0f days; set keep_gb to %.0f,"
+                      " or raise deadbands",
+                 limits->days, rate / 1e9, limits->bytes / 1e9, days, ceil(rate * limits->days / 1e9));
+    mem_free(months);
+    return days;
 }

@@ -2,12 +2,14 @@
 /* Cost of the historian, printed as one JSON line per row. */
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/clock.h"
 #include "base/mem.h"
 #include "history/historian.h"
 #include "history/history.h"
 #include "history/month.h"
+#include "history/recorder.h"
 #include "tests/support/measure.h"
 #include "tests/support/plant_by_hand.h"
 #include "tests/support/sleep.h"
@@ -85,6 +87,91 @@ static void record(const char *name, double noise_size)
     temp_folder_destroy(&folder);
 }
 
+/* --- disk of a plant ---------------------------------------------------------------------------------------------------------- */
+
+enum { PLANT_TAGS = 186, PLANT_SOURCES = 4, PLANT_SECONDS = 7200, TIDY_S = 1200 };
+
+/* Returns a number of /proc/self/io. */
+static double process_io(const char *name)
+{
+    char line[80];
+    double bytes = 0;
+    FILE *file = fopen("/proc/self/io", "r");
+    while (file && fgets(line, sizeof(line), file))
+        if (!strncmp(line, name, strlen(name)))
+            bytes = strtod(line + strlen(name), NULL);
+    if (file)
+        fclose(file);
+    return bytes;
+}
+
+/* One second of samples at 2 Hz, as a PLC's transmitters make them: 32 bit, noisy, and all tags of a source read at one time. */
+static void sample_second(struct recorder *recorder, int64_t t_us, double *values, struct recorder_rows *rows)
+{
+    for (int half = 0; half < 2; half++) {
+        int64_t read_us[PLANT_SOURCES];
+        for (int source = 0; source < PLANT_SOURCES; source++)
+            read_us[source] = t_us + half * US_PER_S / 2 + source * 20000 + rand() % 3000;
+        for (int tag = 0; tag < PLANT_TAGS; tag++) {
+            values[tag] += 0.02 * noise();
+            const struct history_point sample = { read_us[tag % PLANT_SOURCES], (float)(values[tag] + 0.35 * noise()), QUALITY_GOOD };
+            recorder_put(recorder, tag, &sample, rows);
+        }
+    }
+}
+
+static double kept_bytes(struct log *log, const char *folder, int month)
+{
+    struct month_file_size size = { 0 };
+    int error;
+    struct month_file *file = month_file_read(log, folder, month, &error);
+    if (file)
+        month_file_size(file, &size);
+    month_file_close(&file);
+    return (double)(size.bytes - size.free_bytes);
+}
+
+/* Records two hours of a plant with 186 tags as the historian does, and counts the bytes: those kept, those that the program writes, and
+   those that the disk gets, which are whole pages of 4096 bytes. */
+static void measure_disk(struct log *log)
+{
+    char *folder = temp_folder_create();
+    struct plant *plant = make_plant(PLANT_TAGS);
+    struct history_tag *tags = history_tags(plant);
+    struct recorder *recorder = recorder_create(plant);
+    struct recorder_rows rows = { 0 }, held = { 0 };
+    int64_t begin_us = INT64_C(1795200000) * US_PER_S;
+    int month = month_of(begin_us), error;
+    struct month_file *file = month_file_open(log, folder, month, tags, PLANT_TAGS, &error);
+    double values[PLANT_TAGS] = { 0 }, recorded = 0, at_half = 0, written = process_io("wchar:"), stored = process_io("write_bytes:");
+    for (int second = 0; second < PLANT_SECONDS; second++) {
+        rows.count = held.count = 0;
+        sample_second(recorder, begin_us + second * US_PER_S, values, &rows);
+        recorder_held(recorder, &held);
+        recorded += (double)rows.count;
+        month_file_write(file, rows.at, rows.count, held.at, held.count);
+        if (second % TIDY_S == TIDY_S - 1)
+            month_file_tidy(file);
+        if (second == PLANT_SECONDS / 2 - 1) /* without what the file takes whatever its age */
+            at_half = kept_bytes(log, folder, month);
+    }
+    month_file_close(&file);
+    double per_day = 86400.0 / PLANT_SECONDS / 1e9, kept = 2 * ((double)kept_bytes(log, folder, month) - at_half);
+    written = process_io("wchar:") - written;
+    stored = process_io("write_bytes:") - stored;
+    printf("{\"name\": \"history_186_tags_kept_gb_per_day\", \"value\": %.3f, \"unit\": \"GB\", \"goal\": [\"<=\", 0.15],"
+           " \"points_per_s\": %.0f, \"bytes_per_point\": %.2f}\n", kept * per_day, recorded / PLANT_SECONDS, kept / recorded);
+    printf("{\"name\": \"history_186_tags_written_gb_per_day\", \"value\": %.3f, \"unit\": \"GB\", \"goal\": [\"<=\", 0.6],"
+           " \"bytes_per_point\": %.2f, \"in_pages_gb_per_day\": %.3f}\n", written * per_day, written / recorded, stored * per_day);
+    fflush(stdout);
+    mem_free(rows.at);
+    mem_free(held.at);
+    recorder_destroy(&recorder);
+    mem_free(tags);
+    plant_by_hand_destroy(&plant);
+    temp_folder_destroy(&folder);
+}
+
 /* Writes samples that all exceed the deadband, so that none is dropped, and rollups for every minute. */
 static void fill(struct log *log, const char *folder, const struct history_tag *tags, int64_t end_us)
 {
@@ -149,10 +236,11 @@ int main(void)
 {
     record("history_100k_values_percent_of_core", 0.1);
     record("history_100k_noisy_values_percent_of_core", 10);
+    struct log *log = log_create(LOG_WARN);
+    measure_disk(log);
     char *folder = temp_folder_create();
     struct plant *plant = make_plant(ASKED);
     struct history_tag *tags = history_tags(plant);
-    struct log *log = log_create(LOG_WARN);
     int64_t end_us = INT64_C(1795200000) * US_PER_S;
     fill(log, folder, tags, end_us);
     ask(log, folder, tags, end_us, 1000);

@@ -360,7 +360,7 @@ CASE(a_full_disk_loses_nothing)
     start(s);
     write_all(s, 1);
     sleep_ns(1500 * NS_PER_MS);
-    assert_int_equal(setrlimit(RLIMIT_FSIZE, &(struct rlimit){ 200000, unlimited.rlim_max }), 0);
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &(struct rlimit){ 20000, unlimited.rlim_max }), 0);
     for (int i = 0; i < 200; i++) {
         write_all(s, bent(i));
         sleep_ns(10 * NS_PER_MS);

@@ -258,7 +258,7 @@ int database_open_beside(struct database *database)
     if (code == SQLITE_OK)
         code = read_version(database, &version);
     int error = database_fail(database, code, "cannot be opened");
-    return error ? error : version == database->format->version ? 0 : -ENOENT;
+    return error ? error : version > 0 && version <= database->format->version ? 0 : -ENOENT;
 }
 
 bool database_set_aside(struct database *database)

@@ -38,7 +38,7 @@ int database_open(struct database *database, bool *renewed);
    to it yet. The file may have any version up to this program's. */
 int database_open_to_read(struct database *database);
 /* Opens a file that another handle already writes, to write to it as well: does not create, convert or rename the file. Commits are
-   atomic, but the newest may be lost when the power fails. Returns -ENOENT, not logged, if there is no file of this version. */
+   atomic, but the newest may be lost when the power fails. Returns -ENOENT, not logged, if there is no file, or one of a newer version. */
 int database_open_beside(struct database *database);
 /* Closes the file and renames NAME.sqlite and SQLite's companion files to NAME.damaged-TIME.sqlite, for later analysis. Returns false if
    it cannot be renamed. Logged in both cases. */

@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The newest points of a month's file, in the order in which they were recorded: one compressed row a second, until month_file_tidy()
+   moves the points to blocks. The rows are overwritten in place, because that writes fewer pages than rows that come and go. Private to
+   month_file*.c. Functions that return int return 0 or -errno, already logged. */
+#ifndef HISTORY_MONTH_SECONDS_H
+#define HISTORY_MONTH_SECONDS_H
+#include "history/month_file_impl.h"
+
+struct month_row {
+    int64_t id;   /* the tag's id in the file; 0: no row */
+    size_t order; /* position in the order of recording */
+    struct history_point point;
+};
+
+/* Rows of the seconds that a handle has read. */
+struct month_seconds {
+    int64_t mark, stamp, slot; /* stamp of the newest row that was moved to blocks; stamp and number of the newest row read */
+    struct month_row *rows;    /* recorded points */
+    struct month_row *held;    /* newest samples, by id; id 0: none */
+    size_t count, capacity, held_count, held_capacity;
+};
+
+/* Writes recorded rows and newest samples as one row of the table, inside a transaction. Sorts the arrays. */
+int month_seconds_write(struct month_file *file, struct month_row *rows, size_t count, struct month_row *held, size_t held_count);
+/* Updates file->seconds to what the table has now. */
+int month_seconds_read(struct month_file *file);
+/* Marks all rows read as moved to blocks, inside a transaction. */
+int month_seconds_clear(struct month_file *file);
+void month_seconds_finish(struct month_file *file); /* Frees file->seconds. */
+
+#endif
