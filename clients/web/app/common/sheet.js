@@ -4,7 +4,7 @@
 import { byId, phone, setVariable } from './dom.js';
 
 const STOPS = ['20dvh', '40dvh'], GRIP_PX = 24, SLOP_PX = 8;
-const SHEETS = '.panel.open, .display.open, .alarms, .assets, .stage > .card', CARDS = ['card', 'place'].map(byId);
+const SHEETS = '.panel.open, .display.open, .alarms, .engineer, .assets, .stage > .card', CARDS = ['card', 'place'].map(byId);
 
 let stop = 1, drag = null; // drag: { y: where it began, moved: 0, up or down in pixels }
 
