@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads and writes the frame header byte by byte. */
+/* Reads and writes the headers byte by byte. */
 #include "protocol/wire.h"
 
 #include <math.h>
@@ -54,6 +54,31 @@ void wire_put_frame(const struct wire_frame *frame, uint8_t out[WIRE_FRAME_HEADE
     at = put_vector(at, frame->up);
     at = put_f32(at, frame->fov_deg);
     put_f32(at, frame->height_m);
+}
+
+void wire_put_depth(const struct wire_depth *depth, uint8_t out[WIRE_DEPTH_HEADER_BYTES])
+{
+    enum { PLAIN_ENCODING = 1 };
+    uint8_t *at = out;
+    at = put(at, WIRE_TYPE_DEPTH, 1);
+    at = put(at, PLAIN_ENCODING, 1);
+    at = put(at, depth->flags, 2);
+    at = put(at, depth->payload_bytes, 4);
+    at = put(at, depth->seq, 4);
+    at = put(at, depth->x_px, 2);
+    at = put(at, depth->y_px, 2);
+    at = put(at, depth->width_px, 2);
+    at = put(at, depth->height_px, 2);
+    at = put(at, depth->full_width_px, 2);
+    at = put(at, depth->full_height_px, 2);
+    at = put(at, depth->columns, 2);
+    at = put(at, depth->rows, 2);
+    at = put(at, depth->cell_px, 1);
+    at = put(at, depth->mask_side, 1);
+    at = put(at, depth->levels, 2);
+    at = put_f32(at, depth->base);
+    at = put_f32(at, depth->unit);
+    put(at, depth->data_bytes, 4);
 }
 
 static uint64_t get(const uint8_t **at, size_t bytes)

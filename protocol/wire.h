@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Encodes and decodes the binary frame header of plantcast.v1 (PROTOCOL.md). Pure. Thread: any. */
+/* Encodes and decodes the headers of the binary messages of plantcast.v1 (PROTOCOL.md). Pure. Thread: any. */
 #ifndef PROTOCOL_WIRE_H
 #define PROTOCOL_WIRE_H
 #include <stdbool.h>
@@ -8,12 +8,13 @@
 
 #define WIRE_SUBPROTOCOL "plantcast.v1"
 #define WIRE_FRAME_HEADER_BYTES 112u
+#define WIRE_DEPTH_HEADER_BYTES 44u
 #define WIRE_MAX_MESSAGE_BYTES 65536u /* largest text message in bytes that a client may send */
 #define WIRE_MAX_FRAME_PX 8192u       /* largest width or height */
 #define WIRE_MAX_PAYLOAD_BYTES (64u * 1024 * 1024)
 #define WIRE_NO_AGE UINT32_MAX
 
-enum wire_type { WIRE_TYPE_FRAME = 1 };
+enum wire_type { WIRE_TYPE_FRAME = 1, WIRE_TYPE_DEPTH = 2 };
 enum wire_codec { WIRE_CODEC_JPEG = 1, WIRE_CODEC_PNG = 2, WIRE_CODEC_H264 = 3 };
 enum wire_flags {
     WIRE_FLAG_KEY = 1,
@@ -23,7 +24,9 @@ enum wire_flags {
     WIRE_FLAG_DATA = 16,
     WIRE_FLAG_PAST = 32,
     WIRE_FLAG_SIGNED = 64,
+    WIRE_FLAG_DEPTH = 128,
 };
+enum wire_depth_flags { WIRE_DEPTH_ORTHOGRAPHIC = 1, WIRE_DEPTH_MORE = 2 };
 
 struct wire_frame { /* header of a frame; the members are in the order of the bytes on the wire */
     uint8_t type, codec;
@@ -42,7 +45,20 @@ struct wire_frame { /* header of a frame; the members are in the order of the by
     float height_m;                     /* height of the visible area of an orthographic picture, metres; 0: perspective */
 };
 
+struct wire_depth { /* header of a depth grid; the members are in the order of the bytes on the wire, after type and encoding */
+    uint16_t flags;
+    uint32_t payload_bytes, seq;
+    uint16_t x_px, y_px, width_px, height_px; /* part of the picture that the grid covers */
+    uint16_t full_width_px, full_height_px;
+    uint16_t columns, rows; /* of cells */
+    uint8_t cell_px, mask_side;
+    uint16_t levels;     /* largest code */
+    float base, unit;    /* depth of the code 1, and difference between two codes: 1/m (perspective) or m (orthographic) */
+    uint32_t data_bytes; /* size of the inflated payload */
+};
+
 /* Writes a header. */
+void wire_put_depth(const struct wire_depth *depth, uint8_t out[WIRE_DEPTH_HEADER_BYTES]);
 void wire_put_frame(const struct wire_frame *frame, uint8_t out[WIRE_FRAME_HEADER_BYTES]);
 /* Reads the header of a message. bytes: the whole message, header and payload. Checks length, ranges and finiteness; accepts unknown flags.
    Returns false if the message is no frame of this protocol; *frame is then undefined. */

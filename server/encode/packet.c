@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "render/depth_grid.h"
 #include "render/frame_record.h"
 
 static void *copy_of(const void *list, size_t count, size_t bytes_each)
@@ -28,6 +29,8 @@ static struct frame *without_pixels(const struct frame *frame)
     copy->whole = NULL;
     copy->markers = copy_of(frame->markers, frame->marker_count, sizeof(*frame->markers));
     copy->record = frame_record_ref(frame->record);
+    for (int half = 0; half < 2; half++)
+        copy->depth[half] = depth_grid_ref(frame->depth[half]);
     copy->labels = copy_of(frame->labels, frame->label_count, sizeof(*frame->labels));
     return copy;
 }

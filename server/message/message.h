@@ -204,6 +204,7 @@ struct message {
     char token[TOKEN_MAX_CHARS + 1], resume[RESUME_MOST_CHARS + 1]; /* hello; "": none */
     double idle_ms;                  /* in hello: milliseconds since the user was last active; negative: not stated */
     bool tokens;                     /* in hello: true: the server shall send the view as a token whenever it changes */
+    bool depth;                      /* in hello: the client asks for depth grids */
     bool anew;                       /* in hello: true: resume only the session's id and the sessions that follow it, not its view */
     char named[NAMED_VIEW_ID_BYTES]; /* in hello and look: id of a view in the plant file; empty (only in hello): none */
     bool has_camera, has_params;     /* hello */

@@ -144,6 +144,7 @@ static bool parse_hello(const struct plant *plant, const json_t *o, struct messa
     }
     out->tokens = json_is_true(json_object_get(o, "tokens"));
     out->anew = json_is_true(json_object_get(o, "anew"));
+    out->depth = json_is_true(json_object_get(o, "depth"));
     out->has_camera = json_is_object(camera);
     out->has_params = json_is_object(params);
     if ((camera && !out->has_camera) || (params && !out->has_params)) {

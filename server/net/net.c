@@ -378,6 +378,7 @@ static void add_counters(struct server_context *server)
         counters_add(c, "plantcast_drawing_busy_percent", "gauge", "Percentage of the render thread's time spent on live views.");
     server->counters.frames = counters_add(c, "plantcast_frames_sent_total", "counter", "Frames sent.");
     server->counters.frame_bytes = counters_add(c, "plantcast_frame_bytes_total", "counter", "Bytes of frames sent.");
+    server->counters.depth_bytes = counters_add(c, "plantcast_depth_bytes_total", "counter", "Bytes of depth grids sent.");
     server->counters.dropped =
         counters_add(c, "plantcast_frames_dropped_total", "counter", "Frames replaced by a newer one before they were sent.");
     server->counters.given_up = counters_add(c, "plantcast_frames_given_up_total", "counter", "Frames whose sending was abandoned.");

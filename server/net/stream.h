@@ -15,7 +15,9 @@ struct stream {
     size_t in_count;             /* bytes of the current message received so far, including those that were too many to store */
     struct encoded_frame *sending;
     uint32_t seq;
-    enum { SEND_MARKERS, SEND_HEADER, SEND_PAYLOAD } step;
+    enum session_depth depth; /* depth of the frame being sent */
+    int half;                 /* index of the depth grid being sent, among those of the frame */
+    enum { SEND_MARKERS, SEND_DEPTH, SEND_HEADER, SEND_PAYLOAD } step;
     int packet, part;      /* which packet of the frame is being sent, and which part of that packet (indexes from 0) */
     size_t sent, sent_all; /* sent: bytes of the part that were sent; sent_all: bytes of the whole frame that were sent */
     bool cut;              /* the frame was cut short: only the end of its message is still to be sent */

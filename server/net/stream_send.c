@@ -85,7 +85,8 @@ static uint16_t flags_of(const struct stream *stream)
     const struct packet *packet = packet_now(stream);
     bool last = is_last_part(stream), live = packet->frame->oldest_age_ns != INT64_MAX;
     bool still = last && packet->frame->view.tier == TIER_REFINED;
-    int seen = (packet->frame->view.at_us ? WIRE_FLAG_PAST : 0) | (packet->is_signed ? WIRE_FLAG_SIGNED : 0);
+    int seen = (packet->frame->view.at_us ? WIRE_FLAG_PAST : 0) | (packet->is_signed ? WIRE_FLAG_SIGNED : 0) |
+               (stream->depth ? WIRE_FLAG_DEPTH : 0);
     return (uint16_t)((packet->key ? WIRE_FLAG_KEY : 0) | (still ? WIRE_FLAG_STILL : 0) | (live ? 0 : WIRE_FLAG_NO_LIVE_DATA) |
                       (last ? 0 : WIRE_FLAG_MORE) | (stream->sending->request.of_data ? WIRE_FLAG_DATA : 0) | seen);
 }
@@ -121,6 +122,54 @@ static struct wire_frame frame_header(const struct stream *stream)
     camera_to_wire(&frame->view.camera, &out);
     return out;
 }
+
+/* --- depth grids ------------------------------------------------------------------------------------------------------ */
+
+static const struct depth_grid *grid_now(const struct stream *stream)
+{
+    const struct frame *frame = stream->sending->packet->frame;
+    return stream->depth == SESSION_DEPTH_NEW && stream->half < 2 ? frame->depth[stream->half] : NULL;
+}
+
+static struct wire_depth depth_header(const struct stream *stream)
+{
+    const struct frame *frame = stream->sending->packet->frame;
+    struct wire_depth out = grid_now(stream)->wire;
+    out.seq = stream->seq;
+    out.flags |= stream->half == 0 && frame->depth[1] ? WIRE_DEPTH_MORE : 0;
+    out.x_px = stream->half == 0 ? 0 : (uint16_t)view_left_px(&frame->view);
+    out.full_width_px = (uint16_t)frame->width_px;
+    out.full_height_px = (uint16_t)frame->height_px;
+    return out;
+}
+
+static bool write_depth(struct server_context *server, struct stream *stream)
+{
+    const struct depth_grid *grid = grid_now(stream);
+    uint8_t *out = server->out + LWS_PRE;
+    size_t head = 0, left = grid->wire.payload_bytes - stream->sent;
+    enum lws_write_protocol how = stream->sent ? LWS_WRITE_CONTINUATION : LWS_WRITE_BINARY;
+    if (stream->sent == 0) {
+        struct wire_depth header = depth_header(stream);
+        wire_put_depth(&header, out);
+        head = WIRE_DEPTH_HEADER_BYTES;
+    }
+    size_t slice = left < SLICE_BYTES - head ? left : SLICE_BYTES - head;
+    if (slice < left)
+        how |= LWS_WRITE_NO_FIN;
+    memcpy(out + head, grid->payload + stream->sent, slice);
+    bool good = lws_write(stream->wsi, out, head + slice, how) >= (int)(head + slice);
+    counter_inc(server->counters.depth_bytes, (int64_t)(head + slice));
+    session_wrote(stream->session, false, clock_mono_ns());
+    stream->sent += slice;
+    if (slice == left) {
+        stream->sent = 0;
+        stream->half++;
+    }
+    return good;
+}
+
+/* --- frames ----------------------------------------------------------------------------------------------------------- */
 
 static void part_sent(struct server_context *server, struct stream *stream)
 {
@@ -166,10 +215,14 @@ static bool write_frame(struct server_context *server, struct stream *stream)
 {
     if (stream->step == SEND_MARKERS) {
         bool wrote, good = write_markers(server, stream, &wrote);
-        stream->step = SEND_HEADER;
+        stream->step = SEND_DEPTH;
         if (wrote)
             return good;
     }
+    if (stream->step == SEND_DEPTH && grid_now(stream))
+        return write_depth(server, stream);
+    if (stream->step == SEND_DEPTH)
+        stream->step = SEND_HEADER;
     return write_slice(server, stream);
 }
 
@@ -270,11 +323,11 @@ bool stream_send(struct server_context *server, struct stream *stream)
     if (session_next_text(session, now_ns, clock_plant_ns(), &text)) {
         note_first(stream, text.length, now_ns);
         good = write_text(stream, text.at + LWS_PRE, text.length - LWS_PRE);
-    } else if ((stream->sending = session_next_frame(session, now_ns, &stream->seq))) {
+    } else if ((stream->sending = session_next_frame(session, now_ns, &stream->seq, &stream->depth))) {
         latency_stages_sent(&server->latency, stream->sending, now_ns);
         stream->step = SEND_MARKERS;
         stream->sent = stream->sent_all = 0;
-        stream->packet = stream->part = 0;
+        stream->packet = stream->part = stream->half = 0;
         good = write_frame(server, stream);
     }
     text_finish(&text);

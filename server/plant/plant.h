@@ -332,6 +332,7 @@ struct plant {
     enum axis up;           /* upward axis of the plant frame */
     struct plant_view view;
     enum plant_show show;
+    bool no_reprojection; /* clients get no depth grids of the picture */
     struct plant_environment environments[PLANT_ENVIRONMENTS]; /* environments (panoramas); the first one is the default */
     size_t environment_count;
     struct plant_link links[PLANT_LINKS];

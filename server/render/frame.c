@@ -10,6 +10,7 @@
 
 #include "base/mem.h"
 #include "base/system/huge_pages.h"
+#include "render/depth_grid.h"
 #include "render/frame_record.h"
 #include "value/quality.h"
 
@@ -116,6 +117,8 @@ void frame_unref(struct frame **frame_ptr)
     mem_free(frame->markers);
     mem_free(frame->labels);
     frame_record_unref(&frame->record);
+    depth_grid_unref(&frame->depth[0]);
+    depth_grid_unref(&frame->depth[1]);
     if (frame->whole)
         frame_unref(&frame->whole);
     else
@@ -155,6 +158,7 @@ struct frame *frame_cut(struct frame *whole, const struct frame_part *part)
     frame->height_px = frame->view.height_px = part->height_px;
     frame->content = hash_part(whole->content, part);
     frame->record = NULL;
+    frame->depth[0] = frame->depth[1] = NULL;
     frame->markers = mem_array(whole->marker_count + 1, sizeof(*frame->markers));
     frame->labels = mem_array(whole->label_count + 1, sizeof(*frame->labels));
     frame->marker_count = frame->label_count = 0;

@@ -38,6 +38,8 @@ struct frame_part { /* a rectangle of a frame, in pixels from the top left. widt
     int x_px, y_px, width_px, height_px;
 };
 
+struct depth_grid; /* render/depth_grid.h */
+
 struct frame {
     _Atomic int refs;
     struct view view; /* the view that the frame shows */
@@ -60,6 +62,7 @@ struct frame {
     int64_t turn_ns;
     struct baseline baseline;    /* the baseline that a difference is taken from; id 0: none */
     struct frame_record *record; /* readings that the frame was drawn from (render/frame_record.h); NULL: not requested */
+    struct depth_grid *depth[2]; /* depth grid of the frame, or of each half of a split view; NULL: none */
     uint64_t content;            /* equal for equal frames: hash of view and field versions, without sequence numbers and times */
     int triangles;
 };

@@ -26,6 +26,7 @@ struct frame_context {
     /* largest error of a level of detail's surface, in pixels of the frame (render/plan/lod_selection.h); 0: finest levels only */
     double error_px;
     uint64_t shape; /* content_hash_shape() of the frame plan */
+    bool gives_depth; /* true: the frame gets a depth grid */
     bool measured;  /* true: the frame receives the field's values as floats instead of colours */
 };
 

@@ -76,6 +76,7 @@ static void init_context(struct renderer *renderer, const struct frame_plan *pla
                                        .visible_count = plan->visible_count,
                                        .reference = renderer->per_fragment ? &renderer->reference : NULL,
                                        .error_px = plan->error_px,
+                                       .gives_depth = renderer->gives_depth,
                                        .shape = plan->shape };
 }
 
@@ -318,6 +319,11 @@ bool renderer_measure(struct renderer *renderer, const struct view *view, const 
     measure_target_finish(&measure);
     frame_plan_destroy(&plan);
     return good;
+}
+
+void renderer_set_depth(struct renderer *renderer, bool gives_depth)
+{
+    renderer->gives_depth = gives_depth;
 }
 
 void renderer_use_gl(struct renderer *renderer, bool always)

@@ -28,6 +28,7 @@ struct renderer {
     struct gl_backend *by_gl;
     struct soft *by_soft; /* software backend; NULL: a GPU draws everything */
     bool always_gl;
+    bool gives_depth; /* frames get depth grids */
     int64_t bake_budget_ns;  /* time that each preview spends on baking light, ns; 0: a preview waits until its light is baked */
     struct visibility shown; /* visibility of assets in the last frame that was drawn in one call */
 };

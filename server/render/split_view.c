@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "render/depth_grid.h"
 #include "render/plan/frame_planner.h"
 
 enum { DIVIDER_PX = 2 };
@@ -132,6 +133,7 @@ static struct frame *join(const struct view *view, struct frame *parts[2])
         copy_markers(whole, parts[half], half, x_px);
         copy_labels(whole, parts[half], half, x_px);
         add_meaning(whole, parts[half], half);
+        whole->depth[half] = depth_grid_ref(parts[half]->depth[0]);
     }
     if (whole) {
         whole->view = *view;

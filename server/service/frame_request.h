@@ -31,6 +31,7 @@ struct frame_request {
     bool only_replace;
     bool always; /* true: the frame is drawn and sent even if the client already shows the content */
     bool alone;  /* true: the frame must decode without any packet sent before */
+    bool depth;  /* true: the client gets the frame's depth grid (render/depth_grid.h) */
     bool record; /* true: the frame includes the record of its inputs (render/frame_record.h), for signing; PNG only */
     /* overlay on top of the scene: FULL: legend, clock, sensors and alarms; BARE: legend and clock */
     enum { OVERLAY_NONE, OVERLAY_FULL, OVERLAY_BARE } overlay;

@@ -77,10 +77,10 @@ static void answer_same(struct render_thread *thread, struct request_group *grou
 }
 
 /* Returns whether a frame that was drawn for other clients can answer the group. It cannot if a request wants the record of the frame's
-   inputs and the frame has none. */
+   inputs, or its depth grid, and the frame has none. */
 static bool answers(const struct frame *frame, const struct request_group *group)
 {
-    return frame && (frame->record || !request_group_wants_record(group));
+    return frame && (frame->record || !request_group_wants_record(group)) && (frame->depth[0] || !request_group_wants_depth(group));
 }
 
 static void answer_with(struct render_service *service, struct frame *frame, struct request_group *group)

@@ -398,6 +398,9 @@ static bool draw_of(struct render_thread *thread, struct request_group *group, c
 static bool draw(struct render_thread *thread, struct request_group *group)
 {
     const struct historical_snapshot *historical;
+    /* once a client wanted depth, all frames but those of walls get grids, so that any client can share them */
+    thread->gives_depth |= request_group_wants_depth(group);
+    renderer_set_depth(thread->renderer, thread->gives_depth && !group->tickets[0].request.picture);
     frame_sharing_answer_from_recent(thread, group);
     if (group->count == 0)
         return true;

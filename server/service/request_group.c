@@ -32,6 +32,14 @@ bool request_group_wants_record(const struct request_group *group)
     return false;
 }
 
+bool request_group_wants_depth(const struct request_group *group)
+{
+    for (size_t i = 0; i < group->count; i++)
+        if (group->tickets[i].request.depth)
+            return true;
+    return false;
+}
+
 void request_group_finish(struct request_group *group)
 {
     mem_free(group->tickets);

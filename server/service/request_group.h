@@ -22,6 +22,8 @@ void request_group_split(struct request_group *group, bool (*belongs)(const stru
                          struct request_group *into);
 /* Returns whether a request wants the frame with the record of its inputs. */
 bool request_group_wants_record(const struct request_group *group);
+/* Returns whether a request wants the frame with its depth grid. */
+bool request_group_wants_depth(const struct request_group *group);
 /* Frees the memory; the group is empty and can be reused. */
 void request_group_finish(struct request_group *group);
 

@@ -53,6 +53,7 @@ void session_introduce(struct session *session, const struct session_client *cli
 void session_let_go(struct session *session)
 {
     session_drop_ready(session);
+    session_forget_depth(session);
     session_time_end(session);
     session_place_leave(session);
     session_scope_end(session);

@@ -6,6 +6,7 @@
 #include <jansson.h>
 
 #include "base/text/text.h"
+#include "render/depth_grid.h"
 #include "session/session_context.h"
 #include "session/session_state.h"
 #include "session/view/session_view.h"
@@ -94,9 +95,13 @@ void session_not_signed(struct session *session, const struct message_error *why
 void session_on_frame(struct session *session, struct encoded_frame *encoded);
 /* Returns whether session_next_frame() would return a frame now. */
 bool session_has_frame(const struct session *session);
+/* Returns whether the client is told that it gets depth grids. */
+bool session_gets_depth(const struct session *session);
+/* depth of a frame for its client: none; the newest depth grids that the client was sent; those of the frame, to be sent before it */
+enum session_depth { SESSION_DEPTH_NONE, SESSION_DEPTH_SENT, SESSION_DEPTH_NEW };
 /* Takes out the next frame to send and writes its sequence number to *seq. The caller owns the frame. NULL: none is ready. Call
    session_wrote() after each part of the frame is written. */
-struct encoded_frame *session_next_frame(struct session *session, int64_t now_ns, uint32_t *seq);
+struct encoded_frame *session_next_frame(struct session *session, int64_t now_ns, uint32_t *seq, enum session_depth *depth);
 /* Notes that the socket accepted a part of the frame being sent. all: it was the last part. */
 void session_wrote(struct session *session, bool all, int64_t now_ns);
 /* Returns whether the rest of the frame being sent is not worth sending: the view of a refined frame has changed, or the client

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Decides which frames a session wants next, and what to do with those that arrive. */
 #include "base/clock.h"
+#include "render/depth_grid.h"
 #include "session/reply/reply.h"
 #include "session/session_impl.h"
 
@@ -346,6 +347,7 @@ bool session_wants(const struct session *session, int64_t now_ns, struct frame_r
     request->view.params_seq = session->view.params_seq;
     bool wanted = wants(session, now_ns, request);
     make_signed(session, request);
+    request->depth = session_gets_depth(session) && !session->following.leader && !request->record;
     return wanted;
 }
 
@@ -369,7 +371,38 @@ bool session_has_frame(const struct session *session)
     return session->delivery.ready && (!session_is_tile(session) || session->delivery.pacer.flight_count == 0);
 }
 
-struct encoded_frame *session_next_frame(struct session *session, int64_t now_ns, uint32_t *seq)
+bool session_gets_depth(const struct session *session)
+{
+    return session->asks_depth && !session->context->plant->no_reprojection && !session_is_tile(session);
+}
+
+void session_forget_depth(struct session *session)
+{
+    depth_grid_unref(&session->delivery.depth[0]);
+    depth_grid_unref(&session->delivery.depth[1]);
+}
+
+/* Notes that the client will have the frame's depth grids. Returns false if it has them already. */
+static bool take_depth(struct session *session, const struct frame *frame)
+{
+    struct depth_grid **sent = session->delivery.depth;
+    if (depth_grid_equal(sent[0], frame->depth[0]) && depth_grid_equal(sent[1], frame->depth[1]))
+        return false;
+    session_forget_depth(session);
+    for (int half = 0; half < 2; half++)
+        sent[half] = depth_grid_ref(frame->depth[half]);
+    return true;
+}
+
+static size_t depth_bytes(const struct frame *frame)
+{
+    size_t bytes = 0;
+    for (int half = 0; half < 2 && frame->depth[half]; half++)
+        bytes += WIRE_DEPTH_HEADER_BYTES + frame->depth[half]->wire.payload_bytes;
+    return bytes;
+}
+
+struct encoded_frame *session_next_frame(struct session *session, int64_t now_ns, uint32_t *seq, enum session_depth *depth)
 {
     struct encoded_frame *encoded = session->delivery.ready;
     if (!session_has_frame(session))
@@ -381,9 +414,12 @@ struct encoded_frame *session_next_frame(struct session *session, int64_t now_ns
                                .step = request->step,
                                .input_ns = request->view.input_ns,
                                .made_ns = encoded->made_ns };
+    const struct frame *frame = encoded->packet->frame;
     session->delivery.ready = encoded->next;
     encoded->next = NULL;
-    *seq = pacer_sent(&session->delivery.pacer, encoded_frame_bytes(encoded), &note, now_ns);
+    *depth = !request->depth || !frame->depth[0] ? SESSION_DEPTH_NONE : take_depth(session, frame) ? SESSION_DEPTH_NEW : SESSION_DEPTH_SENT;
+    size_t bytes = encoded_frame_bytes(encoded) + (*depth == SESSION_DEPTH_NEW ? depth_bytes(frame) : 0);
+    *seq = pacer_sent(&session->delivery.pacer, bytes, &note, now_ns);
     if (session_is_tile(session))
         session_tile_sent(session, request->picture, *seq);
     return encoded;

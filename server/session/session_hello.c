@@ -191,6 +191,7 @@ bool session_hello(struct session *session, const struct message *message, int64
     else if (before && !narrowed)
         session_time_begin(session, resumed.view.at_us, resumed.speed);
     session->identity.tokens = message->tokens;
+    session->asks_depth = message->depth;
     session->identity.resumed = session->identity.returned = back;
     if (back)
         session->identity.number = resumed.called;

@@ -93,6 +93,8 @@ bool session_may_be(struct session *session, const struct wall_place *place, str
 bool session_begun(const struct session *session, int64_t now_ns);
 /* Returns whether a frame is wanted now, with the request in *request. Ignores how many frames are in flight. */
 bool session_wants(const struct session *session, int64_t now_ns, struct frame_request *request);
+/* Forgets which depth grids the client has, so that the next frame's are sent. */
+void session_forget_depth(struct session *session);
 /* Drops the frames that are ready and not sent yet. */
 void session_drop_ready(struct session *session);
 /* Drops the frames that are ready while the client acknowledges nothing; they are requested again once it does. */

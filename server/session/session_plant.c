@@ -34,6 +34,7 @@ char *session_carry(struct session *session)
     session_time_leave(session);
     session_place_leave(session);
     session_drop_ready(session);
+    session_forget_depth(session);
     return session->hello ? session_carried_text(session->context, &session->view) : NULL;
 }
 

@@ -95,6 +95,7 @@ struct frame_delivery {
     bool newest_refined;             /* the frame newest_number is refined */
     struct encoded_frame *ready;     /* frames to be sent next, oldest first; a frame that decodes on its own replaces all before it */
     bool measured;                   /* pacer.acked is new (session_take_shown) */
+    struct depth_grid *depth[2];     /* newest depth grids sent to the client, of a frame or of both halves of a split view; NULL: none */
     int steps[QUALITY_LADDER_STEPS]; /* number of viewers of this view, this session included, at each step of the quality ladder */
     int common_step;                 /* ladder step that all viewers share; negative: each viewer uses its own */
 };
@@ -207,6 +208,7 @@ struct session {
     const struct session_context *context;
     struct session_identity identity;
     int64_t opened_ns;
+    bool asks_depth;    /* the client's hello asked for depth grids */
     bool hello, hidden; /* hello: the client's hello was accepted; hidden: the client's page is not visible */
     double pixel_ratio; /* device pixels per CSS pixel of the page */
     struct view view;   /* the session's own view */

@@ -6,6 +6,7 @@ import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { connect, createServer } from 'node:net';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
+import { inflateRawSync } from 'node:zlib';
 import { encodeFrame, get, http, PlainClient } from './support/plain_client.mjs';
 import { BIN, notBuilt, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 
@@ -163,6 +164,45 @@ test('orthographic cameras, fits, picks, and what is hidden', { skip }, async ()
     for (const wrong of ['x=1', 'x=1&y=-1', 'x=a&y=2', 'x=1&y=1&hidden=P-1'])
         assert.equal((await get(plant.port, `/api/v1/pick?${wrong}`)).status, 400, wrong);
     assert.equal((await get(plant.port, '/snapshot.png?x=1&y=1')).status, 400);
+});
+
+test('depth grids come before their pictures, to clients that ask for them', { skip }, async () => {
+    const DEPTH = 128, client = await PlainClient.open(plant.port), other = await PlainClient.open(plant.port);
+    assert.equal((await client.hello({ depth: true })).reprojection, true);
+    assert.equal((await other.hello()).reprojection, undefined);
+    client.say({ type: 'fit', seq: 1, id: 'E-101', side: 'right', projection: 'orthographic' });
+    const { eye, target, up, projection, height_m } = await client.text('camera');
+    client.say({ type: 'params', seq: 1, hidden: ['P-101A'] });
+    client.say({ type: 'camera', seq: 2, eye, target, up, projection, height_m });
+    const isStill = (f) => f.camera_seq === 2 && f.params_seq === 1 && (f.flags & 2) !== 0;
+    const still = await client.frameWhere('the still picture', isStill);
+    assert.ok(client.frames.every((f) => (f.flags & DEPTH) !== 0), 'every picture has depth');
+    for (const depth of client.depths) {
+        const frame = client.frames.find((f) => f.seq === depth.seq);
+        assert.equal(client.frames.indexOf(frame), depth.before, 'each grid comes right before its picture');
+        assert.deepEqual([depth.x, depth.y, depth.width, depth.height], [0, 0, frame.full_width, frame.full_height]);
+        assert.deepEqual([depth.columns, depth.rows, depth.encoding], [40, 23, 1]);
+        assert.equal(depth.payload.length, depth.payload_bytes);
+        assert.equal(inflateRawSync(depth.payload).length, depth.data_bytes);
+    }
+    const last = client.depths.at(-1), z = last.base + (last.levels - 1) * last.unit;
+    assert.ok(last.seq <= still.seq, 'the still picture may show the same depth as the moving one');
+    assert.equal(last.flags & 1, 1, 'orthographic');
+    assert.ok(Math.abs(z - (eye[0] - 0.5)) < 0.01, `the front of the box is ${z} m from the eye at ${eye}`);
+    const grids = client.depths.length, pictures = client.frames.length;
+    await plant.tell('set TI-1 33');
+    const recoloured = await client.frameWhere('a picture of the new reading', (f, i) => i >= pictures && (f.flags & 2) !== 0);
+    assert.equal(recoloured.flags & DEPTH, DEPTH);
+    assert.equal(client.depths.filter((depth) => depth.seq >= recoloured.seq).length, 0, 'the same depth is not sent twice');
+    assert.ok(client.depths.length <= grids + 1, 'at most a preview came between');
+    client.say({ type: 'params', seq: 2, split: { group: 'pressure' } });
+    await client.frameWhere('both halves', (f) => f.params_seq === 2);
+    const halves = client.depths.slice(-2);
+    assert.deepEqual(halves.map(({ x, width, flags }) => [x, width, flags & 2]), [[0, 160, 2], [160, 160, 0]]);
+    await other.frameWhere('a still picture', (f) => (f.flags & 2) !== 0);
+    assert.ok(other.depths.length === 0 && other.frames.every((f) => (f.flags & DEPTH) === 0));
+    client.close();
+    other.close();
 });
 
 test('equal views share a render', { skip }, async () => {

@@ -71,6 +71,7 @@ CASE(everything_is_read)
          "  time_zone: Europe/Berlin\n"
          "  up: y\n"
          "  show: operator\n"
+         "  reprojection: off\n"
          "  view: { eye: [1, 2.5, -3], target: [0, 0, 1e1], fov: 60 }\n"
          "assets:\n"
          "  - { id: 101, tag: T, description: d, model: m.glb, nodes: 'E*', units: ft, up: z, sensor_frame: asset }\n"
@@ -91,6 +92,7 @@ CASE(everything_is_read)
     assert_string_equal(p->name, "Werk Süd");
     assert_true(p->up == AXIS_Y && p->view.set && p->view.eye_m[1] == 2.5 && p->view.target_m[2] == 10 && p->view.fov_deg == 60);
     assert_int_equal(p->show, PLANT_SHOW_OPERATOR);
+    assert_true(p->no_reprojection);
     const struct plant_asset *a = &p->assets[0];
     assert_string_equal(a->id, "101");
     assert_string_equal(a->nodes, "E*");

@@ -10,6 +10,7 @@
 #include "base/mem.h"
 #include "session/reply/reply.h"
 #include "session/session_impl.h"
+#include "render/depth_grid.h"
 #include "tests/support/session_case.h"
 #include "value/quality.h"
 
@@ -103,7 +104,8 @@ static void paint(struct session_case *f, const struct frame_request *request, b
 static uint32_t send_picture(struct session_case *f)
 {
     uint32_t seq = 0;
-    struct encoded_frame *encoded = session_next_frame(f->session, f->now_ns, &seq);
+    enum session_depth depth;
+    struct encoded_frame *encoded = session_next_frame(f->session, f->now_ns, &seq, &depth);
     if (encoded)
         session_wrote(f->session, true, f->now_ns);
     encoded_frame_destroy(&encoded);
@@ -156,6 +158,89 @@ static struct frame_request show_data(struct session_case *f, bool quick)
     paint(f, &request, false);
     ack(f, send_picture(f));
     return request;
+}
+
+static struct depth_grid *grid_of(int width_px)
+{
+    struct depth_cell cells[16] = { { 0.5f, 0.5f, 0 } };
+    return depth_grid_create(cells, &(struct depth_lens){ .factor = 1, .step = 0.01f }, width_px, 8);
+}
+
+/* Draws, sends and acknowledges a frame with these grids, which the test keeps. */
+static enum session_depth show_depth(struct session_case *f, const struct frame_request *request, struct depth_grid *grids[2])
+{
+    struct encoded_frame *encoded = empty_picture(f, request);
+    struct frame *frame = frame_create(16, 16);
+    enum session_depth depth = SESSION_DEPTH_NONE;
+    uint32_t seq = 0;
+    frame->view = request->view;
+    for (int i = 0; i < 2; i++)
+        frame->depth[i] = depth_grid_ref(grids[i]);
+    encoded->packet = packet_create(frame, WIRE_CODEC_JPEG, true, "jpeg", 4);
+    frame_unref(&frame);
+    session_on_frame(f->session, encoded);
+    encoded = session_next_frame(f->session, f->now_ns, &seq, &depth);
+    session_wrote(f->session, true, f->now_ns);
+    encoded_frame_destroy(&encoded);
+    ack(f, seq);
+    return depth;
+}
+
+#define DEPTH_HELLO "{\"type\":\"hello\",\"width\":640,\"height\":360,\"codecs\":[\"jpeg\",\"png\"],\"depth\":true}"
+
+CASE(depth_is_sent_when_it_changes)
+{
+    struct frame_request request;
+    struct depth_grid *first[2] = { grid_of(16) }, *equal[2] = { grid_of(16) }, *split[2] = { grid_of(8), grid_of(8) }, *none[2] = { NULL };
+    say(f, DEPTH_HELLO);
+    assert_true(session_gets_depth(f->session));
+    assert_true(ask(f, &request) && request.depth);
+    assert_int_equal(show_depth(f, &request, first), SESSION_DEPTH_NEW);
+    assert_int_equal(show_depth(f, &request, equal), SESSION_DEPTH_SENT);
+    assert_int_equal(show_depth(f, &request, none), SESSION_DEPTH_NONE);
+    assert_int_equal(show_depth(f, &request, split), SESSION_DEPTH_NEW);
+    assert_int_equal(show_depth(f, &request, first), SESSION_DEPTH_NEW);
+    request.depth = false; /* a frame that was requested without depth, while the session followed another one */
+    assert_int_equal(show_depth(f, &request, first), SESSION_DEPTH_NONE);
+    for (int i = 0; i < 2; i++) {
+        depth_grid_unref(&first[i]);
+        depth_grid_unref(&equal[i]);
+        depth_grid_unref(&split[i]);
+    }
+}
+
+CASE(depth_is_only_for_clients_that_ask)
+{
+    struct frame_request request;
+    greet(f);
+    assert_false(session_gets_depth(f->session));
+    assert_true(ask(f, &request) && !request.depth);
+}
+
+CASE(signed_frames_and_followers_get_no_depth)
+{
+    struct frame_request request;
+    f->context.signing_key = "0123456789abcdef";
+    say(f, DEPTH_HELLO);
+    say(f, "{\"type\":\"sign\",\"frames\":\"all\"}");
+    assert_true(session_wants(f->session, f->now_ns, &request) && request.record && !request.depth);
+    say(f, "{\"type\":\"sign\",\"frames\":\"none\"}");
+    assert_true(session_wants(f->session, f->now_ns, &request) && request.depth);
+    f->session->following.leader = f->session;
+    session_wants(f->session, f->now_ns, &request);
+    assert_false(request.depth);
+    f->session->following.leader = NULL;
+}
+
+CASE(a_plant_may_give_no_depth_away)
+{
+    struct frame_request request;
+    struct plant closed = *f->context.plant;
+    closed.no_reprojection = true;
+    f->context.plant = &closed;
+    say(f, DEPTH_HELLO);
+    assert_false(session_gets_depth(f->session));
+    assert_true(ask(f, &request) && !request.depth);
 }
 
 #define SIGNED_HELLO "{\"type\":\"hello\",\"width\":640,\"height\":360,\"codecs\":[\"jpeg\",\"png\"],\"signed\":\"refined\"}"
@@ -436,10 +521,11 @@ CASE(overtaken_pictures_are_not_sent)
     f->number = 0;
     paint(f, &first, false); /* number 1 comes later */
     uint32_t seq;
-    struct encoded_frame *encoded = session_next_frame(f->session, f->now_ns, &seq);
+    enum session_depth depth;
+    struct encoded_frame *encoded = session_next_frame(f->session, f->now_ns, &seq, &depth);
     assert_int_equal(encoded->request.view.camera_seq, 1);
     encoded_frame_destroy(&encoded);
-    assert_null(session_next_frame(f->session, f->now_ns, &seq));
+    assert_null(session_next_frame(f->session, f->now_ns, &seq, &depth));
     assert_int_equal(f->session->delivery.pacer.asked, 0);
     assert_int_equal(f->session->stats.dropped, 1);
 }
@@ -688,7 +774,8 @@ CASE(a_refined_picture_that_is_out_of_date_is_not_sent_on)
     assert_true(ask(f, &request));
     assert_true(request.view.tier == TIER_REFINED);
     paint(f, &request, false);
-    struct encoded_frame *sending = session_next_frame(f->session, f->now_ns, &seq);
+    enum session_depth depth;
+    struct encoded_frame *sending = session_next_frame(f->session, f->now_ns, &seq, &depth);
     assert_false(session_gives_up(f->session, sending, 400000, f->now_ns));
     say(f, "{\"type\":\"camera\",\"seq\":1,\"eye\":[9,9,9],\"target\":[0,0,1]}");
     assert_false(session_gives_up(f->session, sending, 1000, f->now_ns));

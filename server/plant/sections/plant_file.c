@@ -29,6 +29,7 @@ static const struct yaml_choice start_choices[] = {
     { "shown", PLANT_START_SHOWN }, { "ghost", PLANT_START_GHOST }, { "hidden", PLANT_START_HIDDEN }, { 0 }
 };
 static const struct yaml_choice unit_choices[] = { { "m", 1 }, { "mm", 1e-3 }, { "cm", 1e-2 }, { "in", 0.0254 }, { "ft", 0.3048 }, { 0 } };
+static const struct yaml_choice reprojection_choices[] = { { "on", false }, { "off", true }, { 0 } };
 static const struct yaml_choice frame_choices[] = { { "plant", 0 }, { "asset", 1 }, { 0 } };
 static const struct yaml_choice interpolation_choices[] = {
     { "shepard", INTERPOLATION_SHEPARD }, { "paper", INTERPOLATION_PAPER }, { "harmonic", INTERPOLATION_HARMONIC },
@@ -84,6 +85,8 @@ static void read_plant(struct yaml_reader *reader, yaml_node_t *node, void *reco
                                             { "up", KEY_CHOICE, false, offsetof(struct plant, up), 0, 0, up_choices, NULL },
                                             { "view", KEY_CUSTOM, false, 0, 0, 0, NULL, read_view },
                                             { "show", KEY_CHOICE, false, offsetof(struct plant, show), 0, 0, show_choices, NULL },
+                                            { "reprojection", KEY_FLAG, false, offsetof(struct plant, no_reprojection), 0, 0,
+                                              reprojection_choices, NULL },
                                             { 0 } };
     struct plant *plant = ((struct plant_file *)record)->plant;
     struct yaml_map map;

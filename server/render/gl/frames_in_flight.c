@@ -9,7 +9,10 @@ bool frames_in_flight_init(struct frames_in_flight *frames_in_flight, struct log
     frames_in_flight->program = program_create(log, program_params(.compute = "point_visibility.comp"));
     for (int i = 0; i < FRAMES_IN_FLIGHT; i++)
         frames_in_flight->at[i].markers.program = frames_in_flight->at[i].labels.program = frames_in_flight->program;
-    return frames_in_flight->program != 0;
+    frames_in_flight->depth_program = program_create(log, program_params(.compute = "depth_cells.comp"));
+    for (int i = 0; i < FRAMES_IN_FLIGHT; i++)
+        frames_in_flight->at[i].depth.program = frames_in_flight->depth_program;
+    return frames_in_flight->program && frames_in_flight->depth_program;
 }
 
 void frames_in_flight_finish(struct frames_in_flight *frames_in_flight)
@@ -18,8 +21,10 @@ void frames_in_flight_finish(struct frames_in_flight *frames_in_flight)
         readback_finish(&frames_in_flight->at[i].readback);
         point_visibility_finish(&frames_in_flight->at[i].markers);
         point_visibility_finish(&frames_in_flight->at[i].labels);
+        depth_query_finish(&frames_in_flight->at[i].depth);
     }
     program_destroy(&frames_in_flight->program);
+    program_destroy(&frames_in_flight->depth_program);
 }
 
 struct frame_in_flight *frames_in_flight_take(struct frames_in_flight *frames_in_flight, struct log *log)

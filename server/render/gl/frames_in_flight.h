@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A fixed number of slots for frames whose results the GPU has not delivered yet: pixels, visibility of markers and of labels. With several
-   slots one frame is drawn while the pixels of another are read back. Thread: the one of the GL context. */
+/* A fixed number of slots for frames whose results the GPU has not delivered yet: pixels, visibility of markers and of labels, depth. With
+   several slots one frame is drawn while the pixels of another are read back. Thread: the one of the GL context. */
 #ifndef RENDER_GL_FRAMES_IN_FLIGHT_H
 #define RENDER_GL_FRAMES_IN_FLIGHT_H
 #include "gpu/readback.h"
+#include "render/gl/depth_query.h"
 #include "render/pick/point_visibility.h"
 
 enum { FRAMES_IN_FLIGHT = 8 };
@@ -11,14 +12,16 @@ enum { FRAMES_IN_FLIGHT = 8 };
 struct frame_in_flight {
     struct readback readback;
     struct point_visibility markers, labels;
+    struct depth_query depth;
     bool taken;
 };
 struct frames_in_flight {
-    GLuint program; /* shaders/point_visibility.comp */
+    GLuint program;       /* shaders/point_visibility.comp */
+    GLuint depth_program; /* shaders/depth_cells.comp */
     struct frame_in_flight at[FRAMES_IN_FLIGHT];
 };
 
-/* Compiles the shader program that tests points. Returns false on failure, logged. */
+/* Compiles the shader programs. Returns false on failure, logged. */
 bool frames_in_flight_init(struct frames_in_flight *frames_in_flight, struct log *log);
 void frames_in_flight_finish(struct frames_in_flight *frames_in_flight);
 /* Takes a free slot. Returns NULL if all are taken; logged. */

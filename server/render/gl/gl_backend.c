@@ -260,6 +260,7 @@ static bool submit(struct renderer *renderer, struct render_job *job)
     ghosts_draw(&backend->ghosts, &job->context);
     lines_draw_outline(&backend->lines, &job->context);
     bool good = markers_start(&in_flight->markers, &job->context) && isolines_start(&in_flight->labels, &job->context, &job->isolines) &&
+                depth_query_start(&in_flight->depth, &job->context, &renderer->light) &&
                 readback_start(&in_flight->readback, log, &own->target);
     gl_clear_errors();
     own->short_of_memory |= gl_out_of_memory_count() != shortages;
@@ -287,6 +288,7 @@ static bool end(struct renderer *renderer, struct render_job *job)
     readback_get(&in_flight->readback, field_workers(renderer->fields.field), frame->bgrx, (size_t)frame->stride_bytes);
     markers_get(&in_flight->markers, &job->context, frame);
     isolines_get(&in_flight->labels, &job->context, &job->isolines, frame);
+    frame->depth[0] = depth_query_get(&in_flight->depth);
     frame->render_ns += drawn_ns - start_ns;
     frame->readback_ns = clock_mono_ns() - drawn_ns;
     return true;

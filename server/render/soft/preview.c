@@ -95,6 +95,7 @@ static bool draw_all(struct raster *raster, const struct isoline_points *points,
     if (keep)
         raster->ids = mem_try_array((size_t)raster->pitch_px * (size_t)raster->height_px, sizeof(*raster->ids));
     raster_tiles(raster, SOFT_COLORS);
+    frame->depth[0] = raster_depth_grid(raster);
     struct visibility_buffer *buffer = raster->ids ? raster_keep(raster) : NULL;
     mem_free(raster->ids);
     raster->ids = NULL;
@@ -155,6 +156,7 @@ bool preview_draw(struct soft *soft, const struct frame_context *context, const 
     raster->out_stride_bytes = (size_t)frame->stride_bytes;
     raster_aim_cuts(raster);
     raster_aim(raster, light);
+    raster_aim_depth(raster, light);
     if (!raster_find(raster, true))
         return complain(raster);
     return draw_all(raster, points, frame, !lined && is_still(soft, context->shape));

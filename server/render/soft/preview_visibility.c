@@ -141,6 +141,7 @@ void soft_keep(struct soft *soft, const struct frame_context *context, struct vi
 {
     buffer->markers = mem_array(frame->marker_count, sizeof(*buffer->markers));
     buffer->marker_count = frame->marker_count;
+    buffer->grid = depth_grid_ref(frame->depth[0]);
     if (frame->marker_count > 0)
         memcpy(buffer->markers, frame->markers, frame->marker_count * sizeof(*buffer->markers));
     visibility_store_give(&soft->kept[context->view->tier], context->shape, buffer, visibility_buffer_bytes(buffer), forget);
@@ -150,7 +151,8 @@ bool soft_resolve_again(struct soft *soft, const struct frame_context *context, 
 {
     struct visibility_buffer *buffer = visibility_store_find(&soft->kept[context->view->tier], context->shape);
     struct frame_uniforms block;
-    if (!buffer || (context->colormap.lines && !buffer->lined) || (points->count > 0 && !buffer->depth))
+    if (!buffer || (context->colormap.lines && !buffer->lined) || (points->count > 0 && !buffer->depth) ||
+        (context->gives_depth && !buffer->grid))
         return false;
     frame_uniforms_fill(&block, context);
     const struct resolve_paint paint = { soft_colormap(soft, &context->colormap, context->view->look == LOOK_GLOSSY && !buffer->gloss),
@@ -159,6 +161,7 @@ bool soft_resolve_again(struct soft *soft, const struct frame_context *context, 
     resolve_colors(buffer, &paint, soft->workers, 0, buffer->band_count, frame);
     if (points->count > 0)
         isolines_find(context, points, buffer->depth, (size_t)buffer->width_px, frame);
+    frame->depth[0] = depth_grid_ref(buffer->grid);
     frame->markers = mem_array(buffer->marker_count, sizeof(*frame->markers));
     frame->marker_count = buffer->marker_count;
     memcpy(frame->markers, buffer->markers, buffer->marker_count * sizeof(*buffer->markers));

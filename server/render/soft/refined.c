@@ -79,6 +79,7 @@ static void aim(struct refined *refined, const struct light *light)
     const double *sun = context->light->texture_from_plant;
     double off_m = OFF_SURFACE_TEXELS * context->light->texel_m, matrix[16];
     raster_aim(raster, light);
+    raster_aim_depth(raster, light);
     for (int c = 0; c < 4; c++)
         /* removes the bias of previews, which move surfaces towards the sun against shadow acne; refined frames move surfaces along their
            normals instead */
@@ -195,6 +196,22 @@ static bool keep_depth(struct refined *refined)
     return buffer->depth != NULL;
 }
 
+static void find_cells(void *arg, size_t begin, size_t end)
+{
+    const struct raster *raster = arg;
+    int bottom = (int)end * DEPTH_CELL_PX;
+    raster_find_cells(raster, &(struct soft_rect){ 0, (int)begin * DEPTH_CELL_PX, raster->width_px - 1,
+                                                   (bottom < raster->height_px ? bottom : raster->height_px) - 1 });
+}
+
+static void give_depth(struct refined *refined, struct frame *frame)
+{
+    struct raster *raster = &refined->raster;
+    if (raster->finds_cells)
+        workers_for(raster->soft->workers, (size_t)depth_cells_along(raster->height_px), 8, find_cells, raster);
+    frame->depth[0] = raster_depth_grid(raster);
+}
+
 static bool find_ghosts(struct refined *refined, const struct frame *frame)
 {
     struct raster *raster = &refined->raster;
@@ -292,6 +309,8 @@ bool refined_step(struct refined *refined, const struct frame_context *context, 
         workers_for(workers, end - begin, 1, ink_some, &piece);
         if (done)
             markers_find(context, raster->depth, (size_t)raster->pitch_px, frame);
+        if (done)
+            give_depth(refined, frame);
         if (done && !keep_depth(refined))
             return complain(refined);
         break;
@@ -342,6 +361,6 @@ bool soft_has_refined(struct soft *soft, const struct frame_context *context)
 {
     double lines[VIEW_ALL_LINES];
     const struct visibility_buffer *buffer = visibility_store_find(&soft->kept[TIER_REFINED], context->shape);
-    return buffer && (buffer->lined || view_lines(context->view, lines) == 0) &&
+    return buffer && (buffer->grid || !context->gives_depth) && (buffer->lined || view_lines(context->view, lines) == 0) &&
            (buffer->depth || !isolines_has_arrows(context->gpu_scene->scene, context->view));
 }

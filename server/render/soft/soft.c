@@ -118,6 +118,7 @@ static size_t parts_bytes(const struct soft_parts *parts)
 size_t raster_bytes(const struct raster *raster)
 {
     size_t bytes = raster->pixel_capacity * (sizeof(*raster->depth) + sizeof(*raster->marks)) +
+                   raster->cell_capacity * sizeof(*raster->cells) +
                    raster->mesh_capacity * sizeof(*raster->meshes) + raster->pixels_capacity * sizeof(*raster->pixels) +
                    raster->found_capacity * sizeof(*raster->found);
     for (size_t i = 0; i < raster->found_capacity; i++)
@@ -160,6 +161,7 @@ void raster_finish(struct raster *raster)
     mem_free(raster->pixels);
     mem_free(raster->depth);
     mem_free(raster->marks);
+    mem_free(raster->cells);
     *raster = (struct raster){ .soft = soft };
 }
 

@@ -8,6 +8,7 @@
 #include "render/soft/parts.h"
 #include "render/soft/pixel_lists.h"
 #include "render/soft/textures.h"
+#include "render/depth_grid.h"
 #include "render/gl/frame_uniforms.h"
 #include "render/shaded_colormap.h"
 #include "render/soft/visibility_buffer.h"
@@ -159,6 +160,11 @@ struct raster { /* source and target of one frame's rasterization; its memory is
     bool has_ground;
     bool greys;                                                                /* context is drawn grey */
     float sun_from_pixel[4][4], ground_from_pixel[3][3], ray_from_pixel[3][3]; /* matrices, as columns */
+    /* cells of the depth grid; finds_cells: raster_tiles() with colours fills them in */
+    struct depth_cell *cells;
+    size_t cell_capacity;
+    bool finds_cells;
+    struct depth_lens lens;
     /* pixels over which sky elevation is interpolated: a power of two from SOFT_STRETCH_LEAST to SOFT_STRETCH_MOST; 1: computed per
        pixel */
     int stretch_px;
@@ -203,6 +209,12 @@ void refined_destroy(struct refined **refined); /* frees the refined frame and s
 size_t refined_bytes(const struct refined *refined);
 /* Steps of a frame, in the order in which they are called. */
 void raster_aim(struct raster *raster, const struct light *light); /* computes the matrices from pixels */
+/* Prepares for the depth grid, if the frame gets one; call it after raster_aim(). Without memory for the cells, the frame has no grid. */
+void raster_aim_depth(struct raster *raster, const struct light *light);
+/* Finds the cells of a rectangle whose top left corner is the corner of a cell. Runs on a worker. */
+void raster_find_cells(const struct raster *raster, const struct soft_rect *rect);
+/* Returns the depth grid of the cells, owned by the caller. NULL: the frame gets none, or out of memory. */
+struct depth_grid *raster_depth_grid(const struct raster *raster);
 /* computes the section planes in pixel coordinates; must be called before the other steps */
 void raster_aim_cuts(struct raster *raster);
 /* returns whether one of the first `planes` section planes cuts a point off; at: (x w, y w, z, w), with x and y in pixels */

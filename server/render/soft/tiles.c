@@ -271,6 +271,7 @@ static void draw_tiles(void *arg, size_t begin, size_t end)
             int right = left + TILE_WIDTH_PX < raster->width_px ? left + TILE_WIDTH_PX : raster->width_px;
             int bottom = top + TILE_HEIGHT_PX < raster->height_px ? top + TILE_HEIGHT_PX : raster->height_px;
             raster->soft->kernels->color(raster, &(struct soft_rect){ left, top, right - 1, bottom - 1 });
+            raster_find_cells(raster, &(struct soft_rect){ left, top, right - 1, bottom - 1 });
         }
     }
     mem_free(list.entries);

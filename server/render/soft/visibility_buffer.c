@@ -7,6 +7,7 @@
 
 #include "base/math/search.h"
 #include "base/mem.h"
+#include "render/depth_grid.h"
 #include "render/soft/visibility_buffer_impl.h"
 
 enum { VERTICES_AT_ONCE = 8192 };
@@ -58,6 +59,7 @@ void visibility_buffer_destroy(struct visibility_buffer **buffer_ptr)
     mem_free(buffer->plain);
     mem_free(buffer->flags);
     mem_free(buffer->markers);
+    depth_grid_unref(&buffer->grid);
     mem_free(buffer);
     *buffer_ptr = NULL;
 }

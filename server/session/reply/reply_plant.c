@@ -253,6 +253,8 @@ char *reply_welcome_text(const struct session *session, int64_t now_utc_ns)
         json_object_set_new(object, "imports", json_true());
     if (session->context->signing_key)
         json_object_set_new(object, "signing_key", json_string(session->context->signing_key));
+    if (session_gets_depth(session))
+        json_object_set_new(object, "reprojection", json_true());
     set_home(object, session->context, view->width_px, view->height_px);
     bool narrowed = session->identity.holder.views[0];
     if (narrowed)

@@ -65,6 +65,17 @@ function readFrame(bytes) {
     };
 }
 
+// Parses the header of a depth grid, with the names of PROTOCOL.md.
+function readDepth(bytes) {
+    const u32 = (at) => bytes.readUInt32LE(at), u16 = (at) => bytes.readUInt16LE(at);
+    return {
+        encoding: bytes[1], flags: u16(2), payload_bytes: u32(4), seq: u32(8), x: u16(12), y: u16(14), width: u16(16), height: u16(18),
+        full_width: u16(20), full_height: u16(22), columns: u16(24), rows: u16(26), cell_px: bytes[28], mask_side: bytes[29],
+        levels: u16(30),
+        base: bytes.readFloatLE(32), unit: bytes.readFloatLE(36), data_bytes: u32(40), payload: bytes.subarray(44), message: bytes,
+    };
+}
+
 export class PlainClient {
     // Resolves once the server accepts the handshake. options: protocol (null: none), origin, host, path, headers, acknowledge (true),
     // localAddress.
@@ -104,7 +115,8 @@ export class PlainClient {
     }
 
     constructor() {
-        Object.assign(this, { bytes: Buffer.alloc(0), parts: [], opcode: 0, texts: [], frames: [], closed: null, waiting: [], held: null });
+        Object.assign(this, { bytes: Buffer.alloc(0), parts: [], opcode: 0, texts: [], frames: [], depths: [] });
+        Object.assign(this, { closed: null, waiting: [], held: null });
     }
 
     take(chunk) {
@@ -139,6 +151,8 @@ export class PlainClient {
     onMessage(message) {
         if (this.opcode === OPCODE.text) {
             this.texts.push(JSON.parse(message.toString()));
+        } else if (message[0] === 2) {
+            this.depths.push({ ...readDepth(message), before: this.frames.length });
         } else {
             const frame = readFrame(message);
             if (frame.payload.length < frame.payload_bytes)

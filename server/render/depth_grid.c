@@ -1,0 +1,335 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Quantises the cells of a depth grid, predicts each from its neighbours, and deflates the differences. */
+#include "render/depth_grid.h"
+
+#include <math.h>
+#include <stdatomic.h>
+#include <string.h>
+#include <zlib.h>
+
+#include "base/mem.h"
+#include "render/matrix.h"
+
+enum { MASK_SIDE = 4, MASK_BYTES = MASK_SIDE * MASK_SIDE / 8, MASK_PX = DEPTH_CELL_PX / MASK_SIDE, MOST_LEVELS = 4095 };
+static const uint64_t BLOCK_BITS = 3ull | 3ull << DEPTH_CELL_PX; /* mask bits of a square of MASK_PX pixels */
+enum { ESCAPE = 255, MOST_SYMBOL_BYTES = 3 };
+/* Movement of the camera, relative to the distance of the surfaces, for which depth must be right to a fraction of a pixel: an orbit by
+   six degrees. */
+static const double MOVEMENT = 0.1;
+/* smallest shift, in pixels, by which such a movement separates the sides of a step; and of depths that differ by one code */
+static const double STEP_SHIFT_PX = 1.5, UNIT_SHIFT_PX = 0.6;
+static const double LEAST_INVERSE = 1e-5; /* ground farther away than 100 km counts as background; 1/m */
+
+/* --- from the depth buffer to metres ----------------------------------------------------------------------------------------- */
+
+/* Computes the depth of the ground as a linear function of the pixel, and the matrix from pixels to positions on the ground. */
+static void aim_at_ground(struct depth_lens *lens, const double clip_from_plant[16], const double plant_from_ground[16], int width_px,
+                          int height_px)
+{
+    double clip[16], h[3][3], depth[3], determinant = 0, inverse[3][3];
+    matrix_multiply(clip_from_plant, plant_from_ground, clip);
+    for (int c = 0; c < 3; c++) { /* h: maps (u, v, 1) on the ground to (x w, y w, w), with x and y in pixels; depth: to depth w */
+        const double *column = &clip[c == 2 ? 12 : 4 * c];
+        h[0][c] = 0.5 * width_px * (column[3] + column[0]);
+        h[1][c] = 0.5 * height_px * (column[3] - column[1]);
+        h[2][c] = column[3];
+        depth[c] = column[2];
+    }
+    for (int c = 0; c < 3; c++)
+        for (int r = 0; r < 3; r++) {
+            int a = (c + 1) % 3, b = (c + 2) % 3, p = (r + 1) % 3, q = (r + 2) % 3;
+            inverse[r][c] = h[a][p] * h[b][q] - h[a][q] * h[b][p];
+        }
+    for (int c = 0; c < 3; c++)
+        determinant += h[0][c] * inverse[c][0];
+    lens->has_ground = fabs(determinant) > 1e-30;
+    for (int c = 0; c < 3 && lens->has_ground; c++) {
+        lens->ground[c] = 0;
+        for (int r = 0; r < 3; r++) {
+            lens->ground_from_pixel[c][r] = inverse[r][c] / determinant;
+            lens->ground[c] += depth[r] * inverse[r][c] / determinant;
+        }
+    }
+}
+
+void depth_lens_init(struct depth_lens *lens, const struct view_constants *constants, const double *plant_from_ground, int width_px,
+                     int height_px)
+{
+    const double *m = constants->clip_from_eye, *back = constants->back;
+    *lens = (struct depth_lens){ .orthographic = constants->pixel_per_metre > 0 };
+    for (int c = 0; c < 3; c++)
+        lens->offset += m[4 * c + 2] * (lens->orthographic ? -back[c] : m[4 * c + 3]);
+    lens->factor = m[14];
+    if (lens->orthographic) {
+        lens->factor = lens->offset;
+        lens->offset = m[14];
+        lens->least_step = (float)(fabs(lens->factor) * STEP_SHIFT_PX / MOVEMENT / constants->pixel_per_metre);
+    } else {
+        lens->step = (float)(STEP_SHIFT_PX / MOVEMENT / constants->pixel_per_radian);
+        lens->least_step = (float)(-lens->offset * STEP_SHIFT_PX / MOVEMENT / constants->pixel_per_radian);
+    }
+    if (plant_from_ground)
+        aim_at_ground(lens, constants->clip_from_plant, plant_from_ground, width_px, height_px);
+}
+
+/* Returns the depth of the ground at a pixel; -INFINITY: no ground is seen there, or it is too far away to seem to move. */
+static float ground_at(const struct depth_lens *lens, double x, double y)
+{
+    double at[3];
+    if (!lens->has_ground)
+        return -INFINITY;
+    for (int r = 0; r < 3; r++)
+        at[r] = lens->ground_from_pixel[0][r] * x + lens->ground_from_pixel[1][r] * y + lens->ground_from_pixel[2][r];
+    if (at[2] <= 0 || at[0] < 0 || at[1] < 0 || at[0] > at[2] || at[1] > at[2])
+        return -INFINITY;
+    double depth = lens->ground[0] * x + lens->ground[1] * y + lens->ground[2];
+    return lens->orthographic || (depth - lens->offset) / lens->factor > LEAST_INVERSE ? (float)depth : -INFINITY;
+}
+
+/* --- codes ------------------------------------------------------------------------------------------------------------------- */
+
+struct coder {
+    const struct depth_cell *cells;
+    const struct depth_lens *lens;
+    int width_px, height_px, columns, rows;
+    float *nears, *fars; /* depths; -INFINITY: background */
+    uint8_t *swapped;    /* 1: the ground, which the mask leaves out, is nearer than the surface */
+    uint16_t *near, *far;
+    uint8_t *data;
+    size_t data_bytes;
+    float low, unit; /* depth of the code 1, and difference between two codes */
+    int levels;
+};
+
+static bool coder_init(struct coder *coder)
+{
+    size_t count = (size_t)coder->columns * (size_t)coder->rows;
+    coder->nears = mem_try_array(2 * count, sizeof(*coder->nears));
+    coder->near = mem_try_array(2 * count, sizeof(*coder->near));
+    coder->swapped = mem_try_array(count, 1);
+    coder->data = mem_try_array(count, 1 + 2 * MOST_SYMBOL_BYTES + MASK_BYTES);
+    coder->fars = coder->nears + count;
+    coder->far = coder->near + count;
+    return coder->nears && coder->near && coder->swapped && coder->data;
+}
+
+static void coder_finish(struct coder *coder)
+{
+    mem_free(coder->nears);
+    mem_free(coder->near);
+    mem_free(coder->swapped);
+    mem_free(coder->data);
+}
+
+/* Returns the middle of the pixels of a row or column of cells that lie within the frame. */
+static double middle(int cell, int px)
+{
+    int begin = cell * DEPTH_CELL_PX, end = begin + DEPTH_CELL_PX;
+    return 0.5 * (begin + (end < px ? end : px));
+}
+
+/* Puts the ground behind surfaces, and finds the range of depths. */
+static void find_depths(struct coder *coder)
+{
+    float low = INFINITY, high = -INFINITY;
+    double sum = 0;
+    size_t i = 0, count = 0;
+    for (int row = 0; row < coder->rows; row++)
+        for (int column = 0; column < coder->columns; column++, i++) {
+            const struct depth_cell *cell = &coder->cells[i];
+            float near = cell->near, far = cell->far;
+            if (far <= 0) {
+                float ground = ground_at(coder->lens, middle(column, coder->width_px), middle(row, coder->height_px));
+                far = ground;
+                near = near > 0 ? near : ground;
+            }
+            coder->swapped[i] = far > near;
+            coder->nears[i] = far > near ? far : near;
+            coder->fars[i] = far > near ? near : far;
+            if (coder->nears[i] == -INFINITY)
+                continue;
+            high = coder->nears[i] > high ? coder->nears[i] : high;
+            near = coder->fars[i] > -INFINITY ? coder->fars[i] : coder->nears[i];
+            low = near < low ? near : low;
+            sum += coder->nears[i];
+            count++;
+        }
+    coder->low = count ? low : 0;
+    double mean = count ? sum / (double)count : 0, unit = coder->lens->least_step + coder->lens->step * mean;
+    unit *= UNIT_SHIFT_PX / STEP_SHIFT_PX;
+    double levels = count && high > low && unit > 0 ? ceil((high - low) / unit) + 1 : 1;
+    coder->levels = levels > MOST_LEVELS ? MOST_LEVELS : (int)levels;
+    coder->unit = coder->levels > 1 ? (high - low) / (float)(coder->levels - 1) : 1;
+}
+
+static void find_codes(struct coder *coder)
+{
+    size_t count = 2 * (size_t)coder->columns * (size_t)coder->rows;
+    float low = coder->low, per_unit = 1 / coder->unit, most = (float)coder->levels;
+    for (size_t i = 0; i < count; i++) {
+        float depth = coder->nears[i], code = depth == -INFINITY ? 0 : (depth - low) * per_unit + 1.5f;
+        coder->near[i] = (uint16_t)(code > most ? most : code);
+    }
+}
+
+/* --- bytes ------------------------------------------------------------------------------------------------------------------- */
+
+static inline uint8_t *put_symbol(uint8_t *out, int code, int predicted)
+{
+    int by = code - predicted;
+    unsigned symbol = by >= 0 ? 2 * (unsigned)by : 2 * (unsigned)-by - 1;
+    if (symbol < ESCAPE) {
+        *out++ = (uint8_t)symbol;
+        return out;
+    }
+    out[0] = ESCAPE;
+    out[1] = (uint8_t)code;
+    out[2] = (uint8_t)(code >> 8);
+    return out + MOST_SYMBOL_BYTES;
+}
+
+static uint8_t *put_divided(const struct coder *coder, uint8_t *out)
+{
+    size_t count = (size_t)coder->columns * (size_t)coder->rows, bytes = (count + 7) / 8;
+    memset(out, 0, bytes);
+    for (size_t i = 0; i < count; i++)
+        out[i / 8] |= (uint8_t)((coder->near[i] != coder->far[i]) << i % 8);
+    return out + bytes;
+}
+
+static uint8_t *put_near(const struct coder *coder, uint8_t *out)
+{
+    int columns = coder->columns;
+    for (int row = 0; row < coder->rows; row++) {
+        const uint16_t *here = coder->near + (size_t)row * (size_t)columns, *above = row ? here - columns : NULL;
+        for (int c = 0; c < columns; c++) {
+            int left = c ? here[c - 1] : 0, up = above ? above[c] : 0, corner = c && above ? above[c - 1] : 0, predicted = left ? left : up;
+            if (left && up && corner) {
+                predicted = left + up - corner;
+                predicted = predicted < 1 ? 1 : predicted > coder->levels ? coder->levels : predicted;
+            }
+            out = put_symbol(out, here[c], predicted);
+        }
+    }
+    return out;
+}
+
+static uint8_t *put_far(const struct coder *coder, uint8_t *out)
+{
+    size_t i = 0;
+    for (int row = 0; row < coder->rows; row++)
+        for (int c = 0; c < coder->columns; c++, i++)
+            if (coder->near[i] != coder->far[i])
+                out = put_symbol(out, coder->far[i], c ? coder->far[i - 1] : 0);
+    return out;
+}
+
+/* Returns a cell's mask in MASK_SIDE x MASK_SIDE bits: 1 where at least half of the pixels are near. */
+static unsigned coarse_mask(uint64_t mask)
+{
+    unsigned out = 0;
+    for (int y = 0; y < MASK_SIDE; y++)
+        for (int x = 0; x < MASK_SIDE; x++) {
+            uint64_t block = mask >> (y * MASK_PX * DEPTH_CELL_PX + x * MASK_PX);
+            int pixels = __builtin_popcountll(block & BLOCK_BITS);
+            out |= (unsigned)(pixels >= MASK_PX) << (y * MASK_SIDE + x);
+        }
+    return out;
+}
+
+static uint8_t *put_masks(const struct coder *coder, uint8_t *out)
+{
+    size_t count = (size_t)coder->columns * (size_t)coder->rows;
+    for (size_t i = 0; i < count; i++) {
+        if (coder->near[i] == coder->far[i])
+            continue;
+        unsigned mask = coarse_mask(coder->swapped[i] ? ~coder->cells[i].mask : coder->cells[i].mask);
+        *out++ = (uint8_t)mask;
+        *out++ = (uint8_t)(mask >> 8);
+    }
+    return out;
+}
+
+static uint8_t *deflated(const uint8_t *data, size_t count, size_t *bytes)
+{
+    enum { RAW = -15, MEMORY = 8, LEVEL = 1 };
+    z_stream stream = { .next_in = (uint8_t *)(uintptr_t)data, .avail_in = (uInt)count };
+    if (deflateInit2(&stream, LEVEL, Z_DEFLATED, RAW, MEMORY, Z_RLE) != Z_OK)
+        return NULL;
+    size_t most = deflateBound(&stream, count);
+    uint8_t *out = mem_try_array(most, 1);
+    stream.next_out = out;
+    stream.avail_out = (uInt)most;
+    bool good = out && deflate(&stream, Z_FINISH) == Z_STREAM_END;
+    *bytes = stream.total_out;
+    deflateEnd(&stream);
+    if (!good) {
+        mem_free(out);
+        return NULL;
+    }
+    return out;
+}
+
+static struct depth_grid *make(struct coder *coder)
+{
+    find_depths(coder);
+    find_codes(coder);
+    uint8_t *end = put_masks(coder, put_far(coder, put_near(coder, put_divided(coder, coder->data))));
+    size_t data_bytes = (size_t)(end - coder->data), bytes;
+    uint8_t *payload = deflated(coder->data, data_bytes, &bytes);
+    if (!payload)
+        return NULL;
+    struct depth_grid *grid = mem_new(sizeof(*grid));
+    atomic_init(&grid->refs, 1);
+    grid->payload = payload;
+    grid->wire = (struct wire_depth){ .flags = coder->lens->orthographic ? WIRE_DEPTH_ORTHOGRAPHIC : 0,
+                                      .payload_bytes = (uint32_t)bytes,
+                                      .width_px = (uint16_t)coder->width_px,
+                                      .height_px = (uint16_t)coder->height_px,
+                                      .columns = (uint16_t)coder->columns,
+                                      .rows = (uint16_t)coder->rows,
+                                      .cell_px = DEPTH_CELL_PX,
+                                      .mask_side = MASK_SIDE,
+                                      .levels = (uint16_t)coder->levels,
+                                      .base = (float)((coder->low - coder->lens->offset) / coder->lens->factor),
+                                      .unit = (float)(coder->unit / coder->lens->factor),
+                                      .data_bytes = (uint32_t)data_bytes };
+    return grid;
+}
+
+struct depth_grid *depth_grid_create(const struct depth_cell *cells, const struct depth_lens *lens, int width_px, int height_px)
+{
+    struct coder coder = { .cells = cells,
+                           .lens = lens,
+                           .width_px = width_px,
+                           .height_px = height_px,
+                           .columns = depth_cells_along(width_px),
+                           .rows = depth_cells_along(height_px) };
+    struct depth_grid *grid = coder_init(&coder) ? make(&coder) : NULL;
+    coder_finish(&coder);
+    return grid;
+}
+
+struct depth_grid *depth_grid_ref(struct depth_grid *grid)
+{
+    if (grid)
+        atomic_fetch_add_explicit(&grid->refs, 1, memory_order_relaxed);
+    return grid;
+}
+
+void depth_grid_unref(struct depth_grid **grid_ptr)
+{
+    struct depth_grid *grid = *grid_ptr;
+    *grid_ptr = NULL;
+    if (!grid || atomic_fetch_sub_explicit(&grid->refs, 1, memory_order_acq_rel) != 1)
+        return;
+    mem_free(grid->payload);
+    mem_free(grid);
+}
+
+bool depth_grid_equal(const struct depth_grid *a, const struct depth_grid *b)
+{
+    if (a == b || !a || !b)
+        return a == b;
+    return !memcmp(&a->wire, &b->wire, sizeof(a->wire)) && !memcmp(a->payload, b->payload, a->wire.payload_bytes);
+}

@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Depth grid: coarse depth of a frame, with which a client shows the frame from another camera (PROTOCOL.md, Depth grid). Immutable;
+   reference-counted; may be released on any thread. */
+#ifndef RENDER_DEPTH_GRID_H
+#define RENDER_DEPTH_GRID_H
+#include "protocol/wire.h"
+#include "render/plan/view_constants.h"
+
+enum { DEPTH_CELL_PX = 8 };
+
+/* A square of pixels. Depths are those of the depth buffer: above 0, larger is nearer; 0: background. */
+struct depth_cell {
+    /* near: depth at the centre of the cell, or, if a step in depth divides the cell, before the step; far: depth behind the step, equal to
+       `near` if there is no step */
+    float near, far;
+    uint64_t mask; /* one bit per pixel, row by row: 1: before the step */
+};
+
+/* Depth of a point as a function of the depth buffer: (depth - offset) / factor is 1 / distance in a perspective view, and the distance in
+   an orthographic one, in metres along the direction of view. */
+struct depth_lens {
+    bool orthographic;
+    double offset, factor;
+    /* A difference in depth counts as a step if it exceeds step * depth + least_step. */
+    float step, least_step;
+    /* the ground, onto which shadows fall: its depth at the pixel (x, y) is ground[0] x + ground[1] y + ground[2] */
+    bool has_ground;
+    double ground[3], ground_from_pixel[3][3]; /* ground_from_pixel: matrix, column by column, to (u s, v s, s); u, v: 0..1 on the ground */
+};
+
+struct depth_grid {
+    _Atomic int refs;
+    struct wire_depth wire; /* header without seq and without the position in the picture */
+    uint8_t *payload;
+};
+
+static inline int depth_cells_along(int px)
+{
+    return (px + DEPTH_CELL_PX - 1) / DEPTH_CELL_PX;
+}
+/* Fills in the lens of a view. plant_from_ground: matrix from positions on the ground, 0..1 in x and y; NULL: no ground is seen. */
+void depth_lens_init(struct depth_lens *lens, const struct view_constants *constants, const double *plant_from_ground, int width_px,
+                     int height_px);
+/* Encodes the cells of a frame, row by row. Returns NULL when out of memory. The caller owns the grid (depth_grid_unref). */
+struct depth_grid *depth_grid_create(const struct depth_cell *cells, const struct depth_lens *lens, int width_px, int height_px);
+struct depth_grid *depth_grid_ref(struct depth_grid *grid); /* accepts NULL */
+void depth_grid_unref(struct depth_grid **grid);            /* accepts a pointer to NULL */
+/* Returns whether a client that has the grid `a` needs no other for `b`; both may be NULL. */
+bool depth_grid_equal(const struct depth_grid *a, const struct depth_grid *b);
+
+#endif

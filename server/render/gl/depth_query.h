@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Finds the cells of a frame's depth grid on the GPU. Thread: the one of the GL context. */
+#ifndef RENDER_GL_DEPTH_QUERY_H
+#define RENDER_GL_DEPTH_QUERY_H
+#include "render/depth_grid.h"
+#include "render/frame_context.h"
+
+struct depth_query {
+    GLuint program; /* program of shaders/depth_cells.comp, owned by the caller; zero-initialise all other members */
+    GLuint buffer;
+    const struct depth_cell *cells; /* memory of the GPU mapped into this process */
+    size_t capacity;
+    struct depth_lens lens;
+    int width_px, height_px; /* size of the frame; 0: the frame gets no depth grid */
+};
+
+/* Starts to find the cells, if the frame gets a grid, after the frame is resolved; the previous frame that used the query must be complete.
+   Returns false on a GL error, logged. */
+bool depth_query_start(struct depth_query *query, const struct frame_context *context, const struct light *light);
+/* Returns the grid once the GPU is done, owned by the caller. NULL: the frame gets none, or out of memory. */
+struct depth_grid *depth_query_get(const struct depth_query *query);
+void depth_query_finish(struct depth_query *query);
+
+#endif

@@ -1,0 +1,108 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Finds nearest and farthest depth of each cell, and the pixels on both sides of a step. */
+#include "render/soft/depth_cells.h"
+
+#include <math.h>
+
+#include "render/soft/lanes.h"
+
+/* A cell is divided if its depths leave a gap of this part of their range in its middle. On a plane, depths lie closer. */
+static const float LEAST_GAP = 0.25f;
+
+SOFT_INLINE float least_of_all(lanes x)
+{
+    float least = x[0];
+    for (int i = 1; i < LANES; i++)
+        least = x[i] < least ? x[i] : least;
+    return least;
+}
+
+SOFT_INLINE float most_of_all(lanes x)
+{
+    float most = x[0];
+    for (int i = 1; i < LANES; i++)
+        most = x[i] > most ? x[i] : most;
+    return most;
+}
+
+SOFT_INLINE lanes row_at(const float *depth, size_t pitch_px, int row)
+{
+    return *(const lanes *)(depth + (size_t)row * pitch_px);
+}
+
+/* Divides a cell with depths from `low` to `high` between the middle of the range, or between surface and background. */
+SOFT_INLINE void divide(const float *depth, size_t pitch_px, float low, float high, struct depth_cell *cell)
+{
+    float between = low > 0 ? 0.5f * (low + high) : 0;
+    lanes zero = { 0 }, nearest_behind = zero, farthest_before = zero + high;
+    uint64_t mask = 0;
+    for (int row = 0; row < DEPTH_CELL_PX; row++) {
+        lanes here = row_at(depth, pitch_px, row);
+        lanes_int before = here > between;
+        nearest_behind = lanes_most(nearest_behind, lanes_choose(before, zero, here));
+        farthest_before = lanes_least(farthest_before, lanes_choose(before, here, zero + high));
+        mask |= (uint64_t)lanes_bits(before) << (row * DEPTH_CELL_PX);
+    }
+    float behind = most_of_all(nearest_behind), before = least_of_all(farthest_before);
+    if (low > 0 && before - behind < LEAST_GAP * (high - low))
+        return;
+    *cell = (struct depth_cell){ 0.5f * (before + high), 0.5f * (low + behind), mask };
+}
+
+SOFT_INLINE void find_cell(const struct depth_lens *lens, const float *depth, size_t pitch_px, struct depth_cell *cell)
+{
+    lanes least = row_at(depth, pitch_px, 0), most = least;
+    for (int row = 1; row < DEPTH_CELL_PX; row++) {
+        lanes here = row_at(depth, pitch_px, row);
+        least = lanes_least(least, here);
+        most = lanes_most(most, here);
+    }
+    float low = least_of_all(least), high = most_of_all(most), middle = 0.5f * (low + high);
+    *cell = (struct depth_cell){ middle, middle, 0 };
+    if (high > 0 && (low <= 0 || high - low > lens->step * middle + lens->least_step))
+        divide(depth, pitch_px, low, high, cell);
+}
+
+/* Finds a cell that reaches beyond the frame: repeats the pixels at the edge. */
+static void find_edge_cell(const struct depth_source *source, int row, int column, struct depth_cell *cell)
+{
+    float depth[DEPTH_CELL_PX * DEPTH_CELL_PX];
+    for (int i = 0; i < DEPTH_CELL_PX * DEPTH_CELL_PX; i++) {
+        int x = column * DEPTH_CELL_PX + i % DEPTH_CELL_PX, y = row * DEPTH_CELL_PX + i / DEPTH_CELL_PX;
+        x = x < source->width_px ? x : source->width_px - 1;
+        y = y < source->height_px ? y : source->height_px - 1;
+        depth[i] = source->depth[(size_t)y * source->pitch_px + (size_t)x];
+    }
+    find_cell(source->lens, depth, DEPTH_CELL_PX, cell);
+}
+
+SOFT_INLINE void find_rows(const struct depth_source *source, int first_row, int end_row, int first_column, int end_column,
+                           struct depth_cell *cells)
+{
+    int columns = depth_cells_along(source->width_px), whole_columns = source->width_px / DEPTH_CELL_PX;
+    int whole_rows = source->height_px / DEPTH_CELL_PX;
+    for (int row = first_row; row < end_row; row++) {
+        struct depth_cell *out = cells + (size_t)row * (size_t)columns;
+        const float *depth = source->depth + (size_t)row * DEPTH_CELL_PX * source->pitch_px;
+        for (int column = first_column; column < end_column; column++)
+            if (row < whole_rows && column < whole_columns)
+                find_cell(source->lens, depth + (size_t)column * DEPTH_CELL_PX, source->pitch_px, &out[column]);
+            else
+                find_edge_cell(source, row, column, &out[column]);
+    }
+}
+
+SIMD_AVX2 static void find_rows_avx2(const struct depth_source *source, int first_row, int end_row, int first_column, int end_column,
+                                     struct depth_cell *cells)
+{
+    find_rows(source, first_row, end_row, first_column, end_column, cells);
+}
+
+void depth_cells_find(const struct depth_source *source, int first_row, int end_row, int first_column, int end_column,
+                      struct depth_cell *cells)
+{
+    if (simd_has_avx2())
+        find_rows_avx2(source, first_row, end_row, first_column, end_column, cells);
+    else
+        find_rows(source, first_row, end_row, first_column, end_column, cells);
+}

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Reduces a depth buffer to the cells of a depth grid, one per invocation, as server/render/soft/depth_cells.c does.
+layout(local_size_x = 64) in;
+struct Cell {
+    float near, far;
+    uint upper, lower; // bits of the mask
+};
+layout(std430, binding = 0) buffer Cells { Cell cells[]; };
+layout(location = 0) uniform ivec2 grid; // columns and rows
+layout(location = 1) uniform vec2 steps; // a difference of depth counts as a step above x * depth + y
+layout(binding = 0) uniform sampler2D depth;
+const int SIDE = 8;
+const float LEAST_GAP = 0.25;
+
+float depth_at(ivec2 corner, int i)
+{
+    return texelFetch(depth, min(corner + ivec2(i % SIDE, i / SIDE), textureSize(depth, 0) - 1), 0).r;
+}
+
+void main()
+{
+    int number = int(gl_GlobalInvocationID.x);
+    if (number >= grid.x * grid.y)
+        return;
+    ivec2 corner = SIDE * ivec2(number % grid.x, number / grid.x);
+    float low = 1.0, high = 0.0;
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        float here = depth_at(corner, i);
+        low = min(low, here);
+        high = max(high, here);
+    }
+    float middle = 0.5 * (low + high), border = low > 0.0 ? middle : 0.0, behind = 0.0, before = high;
+    cells[number] = Cell(middle, middle, 0u, 0u);
+    if (high == 0.0 || (low > 0.0 && high - low <= steps.x * middle + steps.y))
+        return;
+    uint mask[2] = uint[2](0u, 0u);
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        float here = depth_at(corner, i);
+        if (here > border) {
+            before = min(before, here);
+            mask[i / 32] |= 1u << (i % 32);
+        } else {
+            behind = max(behind, here);
+        }
+    }
+    if (low <= 0.0 || before - behind >= LEAST_GAP * (high - low))
+        cells[number] = Cell(0.5 * (before + high), 0.5 * (low + behind), mask[0], mask[1]);
+}

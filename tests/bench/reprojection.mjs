@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Compares pictures that the page draws from another camera with true pictures of that camera: similarity, pixels that differ, pixels that
+// were not yet drawn, and values read back from the colours. Uses the page's own modules; only the rasterizer is written here, in place of
+// WebGL. usage: build/release/tests/bench/reprojection_bench FOLDER; node tests/bench/reprojection.mjs FOLDER
+import { readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { deflateSync, inflateRawSync } from 'node:zlib';
+
+const WEB = process.env.PLANTCAST_WEB ?? join(import.meta.dirname, '../../clients/web');
+const { readGrid, readHeader } = await import(join(WEB, 'core/depth_grid.js'));
+const { FLOATS, meshOf, warpMatrix } = await import(join(WEB, 'core/warp_mesh.js'));
+
+const folder = process.argv[2];
+const CASES = ['orbit_1', 'orbit_3', 'orbit_6', 'nearer_5', 'nearer_10', 'nearer_20'];
+const OFF = 16;          // difference of a colour channel, of 255, from which a pixel counts as different
+const NEAREST = 0.05;    // as in app/viewport/warp.js
+const MOST_ERROR = 0.03; // of the range, for values
+const UNDRAWN = 200;     // grey of pixels that the first picture does not show
+
+const load = (name) => ({
+    ...JSON.parse(readFileSync(join(folder, `${name}.json`), 'utf8')),
+    pixels: readFileSync(join(folder, `${name}.bgrx`)), depth: readFileSync(join(folder, `${name}.depth`)),
+});
+
+// Draws a mesh from another camera. Returns for each pixel the index of the pixel of the first picture that it shows; -1: none.
+function rasterize({ vertices, indices }, matrix, grid, width, height) {
+    const shown = new Int32Array(width * height).fill(-1), depths = new Float64Array(width * height).fill(Infinity);
+    const count = vertices.length / FLOATS, clip = new Float64Array(count * 4);
+    for (let i = 0; i < count; i++)
+        for (let row = 0; row < 4; row++)
+            clip[4 * i + row] = matrix[row] * vertices[FLOATS * i] + matrix[4 + row] * vertices[FLOATS * i + 1]
+                + matrix[8 + row] * vertices[FLOATS * i + 2] + matrix[12 + row];
+    const bit = grid.cellPx / grid.maskSide, wide = grid.columns * grid.maskSide;
+    for (let t = 0; t < indices.length; t += 3) {
+        const corners = [0, 1, 2].map((k) => {
+            const i = indices[t + k], w = clip[4 * i + 3];
+            return { x: (clip[4 * i] / w + 1) * width / 2, y: (1 - clip[4 * i + 1] / w) * height / 2, z: clip[4 * i + 2] / w, w,
+                behind: !(w > 0) || clip[4 * i + 2] < -w, u: vertices[FLOATS * i], v: vertices[FLOATS * i + 1] };
+        });
+        const [a, b, c] = corners, area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x), kind = vertices[FLOATS * indices[t] + 3];
+        if (!(area < 0) || corners.some(({ behind }) => behind)) // the page culls back faces
+            continue;
+        const from = (...at) => Math.max(0, Math.ceil(Math.min(...at) - 0.5));
+        const to = (most, ...at) => Math.min(most - 1, Math.floor(Math.max(...at) - 0.5));
+        const left = from(a.x, b.x, c.x), right = to(width, a.x, b.x, c.x), top = from(a.y, b.y, c.y), bottom = to(height, a.y, b.y, c.y);
+        for (let y = top; y <= bottom; y++)
+            for (let x = left; x <= right; x++) {
+                const px = x + 0.5, py = y + 0.5;
+                const p = ((b.x - px) * (c.y - py) - (b.y - py) * (c.x - px)) / area;
+                const q = ((c.x - px) * (a.y - py) - (c.y - py) * (a.x - px)) / area;
+                const r = 1 - p - q, z = p * a.z + q * b.z + r * c.z, at = y * width + x;
+                if (p < 0 || q < 0 || r < 0 || z > depths[at] || z > 1)
+                    continue;
+                const over = p / a.w + q / b.w + r / c.w;
+                const u = (p * a.u / a.w + q * b.u / b.w + r * c.u / c.w) / over;
+                const v = (p * a.v / a.w + q * b.v / b.w + r * c.v / c.w) / over;
+                const near = grid.masks[Math.floor(v / bit) * wide + Math.floor(u / bit)] > 127;
+                if (kind > 0.5 && near !== kind < 1.5)
+                    continue;
+                depths[at] = z;
+                shown[at] = Math.min(height - 1, Math.max(0, Math.floor(v))) * width + Math.min(width - 1, Math.max(0, Math.floor(u)));
+            }
+    }
+    return shown;
+}
+
+const luma = (pixels, i) => 0.114 * pixels[4 * i] + 0.587 * pixels[4 * i + 1] + 0.299 * pixels[4 * i + 2];
+
+// Mean structural similarity (Wang et al., 2004) in windows of 8 x 8 pixels, 4 pixels apart.
+function similarity(a, b, width, height) {
+    const C1 = (0.01 * 255) ** 2, C2 = (0.03 * 255) ** 2, x = new Float64Array(width * height).map((_, i) => luma(a, i));
+    const y = new Float64Array(width * height).map((_, i) => luma(b, i));
+    let sum = 0, count = 0;
+    for (let top = 0; top + 8 <= height; top += 4)
+        for (let left = 0; left + 8 <= width; left += 4) {
+            let sx = 0, sy = 0, xx = 0, yy = 0, xy = 0;
+            for (let i = 0; i < 64; i++) {
+                const at = (top + (i >> 3)) * width + left + (i & 7), p = x[at], q = y[at];
+                sx += p; sy += q; xx += p * p; yy += q * q; xy += p * q;
+            }
+            const mx = sx / 64, my = sy / 64, vx = xx / 64 - mx * mx, vy = yy / 64 - my * my, both = xy / 64 - mx * my;
+            sum += (2 * mx * my + C1) * (2 * both + C2) / ((mx * mx + my * my + C1) * (vx + vy + C2));
+            count++;
+        }
+    return sum / count;
+}
+
+const differs = (a, b, i) => [0, 1, 2].some((c) => Math.abs(a[4 * i + c] - b[4 * i + c]) > OFF);
+
+function partOff(a, b, count) {
+    let off = 0;
+    for (let i = 0; i < count; i++)
+        off += differs(a, b, i) ? 1 : 0;
+    return off / count;
+}
+
+function warped(first, shown) {
+    const out = Buffer.alloc(first.pixels.length, UNDRAWN);
+    for (let i = 0; i < shown.length; i++)
+        if (shown[i] >= 0)
+            first.pixels.copy(out, 4 * i, 4 * shown[i], 4 * shown[i] + 4);
+    return out;
+}
+
+function movedPicture(first, second) {
+    const header = readHeader(first.depth), grid = readGrid(header, inflateRawSync(header.payload)), mesh = meshOf(grid, first);
+    const matrix = warpMatrix(grid, first, second, NEAREST / Math.abs(grid.base + grid.levels * grid.unit));
+    const shown = rasterize(mesh, matrix, grid, first.width, first.height);
+    return { shown, pixels: warped(first, shown) };
+}
+
+// Position of a colour of the flat look in the colour map; -1: the colour is not in the map.
+function reader(map) {
+    const places = new Map();
+    for (let i = 0; i < 256; i++)
+        places.set(map[3 * i] | map[3 * i + 1] << 8 | map[3 * i + 2] << 16, i);
+    return (pixels, i) => places.get(pixels[4 * i + 2] | pixels[4 * i + 1] << 8 | pixels[4 * i] << 16) ?? -1;
+}
+
+// Part of the warped pixels with a colour of the map whose value is that of the true picture.
+function partTrue(moved, second, read) {
+    let right = 0, all = 0;
+    for (let i = 0; i < moved.shown.length; i++) {
+        const seen = moved.shown[i] < 0 ? -1 : read(moved.pixels, i);
+        if (seen < 0)
+            continue;
+        const is = read(second.pixels, i);
+        right += is >= 0 && Math.abs(seen - is) <= MOST_ERROR * 255 ? 1 : 0;
+        all++;
+    }
+    return right / all;
+}
+
+function crc(bytes) {
+    let value = ~0;
+    for (const byte of bytes) {
+        value ^= byte;
+        for (let k = 0; k < 8; k++)
+            value = value & 1 ? value >>> 1 ^ 0xedb88320 : value >>> 1;
+    }
+    return ~value >>> 0;
+}
+
+function png(pixels, width, height) {
+    const rows = Buffer.alloc(height * (3 * width + 1));
+    for (let y = 0; y < height; y++)
+        for (let x = 0; x < width; x++)
+            for (let c = 0; c < 3; c++)
+                rows[y * (3 * width + 1) + 1 + 3 * x + c] = pixels[4 * (y * width + x) + 2 - c];
+    const chunk = (type, data) => {
+        const body = Buffer.concat([Buffer.from(type), data]), out = Buffer.alloc(body.length + 8);
+        out.writeUInt32BE(data.length);
+        body.copy(out, 4);
+        out.writeUInt32BE(crc(body), body.length + 4);
+        return out;
+    };
+    const head = Buffer.from([0, 0, 0, 0, 0, 0, 0, 0, 8, 2, 0, 0, 0]);
+    head.writeUInt32BE(width);
+    head.writeUInt32BE(height, 4);
+    return Buffer.concat([Buffer.from('\x89PNG\r\n\x1a\n', 'latin1'), chunk('IHDR', head), chunk('IDAT', deflateSync(rows)),
+        chunk('IEND', Buffer.alloc(0))]);
+}
+
+const read = reader(readFileSync(join(folder, 'colours.rgb')));
+const first = load('plain_first'), flat = load('flat_first'), { width, height } = first;
+console.log('case       | old picture: SSIM, off | warped: SSIM, off, off where drawn, not yet drawn | values right');
+for (const name of CASES) {
+    const second = load(`plain_${name}`), moved = movedPicture(first, second), values = load(`flat_${name}`);
+    const undrawn = moved.shown.filter((at) => at < 0).length / moved.shown.length;
+    let off = 0;
+    for (let i = 0; i < moved.shown.length; i++)
+        off += moved.shown[i] >= 0 && differs(moved.pixels, second.pixels, i) ? 1 : 0;
+    const percent = (part) => `${(100 * part).toFixed(1)} %`.padStart(7);
+    const like = (pixels) => similarity(pixels, second.pixels, width, height).toFixed(3);
+    const all = (pixels) => percent(partOff(pixels, second.pixels, width * height));
+    console.log(`${name.padEnd(10)} | ${like(first.pixels)} ${all(first.pixels)} | ${like(moved.pixels)} ${all(moved.pixels)} ` +
+        `${percent(off / moved.shown.length)} ${percent(undrawn)} | ${percent(partTrue(movedPicture(flat, values), values, read))}`);
+    writeFileSync(join(folder, `${name}_warped.png`), png(moved.pixels, width, height));
+    writeFileSync(join(folder, `${name}_true.png`), png(second.pixels, width, height));
+}
+writeFileSync(join(folder, 'first.png'), png(first.pixels, width, height));

@@ -1,0 +1,250 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Depth grids: cells against a plain search, also at sizes that are no multiple of a cell, and codes after a round trip. */
+#include "tests/support/test.h"
+
+#include <math.h>
+
+#include "base/mem.h"
+#include "render/soft/depth_cells.h"
+#include "tests/support/depth_reader.h"
+#include "tests/support/sweep.h"
+
+static const struct depth_lens perspective = { .offset = -0.01, .factor = 2, .step = 0.01f, .least_step = 1e-4f };
+
+struct depth_picture {
+    int width_px, height_px;
+    size_t pitch_px;
+    float *depth;
+};
+
+static unsigned seed = 1;
+
+static double random_part(void)
+{
+    seed = seed * 1664525u + 1013904223u;
+    return (seed >> 8) / 16777216.0;
+}
+
+static struct depth_picture picture_of(int width_px, int height_px)
+{
+    struct depth_picture picture = { width_px, height_px, (size_t)(width_px + 7) / 8 * 8, NULL };
+    picture.depth = mem_array(picture.pitch_px * (size_t)height_px, sizeof(float));
+    return picture;
+}
+
+/* A plane over each rectangle of a random patchwork, with background between some. */
+static struct depth_picture patchwork(int width_px, int height_px)
+{
+    struct depth_picture picture = picture_of(width_px, height_px);
+    for (int patch = 0; patch < 40; patch++) {
+        int x0 = (int)(random_part() * width_px), y0 = (int)(random_part() * height_px);
+        int x1 = x0 + (int)(random_part() * width_px / 2), y1 = y0 + (int)(random_part() * height_px / 2);
+        double base = patch % 5 ? 0.05 + 0.9 * random_part() : 0, dx = 2e-4 * random_part(), dy = 2e-4 * random_part();
+        for (int y = y0; y < y1 && y < height_px; y++)
+            for (int x = x0; x < x1 && x < (int)picture.pitch_px; x++)
+                picture.depth[(size_t)y * picture.pitch_px + (size_t)x] = base > 0 ? (float)(base + dx * x + dy * y) : 0;
+    }
+    return picture;
+}
+
+static struct depth_cell *cells_of(const struct depth_picture *picture, const struct depth_lens *lens)
+{
+    int columns = depth_cells_along(picture->width_px), rows = depth_cells_along(picture->height_px), half = columns / 2;
+    struct depth_cell *cells = mem_array((size_t)(columns * rows), sizeof(*cells));
+    const struct depth_source source = { picture->depth, picture->pitch_px, picture->width_px, picture->height_px, lens };
+    depth_cells_find(&source, 0, rows, 0, half, cells); /* in two pieces, as the tiles of a frame */
+    depth_cells_find(&source, 0, rows, half, columns, cells);
+    return cells;
+}
+
+static int by_value(const void *a, const void *b)
+{
+    float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+/* The rule of depth_cells.c, from sorted depths. Returns the number of pixels. */
+static int expect_cell(const struct depth_picture *picture, const struct depth_lens *lens, int column, int row, struct depth_cell *out)
+{
+    float all[64];
+    int count = 0, behind = 0;
+    for (int y = row * 8; y < row * 8 + 8 && y < picture->height_px; y++)
+        for (int x = column * 8; x < column * 8 + 8 && x < picture->width_px; x++)
+            all[count++] = picture->depth[(size_t)y * picture->pitch_px + (size_t)x];
+    qsort(all, (size_t)count, sizeof(*all), by_value);
+    float low = all[0], high = all[count - 1], middle = 0.5f * (low + high), border = low > 0 ? middle : 0;
+    *out = (struct depth_cell){ middle, middle, 0 };
+    if (high == 0 || (low > 0 && high - low <= lens->step * middle + lens->least_step))
+        return count;
+    while (all[behind] <= border)
+        behind++;
+    if (low > 0 && all[behind] - all[behind - 1] < 0.25f * (high - low))
+        return count;
+    *out = (struct depth_cell){ 0.5f * (all[behind] + high), 0.5f * (low + all[behind - 1]), 0 };
+    for (int i = 0; i < 64; i++) {
+        int x = column * 8 + i % 8, y = row * 8 + i / 8;
+        if (x < picture->width_px && y < picture->height_px && picture->depth[(size_t)y * picture->pitch_px + (size_t)x] > border)
+            out->mask |= 1ull << i;
+    }
+    return count;
+}
+
+/* Returns the mask's bits of pixels within the picture. */
+static uint64_t within(const struct depth_picture *picture, int column, int row, uint64_t mask)
+{
+    for (int i = 0; i < 64; i++)
+        if (column * 8 + i % 8 >= picture->width_px || row * 8 + i / 8 >= picture->height_px)
+            mask &= ~(1ull << i);
+    return mask;
+}
+
+TEST(cells_are_those_of_a_plain_search)
+{
+    static const int sizes[][2] = { { 64, 40 }, { 13, 9 }, { 1, 1 }, { 317, 211 }, { 8, 8 }, { 1920, 1080 } };
+    int divided = 0, background = 0;
+    for (size_t s = 0; s < sizeof(sizes) / sizeof(sizes[0]); s++) {
+        struct depth_picture picture = patchwork(sizes[s][0], sizes[s][1]);
+        struct depth_cell *cells = cells_of(&picture, &perspective), expected;
+        int columns = depth_cells_along(picture.width_px);
+        for (int row = 0; row < depth_cells_along(picture.height_px); row++)
+            for (int column = 0; column < columns; column++) {
+                const struct depth_cell *cell = &cells[row * columns + column];
+                expect_cell(&picture, &perspective, column, row, &expected);
+                assert_true(cell->near == expected.near && cell->far == expected.far);
+                assert_true(within(&picture, column, row, cell->mask) == expected.mask);
+                divided += cell->near != cell->far;
+                background += cell->near == 0;
+            }
+        mem_free(cells);
+        mem_free(picture.depth);
+    }
+    assert_true(divided > 100 && background > 10);
+}
+
+static void check_mask(const struct depth_cell *cell, const uint8_t *mask)
+{
+    for (int i = 0; i < 16; i++) {
+        int at = i / 4 * 16 + i % 4 * 2;
+        int near = (int)(cell->mask >> at & 1) + (int)(cell->mask >> (at + 1) & 1) + (int)(cell->mask >> (at + 8) & 1) +
+                   (int)(cell->mask >> (at + 9) & 1);
+        assert_int_equal(mask[i], near >= 2);
+    }
+}
+
+static double in_metres(const struct depth_lens *lens, float depth)
+{
+    return (depth - lens->offset) / lens->factor;
+}
+
+/* Encodes and reads a picture, and compares codes with cells. Returns the bytes of the payload. */
+static size_t round_trip(const struct depth_picture *picture, const struct depth_lens *lens, int *divided)
+{
+    struct depth_cell *cells = cells_of(picture, lens);
+    struct depth_grid *grid = depth_grid_create(cells, lens, picture->width_px, picture->height_px);
+    struct depth_read read;
+    assert_true(depth_read_init(&read, grid));
+    assert_true((read.wire.flags & WIRE_DEPTH_ORTHOGRAPHIC) == (lens->orthographic ? WIRE_DEPTH_ORTHOGRAPHIC : 0));
+    assert_int_equal(read.wire.columns, (picture->width_px + 7) / 8);
+    assert_int_equal(read.wire.rows, (picture->height_px + 7) / 8);
+    *divided = 0;
+    for (int i = 0; i < read.wire.columns * read.wire.rows; i++) {
+        double slack = 0.51 * fabs((double)read.wire.unit) + 1e-6;
+        assert_true(read.near[i] <= read.wire.levels && read.near[i] >= read.far[i]);
+        assert_true((read.near[i] > 0) == (cells[i].near > 0));
+        assert_true((read.far[i] > 0) == (cells[i].far > 0));
+        if (read.near[i])
+            assert_true(fabs(depth_read_value(&read, read.near[i]) - in_metres(lens, cells[i].near)) <= slack);
+        if (read.far[i])
+            assert_true(fabs(depth_read_value(&read, read.far[i]) - in_metres(lens, cells[i].far)) <= slack);
+        if (read.near[i] != read.far[i])
+            check_mask(&cells[i], read.masks[i]);
+        *divided += read.near[i] != read.far[i];
+    }
+    size_t bytes = read.wire.payload_bytes;
+    depth_read_finish(&read);
+    depth_grid_unref(&grid);
+    mem_free(cells);
+    return bytes;
+}
+
+TEST(codes_survive_a_round_trip)
+{
+    static const struct depth_lens orthographic = { .orthographic = true, .offset = 1, .factor = -0.01, .least_step = 1e-3f };
+    int divided;
+    for (int i = 0; i < sweep(200, 20); i++) {
+        struct depth_picture picture = patchwork(1 + (int)(random_part() * 400), 1 + (int)(random_part() * 300));
+        round_trip(&picture, i % 2 ? &orthographic : &perspective, &divided);
+        mem_free(picture.depth);
+    }
+}
+
+TEST(a_plane_is_one_surface_and_takes_few_bytes)
+{
+    struct depth_picture picture = picture_of(1920, 1080);
+    int divided;
+    for (size_t y = 0; y < 1080; y++)
+        for (size_t x = 0; x < picture.pitch_px; x++)
+            picture.depth[y * picture.pitch_px + x] = (float)(0.05 + 1e-4 * (double)x + 5e-4 * (double)y);
+    assert_true(round_trip(&picture, &perspective, &divided) < 15000);
+    assert_int_equal(divided, 0);
+    memset(picture.depth, 0, picture.pitch_px * 1080 * sizeof(float));
+    assert_true(round_trip(&picture, &perspective, &divided) < 300);
+    assert_int_equal(divided, 0);
+    mem_free(picture.depth);
+}
+
+/* The ground begins behind a wall and ends in the background. */
+TEST(the_ground_is_behind_surfaces)
+{
+    struct depth_lens lens = perspective;
+    struct depth_picture picture = picture_of(64, 64);
+    lens.has_ground = true;
+    lens.ground[1] = 0.01; /* depth of the ground: 0.01 y */
+    lens.ground_from_pixel[0][0] = 1 / 64.0; /* seen in the upper half only */
+    lens.ground_from_pixel[1][1] = 1 / 32.0;
+    lens.ground_from_pixel[2][2] = 1;
+    for (int y = 0; y < 64; y++)
+        for (int x = 0; x < 12; x++)
+            picture.depth[y * 64 + x] = 0.9f;
+    struct depth_cell *cells = cells_of(&picture, &lens);
+    struct depth_grid *grid = depth_grid_create(cells, &lens, 64, 64);
+    struct depth_read read;
+    assert_true(depth_read_init(&read, grid));
+    assert_true(read.near[0] == read.far[0] && fabs(depth_read_value(&read, read.near[0]) - in_metres(&lens, 0.9f)) < 1e-6);
+    assert_true(fabs(depth_read_value(&read, read.near[1]) - in_metres(&lens, 0.9f)) < 1e-6);
+    assert_true(fabs(depth_read_value(&read, read.far[1]) - in_metres(&lens, 0.04f)) < 1e-3);
+    assert_true(read.near[2] == read.far[2] && fabs(depth_read_value(&read, read.near[2]) - in_metres(&lens, 0.04f)) < 1e-3);
+    assert_int_equal(read.masks[1][1], 1);
+    assert_int_equal(read.masks[1][2], 0);
+    assert_true(read.near[7 * 8 + 2] == 0 && read.far[7 * 8 + 1] == 0);
+    depth_read_finish(&read);
+    depth_grid_unref(&grid);
+    mem_free(cells);
+    mem_free(picture.depth);
+}
+
+TEST(the_header_has_the_bytes_of_the_protocol)
+{
+    static const uint8_t expected[WIRE_DEPTH_HEADER_BYTES] = { 2, 1, 3, 0, 0x10, 0x20, 0, 0, 7, 0, 0, 0, 0x64, 0, 0, 0, 0x65, 0, 0x2c, 1,
+                                                               0xc9, 0, 0x2c, 1, 13, 0, 38, 0, 8, 4, 0xff, 0x0f, 0, 0, 0, 0x3f, 0, 0,
+                                                               0, 0xbf, 1, 2, 3, 0 };
+    uint8_t bytes[WIRE_DEPTH_HEADER_BYTES];
+    wire_put_depth(&(struct wire_depth){ .flags = WIRE_DEPTH_ORTHOGRAPHIC | WIRE_DEPTH_MORE,
+                                         .payload_bytes = 0x2010,
+                                         .seq = 7,
+                                         .x_px = 100,
+                                         .width_px = 101,
+                                         .height_px = 300,
+                                         .full_width_px = 201,
+                                         .full_height_px = 300,
+                                         .columns = 13,
+                                         .rows = 38,
+                                         .cell_px = 8,
+                                         .mask_side = 4,
+                                         .levels = 4095,
+                                         .base = 0.5f,
+                                         .unit = -0.5f,
+                                         .data_bytes = 0x30201 },
+                   bytes);
+    assert_memory_equal(bytes, expected, sizeof(bytes));
+}
