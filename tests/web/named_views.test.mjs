@@ -27,6 +27,15 @@ test('what is left out is what the group, or the plant, has by itself', () => {
     assert.ok(camera.eye.every(Number.isFinite), 'without a camera it is seen from home');
 });
 
+test('colour bands of a view are the numbers of its group, because the legend draws them before the server answers', () => {
+    const { session } = greeted('engineer'), [group] = session.model.groups;
+    const breaksOf = () => viewOf(session, `group=${group.id}`).params.breaks;
+    group.breaks = [20, 50];
+    assert.deepEqual(breaksOf(), [20, 50]);
+    group.breaks = [];
+    assert.equal(breaksOf(), null);
+});
+
 test('who may not change the field is not made to ask for it', () => {
     const { params } = viewOf(greeted('viewer').session, 'strength=2&power=3');
     assert.deepEqual([params.strength, params.power, params.sensors], [undefined, undefined, undefined]);

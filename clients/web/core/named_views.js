@@ -15,7 +15,7 @@ export const textOf = (session, tag = null) => {
 // Returns { camera, params, tag } that bring a session from any state to the view. A view without a camera gets the home camera.
 export function viewOf(session, text) {
     const { camera, params, tag } = readAddress(text), group = session.model.group(params.group) ?? session.group;
-    const plain = { ...session.ownOf(group), range: null, ramp_interval: 0, breaks: group.breaks?.length ? 'group' : null,
+    const plain = { ...session.ownOf(group), range: null, ramp_interval: 0, breaks: group.breaks?.length ? group.breaks : null,
         split: null, selected: null, clip: null, sensors: null };
     const all = { ...plain, ...params };
     if (session.role !== 'engineer')
