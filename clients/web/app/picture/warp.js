@@ -22,6 +22,7 @@ void main() {
     kind = vertex.w;
     gl_Position = warp * vec4(vertex.xyz, 1.0);
 }`;
+// Leaves out pixels behind a step in depth that contain a part of the colour before the step.
 const PICTURE = `#version 300 es
 precision highp float;
 in vec2 at;
@@ -36,7 +37,6 @@ bool isNear(float x, float y) {
 void main() {
     if (kind > 0.5 && isNear(at.x, at.y) != (kind < 1.5))
         discard;
-    // leaves out pixels behind a step that have a part of the colour before it
     if (kind > 1.5 && (isNear(at.x - bit, at.y) || isNear(at.x + bit, at.y) || isNear(at.x, at.y - bit) || isNear(at.x, at.y + bit)))
         discard;
     colour = texture(picture, (origin + at) / size);
