@@ -69,7 +69,7 @@ session.resume = sessionStorage.getItem('resume');
 session.anew = session.resume !== null;
 sessionStorage.removeItem('resume');
 addEventListener('pagehide', () => session.resume && sessionStorage.setItem('resume', session.resume));
-session.legendLies = () => (query.has('wall') ? null : innerWidth < 720);
+session.legendLies = () => (query.has('wall') ? null : phone.matches);
 session.wait();
 export const viewport = new Viewport({ element: byId('viewport'), canvas: byId('picture'), session, decoding });
 viewport.onDrawn = (newPicture) => {
