@@ -330,7 +330,7 @@ int api_pair(struct server_context *server, struct http_exchange *request)
 int api_devices(struct server_context *server, struct http_exchange *request)
 {
     if (!server->tokens)
-        return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "this server does not pair displays (it runs without --tokens)\n");
+        return request_answer_json(request, mem_strdup("{\"list\":null}"));
     return request_answer_json(request, pairings_text(server->params.plant.pairings));
 }
 
