@@ -166,7 +166,7 @@ static struct depth_grid *grid_of(int width_px)
     return depth_grid_create(cells, &(struct depth_lens){ .factor = 1, .step = 0.01f }, width_px, 8);
 }
 
-/* Draws, sends and acknowledges a frame with these grids, which the test keeps. */
+/* Requests, draws, sends and acknowledges a frame with these grids, which the test keeps. */
 static enum session_depth show_depth(struct session_case *f, const struct frame_request *request, struct depth_grid *grids[2])
 {
     struct encoded_frame *encoded = empty_picture(f, request);
@@ -174,6 +174,7 @@ static enum session_depth show_depth(struct session_case *f, const struct frame_
     enum session_depth depth = SESSION_DEPTH_NONE;
     uint32_t seq = 0;
     frame->view = request->view;
+    session_requested(f->session, request, false);
     for (int i = 0; i < 2; i++)
         frame->depth[i] = depth_grid_ref(grids[i]);
     encoded->packet = packet_create(frame, WIRE_CODEC_JPEG, true, "jpeg", 4);
