@@ -125,6 +125,20 @@ static int permit(int ruleset, const char *path, uint64_t rights)
     return status;
 }
 
+/* Permits to read ThreadSanitizer's list of suppressions, which it needs when a program starts. Does nothing in other builds. */
+static int permit_suppressions(int ruleset)
+{
+    int status = 0;
+#ifdef __SANITIZE_THREAD__
+    const char *options = getenv("TSAN_OPTIONS"), *list = options ? strstr(options, "suppressions=") : NULL;
+    char path[4096];
+    if (list && sscanf(list, "suppressions=%4095[^:]", path) == 1)
+        status = permit(ruleset, path, READ_FILE);
+#endif
+    (void)ruleset;
+    return status;
+}
+
 static int restrict_paths(const struct confine_params *params, int abi)
 {
     const struct confine_ruleset attributes = confine_ruleset_of(abi);
@@ -137,6 +151,8 @@ static int restrict_paths(const struct confine_params *params, int abi)
     if (status == 0) /* a command may read all of /proc, because the programs that it starts have entries there whose names are unknown
                         in advance */
         status = permit(ruleset, params->role == CONFINE_READER ? "/proc/self" : "/proc", READ_FILE | READ_FOLDER);
+    if (status == 0)
+        status = permit_suppressions(ruleset);
     for (size_t i = 0; i < params->path_count && status == 0; i++)
         status = permit(ruleset, params->paths[i].path, rights_of(params->paths[i].access, params->role) & known);
     if (status == 0 && syscall(SYS_landlock_restrict_self, ruleset, 0) != 0)
