@@ -17,7 +17,7 @@ static void *copy_of(const void *list, size_t count, size_t bytes_each)
 }
 
 /* Copies a frame without its pixels, because a packet may wait for a slow client and must not hold megabytes while it waits. The copy needs
-   a reference of its own to each reference-counted member (the record; a depth grid, once frames have one): frame_unref() drops them. */
+   references of its own to the record and the depth grids, because frame_unref() drops them. */
 static struct frame *without_pixels(const struct frame *frame)
 {
     struct frame *copy = mem_new(sizeof(*copy));
