@@ -394,13 +394,23 @@ static bool draw_of(struct render_thread *thread, struct request_group *group, c
     return true;
 }
 
+/* Returns whether the newest request of a client present wants depth. All frames but those of walls then get depth grids, so that any
+   client can share them. */
+static bool wants_depth(struct render_service *service)
+{
+    bool wants = false;
+    pthread_mutex_lock(&service->lock);
+    for (size_t i = 0; i < service->client_count && !wants; i++)
+        wants = service->clients[i]->request.depth;
+    pthread_mutex_unlock(&service->lock);
+    return wants;
+}
+
 /* Answers the group from the cache, or draws its frame; returns the result of draw_of(). */
 static bool draw(struct render_thread *thread, struct request_group *group)
 {
     const struct historical_snapshot *historical;
-    /* once a client wanted depth, all frames but those of walls get grids, so that any client can share them */
-    thread->gives_depth |= request_group_wants_depth(group);
-    renderer_set_depth(thread->renderer, thread->gives_depth && !group->tickets[0].request.picture);
+    renderer_set_depth(thread->renderer, wants_depth(thread->service) && !group->tickets[0].request.picture);
     frame_sharing_answer_from_recent(thread, group);
     if (group->count == 0)
         return true;

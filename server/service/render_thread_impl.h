@@ -48,7 +48,6 @@ struct render_thread {
     struct pending_readbacks in_flight;
     /* groups that wait until their field is computed; in each turn that such a group gets, a part of the field is computed */
     struct deferred_requests deferred;
-    bool gives_depth; /* a client has asked for depth grids */
     struct thread_memory memory;
 };
 

@@ -316,6 +316,37 @@ TEST(test_a_hundred_viewers_cost_one_picture)
         render_service_forget(service, 1000 + i);
 }
 
+/* Returns whether the frame of a client's new view has a depth grid. */
+static bool gets_depth(uint64_t client, bool depth, double turn)
+{
+    struct frame_request request = {
+        .codec = WIRE_CODEC_JPEG, .quality = { .quality = 80 }, .urgency = URGENCY_INPUT, .asked_ns = clock_mono_ns(), .depth = depth
+    };
+    view_default(&toy->scene, 320, 200, &request.view);
+    request.view.tier = TIER_PREVIEW;
+    request.view.camera.eye_m[0] += turn;
+    assert_int_equal(render_service_request(service, client, &request), REQUEST_ADDED);
+    render_service_wake(service);
+    struct encoded_frame *encoded = next();
+    assert_true(encoded->packet && encoded->client == client);
+    bool gets = encoded->packet->frame->depth[0] != NULL;
+    encoded_frame_destroy(&encoded);
+    return gets;
+}
+
+TEST(test_depth_is_drawn_while_a_client_that_wants_it_is_present)
+{
+    assert_false(gets_depth(MOVER, false, 60));
+    assert_true(gets_depth(PICKER, true, 61));
+    assert_true(gets_depth(MOVER, false, 62));
+    assert_false(gets_depth(PICKER, false, 63));
+    assert_false(gets_depth(MOVER, false, 64));
+    assert_true(gets_depth(PICKER, true, 65));
+    render_service_forget(service, PICKER);
+    assert_false(gets_depth(MOVER, false, 66));
+    render_service_forget(service, MOVER);
+}
+
 /* One client requests frames that cost many times as much as another's. Returns whether the other got many more frames. */
 static bool shares_time(void)
 {
