@@ -26,6 +26,7 @@ bool net_take_snapshot(struct server_context *server)
 {
     bool changed = false;
     server->next_change_ns = store_take(server->params.plant.store, clock_mono_ns(), clock_plant_ns(), server->snapshot);
+    render_service_set_readings(server->params.plant.render_service, server->snapshot);
     server->data_ns = server->snapshot->taken_mono_ns;
     for (size_t i = 0; i < server->snapshot->count; i++) {
         const struct reading *reading = &server->snapshot->readings[i];
@@ -66,10 +67,8 @@ static void take(struct net *net)
 {
     struct server_context *server = &net->server;
     bool data_changed = net_take_snapshot(server), links_changed = net_check_links(server);
-    if (data_changed) {
+    if (data_changed)
         server->session_context.changed_ns = server->snapshot->taken_mono_ns;
-        render_service_on_data(server->params.plant.render_service);
-    }
     if (data_changed || links_changed)
         streams_on_readings(server, data_changed, links_changed);
     if (data_changed || links_changed)

@@ -105,10 +105,10 @@ void render_service_set_loop_checks(struct render_service *service, const struct
     pthread_mutex_unlock(&service->lock);
 }
 
-void render_service_on_data(struct render_service *service)
+void render_service_set_readings(struct render_service *service, const struct snapshot *readings)
 {
     pthread_mutex_lock(&service->lock);
-    service->new_data = true;
+    snapshot_assign(service->readings, readings);
     pthread_mutex_unlock(&service->lock);
 }
 
@@ -267,6 +267,7 @@ struct render_service *render_service_create(const struct render_service_params 
     service->params = *params;
     service->done_last = &service->done;
     service->picks = pick_queue_create();
+    service->readings = snapshot_create(params->scene->plant->tag_count);
     pthread_mutex_init(&service->lock, NULL);
     clock_cond_init(&service->wake);
     add_counters(service, params->counters);
@@ -292,6 +293,7 @@ void render_service_destroy(struct render_service **render_service_ptr)
     thread_stop(service);
     encode_queue_destroy(&service->queue);
     pick_queue_destroy(&service->picks);
+    snapshot_destroy(&service->readings);
     for (struct encoded_frame *encoded = render_service_collect(service), *next; encoded; encoded = next) {
         next = encoded->next;
         encoded_frame_destroy(&encoded);

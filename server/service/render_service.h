@@ -59,8 +59,8 @@ void render_service_forget(struct render_service *service, uint64_t client);
 /* Makes all later frames show a mark on each tag whose measuring loop was not checked, if the server draws the markers. loop_checks must
    outlive the service; NULL: no tag is marked. */
 void render_service_set_loop_checks(struct render_service *service, const struct loop_checks *loop_checks);
-/* Notes that readings changed: a new snapshot is taken before the next frame. */
-void render_service_on_data(struct render_service *service);
+/* Copies the event loop's newest snapshot: later frames show the readings that the loop sends as text. */
+void render_service_set_readings(struct render_service *service, const struct snapshot *readings);
 /* Returns false while a lost GL context is being rebuilt; requests wait meanwhile. */
 bool render_service_ready(struct render_service *service);
 /* Returns whether the render thread has given no sign of life for 12 s, or 2 minutes while a lost GL context is rebuilt; also requests the

@@ -35,7 +35,7 @@ struct render_service {
     /* --- below: protected by `lock` */
     enum { STARTING, RUNNING, FAILED, STOPPING } state;
     bool has_news;                         /* requests were queued since the render thread was last woken */
-    bool new_data;                         /* readings changed since the last snapshot */
+    struct snapshot *readings;             /* newest snapshot of the event loop */
     const struct loop_checks *loop_checks; /* loop check records; NULL: no tag is marked as unchecked */
     bool lost;                             /* the GL context is lost and being rebuilt */
     int64_t asked_ns;                      /* monotonic: since when the render thread owes a sign of life; 0: none was requested */

@@ -96,7 +96,10 @@ bool render_thread_overtakes(const struct render_thread *thread, const struct re
 /* Waits for work and moves the requests to be answered next into the group. The group stays empty if the thread must instead draw a step of
    the long job (a frame drawn in steps), or deliver a submitted frame. Returns false if the thread must end. */
 bool render_thread_next(struct render_thread *thread, const struct scheduler *scheduler, struct request_group *group);
-/* Updates thread->snapshot if readings changed or if it is older than SNAPSHOT_MAX_AGE_NS. */
+
+/* --- render_thread_readings.c ----------------------------------------------------------------------------------------- */
+
+/* Makes thread->snapshot a copy of the event loop's newest snapshot, or a new one if that is older than SNAPSHOT_MAX_AGE_NS. */
 void render_thread_refresh(struct render_thread *thread);
 /* Returns the readings that a view shows: those of its instant, with a reference in *historical (release it with snapshot_cache_give),
    or the newest ones, with *historical NULL. Returns NULL if the instant is no longer in the cache; then no client waits for that view. */

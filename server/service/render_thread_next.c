@@ -9,8 +9,6 @@ static const int64_t OWN_DATA_NS = 1 * NS_PER_S, OWN_DATA_MAX_NS = 16 * NS_PER_S
 /* a frame may overtake a long job (a frame drawn in steps) that has this many times its pixels: memory suffices for one more frame of the
    smaller size, but not for two large ones */
 enum { OVERTAKE_SMALLER = 4 };
-/* maximum age of a snapshot, which limits the error of the clock and of the ages in a frame */
-static const int64_t SNAPSHOT_MAX_AGE_NS = 100 * NS_PER_MS;
 
 static bool long_job_is_for(const struct long_job *long_job, const struct render_client *client)
 {
@@ -144,29 +142,6 @@ static void begin_all(const struct render_thread *thread, struct render_client *
         if (other->pending && !other->request.overlay && view_equal(&other->request.view, &request.view))
             begin(thread, other, group, now_ns);
     }
-}
-
-void render_thread_refresh(struct render_thread *thread)
-{
-    struct render_service *service = thread->service;
-    int64_t now_ns = clock_mono_ns();
-    pthread_mutex_lock(&service->lock);
-    bool new_data = service->new_data;
-    service->new_data = false;
-    pthread_mutex_unlock(&service->lock);
-    if (new_data || thread->stale || now_ns - thread->snapshot->taken_mono_ns > SNAPSHOT_MAX_AGE_NS)
-        store_snapshot(service->params.store, now_ns, clock_plant_ns(), thread->snapshot);
-    thread->stale = false;
-}
-
-const struct snapshot *render_thread_readings(struct render_thread *thread, const struct view *view,
-                                              const struct historical_snapshot **historical)
-{
-    *historical = view->at_us ? snapshot_cache_take(thread->service->params.snapshot_cache, view->at_us) : NULL;
-    if (view->at_us)
-        return *historical ? &(*historical)->snapshot : NULL;
-    render_thread_refresh(thread);
-    return thread->snapshot;
 }
 
 /* Answers one pick query. */

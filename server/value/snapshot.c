@@ -33,6 +33,14 @@ struct snapshot *snapshot_copy(const struct snapshot *snapshot)
     return copy;
 }
 
+void snapshot_assign(struct snapshot *into, const struct snapshot *from)
+{
+    into->taken_mono_ns = from->taken_mono_ns;
+    into->taken_utc_ns = from->taken_utc_ns;
+    if (from->count)
+        memcpy(into->readings, from->readings, from->count * sizeof(*into->readings));
+}
+
 void snapshot_destroy(struct snapshot **snapshot)
 {
     if (!*snapshot)

@@ -26,6 +26,8 @@ struct snapshot *snapshot_create(size_t tag_count);
  * NULL. */
 struct reading *snapshot_copy_readings(const struct snapshot *snapshot);
 struct snapshot *snapshot_copy(const struct snapshot *snapshot);
+/* Copies the content of a snapshot into another one of the same plant. */
+void snapshot_assign(struct snapshot *into, const struct snapshot *from);
 void snapshot_destroy(struct snapshot **snapshot);
 
 #endif

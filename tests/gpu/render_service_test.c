@@ -596,13 +596,48 @@ static void remake(bool by_gl, size_t memory_bytes)
     assert_true(make_service(by_gl, memory_bytes));
 }
 
-static void change_readings(double value)
+/* Writes readings to the store; the event loop has not read them yet. */
+static void write_readings(double value)
 {
     for (int tag = 0; tag < (int)toy->plant.tag_count; tag++) {
         struct sample sample = { .tag = tag, .value = value + tag, .quality = QUALITY_GOOD };
         store_write(store, &sample, 1, clock_mono_ns(), clock_utc_ns());
     }
-    render_service_on_data(service);
+}
+
+/* Passes the store's readings to the service as the event loop does. ahead_ns: makes the snapshot younger than it is. */
+static void pass_readings(int64_t ahead_ns)
+{
+    struct snapshot *snapshot = snapshot_create(toy->plant.tag_count);
+    store_snapshot(store, clock_mono_ns(), clock_utc_ns(), snapshot);
+    snapshot->taken_mono_ns += ahead_ns;
+    render_service_set_readings(service, snapshot);
+    snapshot_destroy(&snapshot);
+}
+
+static void change_readings(double value)
+{
+    write_readings(value);
+    pass_readings(0);
+}
+
+/* Frames show the event loop's snapshot, which sessions get as text, although the store has newer readings. */
+TEST(test_frames_show_the_readings_of_the_texts)
+{
+    remake(false, 0);
+    for (double value = 20; value <= 30; value += 10) {
+        write_readings(value);
+        pass_readings(value < 30 ? PATIENCE_NS : 2 * PATIENCE_NS);
+        write_readings(90);
+        ask(MOVER, URGENCY_INPUT, value);
+        struct encoded_frame *encoded = next();
+        const struct frame *frame = encoded->packet->frame;
+        assert_true(frame->marker_count > 0);
+        for (size_t i = 0; i < frame->marker_count; i++)
+            assert_true(frame->markers[i].value == value + frame->markers[i].tag);
+        encoded_frame_destroy(&encoded);
+    }
+    remake(false, 0);
 }
 
 static int refined_width_px; /* width in pixels of refined frames while readings change */
