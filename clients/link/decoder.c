@@ -105,11 +105,6 @@ static bool decode_h264(struct decoder *decoder, const struct wire_frame *frame,
 }
 #endif
 
-const uint8_t *decoder_pixels(const struct decoder *decoder)
-{
-    return decoder->pixels;
-}
-
 bool decoder_decode(struct decoder *decoder, const struct wire_frame *frame, const uint8_t *payload)
 {
 #ifdef PLANTCAST_H264

@@ -16,9 +16,6 @@ struct decoder *decoder_create(void);
 void decoder_destroy(struct decoder **decoder);
 /* Decodes one frame. Returns false if its bytes are not valid, or its codec is not in this build. */
 bool decoder_decode(struct decoder *decoder, const struct wire_frame *frame, const uint8_t *payload);
-/* Returns the pixels of the frame decoded last: BGRX, rows without padding. They belong to the decoder and are valid until its next
-   call. */
-const uint8_t *decoder_pixels(const struct decoder *decoder);
 /* Returns true if this build decodes the codec on this machine; if not, `why` receives the reason. */
 bool decoder_has(enum wire_codec codec, char why[DECODER_WHY_BYTES]);
 

@@ -261,17 +261,6 @@ static bool add(json_t *o, const char *arg, struct message_error *error)
     return false;
 }
 
-json_t *view_query_value(const char *name, const char *text)
-{
-    struct message_error error;
-    json_t *o = json_object();
-    char *arg = mem_printf("%s=%s", name, text);
-    json_t *value = add(o, arg, &error) ? json_incref(json_object_iter_value(json_object_iter(o))) : NULL;
-    mem_free(arg);
-    json_decref(o);
-    return value;
-}
-
 static bool apply_at(const struct params_context *context, const json_t *o, struct view *view, struct message_error *error)
 {
     const char *text = json_string_value(json_object_get(o, "at"));

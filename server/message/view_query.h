@@ -3,13 +3,7 @@
    lists are separated by commas. Pure. */
 #ifndef MESSAGE_VIEW_QUERY_H
 #define MESSAGE_VIEW_QUERY_H
-#include <jansson.h>
-
 #include "message/role.h"
-
-/* Converts the text of one argument to the JSON value that the protocol's `camera` or `params` has for it. The caller owns the value.
-   NULL: wrong form, or unknown argument. */
-json_t *view_query_value(const char *name, const char *text);
 
 /* Builds *view from `args`, decoded texts NAME=VALUE. Refuses arguments that the role may not use. An instant (`at`) is stored in
    view->at_us; its readings are not loaded yet. place: receives the required `x` and `y` of a pick; NULL: these arguments are refused.

@@ -9,115 +9,7 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "render/overlay/overlay_pen.h"
-#include "render/overlay/text_face.h"
 #include "value/quality.h"
-
-bool box_meets(const struct label_box *a, const struct label_box *b)
-{
-    return a->x < b->x + b->width && b->x < a->x + a->width && a->y < b->y + b->height && b->y < a->y + a->height;
-}
-
-bool pen_is_free(const struct pen *pen, const struct label_box *box)
-{
-    const struct label_box *area = &pen->area;
-    double right = area->x + area->width, bottom = area->y + area->height;
-    if (box->x < area->x || box->y < area->y || box->x + box->width > right || box->y + box->height > bottom)
-        return false;
-    for (int i = 0; i < pen->taken_count; i++)
-        if (box_meets(&pen->taken[i], box))
-            return false;
-    return true;
-}
-
-void pen_take(struct pen *pen, const struct label_box *box)
-{
-    if (pen->taken_count < PEN_MAX_TAKEN)
-        pen->taken[pen->taken_count++] = *box;
-}
-
-static void round_path(cairo_t *cairo, const struct label_box *box, double radius)
-{
-    double x = box->x, y = box->y, right = x + box->width, bottom = y + box->height;
-    cairo_new_path(cairo);
-    cairo_arc(cairo, right - radius, y + radius, radius, -M_PI / 2, 0);
-    cairo_arc(cairo, right - radius, bottom - radius, radius, 0, M_PI / 2);
-    cairo_arc(cairo, x + radius, bottom - radius, radius, M_PI / 2, M_PI);
-    cairo_arc(cairo, x + radius, y + radius, radius, M_PI, 3 * M_PI / 2);
-    cairo_close_path(cairo);
-}
-
-void pen_card(struct pen *pen, const struct label_box *box)
-{
-    round_path(pen->cairo, box, 4 * pen->unit);
-    cairo_set_source_rgba(pen->cairo, 1, 1, 1, 0.88);
-    cairo_fill_preserve(pen->cairo);
-    cairo_set_source_rgba(pen->cairo, 0.35, 0.40, 0.46, 0.35);
-    cairo_set_line_width(pen->cairo, fmax(1, pen->unit));
-    cairo_stroke(pen->cairo);
-}
-
-void pen_rgb(struct pen *pen, const uint8_t rgb[3])
-{
-    cairo_set_source_rgb(pen->cairo, rgb[0] / 255.0, rgb[1] / 255.0, rgb[2] / 255.0);
-}
-
-void pen_ink(struct pen *pen, double alpha)
-{
-    cairo_set_source_rgba(pen->cairo, 0.10, 0.13, 0.17, alpha);
-}
-
-void pen_font(struct pen *pen, double size, bool bold)
-{
-    cairo_select_font_face(pen->cairo, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL, bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
-    cairo_set_font_size(pen->cairo, size * pen->text_px);
-}
-
-double pen_text_width(struct pen *pen, const char *text)
-{
-    cairo_text_extents_t extents;
-    cairo_save(pen->cairo);
-    text_face_choose(pen->cairo, text);
-    cairo_text_extents(pen->cairo, text, &extents);
-    cairo_restore(pen->cairo);
-    return extents.x_advance;
-}
-
-void pen_text(struct pen *pen, double x, double y, const char *text)
-{
-    cairo_save(pen->cairo);
-    text_face_choose(pen->cairo, text);
-    cairo_move_to(pen->cairo, x, y);
-    cairo_show_text(pen->cairo, text);
-    cairo_restore(pen->cairo);
-}
-
-void pen_number(double value, double range, char out[40])
-{
-    int decimals = 0;
-    for (double unit = 1; decimals < 9 && fabs(value - round(value * unit) / unit) > range / 5000; unit *= 10)
-        decimals++;
-    snprintf(out, 40, "%.*f", decimals, fabs(value) < range / 5000 ? 0.0 : value);
-}
-
-double pen_rounded(double value, int decimals)
-{
-    return fabs(value) < 0.5 * pow(10, -decimals) ? 0 : value;
-}
-
-int pen_decimals(double range)
-{
-    return (int)fmin(fmax(ceil(-log10(range / 500)), 0), 6);
-}
-
-const char *pen_word(const struct pen *pen, enum overlay_word word)
-{
-    return overlay_word(pen->frame->view.language, word);
-}
-
-void pen_say(const struct pen *pen, enum overlay_word word, const char *a, const char *b, char *out, size_t size)
-{
-    overlay_say(pen->frame->view.language, word, a, b, out, size);
-}
 
 enum { AGE_BYTES = 80 };
 
@@ -217,7 +109,7 @@ static void draw_banner(struct pen *pen, const char *text, const double rgb[3])
     box.y = pen->taken[0].y + pen->taken[0].height + pad;
     if (box.x > pen->taken[0].x + pen->taken[0].width + pad)
         box.y = pad;
-    round_path(pen->cairo, &box, 4 * pen->unit);
+    pen_rounded_path(pen, &box);
     cairo_set_source_rgb(pen->cairo, rgb[0], rgb[1], rgb[2]);
     cairo_fill(pen->cairo);
     cairo_set_source_rgb(pen->cairo, 1, 1, 1);
@@ -243,26 +135,13 @@ static void draw_past(struct pen *pen)
     draw_banner(pen, text, PAST_RGB);
 }
 
-void pen_choose_half(struct pen *pen, int half)
-{
-    const struct view *view = &pen->frame->view;
-    int left_px = half ? view_left_px(view) : 0;
-    pen->half = half;
-    view_half(view, half, &pen->view);
-    pen->area = (struct label_box){ left_px, 0, pen->view.width_px, pen->view.height_px };
-}
-
-static void pen_scale(struct pen *pen, double unit)
-{
-    pen->unit = fmin(fmax(unit, 0.5), 8);
-    pen->text_px = fmax(13 * pen->unit, 9.5);
-}
-
 static void pen_init(struct pen *pen, cairo_surface_t *surface, const struct frame *frame, const struct scene *scene,
                      const struct snapshot *snapshot, const struct loop_checks *loop_checks)
 {
     *pen = (struct pen){ .cairo = cairo_create(surface), .frame = frame, .scene = scene, .snapshot = snapshot, .loop_checks = loop_checks };
-    pen_scale(pen, fmin(frame->width_px / 1280.0, frame->height_px / 720.0));
+    double unit = fmin(frame->width_px / 1280.0, frame->height_px / 720.0);
+    pen->unit = fmin(fmax(unit, 0.5), 8);
+    pen->text_px = fmax(13 * pen->unit, 9.5);
 }
 
 /* Draws everything of the overlay except header and banners. */
@@ -277,7 +156,7 @@ static void draw_rest(struct pen *pen)
         if (pen->view.look != LOOK_MATERIALS) /* without a field there is no legend */
             overlay_legend(pen);
     }
-    if (!pen->bare && !pen->calm)
+    if (!pen->bare)
         overlay_alarms(pen);
     for (int half = 0; half < halves; half++) {
         pen_choose_half(pen, half);
@@ -310,19 +189,6 @@ static void draw(struct frame *frame, const struct scene *scene, const struct sn
     mem_free(pen);
 }
 
-void overlay_draw_pane(cairo_surface_t *surface, const struct frame *frame, const struct scene *scene, const struct snapshot *snapshot,
-                       double unit, const struct burn_shift *legend)
-{
-    struct pen *pen = mem_new(sizeof(*pen));
-    pen_init(pen, surface, frame, scene, snapshot, NULL);
-    pen_scale(pen, unit);
-    pen->calm = true;
-    pen->legend_shift = legend ? *legend : (struct burn_shift){ 0 };
-    draw_rest(pen);
-    cairo_destroy(pen->cairo);
-    mem_free(pen);
-}
-
 void overlay_draw(struct frame *frame, const struct scene *scene, const struct snapshot *snapshot, const struct loop_checks *loop_checks)
 {
     draw(frame, scene, snapshot, loop_checks, false);
@@ -346,19 +212,15 @@ static double legend_share(struct pen *pen, const struct view *view)
     return legend_px / width_px;
 }
 
-/* Computes the rectangle that legend and clock leave free. unit: surface pixels per pixel at 1280x720 for a pane of a wall; 0: the layout
-   of a snapshot, which has a header. */
-static void find_window(const struct scene *scene, const struct view *view, double unit, struct camera_window *out)
+void overlay_window(const struct scene *scene, const struct view *view, struct camera_window *out)
 {
     cairo_surface_t *surface = cairo_image_surface_create(CAIRO_FORMAT_A8, 1, 1);
     struct frame *frame = mem_new(sizeof(*frame));
     struct pen *pen = mem_new(sizeof(*pen));
     *frame = (struct frame){ .width_px = view->width_px, .height_px = view->height_px, .view = *view };
     pen_init(pen, surface, frame, scene, NULL, NULL);
-    if (unit > 0)
-        pen_scale(pen, unit);
-    double header_px = unit > 0 ? 0 : header_height(pen, 2) + 8 * pen->unit;
-    double strip_px = unit == 0 && view->strip ? overlay_strip_height(view->width_px, view->height_px) : 0;
+    double header_px = header_height(pen, 2) + 8 * pen->unit;
+    double strip_px = view->strip ? overlay_strip_height(view->width_px, view->height_px) : 0;
     *out = (struct camera_window){ .left = -1,
                                    .right = 1 - 2 * legend_share(pen, view),
                                    .bottom = -1 + 2 * strip_px / view->height_px,
@@ -367,14 +229,4 @@ static void find_window(const struct scene *scene, const struct view *view, doub
     cairo_surface_destroy(surface);
     mem_free(pen);
     mem_free(frame);
-}
-
-void overlay_window(const struct scene *scene, const struct view *view, struct camera_window *out)
-{
-    find_window(scene, view, 0, out);
-}
-
-void overlay_pane_window(const struct scene *scene, const struct view *view, double unit, struct camera_window *out)
-{
-    find_window(scene, view, unit, out);
 }

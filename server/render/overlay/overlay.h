@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draws legend, markers, labels, clock and data age into a frame, for snapshots, clips and walls. For streams the client draws them. */
+/* Draws legend, markers, labels, clock and data age into a frame, for snapshots and clips. For streams the client draws them. */
 #ifndef RENDER_OVERLAY_H
 #define RENDER_OVERLAY_H
-#include <cairo.h>
-
 #include "loopcheck/loop_checks.h"
-#include "plant/walls/burn_shift.h"
 #include "render/frame.h"
 
 /* Draws over frame->bgrx. The frame must not be shared yet. The clock is in the time zone of the process (TZ), which main() sets to the
@@ -16,15 +13,7 @@ void overlay_draw(struct frame *frame, const struct scene *scene, const struct s
 void overlay_draw_bare(struct frame *frame, const struct scene *scene, const struct snapshot *snapshot,
                        const struct loop_checks *loop_checks);
 
-/* Draws markers, labels and legend onto a surface, which may be transparent, for a pane of a wall. Only markers with an alarm or a Bad
-   reading get labels; plant name, time and age are left out, since the pane shows them. The frame's pixels are not read. unit: surface
-   pixels per pixel at 1280x720. legend: shift of the legend; NULL: none. */
-void overlay_draw_pane(cairo_surface_t *surface, const struct frame *frame, const struct scene *scene, const struct snapshot *snapshot,
-                       double unit, const struct burn_shift *legend);
-
 /* Computes the part of the view, or of each half of a split view, that legend and clock do not cover. Pure. */
 void overlay_window(const struct scene *scene, const struct view *view, struct camera_window *out);
-/* Computes the free rectangle of a pane that overlay_draw_pane() draws over. unit: surface pixels per pixel at 1280x720. */
-void overlay_pane_window(const struct scene *scene, const struct view *view, double unit, struct camera_window *out);
 
 #endif

@@ -258,8 +258,6 @@ static void lay_out(struct pen *pen, struct legend *legend)
         legend->card.height = bar_height + others;
         legend->card.y = from;
     }
-    legend->card.x += pen->legend_shift.x_px;
-    legend->card.y += pen->legend_shift.y_px;
     legend->bar =
         (struct label_box){ legend->card.x + legend->pad + left, legend->card.y + legend->pad + top, 1.6 * pen->text_px, bar_height };
 }

@@ -234,7 +234,6 @@ static void add_wanted(struct pen *pen, const struct frame_marker *marker, struc
     item->rank = item->ring                                                                        ? LABEL_BEYOND
                  : marker->occluded || is_elsewhere(pen, marker)                                   ? LABEL_NOT_WANTED
                  : is_bad(marker)                                                                  ? LABEL_BAD
-                 : pen->calm                                                                       ? LABEL_NOT_WANTED
                  : quality_is_uncertain(marker->quality) || tag->asset == pen->view.selected_asset ? LABEL_DOUBTFUL
                                                                                                    : LABEL_PLAIN;
     wanted->bad += item->rank == LABEL_BAD;

@@ -8,7 +8,6 @@
 #include <cairo.h>
 
 #include "loopcheck/loop_checks.h"
-#include "plant/walls/burn_shift.h"
 #include "render/frame.h"
 #include "render/overlay/labels.h"
 #include "render/overlay/overlay_words.h"
@@ -27,9 +26,7 @@ struct pen {
     const struct snapshot *snapshot;
     const struct loop_checks *loop_checks; /* NULL: none */
     bool bare;                             /* true: draws no markers, sensor labels and alarms */
-    bool calm;                             /* true: only markers with alarms or Bad readings get labels */
     double unit, text_px;
-    struct burn_shift legend_shift;        /* shift of the legend, changed slowly against screen burn-in */
     struct label_box taken[PEN_MAX_TAKEN]; /* occupied areas */
     int taken_count;
 };
@@ -42,6 +39,8 @@ bool pen_is_free(const struct pen *pen, const struct label_box *box);
 void pen_take(struct pen *pen, const struct label_box *box);
 /* Draws a light card with a thin border, as a background for text. */
 void pen_card(struct pen *pen, const struct label_box *box);
+/* Sets the path to the outline of a box with rounded corners. */
+void pen_rounded_path(struct pen *pen, const struct label_box *box);
 /* pen_rgb sets an sRGB colour, pen_ink the text colour. */
 void pen_rgb(struct pen *pen, const uint8_t rgb[3]);
 void pen_ink(struct pen *pen, double alpha);
