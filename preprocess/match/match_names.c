@@ -234,3 +234,17 @@ bool method_spelling(const struct matcher *matcher, const struct match_subject *
     const struct name_tokens *tokens = &subject->name.tokens;
     return find_folded(matcher, tokens, out) || find_slip(matcher, tokens, out) || find_ending(matcher, tokens, out);
 }
+
+int matcher_find_asset(const struct matcher *matcher, const char *name)
+{
+    struct name_tokens tokens;
+    struct match_candidates list = { 0 };
+    char key[NAME_KEY_BYTES];
+    int asset = plant_find_asset(matcher->site->plant, name);
+    if (asset >= 0)
+        return asset;
+    name_tokens_read(&tokens, name);
+    name_tokens_key(&tokens, 0, tokens.count, key);
+    candidates_find(&list, &matcher->site->names, key);
+    return list.count == 1 && !list.more ? list.assets[0] : -1;
+}

@@ -182,20 +182,6 @@ void matches_free(struct match *matches, size_t count)
 
 /* --- rules and aliases ------------------------------------------------------------------------------------------------------ */
 
-int matcher_find_asset(const struct matcher *matcher, const char *name)
-{
-    struct name_tokens tokens;
-    struct match_candidates list = { 0 };
-    char key[NAME_KEY_BYTES];
-    int asset = plant_find_asset(matcher->site->plant, name);
-    if (asset >= 0)
-        return asset;
-    name_tokens_read(&tokens, name);
-    name_tokens_key(&tokens, 0, tokens.count, key);
-    candidates_find(&list, &matcher->site->names, key);
-    return list.count == 1 && !list.more ? list.assets[0] : -1;
-}
-
 static bool read_table(struct cell_table *table, const char *path, const char *first, const char *second, char why[MATCH_WHY_BYTES])
 {
     size_t count;

@@ -17,20 +17,6 @@
 static const size_t max_bytes = (size_t)256 << 20;
 enum { HEADER_ROWS = 40 };
 
-struct export_tag *tag_export_add(struct tag_export *list, int line)
-{
-    mem_grow(&list->tags, &list->capacity, list->count + 1, sizeof(*list->tags));
-    struct export_tag *tag = &list->tags[list->count++];
-    *tag = (struct export_tag){ .line = line };
-    return tag;
-}
-
-void export_tag_set(struct export_tag *tag, enum export_field field, const char *text)
-{
-    if (*text && !tag->fields[field])
-        tag->fields[field] = mem_strdup(text);
-}
-
 static const char *format_of(const struct table_row *row)
 {
     if (tag_header_has(row, "respectdatatype") || tag_header_has(row, "clientaccess"))

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Handles names that occur several times: the same tag twice, or different tags with one name in several folders. */
+/* Adds tags to a list, and handles names that occur several times: the same tag twice, or different tags with one name in several folders. */
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -10,6 +10,20 @@
 #include "preprocess/match/tag_export.h"
 
 enum { NAMED = 5 };
+
+struct export_tag *tag_export_add(struct tag_export *list, int line)
+{
+    mem_grow(&list->tags, &list->capacity, list->count + 1, sizeof(*list->tags));
+    struct export_tag *tag = &list->tags[list->count++];
+    *tag = (struct export_tag){ .line = line };
+    return tag;
+}
+
+void export_tag_set(struct export_tag *tag, enum export_field field, const char *text)
+{
+    if (*text && !tag->fields[field])
+        tag->fields[field] = mem_strdup(text);
+}
 
 static int by_name(const void *pa, const void *pb, void *tags_ptr)
 {

@@ -68,18 +68,6 @@ size_t field_bytes(const struct field *field)
 
 /* --- finding or creating states and weights ----------------------------------------------------------------------------- */
 
-struct field_layout *field_layout(struct field *field, int asset, const struct field_params *params)
-{
-    struct field_layout **at = &field->layouts[(size_t)asset * field->scene->plant->group_count + (size_t)params->group];
-    if (params->trial && interpolation_is_prepared(params->interpolation) && params->show != SHOW_DISTANCE)
-        return NULL; /* prepared interpolations do not exist for trial positions: shows no data, not the previous field */
-    if (params->trial)
-        return field_trial_layout(field, asset, params);
-    if (!*at)
-        *at = layout_create(field->scene, asset, params->group, NULL);
-    return *at;
-}
-
 static float radius_of(const struct field *field, struct field_layout *layout, const struct field_params *params)
 {
     if (params->interpolation != INTERPOLATION_PAPER)

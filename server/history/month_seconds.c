@@ -168,12 +168,3 @@ int month_seconds_read(struct month_file *file)
     sqlite3_reset(next);
     return error ? error : database_fail(&file->db, code, "cannot be read");
 }
-
-void month_seconds_finish(struct month_file *file)
-{
-    if (file->seconds) {
-        mem_free(file->seconds->rows);
-        mem_free(file->seconds->held);
-        *file->seconds = (struct month_seconds){ 0 };
-    }
-}

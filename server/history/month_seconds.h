@@ -4,6 +4,7 @@
    month_file*.c. Functions that return int return 0 or -errno, already logged. */
 #ifndef HISTORY_MONTH_SECONDS_H
 #define HISTORY_MONTH_SECONDS_H
+#include "base/mem.h"
 #include "history/month_file_impl.h"
 
 struct month_row {
@@ -26,6 +27,14 @@ int month_seconds_write(struct month_file *file, struct month_row *rows, size_t 
 int month_seconds_read(struct month_file *file);
 /* Marks all rows read as moved to blocks, inside a transaction. */
 int month_seconds_clear(struct month_file *file);
-void month_seconds_finish(struct month_file *file); /* Frees file->seconds. */
+/* Frees the content of file->seconds. */
+static inline void month_seconds_finish(struct month_file *file)
+{
+    if (file->seconds) {
+        mem_free(file->seconds->rows);
+        mem_free(file->seconds->held);
+        *file->seconds = (struct month_seconds){ 0 };
+    }
+}
 
 #endif

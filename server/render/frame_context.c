@@ -32,3 +32,14 @@ double frame_sun_slack(const struct frame_context *context)
 {
     return SUN_SLACK_TEXELS * context->light->texel_m / context->light->depth_m;
 }
+
+int64_t frame_oldest_age_ns(const struct frame_context *context)
+{
+    int64_t oldest_ns = INT64_MAX;
+    for (size_t i = 0; i < context->visible_count; i++) {
+        const struct fields_entry *field = context->fields[context->visible[i]];
+        if (field && field->oldest_age_ns != INT64_MAX && (oldest_ns == INT64_MAX || field->oldest_age_ns > oldest_ns))
+            oldest_ns = field->oldest_age_ns;
+    }
+    return oldest_ns;
+}

@@ -80,17 +80,6 @@ static void init_context(struct renderer *renderer, const struct frame_plan *pla
                                        .shape = plan->shape };
 }
 
-static int64_t oldest_age_of(const struct frame_context *context)
-{
-    int64_t oldest_ns = INT64_MAX;
-    for (size_t i = 0; i < context->visible_count; i++) {
-        const struct fields_entry *field = context->fields[context->visible[i]];
-        if (field && field->oldest_age_ns != INT64_MAX && (oldest_ns == INT64_MAX || field->oldest_age_ns > oldest_ns))
-            oldest_ns = field->oldest_age_ns;
-    }
-    return oldest_ns;
-}
-
 /* Returns the largest field error of the visible assets, rounded up to 1, 2 or 5 times a power of ten so that it seldom changes while
    readings do. */
 static double drawn_error_of(const struct frame_context *context)
@@ -117,44 +106,13 @@ static struct frame *start_frame(struct renderer *renderer, const struct frame_p
     }
     frame->view = *view;
     frame->data_utc_ns = plan->data_utc_ns;
-    frame->oldest_age_ns = oldest_age_of(context);
+    frame->oldest_age_ns = frame_oldest_age_ns(context);
     frame->drawn_error = drawn_error_of(context);
     frame->content = plan->content;
     frame->field_ns = plan->field_ns;
     frame->triangles = frame_triangles(context);
     field_baseline(renderer->fields.field, &view->field, &frame->baseline);
     return frame;
-}
-
-void renderer_upload_fields(struct renderer *renderer, const struct frame_plan *plan, const struct frame_context *context,
-                            struct frame *frame)
-{
-    struct frame_plan shown = *plan;
-    if (fields_upload(&renderer->fields, context->visible, context->visible_count, context->fields))
-        return;
-    shown.fields = context->fields;
-    frame->content = content_hash(&shown);
-    frame->oldest_age_ns = oldest_age_of(context);
-}
-
-bool renderer_find_light(struct renderer *renderer, struct frame_context *context)
-{
-    if (!context->light)
-        context->light = light_get(&renderer->light, &context->lit_by);
-    context->colormap = shaded_colormap_cache_get(&renderer->colormaps, context->view);
-    return context->light && context->colormap.colors;
-}
-
-bool renderer_light_job(struct renderer *renderer, struct render_job *job)
-{
-    if (!job->light) {
-        job->light = light_get(&renderer->light, &job->context.lit_by);
-        if (!job->light)
-            return false;
-        light_hold(job->light);
-        job->context.light = job->light;
-    }
-    return renderer_find_light(renderer, &job->context);
 }
 
 static const struct render_backend *choose_backend(const struct renderer *renderer, const struct frame_context *context)

@@ -57,10 +57,14 @@ struct render_client *render_service_add_client(struct render_service *service, 
 /* Removes the client, if it exists. The caller holds the lock. */
 void render_service_remove_client(struct render_service *service, uint64_t id);
 
-/* --- render_service.c ------------------------------------------------------------------------------------------------- */
+/* --- render_answers.c ------------------------------------------------------------------------------------------------- */
 
 /* Answers each request of the group without a frame. Any thread. */
 void render_service_answer_without_frame(struct render_service *service, const struct request_group *group, enum frame_absence absence);
+/* Calls params.notify if frames or answers wait for collection and notify was not called for them yet. Any thread. */
+void render_service_announce(void *service);
+/* Takes the encode queue's result for a ticket. Thread: a worker. */
+void render_service_on_encoded(void *service, const struct request_ticket *ticket, struct packet *const *packets, int count, bool failed);
 
 /* --- render_thread.c -------------------------------------------------------------------------------------------------- */
 

@@ -7,27 +7,8 @@
 #include "value/modbus_impl.h"
 #include "value/quality.h"
 
-/* Delay before a register that the device refused is read again. It doubles after each refusal up to MAX_REFUSED_DELAY_NS, because a device
- * may refuse only while it starts up. */
-static const int64_t REFUSED_DELAY_NS = 2 * NS_PER_S, MAX_REFUSED_DELAY_NS = 60 * NS_PER_S;
 static const int64_t BUSY_DELAY_NS = 50 * NS_PER_MS;
 enum { BUSY_TRIES = 4 };
-
-bool modbus_note_refused(struct modbus_source *modbus, const struct read_plan_block *block, bool refused, const char *why)
-{
-    size_t changed = 0;
-    const char *first = "";
-    for (size_t i = 0; i < block->tag_count; i++) {
-        int tag = modbus->plan.tags[block->first_tag + i];
-        if (modbus->refused[tag] != refused && changed++ == 0)
-            first = modbus->base.plant->tags[tag].name;
-        modbus->refused[tag] = refused;
-    }
-    if (changed)
-        log_at(modbus->base.log, refused ? LOG_WARN : LOG_INFO, "source %s: unit %d: %s%s (%d from %d): %s", modbus->base.config->id,
-               block->unit, first, changed > 1 ? " and others" : "", block->count, block->first, why);
-    return changed > 0;
-}
 
 void modbus_take_values(struct modbus_source *modbus, struct read_plan_block *block, const uint16_t *words)
 {
@@ -80,11 +61,6 @@ static void note_busy(struct modbus_source *modbus, const struct read_plan_block
                  more);
 }
 
-int64_t modbus_refused_pause_ns(int before)
-{
-    return before < 5 ? REFUSED_DELAY_NS << before : MAX_REFUSED_DELAY_NS;
-}
-
 bool modbus_is_gateway_exception(int code)
 {
     return code == MODBUS_EXCEPTION_GATEWAY_PATH || code == MODBUS_EXCEPTION_GATEWAY_TARGET;
@@ -126,11 +102,4 @@ void modbus_take_exception(struct modbus_source *modbus, size_t index, int code,
     if (quality == QUALITY_BAD_CONFIGURATION)
         block->due_ns = now_ns + modbus_refused_pause_ns(block->refused_count++);
     take_refusal(modbus, block, quality, why);
-}
-
-void modbus_replan(struct modbus_source *modbus)
-{
-    read_plan_finish(&modbus->plan);
-    read_plan_init(&modbus->plan, modbus->base.plant, modbus->base.index);
-    modbus->plan_cut = false;
 }

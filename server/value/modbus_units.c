@@ -8,6 +8,9 @@
 #include "value/lookup.h"
 #include "value/modbus_impl.h"
 
+/* Delay before a register that the device refused is read again. It doubles after each refusal up to MAX_REFUSED_DELAY_NS, because a device
+ * may refuse only while it starts up. */
+static const int64_t REFUSED_DELAY_NS = 2 * NS_PER_S, MAX_REFUSED_DELAY_NS = 60 * NS_PER_S;
 /* delay before the next block of a unit is read, while blocks are being split to find addresses that are not answered */
 static const int64_t SPLIT_PAUSE_NS = 500 * NS_PER_MS;
 
@@ -31,6 +34,34 @@ static void link_lost(struct modbus_source *modbus, const char *why)
     counter_set(modbus->up, 0);
     counter_set(modbus->host, 0);
     store_link_lost(modbus->base.store, modbus->base.index, now_ns);
+}
+
+bool modbus_note_refused(struct modbus_source *modbus, const struct read_plan_block *block, bool refused, const char *why)
+{
+    size_t changed = 0;
+    const char *first = "";
+    for (size_t i = 0; i < block->tag_count; i++) {
+        int tag = modbus->plan.tags[block->first_tag + i];
+        if (modbus->refused[tag] != refused && changed++ == 0)
+            first = modbus->base.plant->tags[tag].name;
+        modbus->refused[tag] = refused;
+    }
+    if (changed)
+        log_at(modbus->base.log, refused ? LOG_WARN : LOG_INFO, "source %s: unit %d: %s%s (%d from %d): %s", modbus->base.config->id,
+               block->unit, first, changed > 1 ? " and others" : "", block->count, block->first, why);
+    return changed > 0;
+}
+
+int64_t modbus_refused_pause_ns(int before)
+{
+    return before < 5 ? REFUSED_DELAY_NS << before : MAX_REFUSED_DELAY_NS;
+}
+
+void modbus_replan(struct modbus_source *modbus)
+{
+    read_plan_finish(&modbus->plan);
+    read_plan_init(&modbus->plan, modbus->base.plant, modbus->base.index);
+    modbus->plan_cut = false;
 }
 
 void modbus_unit_is_up(struct modbus_source *modbus, struct modbus_unit *unit)

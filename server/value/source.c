@@ -19,15 +19,6 @@ static const struct source_impl *const table[] = {
 #endif
 };
 
-counter *source_counter(const struct source *source, struct counters *counters, const char *name, const char *more, const char *type,
-                        const char *help)
-{
-    char *full = mem_printf("plantcast_source_%s{source=\"%s\"%s}", name, source->config->id, more);
-    counter *added = counters_add(counters, full, type, help);
-    mem_free(full);
-    return added;
-}
-
 static const struct source_impl *find_impl(const char *kind)
 {
     for (size_t i = 0; i < sizeof(table) / sizeof(table[0]); i++)

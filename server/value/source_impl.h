@@ -4,6 +4,7 @@
 #define VALUE_SOURCE_IMPL_H
 #include <pthread.h>
 
+#include "base/mem.h"
 #include "value/source.h"
 
 struct source { /* part that all kinds of source share; the first member of the struct of each kind */
@@ -37,8 +38,14 @@ struct source *source_begin(const struct source *params, const char *what, struc
 
 /* Registers the metric plantcast_source_NAME{source="ID"MORE} and returns its counter. more: further labels, such as ",result=\"ok\"", or
  * "". */
-counter *source_counter(const struct source *source, struct counters *counters, const char *name, const char *more, const char *type,
-                        const char *help);
+static inline counter *source_counter(const struct source *source, struct counters *counters, const char *name, const char *more,
+                                      const char *type, const char *help)
+{
+    char *full = mem_printf("plantcast_source_%s{source=\"%s\"%s}", name, source->config->id, more);
+    counter *added = counters_add(counters, full, type, help);
+    mem_free(full);
+    return added;
+}
 
 extern const struct source_impl modbus_impl; /* Modbus TCP and RTU, read only */
 extern const struct source_impl mqtt_impl;   /* values published to an MQTT broker; subscribes only */

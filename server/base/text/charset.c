@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Knows the names of encodings and byte order marks, and converts texts by iconv. */
+/* Knows the names of encodings, and converts texts by iconv. */
 #include "base/text/charset.h"
 
 #include <ctype.h>
@@ -10,7 +10,6 @@
 
 #include "base/mem.h"
 #include "base/text/text.h"
-#include "base/text/utf8.h"
 
 static const char replacement[] = "\xef\xbf\xbd";
 
@@ -101,8 +100,10 @@ static void take_converted(struct text *out, const char *from, const char *to, s
 
 /* Converts bytes; each undecodable byte becomes one U+FFFD. The last call of iconv() writes a letter that iconv holds back because an
    accent may follow: Windows-1258 and Windows-1255 have accents after their letters. */
-static void convert(const char *bytes, size_t count, const char *encoding, struct text *out, size_t *damaged)
+char *charset_convert(const char *bytes, size_t count, const char *encoding, size_t *damaged)
 {
+    struct text out = { 0 };
+    size_t wrong = 0;
     char buffer[4096], *from = (char *)bytes;
     size_t left = count;
     iconv_t converter = iconv_open("UTF-8", iconv_name_of(encoding));
@@ -111,10 +112,10 @@ static void convert(const char *bytes, size_t count, const char *encoding, struc
         size_t room = sizeof(buffer);
         size_t status = converter == (iconv_t)-1 ? (size_t)-1 : iconv(converter, &from, &left, &to, &room);
         int error = converter == (iconv_t)-1 ? EILSEQ : errno;
-        take_converted(out, buffer, to, damaged);
+        take_converted(&out, buffer, to, &wrong);
         if (status == (size_t)-1 && error != E2BIG) {
-            text_add_bytes(out, replacement, sizeof(replacement) - 1);
-            ++*damaged;
+            text_add_bytes(&out, replacement, sizeof(replacement) - 1);
+            wrong++;
             from++;
             left--;
         }
@@ -123,20 +124,13 @@ static void convert(const char *bytes, size_t count, const char *encoding, struc
         char *to = buffer;
         size_t room = sizeof(buffer);
         iconv(converter, NULL, NULL, &to, &room);
-        take_converted(out, buffer, to, damaged);
+        take_converted(&out, buffer, to, &wrong);
         iconv_close(converter);
     }
-    text_add_bytes(out, "", 0);
-}
-
-char *charset_convert(const char *bytes, size_t count, const char *encoding, size_t *damaged)
-{
-    struct text text = { 0 };
-    size_t wrong = 0;
-    convert(bytes, count, encoding, &text, &wrong);
+    text_add_bytes(&out, "", 0);
     if (damaged)
         *damaged += wrong;
-    return text.at;
+    return out.at;
 }
 
 struct charset_encoder {
@@ -173,92 +167,4 @@ bool charset_fits(const char *bytes, size_t count, const char *encoding)
     size_t damaged = 0;
     mem_free(charset_convert(bytes, count, encoding, &damaged));
     return damaged == 0;
-}
-
-/* --- detection -------------------------------------------------------------------------------------------------------------- */
-
-/* Returns the number of valid UTF-8 characters beyond ASCII, and sets *invalid to the number of bytes that are not valid UTF-8. */
-static size_t count_utf8(const char *bytes, size_t count, size_t *invalid)
-{
-    size_t characters = 0;
-    *invalid = 0;
-    for (size_t i = 0; i < count;) {
-        size_t length = (unsigned char)bytes[i] < 0x80 ? 1 : utf8_length(bytes + i, count - i);
-        characters += length > 1;
-        *invalid += length == 0;
-        i += length ? length : 1;
-    }
-    return characters;
-}
-
-/* Detects UTF-16 without a byte order mark: digits, separators and line ends have a zero byte, always at odd or always at even
-   positions. Returns the name of the encoding, or NULL. */
-static const char *find_utf16(const char *bytes, size_t count)
-{
-    size_t zeros[2] = { 0 }, looked_at = (count < 65536 ? count : 65536) & ~(size_t)1;
-    for (size_t i = 0; i < looked_at; i++)
-        zeros[i % 2] += bytes[i] == 0;
-    for (int odd = 0; odd < 2; odd++)
-        if (zeros[odd] * 40 > looked_at && zeros[odd] > 16 * zeros[!odd])
-            return odd ? "UTF-16LE" : "UTF-16BE";
-    return NULL;
-}
-
-static const char *find_mark(const char *bytes, size_t count, size_t *mark_bytes)
-{
-    static const struct {
-        const char *name, *mark;
-        size_t bytes;
-    } marks[] = { { "UTF-8", "\xef\xbb\xbf", 3 }, { "UTF-16LE", "\xff\xfe", 2 }, { "UTF-16BE", "\xfe\xff", 2 } };
-    for (size_t i = 0; i < sizeof(marks) / sizeof(*marks); i++)
-        if (count >= marks[i].bytes && !memcmp(bytes, marks[i].mark, marks[i].bytes)) {
-            *mark_bytes = marks[i].bytes;
-            return marks[i].name;
-        }
-    *mark_bytes = 0;
-    return NULL;
-}
-
-static bool has_escape(const char *bytes, size_t count)
-{
-    return memmem(bytes, count, "\x1b$B", 3) || memmem(bytes, count, "\x1b$@", 3);
-}
-
-struct charset_choice charset_find(const char *bytes, size_t count)
-{
-    struct charset_choice choice = { "UTF-8", "", false };
-    size_t mark, invalid, characters;
-    const char *name = find_mark(bytes, count, &mark);
-    if (!name)
-        name = find_utf16(bytes, count);
-    if (!name) {
-        characters = count_utf8(bytes, count, &invalid);
-        choice.ascii = characters == 0 && invalid == 0;
-        if (choice.ascii && has_escape(bytes, count))
-            name = "ISO-2022-JP";
-        else if (invalid * 4 > characters) /* a text that is mostly valid counts as UTF-8, since it may be damaged or truncated */
-            return charset_find_legacy(bytes, count);
-    }
-    if (name) {
-        snprintf(choice.name, sizeof(choice.name), "%s", name);
-        choice.ascii = false;
-    }
-    return choice;
-}
-
-void charset_decode(const char *bytes, size_t count, const char *encoding, struct charset_text *out)
-{
-    struct text text = { 0 };
-    size_t mark;
-    const char *marked = find_mark(bytes, count, &mark);
-    *out = (struct charset_text){ 0 };
-    if (!encoding)
-        out->encoding = charset_find(bytes, count);
-    else
-        charset_resolve(encoding, out->encoding.name);
-    if (!marked || strcmp(marked, out->encoding.name) != 0)
-        mark = 0;
-    convert(bytes + mark, count - mark, out->encoding.name, &text, &out->damaged);
-    out->utf8 = text.at;
-    out->length = text.length;
 }

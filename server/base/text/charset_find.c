@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Detects the encoding of a short text by the likelihood of its bytes under a statistical model of each encoding. The models use
-   characters that are common in tag lists and drawings, the frequency levels of the encodings' standards, and the letters around a
-   character. The proposal of the library uchardet raises one score. */
+/* Detects the encoding of a text by its byte order mark, by its validity as UTF-8, or else by the likelihood of its bytes under a
+   statistical model of each encoding. The models use characters that are common in tag lists and drawings, the frequency levels of the
+   encodings' standards, and the letters around a character. The proposal of the library uchardet raises one score. */
 #include <ctype.h>
 #include <math.h>
 #include <stdint.h>
@@ -11,6 +11,7 @@
 
 #include "base/mem.h"
 #include "base/text/charset.h"
+#include "base/text/utf8.h"
 
 enum { SAMPLE_BYTES = 1 << 16, MAX_LINE = 512 };
 
@@ -426,4 +427,90 @@ struct charset_choice charset_find_legacy(const char *bytes, size_t count)
         snprintf(choice.other, sizeof(choice.other), "%s", names[second]);
     mem_free(sample);
     return choice;
+}
+
+/* --- byte order marks, UTF-8 and UTF-16 ---------------------------------------------------------------------------------------- */
+
+/* Returns the number of valid UTF-8 characters beyond ASCII, and sets *invalid to the number of bytes that are not valid UTF-8. */
+static size_t count_utf8(const char *bytes, size_t count, size_t *invalid)
+{
+    size_t characters = 0;
+    *invalid = 0;
+    for (size_t i = 0; i < count;) {
+        size_t length = (unsigned char)bytes[i] < 0x80 ? 1 : utf8_length(bytes + i, count - i);
+        characters += length > 1;
+        *invalid += length == 0;
+        i += length ? length : 1;
+    }
+    return characters;
+}
+
+/* Detects UTF-16 without a byte order mark: digits, separators and line ends have a zero byte, always at odd or always at even
+   positions. Returns the name of the encoding, or NULL. */
+static const char *find_utf16(const char *bytes, size_t count)
+{
+    size_t zeros[2] = { 0 }, looked_at = (count < 65536 ? count : 65536) & ~(size_t)1;
+    for (size_t i = 0; i < looked_at; i++)
+        zeros[i % 2] += bytes[i] == 0;
+    for (int odd = 0; odd < 2; odd++)
+        if (zeros[odd] * 40 > looked_at && zeros[odd] > 16 * zeros[!odd])
+            return odd ? "UTF-16LE" : "UTF-16BE";
+    return NULL;
+}
+
+static const char *find_mark(const char *bytes, size_t count, size_t *mark_bytes)
+{
+    static const struct {
+        const char *name, *mark;
+        size_t bytes;
+    } marks[] = { { "UTF-8", "\xef\xbb\xbf", 3 }, { "UTF-16LE", "\xff\xfe", 2 }, { "UTF-16BE", "\xfe\xff", 2 } };
+    for (size_t i = 0; i < sizeof(marks) / sizeof(*marks); i++)
+        if (count >= marks[i].bytes && !memcmp(bytes, marks[i].mark, marks[i].bytes)) {
+            *mark_bytes = marks[i].bytes;
+            return marks[i].name;
+        }
+    *mark_bytes = 0;
+    return NULL;
+}
+
+static bool has_escape(const char *bytes, size_t count)
+{
+    return memmem(bytes, count, "\x1b$B", 3) || memmem(bytes, count, "\x1b$@", 3);
+}
+
+struct charset_choice charset_find(const char *bytes, size_t count)
+{
+    struct charset_choice choice = { "UTF-8", "", false };
+    size_t mark, invalid, characters;
+    const char *name = find_mark(bytes, count, &mark);
+    if (!name)
+        name = find_utf16(bytes, count);
+    if (!name) {
+        characters = count_utf8(bytes, count, &invalid);
+        choice.ascii = characters == 0 && invalid == 0;
+        if (choice.ascii && has_escape(bytes, count))
+            name = "ISO-2022-JP";
+        else if (invalid * 4 > characters) /* a text that is mostly valid counts as UTF-8, since it may be damaged or truncated */
+            return charset_find_legacy(bytes, count);
+    }
+    if (name) {
+        snprintf(choice.name, sizeof(choice.name), "%s", name);
+        choice.ascii = false;
+    }
+    return choice;
+}
+
+void charset_decode(const char *bytes, size_t count, const char *encoding, struct charset_text *out)
+{
+    size_t mark;
+    const char *marked = find_mark(bytes, count, &mark);
+    *out = (struct charset_text){ 0 };
+    if (!encoding)
+        out->encoding = charset_find(bytes, count);
+    else
+        charset_resolve(encoding, out->encoding.name);
+    if (!marked || strcmp(marked, out->encoding.name) != 0)
+        mark = 0;
+    out->utf8 = charset_convert(bytes + mark, count - mark, out->encoding.name, &out->damaged);
+    out->length = strlen(out->utf8);
 }

@@ -239,6 +239,17 @@ struct http_exchange *request_find(const struct server_context *server, uint64_t
     return request;
 }
 
+void asked_free(struct asked **asked)
+{
+    if (!*asked)
+        return;
+    for (size_t i = 0; i < (*asked)->arg_count; i++)
+        mem_free((*asked)->args[i]);
+    mem_free((*asked)->args);
+    mem_free(*asked);
+    *asked = NULL;
+}
+
 void request_forget(struct server_context *server, struct http_exchange *request)
 {
     struct http_exchange **at = &server->snapshots;

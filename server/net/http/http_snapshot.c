@@ -88,17 +88,6 @@ static void keep_args(struct asked *asked, const char *const *list, size_t count
         asked->args[i] = mem_strdup(list[i]);
 }
 
-void asked_free(struct asked **asked)
-{
-    if (!*asked)
-        return;
-    for (size_t i = 0; i < (*asked)->arg_count; i++)
-        mem_free((*asked)->args[i]);
-    mem_free((*asked)->args);
-    mem_free(*asked);
-    *asked = NULL;
-}
-
 static struct view *asked_view(struct asked *asked)
 {
     return asked->picks ? &asked->pick.view : &asked->frame_request.view;

@@ -95,38 +95,6 @@ static void read_plant(struct yaml_reader *reader, yaml_node_t *node, void *reco
                    "time_zone: unknown time zone '%.60s'; expected an IANA name such as Europe/Berlin or UTC", plant->time_zone);
 }
 
-/* --- lists of records with ids ---------------------------------------------------------------------------------------------- */
-
-void plant_list_check_id(struct yaml_reader *reader, const struct yaml_map *map, const char *what, const void *things, size_t count,
-                         size_t stride, size_t line_offset)
-{
-    const char *last = (const char *)things + (count - 1) * stride;
-    const char *id, *other;
-    memcpy(&id, last, sizeof(id));
-    for (const char *thing = things; id && thing < last; thing += stride) {
-        memcpy(&other, thing, sizeof(other));
-        if (!other || strcmp(id, other) != 0)
-            continue;
-        int line;
-        memcpy(&line, thing + line_offset, sizeof(line));
-        yaml_error(reader, yaml_map_place(map, "id"), "id: %s '%s' is listed twice (first at line %d)", what, id, line);
-        break;
-    }
-}
-
-void *plant_list_make(struct yaml_reader *reader, yaml_node_t *node, const char *name, int least, size_t bytes_each, int *count)
-{
-    *count = yaml_list_count(reader, node, name);
-    if (*count >= 0 && *count < least)
-        yaml_error(reader, yaml_place(node), "%s: expected at least one, found an empty list", name);
-    void *things = *count < 0 ? NULL : mem_try_array((size_t)*count, bytes_each);
-    if (*count >= 0 && !things)
-        yaml_error(reader, yaml_place(node), "%s: out of memory for %d", name, *count);
-    if (!things)
-        *count = 0;
-    return things;
-}
-
 /* --- assets ----------------------------------------------------------------------------------------------------------------- */
 
 struct asset_record {
@@ -144,15 +112,6 @@ static void read_placement(struct yaml_reader *reader, yaml_node_t *node, void *
     };
     struct yaml_map map;
     yaml_map_read(reader, node, "placement", keys, record, &map);
-}
-
-void plant_resolve_path(const struct plant *plant, char **path)
-{
-    if (!*path || **path == '/')
-        return;
-    char *whole = mem_printf("%s/%s", plant->folder, *path);
-    mem_free(*path);
-    *path = whole;
 }
 
 static bool will_be_made(const struct plant *plant, const char *path)
@@ -269,21 +228,6 @@ static void stand_upright(struct plant *plant)
 }
 
 /* --- groups ----------------------------------------------------------------------------------------------------------------- */
-
-const char *const plant_limit_names[LIMIT_COUNT] = { "LL", "L", "H", "HH" };
-
-bool plant_limits_wrong(const double limits[LIMIT_COUNT], int *lower, int *upper)
-{
-    *lower = -1;
-    for (*upper = 0; *upper < LIMIT_COUNT; ++*upper) {
-        if (isnan(limits[*upper]))
-            continue;
-        if (*lower >= 0 && !(limits[*lower] < limits[*upper]))
-            return true;
-        *lower = *upper;
-    }
-    return false;
-}
 
 static void read_limits(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {

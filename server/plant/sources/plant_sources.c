@@ -180,14 +180,6 @@ static void check_way(struct yaml_reader *reader, const struct yaml_map *map, co
         yaml_error(reader, yaml_map_place(map, "file"), "file: '%s' cannot be read: %s", source->file, strerror(errno));
 }
 
-void plant_secret_check(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant, const char *key, char **path)
-{
-    struct text_position place = yaml_map_place(map, key);
-    plant_resolve_path(plant, path);
-    if (*path && access(*path, R_OK) != 0)
-        diag_warning(reader->diag, reader->path, place.line, place.column, "%s: '%s' cannot be read: %s", key, *path, strerror(errno));
-}
-
 static bool same_text(const char *a, const char *b)
 {
     return a && b && !strcmp(a, b);

@@ -6,7 +6,6 @@
 
 #include "base/system/huge_pages.h"
 #include "base/mem.h"
-#include "render/soft/ramps.h"
 #include "render/soft/soft_impl.h"
 #include "render/gl/ghosts.h"
 #include "render/pick/markers.h"
@@ -107,26 +106,6 @@ static bool draw_all(struct raster *raster, const struct isoline_points *points,
     else
         visibility_buffer_destroy(&buffer);
     return good;
-}
-
-/* Fills the colour map of the glossy look. For each colour of the plain colour map (its middle row), a column holds the colour from dark to
-   bright, one row per brightness step, as GLOSSY in shaders/preview.frag. */
-static void make_glossy(struct soft *soft, const struct shaded_colormap *colormap)
-{
-    if (soft->glossy_version == colormap->version)
-        return;
-    if (!soft->glossy)
-        soft->glossy = mem_array(COLORMAP_ROWS * COLORMAP_COLUMNS, sizeof(*soft->glossy));
-    for (int column = 0; column < COLORMAP_COLUMNS; column++)
-        ramp_fill_glossy(colormap->texels[COLORMAP_ROWS / 2][column], COLORMAP_ROWS, soft->glossy + column, COLORMAP_COLUMNS);
-    soft->glossy_version = colormap->version;
-}
-
-const uint32_t *soft_colormap(struct soft *soft, const struct shaded_colormap *colormap, bool glossy)
-{
-    if (glossy)
-        make_glossy(soft, colormap);
-    return glossy ? soft->glossy : colormap->texels[0];
 }
 
 bool preview_draw(struct soft *soft, const struct frame_context *context, const struct light *light, const struct isoline_points *points,

@@ -4,6 +4,7 @@
 
 #include "base/mem.h"
 #include "render/pick/markers.h"
+#include "render/soft/ramps.h"
 #include "render/soft/tile.h"
 
 struct keeping {
@@ -145,6 +146,26 @@ void soft_keep(struct soft *soft, const struct frame_context *context, struct vi
     if (frame->marker_count > 0)
         memcpy(buffer->markers, frame->markers, frame->marker_count * sizeof(*buffer->markers));
     visibility_store_give(&soft->kept[context->view->tier], context->shape, buffer, visibility_buffer_bytes(buffer), forget);
+}
+
+/* Fills the colour map of the glossy look. For each colour of the plain colour map (its middle row), a column holds the colour from dark to
+   bright, one row per brightness step, as GLOSSY in shaders/preview.frag. */
+static void make_glossy(struct soft *soft, const struct shaded_colormap *colormap)
+{
+    if (soft->glossy_version == colormap->version)
+        return;
+    if (!soft->glossy)
+        soft->glossy = mem_array(COLORMAP_ROWS * COLORMAP_COLUMNS, sizeof(*soft->glossy));
+    for (int column = 0; column < COLORMAP_COLUMNS; column++)
+        ramp_fill_glossy(colormap->texels[COLORMAP_ROWS / 2][column], COLORMAP_ROWS, soft->glossy + column, COLORMAP_COLUMNS);
+    soft->glossy_version = colormap->version;
+}
+
+const uint32_t *soft_colormap(struct soft *soft, const struct shaded_colormap *colormap, bool glossy)
+{
+    if (glossy)
+        make_glossy(soft, colormap);
+    return glossy ? soft->glossy : colormap->texels[0];
 }
 
 bool soft_resolve_again(struct soft *soft, const struct frame_context *context, const struct isoline_points *points, struct frame *frame)

@@ -115,17 +115,6 @@ static size_t parts_bytes(const struct soft_parts *parts)
            (parts->closed ? parts->vertex_count : 0);
 }
 
-size_t raster_bytes(const struct raster *raster)
-{
-    size_t bytes = raster->pixel_capacity * (sizeof(*raster->depth) + sizeof(*raster->marks)) +
-                   raster->cell_capacity * sizeof(*raster->cells) +
-                   raster->mesh_capacity * sizeof(*raster->meshes) + raster->pixels_capacity * sizeof(*raster->pixels) +
-                   raster->found_capacity * sizeof(*raster->found);
-    for (size_t i = 0; i < raster->found_capacity; i++)
-        bytes += raster->found[i].capacity * sizeof(*raster->found[i].items);
-    return bytes;
-}
-
 size_t soft_room_bytes(const struct soft *soft)
 {
     size_t bytes = raster_bytes(&soft->preview) + (soft->spare ? refined_bytes(soft->spare) : 0);
@@ -147,22 +136,6 @@ size_t soft_light_bytes(const struct soft *soft)
             bytes += 4 * soft->gpu_scene->of_asset[a]->mesh.vertex_count;
     }
     return bytes;
-}
-
-void raster_finish(struct raster *raster)
-{
-    struct soft *soft = raster->soft;
-    for (size_t i = 0; i < raster->found_capacity; i++)
-        mem_free(raster->found[i].items);
-    mem_free(raster->found);
-    mem_free(raster->meshes);
-    for (size_t i = 0; i < raster->pixels_capacity; i++)
-        pixel_field_finish(&raster->pixels[i].field);
-    mem_free(raster->pixels);
-    mem_free(raster->depth);
-    mem_free(raster->marks);
-    mem_free(raster->cells);
-    *raster = (struct raster){ .soft = soft };
 }
 
 static void drop_parts(struct soft *soft)

@@ -283,3 +283,30 @@ void raster_tiles(struct raster *raster, enum soft_output output)
     int rows = (raster->height_px + TILE_HEIGHT_PX - 1) / TILE_HEIGHT_PX;
     workers_for(raster->soft->workers, (size_t)(columns_of(raster) * rows), 1, draw_tiles, &drawing);
 }
+
+size_t raster_bytes(const struct raster *raster)
+{
+    size_t bytes = raster->pixel_capacity * (sizeof(*raster->depth) + sizeof(*raster->marks)) +
+                   raster->cell_capacity * sizeof(*raster->cells) +
+                   raster->mesh_capacity * sizeof(*raster->meshes) + raster->pixels_capacity * sizeof(*raster->pixels) +
+                   raster->found_capacity * sizeof(*raster->found);
+    for (size_t i = 0; i < raster->found_capacity; i++)
+        bytes += raster->found[i].capacity * sizeof(*raster->found[i].items);
+    return bytes;
+}
+
+void raster_finish(struct raster *raster)
+{
+    struct soft *soft = raster->soft;
+    for (size_t i = 0; i < raster->found_capacity; i++)
+        mem_free(raster->found[i].items);
+    mem_free(raster->found);
+    mem_free(raster->meshes);
+    for (size_t i = 0; i < raster->pixels_capacity; i++)
+        pixel_field_finish(&raster->pixels[i].field);
+    mem_free(raster->pixels);
+    mem_free(raster->depth);
+    mem_free(raster->marks);
+    mem_free(raster->cells);
+    *raster = (struct raster){ .soft = soft };
+}
