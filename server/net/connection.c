@@ -38,15 +38,15 @@ static bool count_refusal(struct server_context *server, bool good)
 bool connection_may_open(struct server_context *server, int fd)
 {
     char address[64] = "";
-    if (server->connection_count >= server->quotas->at[QUOTA_CONNECTIONS])
+    if (server->room.connections >= server->room.quotas->at[QUOTA_CONNECTIONS])
         return count_refusal(server, false);
     lws_get_peer_simple_fd(fd, address, sizeof(address));
     /* all connections of a proxy come from its address; sessions are limited later, by the address that the proxy forwards */
     if (access_is_proxy(&server->params.access, address))
         return true;
-    struct address_usage *usage = address_limits_ref(server->limits, address);
-    bool good = address_limits_may_connect(server->limits, usage);
-    address_limits_unref(server->limits, &usage);
+    struct address_usage *usage = address_limits_ref(server->room.addresses, address);
+    bool good = address_limits_may_connect(server->room.addresses, usage);
+    address_limits_unref(server->room.addresses, &usage);
     return count_refusal(server, good);
 }
 
@@ -55,10 +55,10 @@ void connection_open(struct server_context *server, struct lws *wsi)
     char address[64] = "";
     struct connection *connection = mem_new(sizeof(*connection));
     lws_get_peer_simple(wsi, address, sizeof(address));
-    connection->usage = address_limits_ref(server->limits, address);
+    connection->usage = address_limits_ref(server->room.addresses, address);
     connection->usage->connections++;
-    server->connection_count++;
-    server->unanswered_count++;
+    server->room.connections++;
+    server->room.unanswered++;
     lws_set_opaque_user_data(wsi, connection);
 }
 
@@ -66,7 +66,7 @@ static void leave_client(struct server_context *server, struct connection *conne
 {
     if (connection->client)
         connection->client->named--;
-    address_limits_unref(server->limits, &connection->client);
+    address_limits_unref(server->room.addresses, &connection->client);
 }
 
 void connection_close(struct server_context *server, struct lws *wsi)
@@ -75,10 +75,10 @@ void connection_close(struct server_context *server, struct lws *wsi)
     if (!connection)
         return;
     connection->usage->connections--;
-    server->connection_count--;
-    server->unanswered_count -= !connection->answered;
+    server->room.connections--;
+    server->room.unanswered -= !connection->answered;
     leave_client(server, connection);
-    address_limits_unref(server->limits, &connection->usage);
+    address_limits_unref(server->room.addresses, &connection->usage);
     mem_free(connection);
     lws_set_opaque_user_data(wsi, NULL);
 }
@@ -86,7 +86,7 @@ void connection_close(struct server_context *server, struct lws *wsi)
 void connection_set_answered(struct server_context *server, struct lws *wsi, bool answered)
 {
     struct connection *connection = connection_of(wsi);
-    server->unanswered_count += connection->answered - answered;
+    server->room.unanswered += connection->answered - answered;
     connection->answered = answered;
 }
 
@@ -157,8 +157,8 @@ static bool find_client(struct server_context *server, struct lws *wsi, struct c
         *refusal = TOO_LONG;
     if (list[0] && !access_forwarded(&server->params.access, list, address, sizeof(connection->address)))
         lws_get_peer_simple(wsi, address, sizeof(connection->address));
-    connection->client = address_limits_ref(server->limits, address);
-    if (proxied && !refusal->status && !address_limits_may_be_named(server->limits, connection->client))
+    connection->client = address_limits_ref(server->room.addresses, address);
+    if (proxied && !refusal->status && !address_limits_may_be_named(server->room.addresses, connection->client))
         *refusal = TOO_MANY;
     connection->client->named++;
     return !refusal->status;
@@ -218,7 +218,7 @@ static void record_login(struct server_context *server, const struct connection 
 {
     bool good = login_is_good(login), known = holder->role != ROLE_NOBODY;
     if (login == LOGIN_HELD)
-        server->logins_held++;
+        server->logins.held++;
     if (login == LOGIN_HELD || login == LOGIN_GOOD)
         return;
     audit_say(server->params.audit,
@@ -243,7 +243,7 @@ void connection_log_login(struct server_context *server, struct lws *wsi, const 
     struct log *log = server->params.log;
     bool known = holder->role != ROLE_NOBODY;
     const char *role = known ? name_of(names_role, (int)holder->role) : "none", *name = holder->name[0] ? holder->name : "(none)";
-    int failures = login_throttle_failures(server->login_throttle, connection->client->address, clock_mono_ns());
+    int failures = login_throttle_failures(server->logins.throttle, connection->client->address, clock_mono_ns());
     record_login(server, connection, way, holder, login);
     if (login == LOGIN_NONE || login == LOGIN_GOOD_NEW)
         log_info(log, "login from %s by %s: token %s, role %s: accepted", connection->address, way, name, role);
@@ -264,11 +264,11 @@ static const struct http_refusal *judge_token(struct server_context *server, str
 {
     struct connection *connection = connection_of(wsi);
     struct token_holder holder;
-    bool good = tokens_find(server->tokens, token, clock_utc_ns(), &holder);
+    bool good = tokens_find(server->logins.tokens, token, clock_utc_ns(), &holder);
     /* an accepted token of a stream is recorded later, at the stream's `hello` */
     bool stream = lws_hdr_total_length(wsi, WSI_TOKEN_UPGRADE) > 0;
     enum login login =
-        login_throttle_judge(server->login_throttle, connection->client->address, good ? holder.hash : NULL, clock_mono_ns());
+        login_throttle_judge(server->logins.throttle, connection->client->address, good ? holder.hash : NULL, clock_mono_ns());
     if (!stream || !login_is_good(login))
         connection_log_login(server, wsi, stream ? "stream" : "HTTP", &holder, login);
     if (login_is_good(login))
@@ -280,7 +280,7 @@ static const struct http_refusal *judge_token(struct server_context *server, str
 void connection_tell_apart(const struct server_context *server, struct token_holder *person)
 {
     size_t length = strlen(person->name), most = sizeof(person->name) - sizeof(SIGNED_IN);
-    if (!strcasecmp(person->name, LOCAL) || (server->tokens && tokens_has_name(server->tokens, person->name)))
+    if (!strcasecmp(person->name, LOCAL) || (server->logins.tokens && tokens_has_name(server->logins.tokens, person->name)))
         memcpy(person->name + (length < most ? length : most), SIGNED_IN, sizeof(SIGNED_IN));
 }
 
@@ -289,8 +289,8 @@ static void find_person(struct server_context *server, struct lws *wsi, struct c
 {
     char cookie[64];
     size_t size = sizeof(cookie);
-    if (server->openid && lws_http_cookie_get(wsi, openid_config_of(server->openid)->cookie, cookie, &size) == 0 &&
-        openid_find(server->openid, cookie, &connection->holder))
+    if (server->logins.openid && lws_http_cookie_get(wsi, openid_config_of(server->logins.openid)->cookie, cookie, &size) == 0 &&
+        openid_find(server->logins.openid, cookie, &connection->holder))
         connection_tell_apart(server, &connection->holder);
 }
 
@@ -299,7 +299,7 @@ static void find_person(struct server_context *server, struct lws *wsi, struct c
 static bool is_trusted(const struct server_context *server, const struct connection *connection, const char *name)
 {
     const struct access_params *params = &server->params.access;
-    if (!connection->usage->local || params->behind_proxy || (server->tokens && !params->trust_local))
+    if (!connection->usage->local || params->behind_proxy || (server->logins.tokens && !params->trust_local))
         return false;
     return !name[0] || access_name_is_local(name) || (params->trust_local && is_named(params, name));
 }
@@ -333,7 +333,7 @@ bool connection_identify(struct server_context *server, struct lws *wsi, struct 
         *refusal = IN_QUERY;
     else if (!find_token(wsi, token))
         *refusal = TOO_LONG;
-    else if (token[0] && server->tokens && (bad_token = judge_token(server, wsi, token)))
+    else if (token[0] && server->logins.tokens && (bad_token = judge_token(server, wsi, token)))
         *refusal = *bad_token;
     if (refusal->status)
         return false;

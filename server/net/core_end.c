@@ -13,7 +13,7 @@ static bool hand_on(void *arg, const struct session *session, const char *text)
 {
     const struct server_context *server = arg;
     const struct session_identity *identity = &session->identity;
-    char *id_token = identity->holder.signed_in && server->openid ? openid_id_token(server->openid, &identity->holder) : NULL;
+    char *id_token = identity->holder.signed_in && server->logins.openid ? openid_id_token(server->logins.openid, &identity->holder) : NULL;
     bool sent = core_link_act(server->params.plant.core_link, &(struct core_act){ .client = session->id,
                                                                                   .from = identity->from,
                                                                                   .token = identity->token[0] ? identity->token : NULL,
@@ -27,7 +27,7 @@ void core_end_bind(struct server_context *server)
 {
     server->session_context.hand_on = server->params.plant.core_link ? hand_on : NULL;
     server->session_context.hand_on_arg = server;
-    server->session_context.token_keys = server->params.plant.core_link ? &server->token_keys : NULL;
+    server->session_context.token_keys = server->params.plant.core_link ? &server->core.token_keys : NULL;
 }
 
 static void take_key(struct server_context *server, const json_t *core)
@@ -35,7 +35,7 @@ static void take_key(struct server_context *server, const json_t *core)
     const char *text = json_string_value(json_object_get(core, "key"));
     uint8_t key[VIEW_TOKEN_KEY_BYTES];
     if (text && hex_read(text, key, sizeof(key)))
-        view_token_add_key(&server->token_keys, key);
+        view_token_add_key(&server->core.token_keys, key);
 }
 
 static void take_lists(struct server_context *server, const json_t *lists)

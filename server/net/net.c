@@ -63,15 +63,15 @@ static void look_at_files(struct net *net, int64_t now_ns)
 {
     struct server_context *server = &net->server;
     bool asked = atomic_exchange(&net->look, false);
-    if (!asked && now_ns - server->looked_ns < FILE_CHECK_INTERVAL_NS)
+    if (!asked && now_ns - server->logins.looked_ns < FILE_CHECK_INTERVAL_NS)
         return;
-    server->looked_ns = now_ns;
+    server->logins.looked_ns = now_ns;
     if (asked && server->params.reload)
         server->params.reload(server->params.reload_arg, "signal");
     if (server->tls)
         tls_look(server->tls);
-    if (server->tokens) {
-        tokens_look(server->tokens);
+    if (server->logins.tokens) {
+        tokens_look(server->logins.tokens);
         /* also ends sessions of signed-in users whose rights ended. Sign-in with OpenID Connect requires tokens, so this branch covers all
            users */
         streams_check_tokens(server, clock_utc_ns());
@@ -91,11 +91,12 @@ static void record_sum(const struct server_context *server, int64_t *count, cons
 /* Adds to the audit trail, once a minute, how many tokens and log-in answers were not checked. */
 static void record_held(struct server_context *server, int64_t now_ns)
 {
-    if ((!server->logins_held && !server->unasked) || now_ns - server->held_ns < RECORD_INTERVAL_NS)
+    if ((!server->logins.held && !server->logins.unasked) || now_ns - server->logins.held_ns < RECORD_INTERVAL_NS)
         return;
-    record_sum(server, &server->logins_held, "tokens from rate-limited addresses were refused unchecked");
-    record_sum(server, &server->unasked, "answers of the identity provider belonged to no sign-in, could not be checked, or were errors");
-    server->held_ns = now_ns;
+    record_sum(server, &server->logins.held, "tokens from rate-limited addresses were refused unchecked");
+    record_sum(server, &server->logins.unasked,
+               "answers of the identity provider belonged to no sign-in, could not be checked, or were errors");
+    server->logins.held_ns = now_ns;
 }
 
 /* Reads the processor load, and updates which displays are connected, once a second. */
@@ -133,11 +134,11 @@ static void say_status(const struct server_context *server)
         server->params.tick(server->params.reload_arg,
                             &(struct net_status){
                                 .render_service = server->params.plant.render_service,
-                                .sessions = (size_t)server->stream_count,
-                                .busy_percent = admission_busy_percent(&server->admission),
+                                .sessions = (size_t)server->streams.count,
+                                .busy_percent = admission_busy_percent(&server->room.admission),
                                 .has_core = !server->params.plant.core_link || server->session_context.core_up,
                                 .core = core_standing(server),
-                                .drains = server->drain_ns != 0,
+                                .drains = server->life.drain_ns != 0,
                                 .certificate_ends_s = server->tls ? tls_ends_s(server->tls) : 0,
                             });
 }
@@ -145,24 +146,24 @@ static void say_status(const struct server_context *server)
 /* Measures how long the daemon took to start. At shutdown, clients are told to reconnect after that time. */
 static void time_start(struct server_context *server, int64_t now_ns)
 {
-    if (!server->start_s && render_service_ready(server->params.plant.render_service))
-        server->start_s = (int)((now_ns - server->params.begun_ns) / NS_PER_S) + 1;
+    if (!server->life.start_s && render_service_ready(server->params.plant.render_service))
+        server->life.start_s = (int)((now_ns - server->params.begun_ns) / NS_PER_S) + 1;
 }
 
 static void tick(struct net *net, int64_t now_ns)
 {
     time_start(&net->server, now_ns);
-    if (atomic_load(&net->drain) && !net->server.drain_ns) {
-        net->server.drain_ns = now_ns;
-        log_info(net->server.params.log, "drained: moving %d sessions to other nodes within 12 s", net->server.stream_count);
+    if (atomic_load(&net->drain) && !net->server.life.drain_ns) {
+        net->server.life.drain_ns = now_ns;
+        log_info(net->server.params.log, "drained: moving %d sessions to other nodes within 12 s", net->server.streams.count);
     }
     look_at_files(net, now_ns);
     look_around(net, now_ns);
     record_held(&net->server, now_ns);
-    admission_on_tick(&net->server.admission, now_ns);
-    counter_set(net->server.counters.busy, admission_busy_percent(&net->server.admission));
-    counter_set(net->server.counters.connections, net->server.connection_count);
-    counter_set(net->server.counters.logins_slowed, login_throttle_slowed(net->server.login_throttle, now_ns));
+    admission_on_tick(&net->server.room.admission, now_ns);
+    counter_set(net->server.counters.busy, admission_busy_percent(&net->server.room.admission));
+    counter_set(net->server.counters.connections, net->server.room.connections);
+    counter_set(net->server.counters.logins_slowed, login_throttle_slowed(net->server.logins.throttle, now_ns));
     if (net->server.history_loader)
         net->server.session_context.history_first_us = history_loader_first_us(net->server.history_loader);
     if (net_check_links(&net->server))
@@ -216,9 +217,9 @@ bool net_settle_answers(struct net *net)
 static void do_what_is_due(struct net *net)
 {
     int64_t soon_ns = clock_mono_ns() + NS_PER_MS, readings_ns = net_update_readings(net, soon_ns);
-    if (soon_ns - net->ticked_ns >= (net->server.restless ? TICK_NS : REST_NS))
+    if (soon_ns - net->ticked_ns >= (net->server.streams.restless ? TICK_NS : REST_NS))
         tick(net, soon_ns);
-    int64_t tick_ns = net->ticked_ns + (net->server.restless ? TICK_NS : REST_NS);
+    int64_t tick_ns = net->ticked_ns + (net->server.streams.restless ? TICK_NS : REST_NS);
     int64_t settle_ns = net_settle_answers(net) ? soon_ns + SETTLE_NS : INT64_MAX;
     int64_t next_ns = tick_ns < readings_ns ? tick_ns : readings_ns;
     set_timer(net, settle_ns < next_ns ? settle_ns : next_ns);
@@ -238,7 +239,7 @@ static void collect_picks(struct server_context *server)
 
 static void collect_signed(struct server_context *server)
 {
-    struct signing *signing = server->picture_signer ? picture_signer_collect(server->picture_signer) : NULL;
+    struct signing *signing = server->signing.signer ? picture_signer_collect(server->signing.signer) : NULL;
     for (struct signing *next; signing; signing = next) {
         next = signing->next;
         if (stream_owns(server, signing->encoded->client))
@@ -263,12 +264,12 @@ static void look_at_alarms(struct server_context *server)
 {
     uint64_t number = server->params.plant.alarm_service ? alarm_service_number(server->params.plant.alarm_service) : 0;
     uint64_t told = server->params.plant.notifier ? notifier_number(server->params.plant.notifier) : 0;
-    if (told != server->told_number)
+    if (told != server->core.told_number)
         renderers_on_change(server);
-    server->told_number = told;
-    if (number == server->alarms_number)
+    server->core.told_number = told;
+    if (number == server->texts.alarms_number)
         return;
-    server->alarms_number = number;
+    server->texts.alarms_number = number;
     streams_on_alarms(server);
     renderers_on_change(server);
 }
@@ -412,7 +413,7 @@ static bool open_context(struct net *net)
         .uid = -1,
         .options = LWS_SERVER_OPTION_FAIL_UPON_UNABLE_TO_BIND | LWS_SERVER_OPTION_DISABLE_OS_CA_CERTS |
                    (strchr(server->params.address, ':') ? 0 : LWS_SERVER_OPTION_DISABLE_IPV6),
-        .timeout_secs = (unsigned)server->quotas->at[QUOTA_PATIENCE_S],
+        .timeout_secs = (unsigned)server->room.quotas->at[QUOTA_PATIENCE_S],
         .keepalive_timeout = 30,
         .pt_serv_buf_size = 16 * 1024,
         .fd_limit_per_thread = 0,
@@ -452,16 +453,18 @@ static bool open_access(struct net *net)
     struct server_context *server = &net->server;
     const struct access_params *access = &server->params.access;
     connection_learn_host_name(server);
-    server->content_policy = access_content_policy(access);
+    server->http.content_policy = access_content_policy(access);
     server->local_only = access_name_is_local(server->params.address) && !access->behind_proxy;
-    if (access->tokens_path && !(server->session_context.tokens = server->tokens = tokens_create(server->params.log, access->tokens_path)))
+    if (access->tokens_path)
+        server->session_context.tokens = server->logins.tokens = tokens_create(server->params.log, access->tokens_path);
+    if (access->tokens_path && !server->logins.tokens)
         return false;
-    if (access->notice_path && !(server->notice = access_notice_read(server->params.log, access->notice_path)))
+    if (access->notice_path && !(server->logins.notice = access_notice_read(server->params.log, access->notice_path)))
         return false;
     server->session_context.lock_ns = (int64_t)(access->lock_min * 60e9);
-    if (server->tokens) {
-        tokens_set_plant(server->tokens, server->params.plant.scene->plant->name);
-        tokens_set_pairings(server->tokens, pairings_find, server->params.plant.pairings);
+    if (server->logins.tokens) {
+        tokens_set_plant(server->logins.tokens, server->params.plant.scene->plant->name);
+        tokens_set_pairings(server->logins.tokens, pairings_find, server->params.plant.pairings);
     }
     const struct openid_params openid = { .log = server->params.log,
                                           .counters = server->params.counters,
@@ -470,7 +473,7 @@ static bool open_access(struct net *net)
                                           .lock_ns = (int64_t)(access->lock_min * 60e9),
                                           .wake = wake_loop,
                                           .wake_arg = net };
-    if (access->openid_path && !(server->session_context.openid = server->openid = openid_start(&openid)))
+    if (access->openid_path && !(server->session_context.openid = server->logins.openid = openid_start(&openid)))
         return false;
     return !access->tls_cert_path || (server->tls = tls_create(server->params.log, access->tls_cert_path, access->tls_key_path));
 }
@@ -496,37 +499,37 @@ struct net *net_create(const struct net_params *params)
     struct server_context *server = &net->server;
     net_calls_init(net);
     server->params = *params;
-    server->next_client = 1;
-    server->quotas = &server->params.access.quotas;
-    server->admission.quotas = server->quotas;
-    server->limits = address_limits_create(server->quotas, !params->access.behind_proxy && params->access.proxy_count == 0);
-    server->login_throttle = login_throttle_create();
+    server->streams.next_client = 1;
+    server->room.quotas = &server->params.access.quotas;
+    server->room.admission.quotas = server->room.quotas;
+    server->room.addresses = address_limits_create(server->room.quotas, !params->access.behind_proxy && params->access.proxy_count == 0);
+    server->logins.throttle = login_throttle_create();
     server->session_context = (struct session_context){
-        .alarm_texts = &server->alarm_texts,
-        .tag_texts = &server->tag_texts,
-        .lists_said = server->lists_said,
+        .alarm_texts = &server->texts.alarms,
+        .tag_texts = &server->texts.tags,
+        .lists_said = server->texts.lists,
         .codecs = params->codecs,
         .imports = params->import != NULL,
         .version = params->version,
         .node = params->node,
-        .quotas = server->quotas,
+        .quotas = server->room.quotas,
         .resumes = resumes_create(),
-        .admission = &server->admission,
-        .login_throttle = server->login_throttle,
+        .admission = &server->room.admission,
+        .login_throttle = server->logins.throttle,
         .audit = params->audit,
         .file_writer = params->file_writer,
         .kept_answers = &server->kept_answers,
     };
     if (params->signing_key) {
-        signing_key_id(params->signing_key, server->signing_key_id);
-        server->session_context.signing_key = server->signing_key_id;
+        signing_key_id(params->signing_key, server->signing.key_id);
+        server->session_context.signing_key = server->signing.key_id;
     }
     if (params->is_core)
         renderers_make_key(server);
     add_counters(server);
     net_bind_plant(net);
-    raise_file_limit(params->log, server->quotas);
-    server->site = site_create(params->log, params->web_folder);
+    raise_file_limit(params->log, server->room.quotas);
+    server->http.site = site_create(params->log, params->web_folder);
     if (!open_access(net) || !open_context(net) || !net_open_history(net) || !net_open_signer(net))
         net_destroy(&net);
     return net;
@@ -540,31 +543,31 @@ void net_destroy(struct net **net_ptr)
     lws_sul_cancel(&net->timer);
     /* destroyed first: its threads wake the event loop, so they must not outlive it */
     history_queries_destroy(&net->server.history_queries);
-    picture_signer_destroy(&net->server.picture_signer);
+    picture_signer_destroy(&net->server.signing.signer);
     history_loader_destroy(&net->server.history_loader);
-    openid_stop(&net->server.openid);
+    openid_stop(&net->server.logins.openid);
     if (net->server.lws)
         lws_context_destroy(net->server.lws);
     session_settle_gone(&net->server.kept_answers);
     atomic_store(&lws_log_to, NULL);
     tls_destroy(&net->server.tls);
-    tokens_destroy(&net->server.tokens);
-    site_destroy(&net->server.site);
-    mem_free(net->server.content_policy);
-    mem_free(net->server.notice);
-    address_limits_destroy(&net->server.limits);
-    login_throttle_destroy(&net->server.login_throttle);
-    mem_free(net->server.by_client);
+    tokens_destroy(&net->server.logins.tokens);
+    site_destroy(&net->server.http.site);
+    mem_free(net->server.http.content_policy);
+    mem_free(net->server.logins.notice);
+    address_limits_destroy(&net->server.room.addresses);
+    login_throttle_destroy(&net->server.logins.throttle);
+    mem_free(net->server.streams.by_client);
     resumes_destroy(&net->server.session_context.resumes);
-    alarm_text_cache_finish(&net->server.alarm_texts);
-    tag_text_cache_finish(&net->server.tag_texts);
+    alarm_text_cache_finish(&net->server.texts.alarms);
+    tag_text_cache_finish(&net->server.texts.tags);
     for (int i = 0; i < LISTS; i++)
-        mem_free(net->server.lists_said[i]);
-    marker_text_cache_finish(&net->server.marker_lists);
-    neighbour_text_cache_finish(&net->server.neighbour_texts);
-    snapshot_destroy(&net->server.snapshot);
-    mem_free(net->server.changes);
-    mem_free(net->server.links_up);
+        mem_free(net->server.texts.lists[i]);
+    marker_text_cache_finish(&net->server.texts.markers);
+    neighbour_text_cache_finish(&net->server.texts.neighbours);
+    snapshot_destroy(&net->server.readings.snapshot);
+    mem_free(net->server.readings.changes);
+    mem_free(net->server.readings.links_up);
     net_calls_finish(net);
     mem_free(net);
     *net_ptr = NULL;
@@ -597,10 +600,10 @@ void net_run(struct net *net)
     finish_actions(net);
     streams_close(server);
     renderers_close(server, "the core is shutting down");
-    server->goes_down = true;
+    server->life.goes_down = true;
     set_timer(net, clock_mono_ns() + GOODBYE_NS);
     for (int64_t end_ns = clock_mono_ns() + GOODBYE_NS;
-         (server->stream_count > 0 || server->unanswered_count > 0 || server->renderers) && clock_mono_ns() < end_ns;)
+         (server->streams.count > 0 || server->room.unanswered > 0 || server->core.renderers) && clock_mono_ns() < end_ns;)
         lws_service(server->lws, 0);
 }
 

@@ -58,7 +58,7 @@ bool net_open_signer(struct net *net);
 
 /* --- readings.c; thread: the event loop --- */
 
-/* Updates server->snapshot and next_change_ns. Returns whether readings changed since the last call. */
+/* Updates server->readings.snapshot and next_change_ns. Returns whether readings changed since the last call. */
 bool net_take_snapshot(struct server_context *server);
 /* Updates which sources are connected and whether the clock is set. Returns whether any of that changed. */
 bool net_check_links(struct server_context *server);

@@ -15,8 +15,8 @@ bool net_open_signer(struct net *net)
 {
     struct server_context *server = &net->server;
     if (server->params.signing_key)
-        server->picture_signer = picture_signer_create(server->params.log, server->params.signing_key, wake, net);
-    return !server->params.signing_key || server->picture_signer;
+        server->signing.signer = picture_signer_create(server->params.log, server->params.signing_key, wake, net);
+    return !server->params.signing_key || server->signing.signer;
 }
 
 void net_limit_services(struct server_context *server)
@@ -54,17 +54,17 @@ void net_bind_plant(struct net *net)
     struct server_context *server = &net->server;
     const struct plant *plant = server->params.plant.scene->plant;
     net_limit_services(server);
-    server->snapshot = snapshot_create(plant->tag_count);
-    server->changes = mem_array(plant->tag_count, sizeof(*server->changes));
-    server->links_up = mem_array(plant->source_count, sizeof(*server->links_up));
-    if (server->tokens) {
-        tokens_set_plant(server->tokens, plant->name);
-        tokens_set_pairings(server->tokens, pairings_find, server->params.plant.pairings);
+    server->readings.snapshot = snapshot_create(plant->tag_count);
+    server->readings.changes = mem_array(plant->tag_count, sizeof(*server->readings.changes));
+    server->readings.links_up = mem_array(plant->source_count, sizeof(*server->readings.links_up));
+    if (server->logins.tokens) {
+        tokens_set_plant(server->logins.tokens, plant->name);
+        tokens_set_pairings(server->logins.tokens, pairings_find, server->params.plant.pairings);
     }
     server->session_context.plant = plant;
     server->session_context.services = &server->params.plant;
-    server->session_context.snapshot = server->snapshot;
-    server->session_context.links_up = server->links_up;
+    server->session_context.snapshot = server->readings.snapshot;
+    server->session_context.links_up = server->readings.links_up;
     core_end_bind(server);
     net_take_snapshot(server);
     net_check_links(server);

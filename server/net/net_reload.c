@@ -30,7 +30,7 @@ size_t net_views(struct net *net, const struct plant_services *next, struct view
     session_context.plant = next->scene->plant;
     session_context.services = next;
     session_context.snapshot = snapshot;
-    for (const struct stream *stream = net->server.streams; stream && count < most; stream = stream->next)
+    for (const struct stream *stream = net->server.streams.first; stream && count < most; stream = stream->next)
         if (stream->session->hello && !stream->session->hidden) {
             session_view_in(stream->session, &session_context, &out[count]);
             count += is_new(&out[count], out, count);
@@ -51,29 +51,29 @@ void net_release_plant(struct net *net)
 {
     struct server_context *server = &net->server;
     net_settle_answers(net); /* answers the actions in the old journal, which by now has written these actions to disk */
-    for (struct stream *stream = server->streams; stream; stream = stream->next)
+    for (struct stream *stream = server->streams.first; stream; stream = stream->next)
         stream->carried = session_carry(stream->session);
     http_release_plant(server);
-    if (server->picture_signer)
-        picture_signer_settle(server->picture_signer);
+    if (server->signing.signer)
+        picture_signer_settle(server->signing.signer);
     core_end_collect(server); /* takes the core's last answers */
     renderers_close(server, "the core has changed its configuration");
     net_unwatch_readings(net);
     history_queries_destroy(&server->history_queries);
     history_loader_destroy(&server->history_loader);
     resumes_forget_gone(server->session_context.resumes);
-    tag_text_cache_finish(&server->tag_texts);
-    alarm_text_cache_finish(&server->alarm_texts);
+    tag_text_cache_finish(&server->texts.tags);
+    alarm_text_cache_finish(&server->texts.alarms);
     for (int i = 0; i < LISTS; i++) {
-        mem_free(server->lists_said[i]);
-        server->lists_said[i] = NULL;
+        mem_free(server->texts.lists[i]);
+        server->texts.lists[i] = NULL;
     }
-    marker_text_cache_finish(&server->marker_lists);
-    server->marker_lists = (struct marker_text_cache){ .frame = NULL };
-    neighbour_text_cache_finish(&server->neighbour_texts);
-    snapshot_destroy(&server->snapshot);
-    mem_free(server->changes);
-    mem_free(server->links_up);
+    marker_text_cache_finish(&server->texts.markers);
+    server->texts.markers = (struct marker_text_cache){ .frame = NULL };
+    neighbour_text_cache_finish(&server->texts.neighbours);
+    snapshot_destroy(&server->readings.snapshot);
+    mem_free(server->readings.changes);
+    mem_free(server->readings.links_up);
 }
 
 void net_lead(struct net *net, const struct plant_services *plant)
@@ -92,10 +92,10 @@ bool net_take_plant(struct net *net, const struct plant_services *plant)
 {
     struct server_context *server = &net->server;
     server->params.plant = *plant;
-    server->alarms_number = 0;
+    server->texts.alarms_number = 0;
     net_bind_plant(net);
     bool good = net_open_history(net);
-    for (struct stream *stream = server->streams; stream; stream = stream->next) {
+    for (struct stream *stream = server->streams.first; stream; stream = stream->next) {
         session_take_plant(stream->session, stream->carried);
         mem_free(stream->carried);
         stream->carried = NULL;

@@ -25,16 +25,16 @@ static int64_t changed_ns(const struct snapshot *snapshot, const struct reading 
 bool net_take_snapshot(struct server_context *server)
 {
     bool changed = false;
-    server->next_change_ns = store_take(server->params.plant.store, clock_mono_ns(), clock_plant_ns(), server->snapshot);
-    render_service_set_readings(server->params.plant.render_service, server->snapshot);
-    server->data_ns = server->snapshot->taken_mono_ns;
-    for (size_t i = 0; i < server->snapshot->count; i++) {
-        const struct reading *reading = &server->snapshot->readings[i];
-        if (server->changes[i] == reading->changes)
+    server->readings.next_change_ns = store_take(server->params.plant.store, clock_mono_ns(), clock_plant_ns(), server->readings.snapshot);
+    render_service_set_readings(server->params.plant.render_service, server->readings.snapshot);
+    server->readings.data_ns = server->readings.snapshot->taken_mono_ns;
+    for (size_t i = 0; i < server->readings.snapshot->count; i++) {
+        const struct reading *reading = &server->readings.snapshot->readings[i];
+        if (server->readings.changes[i] == reading->changes)
             continue;
-        int64_t at_ns = changed_ns(server->snapshot, reading);
-        server->data_ns = at_ns < server->data_ns ? at_ns : server->data_ns;
-        server->changes[i] = reading->changes;
+        int64_t at_ns = changed_ns(server->readings.snapshot, reading);
+        server->readings.data_ns = at_ns < server->readings.data_ns ? at_ns : server->readings.data_ns;
+        server->readings.changes[i] = reading->changes;
         changed = true;
     }
     return changed;
@@ -45,8 +45,8 @@ bool net_check_links(struct server_context *server)
     bool changed = false, any = false;
     for (size_t i = 0; i < server->session_context.plant->source_count; i++) {
         bool up = store_link_is_up(server->params.plant.store, (int)i);
-        changed |= server->links_up[i] != up;
-        server->links_up[i] = up;
+        changed |= server->readings.links_up[i] != up;
+        server->readings.links_up[i] = up;
         any |= up;
     }
     struct core_link *core_link = server->params.plant.core_link;
@@ -68,15 +68,15 @@ static void take(struct net *net)
     struct server_context *server = &net->server;
     bool data_changed = net_take_snapshot(server), links_changed = net_check_links(server);
     if (data_changed)
-        server->session_context.changed_ns = server->snapshot->taken_mono_ns;
+        server->session_context.changed_ns = server->readings.snapshot->taken_mono_ns;
     if (data_changed || links_changed)
         streams_on_readings(server, data_changed, links_changed);
     if (data_changed || links_changed)
         renderers_on_change(server);
     render_service_wake(server->params.plant.render_service);
     /* 1 ms after the reading becomes stale, because the event loop may wake a little early */
-    int64_t stale_ns = server->next_change_ns < INT64_MAX ? server->next_change_ns + NS_PER_MS : INT64_MAX;
-    net->readings_ns = later(stale_ns, server->snapshot->taken_mono_ns + MIN_INTERVAL_NS);
+    int64_t stale_ns = server->readings.next_change_ns < INT64_MAX ? server->readings.next_change_ns + NS_PER_MS : INT64_MAX;
+    net->readings_ns = later(stale_ns, server->readings.snapshot->taken_mono_ns + MIN_INTERVAL_NS);
 }
 
 static void on_change(void *arg)
@@ -101,7 +101,7 @@ int64_t net_update_readings(struct net *net, int64_t now_ns)
 {
     if (atomic_exchange(&net->readings_changed, false))
         net->readings_ns = later(now_ns + GATHER_NS, net->server.session_context.changed_ns + MIN_INTERVAL_NS);
-    if (net->server.stream_count == 0 && !net->server.renderers)
+    if (net->server.streams.count == 0 && !net->server.core.renderers)
         return INT64_MAX;
     if (now_ns >= net->readings_ns)
         take(net);
@@ -110,6 +110,6 @@ int64_t net_update_readings(struct net *net, int64_t now_ns)
 
 void net_refresh_readings(struct server_context *server)
 {
-    if (clock_mono_ns() - server->snapshot->taken_mono_ns > MIN_INTERVAL_NS)
+    if (clock_mono_ns() - server->readings.snapshot->taken_mono_ns > MIN_INTERVAL_NS)
         take(lws_container_of(server, struct net, server));
 }

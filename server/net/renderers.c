@@ -84,7 +84,7 @@ void renderers_make_key(struct server_context *server)
     uint8_t key[VIEW_TOKEN_KEY_BYTES];
     if (RAND_bytes(key, sizeof(key)) != 1)
         return;
-    hex_print(key, sizeof(key), server->core_key);
+    hex_print(key, sizeof(key), server->core.key);
 }
 
 /* --- connecting and disconnecting ----------------------------------------------------------------------------------------------------- */
@@ -112,7 +112,7 @@ static bool is_standby(const struct renderer_peer *renderer)
 static void name_standby(struct server_context *server)
 {
     const struct renderer_peer *witness = NULL;
-    for (const struct renderer_peer *renderer = server->renderers; renderer; renderer = renderer->next)
+    for (const struct renderer_peer *renderer = server->core.renderers; renderer; renderer = renderer->next)
         if (is_witness(renderer))
             witness = renderer;
     if (server->params.keeper)
@@ -121,7 +121,7 @@ static void name_standby(struct server_context *server)
 
 bool renderers_have_standby(const struct server_context *server)
 {
-    const struct renderer_peer *renderer = server->renderers;
+    const struct renderer_peer *renderer = server->core.renderers;
     while (renderer && !is_standby(renderer))
         renderer = renderer->next;
     return renderer;
@@ -130,7 +130,7 @@ bool renderers_have_standby(const struct server_context *server)
 static void count(struct server_context *server)
 {
     int taken = 0;
-    for (const struct renderer_peer *renderer = server->renderers; renderer; renderer = renderer->next)
+    for (const struct renderer_peer *renderer = server->core.renderers; renderer; renderer = renderer->next)
         taken += renderer->state == RENDERER_TAKEN && !renderer->stands_by;
     counter_set(server->counters.renderers, taken);
 }
@@ -138,8 +138,8 @@ static void count(struct server_context *server)
 static void on_open(struct server_context *server, struct lws *wsi, struct renderer_peer **slot)
 {
     struct renderer_peer *renderer = mem_new(sizeof(*renderer));
-    *renderer = (struct renderer_peer){ .wsi = wsi, .next = server->renderers, .answers = json_array() };
-    server->renderers = *slot = renderer;
+    *renderer = (struct renderer_peer){ .wsi = wsi, .next = server->core.renderers, .answers = json_array() };
+    server->core.renderers = *slot = renderer;
     lws_set_timer_usecs(wsi, TICK_US);
 }
 
@@ -169,13 +169,13 @@ static void settle(struct renderer_peer *renderer)
 
 void renderers_settle(struct server_context *server)
 {
-    for (struct renderer_peer *renderer = server->renderers; renderer; renderer = renderer->next)
+    for (struct renderer_peer *renderer = server->core.renderers; renderer; renderer = renderer->next)
         settle(renderer);
 }
 
 bool renderers_owe_answers(const struct server_context *server)
 {
-    for (const struct renderer_peer *renderer = server->renderers; renderer; renderer = renderer->next)
+    for (const struct renderer_peer *renderer = server->core.renderers; renderer; renderer = renderer->next)
         if (renderer->deeds || json_array_size(renderer->answers) > 0)
             return true;
     return false;
@@ -183,7 +183,7 @@ bool renderers_owe_answers(const struct server_context *server)
 
 static void on_close(struct server_context *server, struct renderer_peer **slot)
 {
-    struct renderer_peer *renderer = *slot, **at = &server->renderers;
+    struct renderer_peer *renderer = *slot, **at = &server->core.renderers;
     if (!renderer)
         return;
     while (*at != renderer)
@@ -211,13 +211,13 @@ static void on_close(struct server_context *server, struct renderer_peer **slot)
 
 void renderers_on_change(struct server_context *server)
 {
-    for (struct renderer_peer *renderer = server->renderers; renderer; renderer = renderer->next)
+    for (struct renderer_peer *renderer = server->core.renderers; renderer; renderer = renderer->next)
         lws_callback_on_writable(renderer->wsi);
 }
 
 void renderers_close(struct server_context *server, const char *why)
 {
-    for (struct renderer_peer *renderer = server->renderers; renderer; renderer = renderer->next) {
+    for (struct renderer_peer *renderer = server->core.renderers; renderer; renderer = renderer->next) {
         renderer->close_text = why;
         core_samples_end(&renderer->samples); /* the store from which these samples come is about to be destroyed */
         lws_callback_on_writable(renderer->wsi);
@@ -288,14 +288,14 @@ static bool send_to_voter(const struct server_context *server, struct renderer_p
 static bool links_differ(const struct server_context *server, const struct renderer_peer *renderer)
 {
     size_t count = server->session_context.plant->source_count;
-    return !renderer->links_sent || memcmp(renderer->links, server->links_up, count * sizeof(*renderer->links)) != 0;
+    return !renderer->links_sent || memcmp(renderer->links, server->readings.links_up, count * sizeof(*renderer->links)) != 0;
 }
 
 static bool send_links(const struct server_context *server, struct renderer_peer *renderer)
 {
     json_t *up = json_array();
     for (size_t i = 0; i < server->session_context.plant->source_count; i++) {
-        renderer->links[i] = server->links_up[i];
+        renderer->links[i] = server->readings.links_up[i];
         json_array_append_new(up, json_boolean(renderer->links[i]));
     }
     renderer->links_sent = true;
@@ -371,14 +371,14 @@ static bool send_readings(struct server_context *server, struct renderer_peer *r
 {
     begin(renderer);
     renderer->told_ns = clock_mono_ns();
-    core_readings_write(&renderer->out, server->snapshot, &renderer->sent);
+    core_readings_write(&renderer->out, server->readings.snapshot, &renderer->sent);
     return send_out(renderer, LWS_WRITE_BINARY);
 }
 
 /* Wakes the connections whose answers wait until a standby has the state that the actions changed. */
 static void wake_answers(const struct server_context *server)
 {
-    for (const struct renderer_peer *one = server->renderers; one; one = one->next)
+    for (const struct renderer_peer *one = server->core.renderers; one; one = one->next)
         if (json_array_size(one->answers) > 0)
             lws_callback_on_writable(one->wsi);
 }
@@ -388,7 +388,7 @@ static void wake_answers(const struct server_context *server)
 static bool standby_lacks(const struct server_context *server)
 {
     struct lists_seen lists = lists_now(server);
-    for (const struct renderer_peer *one = server->renderers; one; one = one->next)
+    for (const struct renderer_peer *one = server->core.renderers; one; one = one->next)
         if (one->stands_by && one->state == RENDERER_TAKEN && !one->close_text && one->alarms_sent && one->lists_sent &&
             clock_mono_ns() - one->told_ns < STANDBY_TIMEOUT_NS &&
             (memcmp(&lists, &one->lists, sizeof(lists)) != 0 || one->alarms != alarm_service_number(server->params.plant.alarm_service)))
@@ -468,7 +468,7 @@ static char *standby_refusal(const struct server_context *server, struct rendere
         return mem_strdup("this core has no standby: it was started without --core");
     if (!strcmp(one->name, server->params.node_name))
         return mem_printf("both cores have the name %.63s: give each its own with --node", one->name);
-    for (const struct renderer_peer *other = server->renderers; other; other = other->next)
+    for (const struct renderer_peer *other = server->core.renderers; other; other = other->next)
         if (other != one && (matches ? is_standby(other) : is_witness(other)))
             return mem_printf("%.63s is standby already", other->name);
     if (!id || !lease_name(one->lease, one->name, id))
@@ -479,21 +479,21 @@ static char *standby_refusal(const struct server_context *server, struct rendere
 /* Logs a refusal unless it equals the last refusal that was logged: a refused peer tries again every second. */
 static void say_refusal(struct server_context *server, const struct renderer_peer *renderer)
 {
-    char said[sizeof(server->renderer_refused)];
+    char said[sizeof(server->core.refused)];
     bool votes = renderer->state == RENDERER_VOTES;
     snprintf(said, sizeof(said), "%s %s: refused: %s%s", renderer->stands_by ? "standby" : "renderer", renderer->name, renderer->refusal,
              votes                 ? "; it is not a standby, but its promises count"
              : renderer->stands_by ? "; it is not a standby"
                                    : "");
-    if (strcmp(said, server->renderer_refused) != 0)
+    if (strcmp(said, server->core.refused) != 0)
         log_err(server->params.log, "%s", said);
-    memcpy(server->renderer_refused, said, sizeof(said));
+    memcpy(server->core.refused, said, sizeof(said));
 }
 
 /* Closes the connections of cores that only vote, once a standby with this version and these files has connected. */
 static void end_voters(struct server_context *server)
 {
-    for (struct renderer_peer *one = server->renderers; one; one = one->next)
+    for (struct renderer_peer *one = server->core.renderers; one; one = one->next)
         if (one->state == RENDERER_VOTES) {
             one->state = RENDERER_REFUSED;
             one->close_text = "another core is the standby";
@@ -538,7 +538,7 @@ static void introduce(struct server_context *server, struct renderer_peer *rende
     core_sent_init(&renderer->sent, plant->tag_count);
     renderer->links = mem_array(plant->source_count + 1, sizeof(*renderer->links));
     renderer->hello = core_identity_message("core", &own);
-    json_object_set_new(renderer->hello, "key", json_string(server->core_key));
+    json_object_set_new(renderer->hello, "key", json_string(server->core.key));
     if (renderer->stands_by && server->params.plant.historian)
         historian_on_standby(server->params.plant.historian);
     renderer->journal_utc_ns = json_integer_value(json_object_get(message, "journal"));
@@ -557,12 +557,12 @@ static const char *verify_person(const struct server_context *server, const stru
     const char *token = json_string_value(json_object_get(message, "token"));
     const char *id_token = json_string_value(json_object_get(message, "id_token"));
     *out = (struct token_holder){ .role = ROLE_NOBODY };
-    if (token && server->tokens)
-        return !tokens_find(server->tokens, token, clock_utc_ns(), out) ? "the core does not accept this token (its --tokens file)"
+    if (token && server->logins.tokens)
+        return !tokens_find(server->logins.tokens, token, clock_utc_ns(), out) ? "the core does not accept this token (its --tokens file)"
                : role_is_node(out->role)                                ? "a token of a daemon does not allow user actions"
                                                                         : NULL;
-    if (id_token && server->openid) {
-        const char *why = openid_vouch(server->openid, id_token, out);
+    if (id_token && server->logins.openid) {
+        const char *why = openid_vouch(server->logins.openid, id_token, out);
         connection_tell_apart(server, out);
         return why;
     }
@@ -610,7 +610,7 @@ static const char *on_message(struct server_context *server, struct renderer_pee
         why = "the first message is not an introduction (hello)";
     else if (!strcmp(type, "act") && json_is_integer(json_object_get(message, "id")))
         act(server, renderer, message);
-    else if (!strcmp(type, "pairing") && server->tokens)
+    else if (!strcmp(type, "pairing") && server->logins.tokens)
         pairings_ask_for(server->params.plant.pairings, message, clock_mono_ns());
     json_decref(message);
     return json_array_size(renderer->answers) > MAX_ANSWERS ? "it does not read answers" : why;
@@ -642,7 +642,7 @@ static int on_beat(struct server_context *server, struct renderer_peer *renderer
 {
     int64_t now_ns = clock_mono_ns();
     const struct token_holder *holder = &connection_of(renderer->wsi)->holder;
-    if (server->tokens && holder->name[0] && tokens_role(server->tokens, holder, clock_utc_ns()) != holder->role) {
+    if (server->logins.tokens && holder->name[0] && tokens_role(server->logins.tokens, holder, clock_utc_ns()) != holder->role) {
         log_warn(server->params.log, "renderer %s: disconnected: its token no longer has the role %s", renderer->name,
                  name_of(names_role, (int)holder->role));
         return -1;
@@ -665,7 +665,7 @@ static int on_writeable(struct server_context *server, struct renderer_peer *ren
     /* the connection stays open until these actions are answered; settle() then asks libwebsockets for the next callback */
     if (renderer->deeds)
         return 0;
-    if (json_array_size(renderer->answers) > 0 && !server->goes_down) {
+    if (json_array_size(renderer->answers) > 0 && !server->life.goes_down) {
         lws_callback_on_writable(renderer->wsi);
         return send_answer(renderer) ? 0 : -1;
     }

@@ -52,64 +52,81 @@ enum { UPGRADE_REFUSALS = 16 };
 struct server_context {
     struct net_params params;
     struct session_context session_context; /* state that all sessions read */
-    struct snapshot *snapshot;
-    uint32_t *changes;      /* reading.changes in the last snapshot, by tag */
-    int64_t data_ns;        /* monotonic: arrival of the oldest reading that changed in the last snapshot */
-    int64_t next_change_ns; /* monotonic: when a quality changes next by time alone; INT64_MAX: never */
-    bool *links_up;         /* connection state of each source, by source index */
     struct lws_context *lws;
+    struct { /* readings.c */
+        struct snapshot *snapshot;
+        uint32_t *changes;      /* reading.changes in the last snapshot, by tag */
+        int64_t data_ns;        /* monotonic: arrival of the oldest reading that changed in the last snapshot */
+        int64_t next_change_ns; /* monotonic: when a quality changes next by time alone; INT64_MAX: never */
+        bool *links_up;         /* connection state of each source, by source index */
+    } readings;
     struct history_queries *history_queries; /* NULL: nothing is recorded */
     struct history_loader *history_loader;   /* loads the readings of past instants; NULL: nothing is recorded */
-    struct picture_signer *picture_signer;   /* NULL: pictures are not signed */
-    char signing_key_id[SIGNING_KEY_ID_BYTES];
-    /* streams: linked list of all connections to /stream; by_client: array of the same, sorted by session id, ascending */
-    struct stream *streams, **by_client;
-    size_t by_client_capacity;
-    struct view_token_keys token_keys;           /* on a renderer: keys that sign view tokens */
-    char core_key[2 * VIEW_TOKEN_KEY_BYTES + 1]; /* on a core: the view token key for its renderers, hexadecimal; "": none */
-    char renderer_refused[300];                  /* the last refusal of a renderer, as logged */
-    struct renderer_peer *renderers;             /* list of all connections to /core (renderers.c) */
-    struct http_exchange *snapshots;             /* list of HTTP requests that wait for a frame, a pick or a reload */
-    /* picture_count, question_count: numbers of HTTP requests for pictures and for history that are being answered */
-    int stream_count, picture_count, question_count;
-    int64_t answer_bytes; /* total bytes of HTTP answers that clients have not read yet */
-    int64_t upload_bytes; /* total size of all files that are being uploaded, counted at their full size from the start */
-    int uploads;          /* number of uploads in progress */
-    const struct quotas *quotas;
-    struct address_limits *limits;
-    /* unanswered_count: number of connections that wait for an answer or have not sent a request yet */
-    int connection_count, unanswered_count;
-    bool goes_down;                         /* the server shuts down: connections are closed after their answer */
-    struct tokens *tokens;                  /* NULL: none are configured */
-    struct openid *openid;                  /* sign-in with OpenID Connect; NULL: off */
-    struct login_throttle *login_throttle;
-    struct web_site *site; /* the web client's files */
-    char *notice;          /* text shown before users sign in; NULL: none */
-    char *content_policy;  /* header Content-Security-Policy of every answer */
-    struct tls *tls;       /* NULL: no TLS */
-    struct admission admission;
+    struct {
+        struct picture_signer *signer; /* NULL: pictures are not signed */
+        char key_id[SIGNING_KEY_ID_BYTES];
+    } signing;
+    struct {                   /* connections to /stream */
+        struct stream *first;  /* linked list of all */
+        struct stream **by_client; /* array of the same, sorted by session id, ascending */
+        size_t by_client_capacity;
+        int count;
+        uint64_t next_client;
+        bool restless;    /* true: some session has timed work soon, so ticks come at the short interval */
+        int64_t still_ns; /* time to render the last refined frame that was drawn for one session alone, not shared */
+    } streams;
+    struct {
+        struct view_token_keys token_keys;      /* on a renderer: keys that sign view tokens */
+        char key[2 * VIEW_TOKEN_KEY_BYTES + 1]; /* on a core: the view token key for its renderers, hexadecimal; "": none */
+        char refused[300];                      /* the last refusal of a renderer, as logged */
+        struct renderer_peer *renderers;        /* list of all connections to /core (renderers.c) */
+        uint64_t told_number;                   /* sequence number of the last notifier state that was sent to a standby */
+    } core;
+    struct {
+        struct http_exchange *waiting; /* list of HTTP requests that wait for a frame, a pick or a reload */
+        int pictures, questions;       /* numbers of HTTP requests for pictures and for history that are being answered */
+        int64_t answer_bytes;          /* total bytes of HTTP answers that clients have not read yet */
+        int64_t upload_bytes;          /* total size of all files that are being uploaded, counted at their full size from the start */
+        int uploads;                   /* number of uploads in progress */
+        struct web_site *site;         /* the web client's files */
+        char *content_policy;          /* header Content-Security-Policy of every answer */
+        struct log_pace stuck_heads;   /* limits log lines about requests whose head did not end */
+    } http;
+    struct {
+        const struct quotas *quotas;
+        struct address_limits *addresses;
+        struct admission admission;
+        int connections, unanswered; /* unanswered: number of connections that wait for an answer or have not sent a request yet */
+    } room;
+    struct {
+        struct tokens *tokens;           /* NULL: none are configured */
+        struct openid *openid;           /* sign-in with OpenID Connect; NULL: off */
+        struct login_throttle *throttle;
+        char *notice;                    /* text shown before users sign in; NULL: none */
+        int64_t held;      /* number of tokens not checked because of throttling and not recorded yet */
+        int64_t held_ns;   /* monotonic time of the last record about them */
+        int64_t unasked;   /* number of unrecorded answers of the identity provider that belonged to no log-in or failed */
+        int64_t looked_ns; /* monotonic: when the files of tokens and certificate were last checked */
+    } logins;
+    struct {
+        bool goes_down;    /* the server shuts down: connections are closed after their answer */
+        char goodbye[64];  /* close reason that streams get at shutdown */
+        int64_t drain_ns;  /* monotonic time since when the daemon drains its sessions to other daemons; 0: it does not */
+        int start_s;       /* seconds that the daemon took to start, rounded up; 0: the daemon is not ready */
+    } life;
+    struct { /* texts that several sessions get */
+        struct tag_text_cache tags;
+        char *lists[LISTS];
+        struct alarm_text_cache alarms;
+        uint64_t alarms_number;           /* sequence number of the last change of alarms that was sent to sessions */
+        struct marker_text_cache markers; /* alarm markers of the frame that was sent last */
+        struct neighbour_text_cache neighbours;
+    } texts;
+    struct tls *tls;   /* NULL: no TLS */
     bool local_only;   /* true: the server listens on a loopback address, without a proxy in front */
     char machine[256]; /* the machine's host name; "": none */
-    /* logins_held: number of tokens not checked because of throttling and not recorded yet; held_ns: monotonic time of the last record
-       about them */
-    int64_t logins_held, held_ns;
-    int64_t unasked;   /* number of identity provider's answers that belonged to no log-in or failed, and are not in the audit trail yet */
-    int64_t drain_ns;  /* monotonic time since when the daemon drains its sessions to other daemons; 0: it does not */
-    int64_t looked_ns; /* monotonic: when the files of tokens and certificate were last checked */
-    uint64_t next_client;
-    char goodbye[64]; /* close reason that streams get at shutdown */
-    int start_s;      /* seconds that the daemon took to start, rounded up; 0: the daemon is not ready */
     struct kept_answers kept_answers;
-    bool restless;                      /* true: some session has timed work soon, so ticks come at the short interval */
-    int64_t still_ns;                   /* time to render the last refined frame that was drawn for one session alone, not shared */
     uint8_t out[LWS_PRE + SLICE_BYTES]; /* buffer for writes: libwebsockets writes its framing into the LWS_PRE bytes before the data */
-    struct tag_text_cache tag_texts;
-    char *lists_said[LISTS];
-    struct alarm_text_cache alarm_texts;
-    uint64_t told_number;                  /* sequence number of the last notifier state that was sent to a standby */
-    uint64_t alarms_number;                /* sequence number of the last change of alarms that was sent to sessions */
-    struct marker_text_cache marker_lists; /* alarm markers of the frame that was sent last */
-    struct neighbour_text_cache neighbour_texts;
     struct {
         struct log_pace pace; /* limits log lines about stream requests without Upgrade */
         struct upgrade_refusal {
@@ -119,7 +136,6 @@ struct server_context {
         } refused[UPGRADE_REFUSALS]; /* ring buffer of refused handshakes */
         unsigned count;              /* number of all refused handshakes */
     } upgrade;
-    struct log_pace stuck_heads; /* limits log lines about requests whose head did not end */
     struct latency_stages latency;
     struct wall_displays displays;
     struct tile_wall tile_walls[WALLS];
@@ -160,7 +176,7 @@ void stream_on_coverage(struct server_context *server, const struct sensor_cover
 void stream_say(struct server_context *server, uint64_t client, const char *text);
 /* Tells sessions with trial sensor positions that distances were computed. */
 void streams_on_placed(struct server_context *server);
-/* Runs the tick of all sessions, and sets server->restless if any session has work that depends on time. */
+/* Runs the tick of all sessions, and sets server->streams.restless if any session has work that depends on time. */
 void streams_on_tick(struct server_context *server);
 /* Tells all sessions that readings, or the connection states of sources, changed. */
 void streams_on_readings(struct server_context *server, bool data_changed, bool links_changed);

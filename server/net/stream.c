@@ -59,7 +59,7 @@ static void on_open(struct server_context *server, struct lws *wsi, struct strea
     const struct connection *connection = connection_of(wsi);
     struct stream *stream = mem_new(sizeof(*stream));
     *stream = (struct stream){ .wsi = wsi };
-    stream->session = session_create(&server->session_context, server->next_client++, clock_mono_ns());
+    stream->session = session_create(&server->session_context, server->streams.next_client++, clock_mono_ns());
     stream->usage = connection->client;
     session_introduce(stream->session, &(struct session_client){ .number = new_number(server),
                                                                  .address = stream->usage->address,
@@ -70,15 +70,15 @@ static void on_open(struct server_context *server, struct lws *wsi, struct strea
                                                                  .share = &stream->usage->share });
     *slot = stream;
     stream_table_add(server, stream);
-    counter_set(server->counters.sessions, server->stream_count);
+    counter_set(server->counters.sessions, server->streams.count);
     counter_inc(server->counters.sessions_all, 1);
     tune_socket(wsi);
-    bool address_full = !address_limits_may_stream(server->limits, stream->usage);
+    bool address_full = !address_limits_may_stream(server->room.addresses, stream->usage);
     stream->usage->sessions++;
-    admission_join(&server->admission, &stream->usage->share);
+    admission_join(&server->room.admission, &stream->usage->share);
     if (address_full)
         session_close(stream->session, 1013, "full: this address has reached its limit of sessions; try again later");
-    else if (server->stream_count > server->quotas->at[QUOTA_SESSIONS])
+    else if (server->streams.count > server->room.quotas->at[QUOTA_SESSIONS])
         session_close(stream->session, 1013, "full: the server has reached its limit of sessions; try again later");
     pump(server, stream);
     log_debug(server->params.log, "session %llu: opened", (unsigned long long)stream->session->id);
@@ -108,7 +108,7 @@ static void on_close(struct server_context *server, struct stream **slot)
     if (!stream)
         return;
     stream_table_remove(server, stream);
-    counter_set(server->counters.sessions, server->stream_count);
+    counter_set(server->counters.sessions, server->streams.count);
     count(server, stream);
     if (session_is_tile(stream->session))
         tiles_gather(server, stream->session->tile.place.wall, stream);
@@ -122,7 +122,7 @@ static void on_close(struct server_context *server, struct stream **slot)
         history_loader_forget(server->history_loader, stream->session->id);
     stream->usage->sessions--;
     session_leave(stream->session, may_return(stream), clock_mono_ns());
-    admission_leave(&server->admission, &stream->usage->share);
+    admission_leave(&server->room.admission, &stream->usage->share);
     session_retire(&stream->session);
     encoded_frame_destroy(&stream->sending);
     text_finish(&stream->in);
@@ -173,7 +173,7 @@ static void pump(struct server_context *server, struct stream *stream)
     }
     if (stream_has_output(stream, now_ns))
         lws_callback_on_writable(stream->wsi);
-    server->restless |= stream->sending || stream->cut || !session_rests(session, now_ns);
+    server->streams.restless |= stream->sending || stream->cut || !session_rests(session, now_ns);
 }
 
 /* Returns whether the render thread is overloaded: refining every session at each change of readings, once a second, would take more
@@ -181,22 +181,22 @@ static void pump(struct server_context *server, struct stream *stream)
 static bool is_loaded(const struct server_context *server)
 {
     int count = 0;
-    for (const struct stream *stream = server->streams; stream; stream = stream->next)
+    for (const struct stream *stream = server->streams.first; stream; stream = stream->next)
         count += stream->session->hello && !stream->session->hidden;
-    return count * server->still_ns > NS_PER_S;
+    return count * server->streams.still_ns > NS_PER_S;
 }
 
 static void count_moving(const struct server_context *server, int64_t now_ns)
 {
-    for (struct address_share *share = server->admission.shares; share; share = share->next)
+    for (struct address_share *share = server->room.admission.shares; share; share = share->next)
         share->moving = 0;
-    for (const struct stream *stream = server->streams; stream; stream = stream->next)
+    for (const struct stream *stream = server->streams.first; stream; stream = stream->next)
         stream->usage->share.moving += session_moves(stream->session, now_ns);
 }
 
 void streams_check_tokens(struct server_context *server, int64_t now_utc_ns)
 {
-    for (struct stream *stream = server->streams; stream; stream = stream->next)
+    for (struct stream *stream = server->streams.first; stream; stream = stream->next)
         session_check_token(stream->session, clock_mono_ns(), now_utc_ns);
 }
 
@@ -236,9 +236,9 @@ static void watch_stall(struct server_context *server, struct stream *stream, in
 
 void streams_on_readings(struct server_context *server, bool data_changed, bool links_changed)
 {
-    for (struct stream *stream = server->streams; stream; stream = stream->next) {
+    for (struct stream *stream = server->streams.first; stream; stream = stream->next) {
         if (data_changed && session_view(stream->session)->at_us == 0)
-            session_on_data(stream->session, server->data_ns);
+            session_on_data(stream->session, server->readings.data_ns);
         if (links_changed)
             session_on_links(stream->session);
         pump(server, stream);
@@ -251,19 +251,19 @@ static bool is_drained(const struct server_context *server, const struct stream 
 {
     /* multiplying ids by 2^64 / golden ratio (Fibonacci hashing) spreads consecutive ids evenly */
     uint64_t spread = (stream->session->id + 1) * 0x9E3779B97F4A7C15u >> 32;
-    return server->drain_ns && now_ns - server->drain_ns > DRAIN_DELAY_NS + (int64_t)(spread % 1000) * (DRAIN_NS / 1000);
+    return server->life.drain_ns && now_ns - server->life.drain_ns > DRAIN_DELAY_NS + (int64_t)(spread % 1000) * (DRAIN_NS / 1000);
 }
 
 void streams_on_tick(struct server_context *server)
 {
-    int64_t now_ns = clock_mono_ns(), patience_ns = server->quotas->at[QUOTA_PATIENCE_S] * NS_PER_S;
-    server->restless = false;
+    int64_t now_ns = clock_mono_ns(), patience_ns = server->room.quotas->at[QUOTA_PATIENCE_S] * NS_PER_S;
+    server->streams.restless = false;
     server->session_context.overloaded = is_loaded(server);
     count_moving(server, now_ns);
     follow_share_steps(server);
     follow_tell(server, now_ns);
     tiles_on_tick(server);
-    for (struct stream *stream = server->streams; stream; stream = stream->next) {
+    for (struct stream *stream = server->streams.first; stream; stream = stream->next) {
         session_on_tick(stream->session, now_ns);
         if (is_drained(server, stream, now_ns))
             session_close(stream->session, LWS_CLOSE_STATUS_GOINGAWAY, "this node is being drained; retry after 0 s");
@@ -277,31 +277,31 @@ void streams_on_tick(struct server_context *server)
 
 void streams_on_alarms(struct server_context *server)
 {
-    for (struct stream *stream = server->streams; stream; stream = stream->next)
+    for (struct stream *stream = server->streams.first; stream; stream = stream->next)
         pump(server, stream);
 }
 
 void streams_settle(struct server_context *server)
 {
-    for (struct stream *stream = server->streams; stream; stream = stream->next)
+    for (struct stream *stream = server->streams.first; stream; stream = stream->next)
         if (stream->session && session_settle(stream->session))
             pump(server, stream);
 }
 
 void streams_close(struct server_context *server)
 {
-    int back_s = server->start_s < BACK_MAX_S ? server->start_s : BACK_MAX_S;
+    int back_s = server->life.start_s < BACK_MAX_S ? server->life.start_s : BACK_MAX_S;
     if (back_s > 0)
-        snprintf(server->goodbye, sizeof(server->goodbye), "the server is stopping; retry after %d s", back_s);
+        snprintf(server->life.goodbye, sizeof(server->life.goodbye), "the server is stopping; retry after %d s", back_s);
     else
-        snprintf(server->goodbye, sizeof(server->goodbye), "the server is stopping");
-    for (struct stream *stream = server->streams; stream; stream = stream->next)
-        close_with(stream, LWS_CLOSE_STATUS_GOINGAWAY, server->goodbye);
+        snprintf(server->life.goodbye, sizeof(server->life.goodbye), "the server is stopping");
+    for (struct stream *stream = server->streams.first; stream; stream = stream->next)
+        close_with(stream, LWS_CLOSE_STATUS_GOINGAWAY, server->life.goodbye);
 }
 
 static void take_frame(struct server_context *server, struct stream *stream, struct encoded_frame *encoded)
 {
-    admission_on_frame(&server->admission, &stream->usage->share, encoded);
+    admission_on_frame(&server->room.admission, &stream->usage->share, encoded);
     session_on_frame(stream->session, encoded);
     pump(server, stream);
 }
@@ -317,7 +317,7 @@ static bool sign(struct server_context *server, struct stream *stream, struct en
     struct view_address args;
     bool good = view_query_write(&context, &packet->frame->view, &args, &error);
     if (good)
-        picture_signer_ask(server->picture_signer, encoded,
+        picture_signer_ask(server->signing.signer, encoded,
                            &(struct picture_origin){ .scene = context.scene,
                                                      .args = (const char *const *)args.args,
                                                      .arg_count = args.count,
@@ -347,7 +347,7 @@ void stream_on_frame(struct server_context *server, struct encoded_frame *encode
     struct stream *stream = stream_find(server, encoded->client);
     const struct frame *frame = encoded->packet ? encoded->packet->frame : NULL;
     if (frame && frame->view.tier == TIER_REFINED && encoded->request.urgency >= URGENCY_REFINE)
-        server->still_ns = frame->render_ns + frame->readback_ns;
+        server->streams.still_ns = frame->render_ns + frame->readback_ns;
     if (!sign(server, stream, encoded))
         take_frame(server, stream, encoded);
 }
@@ -363,7 +363,7 @@ void stream_on_pick(struct server_context *server, const struct pick_answer *ans
 
 static void pump_followers(struct server_context *server, const struct stream *leader)
 {
-    for (struct stream *stream = server->streams; stream; stream = stream->next)
+    for (struct stream *stream = server->streams.first; stream; stream = stream->next)
         if (stream->session->following.leader == leader->session)
             pump(server, stream);
 }
@@ -380,7 +380,7 @@ void stream_on_coverage(struct server_context *server, const struct sensor_cover
 void streams_on_placed(struct server_context *server)
 {
     int64_t now_ns = clock_mono_ns();
-    for (struct stream *stream = server->streams; stream; stream = stream->next)
+    for (struct stream *stream = server->streams.first; stream; stream = stream->next)
         if (stream->session->placement.set) {
             session_on_placed(stream->session, now_ns);
             pump(server, stream);
@@ -428,10 +428,10 @@ static void on_message(struct server_context *server, struct stream *stream)
     struct session *session = stream->session;
     int64_t now_ns = clock_mono_ns();
     bool was_in = session->hello || session->close.code, was_hidden = session->hidden;
-    if (!address_limits_count_message(server->limits, stream->usage, now_ns))
-        session_too_fast(session, server->quotas->at[QUOTA_ADDRESS_MESSAGES], "of this address ");
+    if (!address_limits_count_message(server->room.addresses, stream->usage, now_ns))
+        session_too_fast(session, server->room.quotas->at[QUOTA_ADDRESS_MESSAGES], "of this address ");
     net_refresh_readings(server);
-    if (stream->in_count > (size_t)server->quotas->at[QUOTA_MESSAGE_BYTES])
+    if (stream->in_count > (size_t)server->room.quotas->at[QUOTA_MESSAGE_BYTES])
         session_on_oversize(session, stream->in_count, now_ns);
     else
         session_on_message(session, stream->in.at ? stream->in.at : "", stream->in.length, now_ns, clock_plant_ns());
@@ -476,7 +476,7 @@ static void on_receive(struct server_context *server, struct stream *stream, con
         lws_rx_flow_control(stream->wsi, 0);
         return;
     }
-    bool is_whole = stream->in_count <= (size_t)server->quotas->at[QUOTA_MESSAGE_BYTES];
+    bool is_whole = stream->in_count <= (size_t)server->room.quotas->at[QUOTA_MESSAGE_BYTES];
     if (is_whole)
         text_add_bytes(&stream->in, bytes, len);
     if (lws_remaining_packet_payload(stream->wsi) == 0 && lws_is_final_fragment(stream->wsi)) {

@@ -11,7 +11,7 @@ static const int64_t MIN_LIST_INTERVAL_NS =
 /* Makes the followers of the resumed session follow the session that resumed it. */
 static void take_back(struct server_context *server, struct session *session)
 {
-    for (struct stream *stream = server->streams; stream; stream = stream->next) {
+    for (struct stream *stream = server->streams.first; stream; stream = stream->next) {
         struct session *other = stream->session;
         bool was = other->following.leader && other->following.leader != session &&
                    other->following.leader->identity.number == session->identity.number;
@@ -23,7 +23,7 @@ static void take_back(struct server_context *server, struct session *session)
 /* Makes the followers of one session follow another session. If `to` is NULL, they follow nobody. */
 static void hand_over(struct server_context *server, const struct session *from, struct session *to)
 {
-    for (struct stream *stream = server->streams; stream; stream = stream->next)
+    for (struct stream *stream = server->streams.first; stream; stream = stream->next)
         if (stream->session->following.leader == from)
             session_follow(stream->session, to, clock_mono_ns());
 }
@@ -70,7 +70,7 @@ void follow_resolve(struct server_context *server, struct stream *stream)
 bool follow_spread(struct server_context *server, const struct stream *leader)
 {
     bool any = false;
-    for (struct stream *stream = server->streams; stream; stream = stream->next) {
+    for (struct stream *stream = server->streams.first; stream; stream = stream->next) {
         if (stream->session->following.leader != leader->session)
             continue;
         session_on_leader(stream->session, leader->session->demand.input_ns);
@@ -84,7 +84,7 @@ void follow_forget(struct server_context *server, const struct stream *leader)
     const struct stream *newer = stream_called(server, leader->session->identity.number);
     /* session that resumed the leader's view over another connection, while the leader was still connected; NULL: none */
     struct session *again = newer ? newer->session : NULL;
-    for (struct stream *stream = server->streams; stream; stream = stream->next)
+    for (struct stream *stream = server->streams.first; stream; stream = stream->next)
         if (stream->session->following.leader == leader->session && again && again != stream->session)
             session_follow(stream->session, again, clock_mono_ns());
         else if (stream->session->following.leader == leader->session)
@@ -93,13 +93,13 @@ void follow_forget(struct server_context *server, const struct stream *leader)
 
 void follow_tell(struct server_context *server, int64_t now_ns)
 {
-    for (struct stream *stream = server->streams; stream; stream = stream->next) {
+    for (struct stream *stream = server->streams.first; stream; stream = stream->next) {
         struct session *session = stream->session;
         uint64_t *followers = NULL;
         size_t count = 0, capacity = 0;
         if (!session->following.followers_changed || now_ns - session->following.followers_ns < MIN_LIST_INTERVAL_NS)
             continue;
-        for (const struct stream *other = server->streams; other; other = other->next) {
+        for (const struct stream *other = server->streams.first; other; other = other->next) {
             if (other->session->following.leader != session)
                 continue;
             mem_grow(&followers, &capacity, count + 1, sizeof(*followers));
@@ -114,6 +114,6 @@ void follow_share_steps(struct server_context *server)
 {
     void (*const steps[])(struct session *) = { session_clear_steps, session_count_step, session_choose_step };
     for (int i = 0; i < 3; i++)
-        for (struct stream *stream = server->streams; stream; stream = stream->next)
+        for (struct stream *stream = server->streams.first; stream; stream = stream->next)
             steps[i](stream->session);
 }

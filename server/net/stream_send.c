@@ -29,7 +29,7 @@ static bool write_markers(struct server_context *server, struct stream *stream, 
     struct text text = { 0 };
     /* no markers are sent if the client may not read the sensors' values */
     bool open = session_is_open(stream->session) || stream->session->scope.tags;
-    char *markers = open ? NULL : marker_text(stream->sending->packet->frame, stream->seq, &stream->known, &server->marker_lists);
+    char *markers = open ? NULL : marker_text(stream->sending->packet->frame, stream->seq, &stream->known, &server->texts.markers);
     *wrote = markers != NULL;
     if (!markers)
         return true;

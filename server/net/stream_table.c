@@ -6,11 +6,11 @@
 #include "base/mem.h"
 #include "net/stream.h"
 
-/* Returns the index in server->by_client of that session, or where it would be inserted. */
+/* Returns the index in server->streams.by_client of that session, or where it would be inserted. */
 static size_t place_of(const struct server_context *server, uint64_t client)
 {
     size_t at;
-    search_sorted(at, server->stream_count, server->by_client[at]->session->id < client);
+    search_sorted(at, server->streams.count, server->streams.by_client[at]->session->id < client);
     return at;
 }
 
@@ -18,13 +18,13 @@ static size_t place_of(const struct server_context *server, uint64_t client)
 struct stream *stream_find(const struct server_context *server, uint64_t client)
 {
     size_t place = place_of(server, client);
-    bool there = place < (size_t)server->stream_count && server->by_client[place]->session->id == client;
-    return there ? server->by_client[place] : NULL;
+    bool there = place < (size_t)server->streams.count && server->streams.by_client[place]->session->id == client;
+    return there ? server->streams.by_client[place] : NULL;
 }
 
 struct stream *stream_called(const struct server_context *server, uint64_t number)
 {
-    struct stream *stream = server->streams;
+    struct stream *stream = server->streams.first;
     while (stream && stream->session->identity.number != number)
         stream = stream->next;
     return stream;
@@ -37,19 +37,19 @@ bool stream_owns(const struct server_context *server, uint64_t client)
 
 void stream_table_add(struct server_context *server, struct stream *stream)
 {
-    stream->next = server->streams;
-    server->streams = stream;
-    mem_grow(&server->by_client, &server->by_client_capacity, (size_t)server->stream_count + 1, sizeof(struct stream *));
-    server->by_client[server->stream_count++] = stream; /* session ids ascend, so the array stays sorted */
+    stream->next = server->streams.first;
+    server->streams.first = stream;
+    mem_grow(&server->streams.by_client, &server->streams.by_client_capacity, (size_t)server->streams.count + 1, sizeof(struct stream *));
+    server->streams.by_client[server->streams.count++] = stream; /* session ids ascend, so the array stays sorted */
 }
 
 void stream_table_remove(struct server_context *server, const struct stream *stream)
 {
-    struct stream **at = &server->streams;
+    struct stream **at = &server->streams.first;
     while (*at != stream)
         at = &(*at)->next;
     *at = stream->next;
-    size_t place = place_of(server, stream->session->id), behind = (size_t)server->stream_count - place - 1;
-    memmove(server->by_client + place, server->by_client + place + 1, behind * sizeof(struct stream *));
-    server->stream_count--;
+    size_t place = place_of(server, stream->session->id), behind = (size_t)server->streams.count - place - 1;
+    memmove(server->streams.by_client + place, server->streams.by_client + place + 1, behind * sizeof(struct stream *));
+    server->streams.count--;
 }

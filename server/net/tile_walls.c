@@ -23,7 +23,7 @@ static struct tile_wall *find(struct server_context *server, const char *name)
         if (!strcmp(wall->wall, name))
             return wall;
         bool used = false;
-        for (const struct stream *stream = server->streams; stream && wall->wall[0]; stream = stream->next)
+        for (const struct stream *stream = server->streams.first; stream && wall->wall[0]; stream = stream->next)
             used |= is_of(stream, wall->wall);
         if (!used && !free_one)
             free_one = wall;
@@ -48,7 +48,7 @@ static bool may_lead(const struct stream *stream, const struct stream *leaving)
 static struct session *choose(struct server_context *server, const struct tile_wall *wall, const struct stream *leaving)
 {
     struct session *first = NULL;
-    for (struct stream *stream = server->streams; stream; stream = stream->next) {
+    for (struct stream *stream = server->streams.first; stream; stream = stream->next) {
         if (!is_of(stream, wall->wall) || !may_lead(stream, leaving))
             continue;
         int display = stream->session->tile.place.display;
@@ -76,7 +76,7 @@ static void tell(struct server_context *server, const struct tile_wall *wall, co
     bool there[WALL_DISPLAYS] = { false };
     int64_t late_us[WALL_DISPLAYS] = { 0 };
     bool good[WALL_DISPLAYS] = { false };
-    for (const struct stream *stream = server->streams; stream; stream = stream->next) {
+    for (const struct stream *stream = server->streams.first; stream; stream = stream->next) {
         const struct session *session = stream->session;
         int at = session->tile.place.display - 1;
         bool is_there = stream != leaving && session->hello && !session->hidden && !session->close.code;
@@ -86,7 +86,7 @@ static void tell(struct server_context *server, const struct tile_wall *wall, co
         good[at] |= !session->tile.late_us;
         late_us[at] = good[at] ? 0 : session->tile.late_us;
     }
-    for (struct stream *stream = server->streams; stream; stream = stream->next)
+    for (struct stream *stream = server->streams.first; stream; stream = stream->next)
         if (is_of(stream, wall->wall) && stream != leaving) {
             session_tile_tell(stream->session, there, late_us, stream->session->id == wall->leader);
             if (session_has_text(stream->session, clock_mono_ns()))
@@ -99,7 +99,7 @@ static void tell(struct server_context *server, const struct tile_wall *wall, co
 static void move_all(struct server_context *server, const char *wall)
 {
     struct burn_shift shift = burn_shift_at(clock_plant_ns());
-    for (struct stream *stream = server->streams; stream; stream = stream->next)
+    for (struct stream *stream = server->streams.first; stream; stream = stream->next)
         if (is_of(stream, wall))
             session_tile_move(stream->session, shift, clock_mono_ns());
 }
@@ -115,7 +115,7 @@ void tiles_gather(struct server_context *server, const char *name, const struct 
         wall->leader = 0;
     else if (leader->id != wall->leader)
         take_lead(server, wall, leader, leaving);
-    for (struct stream *stream = server->streams; stream && leader; stream = stream->next) {
+    for (struct stream *stream = server->streams.first; stream && leader; stream = stream->next) {
         struct session *session = stream->session;
         if (!is_of(stream, name) || stream == leaving || session == leader || !session->hello || session->following.leader == leader)
             continue;
@@ -149,7 +149,7 @@ void tiles_pump(struct server_context *server, const struct stream *stream)
     struct session *members[MEMBERS];
     struct session_tiles tiles = { .members = members, .made = wall ? &wall->made : NULL };
     int64_t now_ns = clock_mono_ns();
-    for (struct stream *other = server->streams; other && wall; other = other->next) {
+    for (struct stream *other = server->streams.first; other && wall; other = other->next) {
         struct session *session = other->session;
         if (tiles.count == MEMBERS || other->close_code || !is_of(other, wall->wall) || !session_tile_takes_part(session, now_ns) ||
             (session->id != wall->leader && (!session->following.leader || session->following.leader->id != wall->leader)))
@@ -171,14 +171,14 @@ void tiles_pump(struct server_context *server, const struct stream *stream)
 void tiles_on_tick(struct server_context *server)
 {
     int64_t now_ns = clock_mono_ns(), now_utc_ns = clock_plant_ns();
-    for (struct stream *stream = server->streams; stream; stream = stream->next) {
+    for (struct stream *stream = server->streams.first; stream; stream = stream->next) {
         struct session *session = stream->session;
         if (!session_is_tile(session) || !session->hello)
             continue;
         session_tile_judge(session, now_ns, now_utc_ns);
-        server->restless = true;
+        server->streams.restless = true;
     }
-    for (struct stream *stream = server->streams; stream; stream = stream->next)
+    for (struct stream *stream = server->streams.first; stream; stream = stream->next)
         if (session_is_tile(stream->session) && stream->session->hello)
             tiles_gather(server, stream->session->tile.place.wall, NULL);
 }

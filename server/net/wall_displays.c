@@ -31,7 +31,7 @@ void wall_displays_count(struct server_context *server, int64_t now_ns)
     struct wall_displays *all = &server->displays;
     for (size_t i = 0; i < all->count; i++)
         all->at[i].connected_ns = 0;
-    for (const struct stream *stream = server->streams; stream; stream = stream->next) {
+    for (const struct stream *stream = server->streams.first; stream; stream = stream->next) {
         const struct session *session = stream->session;
         struct wall_seen *seen = session->display.display > 0 ? find(server, &session->display) : NULL;
         int64_t fresh_ns = seen ? session_fresh_ns(session) : 0;

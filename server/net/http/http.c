@@ -91,7 +91,7 @@ static int stream_without_upgrade(struct server_context *server, struct http_exc
 
 static int file(struct server_context *server, struct http_exchange *request, const char *path)
 {
-    const struct site_file *found = site_find(server->site, path);
+    const struct site_file *found = site_find(server->http.site, path);
     char seen[64] = "";
     request->sandboxed = !strncmp(path, "/keeper/", 8);
     if (!found)

@@ -67,7 +67,7 @@ bool request_write_head(struct http_exchange *request, int status, const char *t
     for (size_t i = 0; i < sizeof(security) / sizeof(security[0]); i++)
         if (!add_header(wsi, security[i][0], security[i][1], &p, end))
             return false;
-    if (!add_policies(request, server->content_policy, &p, end))
+    if (!add_policies(request, server->http.content_policy, &p, end))
         return false;
     if (server->tls && !add_header(wsi, "strict-transport-security:", "max-age=31536000", &p, end))
         return false;
@@ -88,7 +88,7 @@ void request_hold(struct http_exchange *request, char *body, size_t count)
     struct server_context *server = server_context_of(request->wsi);
     if (request->holder) {
         request->holder->answer_bytes -= (int64_t)request->count;
-        server->answer_bytes -= (int64_t)request->count;
+        server->http.answer_bytes -= (int64_t)request->count;
     }
     mem_free(request->body);
     request->holder = body ? connection_of(request->wsi)->client : NULL;
@@ -98,7 +98,7 @@ void request_hold(struct http_exchange *request, char *body, size_t count)
     if (!request->holder)
         return;
     request->holder->answer_bytes += (int64_t)count;
-    server->answer_bytes += (int64_t)count;
+    server->http.answer_bytes += (int64_t)count;
 }
 
 /* Returns whether the answer fits into the quotas. A large answer occupies memory until the client has read it, however slowly. */
@@ -106,8 +106,9 @@ static bool may_hold(const struct http_exchange *request, size_t count)
 {
     const struct server_context *server = server_context_of(request->wsi);
     const struct connection *connection = connection_of(request->wsi);
-    bool room = server->answer_bytes + (int64_t)count < server->quotas->at[QUOTA_ANSWER_BYTES];
-    return count <= SMALL_BYTES || !connection->client || (room && address_limits_may_hold(server->limits, connection->client, count));
+    bool room = server->http.answer_bytes + (int64_t)count < server->room.quotas->at[QUOTA_ANSWER_BYTES];
+    return count <= SMALL_BYTES || !connection->client ||
+           (room && address_limits_may_hold(server->room.addresses, connection->client, count));
 }
 
 int request_done(struct http_exchange *request)
@@ -116,7 +117,7 @@ int request_done(struct http_exchange *request)
     request->pieces = PIECES_NONE;
     connection_set_answered(server_context_of(request->wsi), request->wsi, true);
     stuck_head_await(request->wsi, false);
-    return request->close || server_context_of(request->wsi)->goes_down || lws_http_transaction_completed(request->wsi) ? -1 : 0;
+    return request->close || server_context_of(request->wsi)->life.goes_down || lws_http_transaction_completed(request->wsi) ? -1 : 0;
 }
 
 /* Writes the answer; takes ownership of body. Bytes that the socket does not accept now are written once it does. */
@@ -207,25 +208,25 @@ const char *arg_of(const struct args *args, const char *name)
 
 void request_await(struct server_context *server, struct http_exchange *request)
 {
-    request->client = server->next_client++;
-    request->next = server->snapshots;
-    server->snapshots = request;
+    request->client = server->streams.next_client++;
+    request->next = server->http.waiting;
+    server->http.waiting = request;
     request->usage = connection_of(request->wsi)->client;
-    int64_t wait_s = server->quotas->at[QUOTA_ANSWER_WAIT_S]; /* seconds that a picture, past readings or a reload may take */
+    int64_t wait_s = server->room.quotas->at[QUOTA_ANSWER_WAIT_S]; /* seconds that a picture, past readings or a reload may take */
     request->until_ns = clock_mono_ns() + wait_s * NS_PER_S;
     lws_set_timeout(request->wsi, PENDING_TIMEOUT_HTTP_CONTENT, (int)wait_s + 15);
 }
 
 void http_on_tick(struct server_context *server, int64_t now_ns)
 {
-    for (struct http_exchange *request = server->snapshots, *next; request; request = next) {
+    for (struct http_exchange *request = server->http.waiting, *next; request; request = next) {
         next = request->next;
         if (now_ns < request->until_ns || request->pieces != PIECES_NONE || request->recorded)
             continue;
         request_forget(server, request);
         request->reloads = false;
         char *text = mem_printf("not ready within %d s (the first picture of a large plant takes longest); try again\n",
-                                (int)server->quotas->at[QUOTA_ANSWER_WAIT_S]);
+                                (int)server->room.quotas->at[QUOTA_ANSWER_WAIT_S]);
         request_answered(request, request_answer_later(request, text));
         mem_free(text);
     }
@@ -233,7 +234,7 @@ void http_on_tick(struct server_context *server, int64_t now_ns)
 
 struct http_exchange *request_find(const struct server_context *server, uint64_t client)
 {
-    struct http_exchange *request = server->snapshots;
+    struct http_exchange *request = server->http.waiting;
     while (request && request->client != client)
         request = request->next;
     return request;
@@ -252,15 +253,15 @@ void asked_free(struct asked **asked)
 
 void request_forget(struct server_context *server, struct http_exchange *request)
 {
-    struct http_exchange **at = &server->snapshots;
+    struct http_exchange **at = &server->http.waiting;
     while (*at && *at != request)
         at = &(*at)->next;
     if (!*at)
         return;
     *at = request->next;
-    server->picture_count -= request->asked != NULL;
+    server->http.pictures -= request->asked != NULL;
     request->usage->pictures -= request->asked != NULL;
-    server->question_count -= request->asks;
+    server->http.questions -= request->asks;
     request->usage->questions -= request->asks;
     request->asks = request->asks_instant = false;
     render_service_forget(server->params.plant.render_service, request->client);

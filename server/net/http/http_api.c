@@ -17,15 +17,15 @@
 static int await_history(struct server_context *server, struct http_exchange *request, struct history_query *query)
 {
     struct address_usage *usage = connection_of(request->wsi)->client;
-    query->client = server->next_client;
+    query->client = server->streams.next_client;
     query->account = usage->share.account;
-    if (server->question_count >= server->quotas->at[QUOTA_QUESTIONS] || !address_limits_may_ask(server->limits, usage) ||
+    if (server->http.questions >= server->room.quotas->at[QUOTA_QUESTIONS] || !address_limits_may_ask(server->room.addresses, usage) ||
         !history_queries_ask(server->history_queries, query))
         return request_answer_later(request, "too many requests in progress; try again\n");
     request_await(server, request);
     request->asks = true;
     usage->questions++;
-    server->question_count++;
+    server->http.questions++;
     return 0;
 }
 
@@ -220,7 +220,7 @@ int api_neighbours(struct server_context *server, struct http_exchange *request)
     if (group < 0)
         return request_answer_text(request, HTTP_STATUS_BAD_REQUEST, "expected group=ID of a group, or tag=NAME of one of its tags\n");
     net_refresh_readings(server);
-    return request_answer_json(request, neighbour_text(&server->neighbour_texts, &server->session_context, group, tag));
+    return request_answer_json(request, neighbour_text(&server->texts.neighbours, &server->session_context, group, tag));
 }
 
 /* Lists all named views; with id=ID also the earlier versions of that view. */
@@ -305,7 +305,7 @@ int api_pair(struct server_context *server, struct http_exchange *request)
     struct wall_place place = { .display = 1 };
     struct args args;
     char secret[256];
-    if (!server->tokens)
+    if (!server->logins.tokens)
         return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "this server does not pair displays (it runs without --tokens)\n");
     enum refusal_code why = server->params.plant.core_link ? REFUSAL_NONE : pairings_refusal(server->params.plant.pairings);
     if (why)
@@ -329,7 +329,7 @@ int api_pair(struct server_context *server, struct http_exchange *request)
 
 int api_devices(struct server_context *server, struct http_exchange *request)
 {
-    if (!server->tokens)
+    if (!server->logins.tokens)
         return request_answer_json(request, mem_strdup("{\"list\":null}"));
     return request_answer_json(request, pairings_text(server->params.plant.pairings));
 }

@@ -44,7 +44,7 @@ struct http_exchange {
     struct upload_body *body_in; /* upload in progress; NULL: none */
     const char *step;            /* path of a POST request of an import (static text), for the audit trail */
     struct asked *asked;         /* frame or pick for which the request waits; NULL: none */
-    struct http_exchange *next;  /* next in server->snapshots */
+    struct http_exchange *next;  /* next in server->http.waiting */
 };
 
 enum { MAX_ARGS = 32, MAX_ARG_BYTES = 2048 };

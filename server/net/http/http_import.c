@@ -80,7 +80,7 @@ static int answer_done(struct http_exchange *request, const char *file)
 
 void http_settle(struct server_context *server)
 {
-    for (struct http_exchange *request = server->snapshots, *next; request; request = next) {
+    for (struct http_exchange *request = server->http.waiting, *next; request; request = next) {
         next = request->next;
         int error = request->recorded ? audit_settled(server->params.audit, &request->record) : 0;
         server->kept_answers.waiting |= error == -EINPROGRESS;
@@ -208,8 +208,8 @@ static int remove_file(struct server_context *server, struct http_exchange *requ
 static bool has_room(const struct server_context *server, const char *folder, const char *name, int64_t bytes, const char **text)
 {
     struct export_list list = { 0 };
-    int64_t all = bytes + server->upload_bytes;
-    size_t others = (size_t)server->uploads;
+    int64_t all = bytes + server->http.upload_bytes;
+    size_t others = (size_t)server->http.uploads;
     export_folder_list(folder, &list);
     for (size_t i = 0; i < list.count; i++)
         if (strcmp(list.at[i].name, name) != 0) {
@@ -231,7 +231,7 @@ static int begin_body(struct server_context *server, struct http_exchange *reque
     int64_t bytes = strtoll(length, NULL, 10);
     if (bytes <= 0 || bytes > (decides ? most_decisions : most_bytes))
         return refuse_with(request, 413, bytes <= 0 ? "the file is empty\n" : "the file is larger than 2 GB\n");
-    if (server->uploads >= MAX_UPLOADS)
+    if (server->http.uploads >= MAX_UPLOADS)
         return refuse_with(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "four uploads are running; wait until one is complete\n");
     if (!decides && !has_room(server, folder, name, bytes, &why))
         return refuse_with(request, 413, why);
@@ -241,8 +241,8 @@ static int begin_body(struct server_context *server, struct http_exchange *reque
     request->body_in = mem_new(sizeof(*request->body_in));
     *request->body_in =
         (struct upload_body){ .upload = upload, .left = bytes, .bytes = bytes, .begun_ns = clock_mono_ns(), .decides = decides };
-    server->uploads++;
-    server->upload_bytes += bytes;
+    server->http.uploads++;
+    server->http.upload_bytes += bytes;
     snprintf(request->body_in->name, sizeof(request->body_in->name), "%s", name);
     return 0;
 }
@@ -319,8 +319,8 @@ void import_abandon_body(struct http_exchange *request)
     if (!request->body_in)
         return;
     export_upload_abandon(&request->body_in->upload);
-    server->uploads--;
-    server->upload_bytes -= request->body_in->bytes;
+    server->http.uploads--;
+    server->http.upload_bytes -= request->body_in->bytes;
     mem_free(request->body_in);
     request->body_in = NULL;
 }

@@ -32,12 +32,12 @@ int ask_instant(struct server_context *server, struct http_exchange *request)
     if (at_us == 0)
         return answer(server, request, NULL);
     struct address_usage *usage = connection_of(request->wsi)->client;
-    if (server->question_count >= server->quotas->at[QUOTA_QUESTIONS] || !address_limits_may_ask(server->limits, usage))
+    if (server->http.questions >= server->room.quotas->at[QUOTA_QUESTIONS] || !address_limits_may_ask(server->room.addresses, usage))
         return request_answer_later(request, "too many requests in progress; try again\n");
     request_await(server, request);
     request->asks = request->asks_instant = true;
     usage->questions++;
-    server->question_count++;
+    server->http.questions++;
     history_loader_ask(server->history_loader, request->client, at_us);
     return 0;
 }

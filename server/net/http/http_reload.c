@@ -29,7 +29,7 @@ int ask_reload(struct server_context *server, struct http_exchange *request)
 
 static void answer_all(struct server_context *server, bool reloads, int status, const char *type, const char *text)
 {
-    for (struct http_exchange *request = server->snapshots, *next; request; request = next) {
+    for (struct http_exchange *request = server->http.waiting, *next; request; request = next) {
         next = request->next;
         if (request->reloads != reloads || request->recorded)
             continue;

@@ -35,13 +35,13 @@ int ask_login(struct server_context *server, struct http_exchange *request)
     struct args args;
     char binding[SIGN_IN_SECRET_CHARS + 1];
     const char *why;
-    if (!server->openid)
+    if (!server->logins.openid)
         return request_answer_text(request, HTTP_STATUS_NOT_FOUND, NOT_HERE);
     if (!request_args(request->wsi, &args, &error))
         return request_answer_error(request, &error);
-    const struct openid_config *config = openid_config_of(server->openid);
+    const struct openid_config *config = openid_config_of(server->logins.openid);
     const char *to = arg_of(&args, "to"), *home = strchr(strstr(config->url, "://") + 3, '/');
-    char *url = openid_begin(server->openid, connection_of(request->wsi)->client->address, to && sign_in_path_good(to) ? to : home,
+    char *url = openid_begin(server->logins.openid, connection_of(request->wsi)->client->address, to && sign_in_path_good(to) ? to : home,
                              clock_mono_ns(), binding, &why);
     if (!url)
         return request_answer_later(request, why);
@@ -55,7 +55,7 @@ int ask_login(struct server_context *server, struct http_exchange *request)
    a browser send it, so it is counted but neither recorded nor held against the address. */
 static int refuse_unasked(struct server_context *server, struct http_exchange *request, enum openid_finish why)
 {
-    server->unasked++;
+    server->logins.unasked++;
     return why == OPENID_FULL ? request_answer_later(request, "too many sign-ins at once; sign in again from the page\n")
                               : request_answer_text(request, HTTP_STATUS_FORBIDDEN,
                                                     "no sign-in of this browser waits for this answer; sign in again from the page\n");
@@ -63,7 +63,7 @@ static int refuse_unasked(struct server_context *server, struct http_exchange *r
 
 static int refuse_held(struct server_context *server, struct http_exchange *request)
 {
-    server->logins_held++;
+    server->logins.held++;
     counter_inc(server->counters.logins_held, 1);
     return request_answer_text(request, 429, "too many wrong answers came from this address; try again later\n");
 }
@@ -75,13 +75,13 @@ int ask_login_callback(struct server_context *server, struct http_exchange *requ
     struct args args;
     char binding[64] = "", name[64];
     size_t size = sizeof(binding);
-    if (!server->openid)
+    if (!server->logins.openid)
         return request_answer_text(request, HTTP_STATUS_NOT_FOUND, NOT_HERE);
-    if (login_throttle_begin(server->login_throttle, connection->client->address, clock_mono_ns()) == LOGIN_HELD)
+    if (login_throttle_begin(server->logins.throttle, connection->client->address, clock_mono_ns()) == LOGIN_HELD)
         return refuse_held(server, request);
     if (!request_args(request->wsi, &args, &error))
         return request_answer_error(request, &error);
-    snprintf(name, sizeof(name), "%s-b", openid_config_of(server->openid)->cookie);
+    snprintf(name, sizeof(name), "%s-b", openid_config_of(server->logins.openid)->cookie);
     if (lws_http_cookie_get(request->wsi, name, binding, &size) != 0)
         binding[0] = 0;
     request_await(server, request);
@@ -92,7 +92,7 @@ int ask_login_callback(struct server_context *server, struct http_exchange *requ
                                            .error = arg_of(&args, "error"),
                                            .binding = binding,
                                            .from = connection->address };
-    enum openid_finish result = openid_finish(server->openid, &brought, clock_mono_ns());
+    enum openid_finish result = openid_finish(server->logins.openid, &brought, clock_mono_ns());
     if (result == OPENID_WAITS)
         return 0;
     request_forget(server, request);
@@ -103,11 +103,11 @@ int ask_login_callback(struct server_context *server, struct http_exchange *requ
 static void count_refused(struct server_context *server, const struct openid_answer *answer)
 {
     if (answer->result == OPENID_AWAY)
-        server->unasked++;
+        server->logins.unasked++;
     if (answer->result != OPENID_GUESSED)
         return;
     counter_inc(server->counters.logins_wrong, 1);
-    if (login_throttle_fail(server->login_throttle, answer->address, clock_mono_ns()) == LOGIN_WRONG_SLOWS)
+    if (login_throttle_fail(server->logins.throttle, answer->address, clock_mono_ns()) == LOGIN_WRONG_SLOWS)
         log_warn(server->params.log,
                  "login by OpenID Connect: address limited to one answer in %d s until a minute passes without a wrong one",
                  LOGIN_WAIT_S);
@@ -115,7 +115,7 @@ static void count_refused(struct server_context *server, const struct openid_ans
 
 static void answer_sign_in(struct server_context *server, struct http_exchange *request, const struct openid_answer *answer)
 {
-    const struct openid_config *config = openid_config_of(server->openid);
+    const struct openid_config *config = openid_config_of(server->logins.openid);
     request_forget(server, request);
     if (answer->result == OPENID_LET_IN) {
         set_cookie(config, request, "", answer->cookie, (int)(config->hours * 3600));
@@ -129,8 +129,8 @@ static void answer_sign_in(struct server_context *server, struct http_exchange *
 
 void http_on_sign_ins(struct server_context *server)
 {
-    struct openid_answer *answer = server->openid ? openid_collect(server->openid) : NULL;
-    if (server->openid && openid_take_changed(server->openid))
+    struct openid_answer *answer = server->logins.openid ? openid_collect(server->logins.openid) : NULL;
+    if (server->logins.openid && openid_take_changed(server->logins.openid))
         streams_check_tokens(server, clock_utc_ns());
     for (struct openid_answer *next; answer; answer = next) {
         struct http_exchange *request = request_find(server, answer->request);
@@ -148,11 +148,11 @@ int ask_logout(struct server_context *server, struct http_exchange *request)
     size_t size = sizeof(cookie);
     if (!request_may_change(server, request))
         return request_answer_text(request, HTTP_STATUS_FORBIDDEN, "refused: the request comes from a page of another site\n");
-    if (!server->openid)
+    if (!server->logins.openid)
         return request_answer_text(request, HTTP_STATUS_NOT_FOUND, NOT_HERE);
-    const struct openid_config *config = openid_config_of(server->openid);
+    const struct openid_config *config = openid_config_of(server->logins.openid);
     bool has_cookie = lws_http_cookie_get(request->wsi, config->cookie, cookie, &size) == 0;
-    char *url = has_cookie ? openid_end(server->openid, cookie, connection_of(request->wsi)->address) : NULL;
+    char *url = has_cookie ? openid_end(server->logins.openid, cookie, connection_of(request->wsi)->address) : NULL;
     streams_check_tokens(server, clock_utc_ns());
     set_cookie(config, request, "", "", 0);
     int result = request_answer_json(request, json_text(json_pack("{s:s?}", "provider", url), 0));
@@ -170,6 +170,7 @@ int api_me(struct server_context *server, struct http_exchange *request)
         timestamp_print(holder->until_utc_ns / 1000, until);
     json_t *said = json_pack("{s:s?,s:s,s:b,s:s?,s:s?,s:s?}", "name", holder->name[0] ? holder->name : NULL, "role",
                              name_of(names_role, (int)connection->role), "signed_in", holder->signed_in, "until", has_end ? until : NULL,
-                             "sign_in", server->openid ? openid_config_of(server->openid)->label : NULL, "notice", server->notice);
+                             "sign_in", server->logins.openid ? openid_config_of(server->logins.openid)->label : NULL, "notice",
+                              server->logins.notice);
     return request_answer_json(request, json_text(said, 0));
 }

@@ -115,8 +115,8 @@ static bool may_ask(struct server_context *server, struct http_exchange *request
         *result = request_refuse(request, HTTP_STATUS_NOT_FOUND, REFUSAL_UNRECORDED);
         return false;
     }
-    const char *why = server->picture_count >= server->quotas->at[QUOTA_SNAPSHOTS] ? "too many pictures are being drawn; try again\n"
-                      : address_limits_may_draw(server->limits, connection_of(request->wsi)->client)
+    const char *why = server->http.pictures >= server->room.quotas->at[QUOTA_SNAPSHOTS] ? "too many pictures are being drawn; try again\n"
+                      : address_limits_may_draw(server->room.addresses, connection_of(request->wsi)->client)
                           ? NULL
                           : "this address has reached its limit of pictures in progress; try again\n";
     if (why)
@@ -129,7 +129,7 @@ static struct asked *await_picture(struct server_context *server, struct http_ex
     request_await(server, request);
     request->asked = mem_new(sizeof(*request->asked));
     request->usage->pictures++;
-    server->picture_count++;
+    server->http.pictures++;
     return request->asked;
 }
 
@@ -220,7 +220,7 @@ static void sign(struct server_context *server, const struct asked *asked, struc
                                            .bare = asked->frame_request.overlay == OVERLAY_BARE,
                                            .overlay = asked->frame_request.overlay == OVERLAY_BARE ? "bare" : "full",
                                            .version = server->params.version };
-    picture_signer_ask(server->picture_signer, encoded, &origin);
+    picture_signer_ask(server->signing.signer, encoded, &origin);
 }
 
 void http_on_frame(struct server_context *server, struct encoded_frame *encoded)

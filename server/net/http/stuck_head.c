@@ -56,8 +56,8 @@ static void tell(struct lws *wsi)
 static void note(struct server_context *server, struct lws *wsi)
 {
     char address[64] = "", more[LOG_PACE_BYTES];
-    server->stuck_heads.first_ns = server->stuck_heads.longest_ns = 60 * NS_PER_S;
-    if (!log_pace_take(&server->stuck_heads, clock_mono_ns(), more))
+    server->http.stuck_heads.first_ns = server->http.stuck_heads.longest_ns = 60 * NS_PER_S;
+    if (!log_pace_take(&server->http.stuck_heads, clock_mono_ns(), more))
         return;
     lws_get_peer_simple(wsi, address, sizeof(address));
     log_warn(server->params.log, "http: a request from %s was ended: its headers were incomplete after %d s (408)%s", address,
