@@ -34,7 +34,8 @@ struct scene *plant_runtime_open_scene(struct log *log, const struct server_para
     char *folder = plant_runtime_prepared_folder(params, plant);
     struct scene *scene = scene_create(log, plant, folder);
     if (!scene)
-        log_err(log, "%s: the prepared files in %s cannot be used; run plantcast-prep %s", params->plant_path, folder, params->plant_path);
+        log_err(log, "%s: the prepared files in %s cannot be used; run plantcast-prep -o %s %s", params->plant_path, folder, folder,
+                params->plant_path);
     mem_free(folder);
     return scene;
 }

@@ -598,13 +598,14 @@ static void print_left_out(struct log *log, const struct plant *plant, const cha
 
 static int check_prepared(const struct server_params *params, const struct plant *plant)
 {
-    char *folder = plant_runtime_prepared_folder(params, plant);
-    bool exists = access(folder, F_OK) == 0;
+    char *folder = plant_runtime_prepared_folder(params, plant), *manifest = mem_printf("%s/manifest.json", folder);
+    bool exists = access(manifest, F_OK) == 0; /* written last: the folder alone exists while plantcast-prep runs for the first time */
     struct log *log = log_create(LOG_WARN);
     if (exists)
         print_left_out(log, plant, folder);
     else
         printf("%s: not prepared yet (%s)\n", params->plant_path, folder);
+    mem_free(manifest);
     mem_free(folder);
     if (!exists) {
         log_destroy(&log);

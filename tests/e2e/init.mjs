@@ -3,7 +3,7 @@
 // renewed certificate; a build without the page's charts fails.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
-import { cpSync, existsSync, mkdirSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
+import { cpSync, existsSync, mkdirSync, readdirSync, readFileSync, rmdirSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { basename, join, resolve } from 'node:path';
 import { after, before, test } from 'node:test';
 import { folderOfTests } from './support/folders.mjs';
@@ -35,7 +35,10 @@ test('init makes folders, plant file, certificate and tokens, and the daemon ser
     assert.equal(said.address, `https://localhost:${port}/`);
     assert.deepEqual([mode(etc('one')), mode(etc('one/tokens')), mode(etc('one/tls/privkey.pem'))], ['750', '640', '640']);
     assert.ok(existsSync(join(root, 'var/lib/plantcast/one/tags.csv')) && !existsSync(etc('one/tags.csv')));
-    assert.equal(runProgram('plantcastd', ['--check', etc('one/plant.yaml')]).code, 0);
+    mkdirSync(etc('one/plant.prepared')); // exists while plantcast-prep runs for the first time
+    const check = runProgram('plantcastd', ['--check', etc('one/plant.yaml')]);
+    assert.deepEqual([check.code, /not prepared yet/.test(check.out)], [0, true], check.err);
+    rmdirSync(etc('one/plant.prepared'));
     const prepared = join(root, 'prepared');
     assert.equal(runProgram('plantcast-prep', ['-o', prepared, etc('one/plant.yaml')]).code, 0);
     const [, options] = readFileSync(etc('one/options'), 'utf8').match(/^PLANTCAST_OPTIONS="(.*)"$/m);

@@ -28,9 +28,9 @@ function serve(args, managed = []) {
     child.stdout.on('data', (chunk) => { service.out += chunk; });
     child.stderr.on('data', (chunk) => { service.err += chunk; });
     service.ended = new Promise((done) => child.once('exit', (code) => { running.delete(child); done(code); }));
-    service.said = async (pattern, timeoutMs = 60000) => {
+    const waiting = (stream) => async (pattern, timeoutMs = 60000) => {
         for (const end = performance.now() + timeoutMs; performance.now() < end; await new Promise((done) => setTimeout(done, 20))) {
-            const found = service.out.match(pattern);
+            const found = service[stream].match(pattern);
             if (found)
                 return found;
             if (child.exitCode !== null)
@@ -38,6 +38,8 @@ function serve(args, managed = []) {
         }
         throw new Error(`no ${pattern} in:\n${service.out}\n${service.err}`);
     };
+    service.said = waiting('out');
+    service.logged = waiting('err');
     service.stop = () => { child.kill('SIGTERM'); return service.ended; };
     service.pid = async () => Number((await service.said(/^started: (\d+)$/m))[1]);
     running.add(child);
@@ -94,6 +96,8 @@ test('a start that prepares the plant asks for time as long as it does, and ends
         const service = serve(['--port', '0']);
         // reported twice while plantcast-prep runs
         await service.said(/(notify: EXTEND_TIMEOUT_USEC=60000000\nnotify: STATUS=preparing the plant\n[^]*){2}/);
+        // and the journal has a line, for people
+        await service.logged(/^plantcastd: preparing the plant, for \d+ s so far$/m);
         assert.equal(await service.stop(), 0, service.err);
         assert.match(service.err, /stopping; the next start continues preparing/);
     } finally {

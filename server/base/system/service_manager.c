@@ -142,17 +142,19 @@ static bool is_at_work(struct service_patience *patience)
 static void *extend_start(void *arg)
 {
     struct service_patience *patience = arg;
-    int64_t begin_ns = clock_mono_ns();
+    int64_t begin_ns = clock_mono_ns(), logged_ns = begin_ns;
     bool works = true; /* true at first, so that more time is requested at least once and a quick start shows its status, too */
     pthread_mutex_lock(&patience->lock);
     do {
-        if (works && clock_mono_ns() - patience->since_ns < patience->limit_ns) {
+        int64_t now_ns = clock_mono_ns();
+        if (works && now_ns - patience->since_ns < patience->limit_ns)
             service_notify("EXTEND_TIMEOUT_USEC=%lld\nSTATUS=%s", EXTENSION_S * 1000000ll, patience->status);
-            int64_t for_ns = clock_mono_ns() - begin_ns;
-            if (for_ns > EXTENSION_INTERVAL_S * NS_PER_S / 2) /* the journal of a service shows that a long start continues */
-                fprintf(stderr, "%s: %s, for %.0f s so far\n", program_invocation_short_name, patience->status, (double)for_ns / 1e9);
+        if (now_ns - logged_ns > EXTENSION_INTERVAL_S * NS_PER_S * 9 / 10) { /* in the journal, also of a start that hangs */
+            fprintf(stderr, "%s: %s, for %.0f s so far\n", program_invocation_short_name, patience->status,
+                    (double)(now_ns - begin_ns) / 1e9);
+            logged_ns = now_ns;
         }
-        int64_t until_ns = clock_mono_ns() + patience->every_ns;
+        int64_t until_ns = now_ns + patience->every_ns;
         struct timespec until = { until_ns / NS_PER_S, until_ns % NS_PER_S };
         works = patience->ending || pthread_cond_timedwait(&patience->wake, &patience->lock, &until) != ETIMEDOUT;
         if (!works)
