@@ -210,6 +210,20 @@ test('a backup goes to another host by SFTP, and comes back from there',
         host.write('/root/key', readFileSync(first.path('root/key')), 0o600);
         ok(host.run(`plantcast restore ${there}/p1-b --identity /root/key`));
         assert.match(readFileSync(host.path(`${ETC}/tls/privkey.pem`), 'utf8'), /PRIVATE KEY/);
+        // --keep also deletes older copies there: complete and interrupted ones of this plant, nothing else
+        const copies = ['p1-2026-01-01T000000Z', 'p1-2026-01-02T000000Z.part', 'p2-2026-01-01T000000Z', 'p1-2026-notes'];
+        for (const name of copies) {
+            mkdirSync(join(kept, name));
+            writeFileSync(join(kept, name, 'a file'), '');
+        }
+        const pruned = host.run(`plantcast backup p1 --without-secrets --to ${there} --keep 1`);
+        assert.equal(pruned.code, 0, pruned.err);
+        const [newest] = readdirSync(host.path('var/backups/plantcast/p1'));
+        assert.deepEqual(readdirSync(kept), [`p1-${newest}`, 'p1-2026-notes', 'p1-b', 'p2-2026-01-01T000000Z'].sort());
+        mkdirSync(join(kept, 'p1-2026-01-01T000000Z/folder'), { recursive: true }); // which `rm` does not delete
+        const kept2 = host.run(`plantcast backup p1 --without-secrets --to ${there} --keep 2`);
+        assert.deepEqual([kept2.code, /older backups were not deleted there/.test(kept2.err)], [0, true], kept2.err);
+        assert.ok(readdirSync(kept).includes('p1-2026-01-01T000000Z.part'), 'no copy looks complete');
         const away = host.run(`plantcast backup p1 --without-secrets --to sftp://root@127.0.0.1:${sshPort}/proc/nothing -o /root/c`);
         assert.deepEqual([away.code, /was not copied; it is in \/root\/c/.test(away.err)], [1, true], away.err);
     });
