@@ -34,8 +34,9 @@ install: all
 	$(if $(readers),install -m 755 $(readers) $(root)/libexec/plantcast)
 	[ ! -d $(bin)/plantcast-import-ifc ] || cp -r $(bin)/plantcast-import-ifc $(root)/libexec/plantcast/
 	cp -r clients/web $(root)/share/plantcast/
-	install -m 644 deploy/LICENSE deploy/INSTALL.md $(root)/share/doc/plantcast
+	install -m 644 deploy/LICENSE $(root)/share/doc/plantcast
 	cp -r deploy/prometheus deploy/grafana deploy/proxy deploy/ansible $(root)/share/doc/plantcast
+	deploy/copy_pages $(root)/share/doc/plantcast
 	install -d $(root)/lib/systemd/system $(root)/lib/sysusers.d $(root)/lib/tmpfiles.d $(root)/share/bash-completion/completions
 	for unit in $(units); do \
 	    sed 's|/usr/bin/plantcast|$(prefix)/bin/plantcast|g; s|/usr/lib/plantcast|$(prefix)/lib/plantcast|g' $$unit \

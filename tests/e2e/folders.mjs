@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Root runs backup, restore and token in a folder that the daemon may write: symlinks and foreign files cannot redirect them, and their
-// results are not readable for others. Folders as in deploy/INSTALL.md.
+// results are not readable for others. Folders as in deploy/pages/SERVICE.md.
 import assert from 'node:assert/strict';
 import {
     chmodSync, chownSync, existsSync, linkSync, lstatSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, renameSync, rmSync,

@@ -42,7 +42,7 @@ static void print_usage(FILE *out)
           "and of each daemon the version, certificate, disk space and last backup.\n"
           "If a plant does not answer, the page shows since when.\n"
           "The page has no sign-in: put a reverse proxy in front that decides who may see it.\n"
-          "INSTALL.md describes FLEET.yaml.\n"
+          "MONITORING.md describes FLEET.yaml.\n"
           "\n"
           "  --check            check FLEET.yaml, and start nothing\n"
           "  --address ADDRESS  address of this machine to listen on: 127.0.0.1 or ::1 (default: 127.0.0.1)\n"

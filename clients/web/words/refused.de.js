@@ -79,7 +79,7 @@ other: auf Englisch: „{text}“
 blocked: Der Server antwortet über HTTP, aber {proxy} leitet den WebSocket nicht weiter. {needs}
 blocked_proxy: ein Proxy dazwischen
 blocked_lines: Nötig ist {lines} in seinem location-Block
-blocked_page: Was er braucht, steht in INSTALL.md, „Behind a reverse proxy“
+blocked_page: Was er braucht, steht in PROXY.md, „WebSocket“
 link: Dieser Link passt nicht: {why}. Er kann zu einer anderen Anlage gehören oder älter sein als eine Änderung der Anlage.
 unkept: Angewendet, aber nach einem Neustart des Servers verloren ({text})
 unaudited: Ausgeführt, fehlt aber im Audit-Trail ({text})

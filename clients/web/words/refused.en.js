@@ -78,7 +78,7 @@ other: {text}
 blocked: The server answers over HTTP, but {proxy} does not pass the WebSocket on. {needs}
 blocked_proxy: a proxy in between
 blocked_lines: It needs {lines} in its location block
-blocked_page: INSTALL.md, section “Behind a reverse proxy”, says what it needs
+blocked_page: PROXY.md, section “WebSocket”, says what it needs
 link: This link does not fit: {why}. It may be for another plant, or older than a change of the plant.
 unkept: Applied, but lost if the server restarts ({text})
 unaudited: Done, but missing in the audit trail ({text})

@@ -79,7 +79,7 @@ other: 영어로 “{text}”
 blocked: 서버는 HTTP로 응답하지만 {proxy}이(가) WebSocket을 전달하지 않습니다. {needs}
 blocked_proxy: 중간 프록시
 blocked_lines: location 블록에 {lines} 설정이 필요합니다
-blocked_page: 필요한 설정은 INSTALL.md의 “Behind a reverse proxy”에 있습니다
+blocked_page: 필요한 설정은 PROXY.md의 “WebSocket”에 있습니다
 link: 이 링크는 맞지 않습니다: {why}.
   다른 플랜트의 링크이거나 플랜트가 바뀌기 전의 링크일 수 있습니다.
 unkept: 적용되었지만 서버를 다시 시작하면 사라집니다 ({text})

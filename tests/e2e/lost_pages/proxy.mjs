@@ -129,7 +129,7 @@ async function startOther(answer, headers, tls = null) {
 const OTHERS = [
     ['answers 200 with a page', { line: '200 OK', code: 200 }, { via: '1.1 gate.example (squid)' },
         /gate\.example does not pass the WebSocket on/],
-    ['answers 400', { line: '400 Bad Request' }, { server: 'Apache/2.4' }, /Apache does not pass the WebSocket on\. INSTALL\.md/],
+    ['answers 400', { line: '400 Bad Request' }, { server: 'Apache/2.4' }, /Apache does not pass the WebSocket on\. PROXY\.md/],
     ['answers 404', { line: '404 Not Found', code: 404 }, {}, /a proxy in between does not pass the WebSocket on/],
     ['hangs up', null, {}, /a proxy in between does not pass the WebSocket on/],
 ];
