@@ -273,7 +273,7 @@ int cmd_fleet(int argc, char **argv)
     if (serves)
         code = serve(file, address, port, host);
     else
-        printf("%s: %zu plants\n", file->path, file->count);
+        printf("%s: %zu plant%s\n", file->path, file->count, file->count == 1 ? "" : "s");
     fleet_file_free(&file);
     return code;
 }
