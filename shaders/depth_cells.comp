@@ -17,22 +17,9 @@ float depth_at(ivec2 corner, int i)
     return texelFetch(depth, min(corner + ivec2(i % SIDE, i / SIDE), textureSize(depth, 0) - 1), 0).r;
 }
 
-void main()
+bool divide(int number, ivec2 corner, float low, float border, float high)
 {
-    int number = int(gl_GlobalInvocationID.x);
-    if (number >= grid.x * grid.y)
-        return;
-    ivec2 corner = SIDE * ivec2(number % grid.x, number / grid.x);
-    float low = 1.0, high = 0.0;
-    for (int i = 0; i < SIDE * SIDE; i++) {
-        float here = depth_at(corner, i);
-        low = min(low, here);
-        high = max(high, here);
-    }
-    float middle = 0.5 * (low + high), border = low > 0.0 ? middle : 0.0, behind = 0.0, before = high;
-    cells[number] = Cell(middle, middle, 0u, 0u);
-    if (high == 0.0 || (low > 0.0 && high - low <= steps.x * middle + steps.y))
-        return;
+    float behind = 0.0, before = high;
     uint mask[2] = uint[2](0u, 0u);
     for (int i = 0; i < SIDE * SIDE; i++) {
         float here = depth_at(corner, i);
@@ -43,6 +30,30 @@ void main()
             behind = max(behind, here);
         }
     }
-    if (low <= 0.0 || before - behind >= LEAST_GAP * (high - low))
-        cells[number] = Cell(0.5 * (before + high), 0.5 * (low + behind), mask[0], mask[1]);
+    if (low > 0.0 && before - behind < LEAST_GAP * (high - low))
+        return false;
+    cells[number] = Cell(0.5 * (before + high), 0.5 * (low + behind), mask[0], mask[1]);
+    return true;
+}
+
+void main()
+{
+    int number = int(gl_GlobalInvocationID.x);
+    if (number >= grid.x * grid.y)
+        return;
+    ivec2 corner = SIDE * ivec2(number % grid.x, number / grid.x);
+    float low = 1.0, surface = 1.0, high = 0.0;
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        float here = depth_at(corner, i);
+        low = min(low, here);
+        surface = here > 0.0 ? min(surface, here) : surface;
+        high = max(high, here);
+    }
+    float middle = 0.5 * (low + high), border = 0.5 * (surface + high);
+    cells[number] = Cell(middle, middle, 0u, 0u);
+    if (high == 0.0)
+        return;
+    bool divided = high - surface > steps.x * border + steps.y && divide(number, corner, surface, border, high);
+    if (low <= 0.0 && !divided)
+        divide(number, corner, 0.0, 0.0, high);
 }

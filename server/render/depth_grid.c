@@ -224,15 +224,15 @@ static uint8_t *put_far(const struct coder *coder, uint8_t *out)
     return out;
 }
 
-/* Returns a cell's mask in MASK_SIDE x MASK_SIDE bits: 1 where at least half of the pixels are near. */
+/* Returns a cell's mask in MASK_SIDE x MASK_SIDE bits: 1 where a pixel is near. Pixels of the far side that move with the near side are
+   seen less than a second image of a handrail. */
 static unsigned coarse_mask(uint64_t mask)
 {
     unsigned out = 0;
     for (int y = 0; y < MASK_SIDE; y++)
         for (int x = 0; x < MASK_SIDE; x++) {
             uint64_t block = mask >> (y * MASK_PX * DEPTH_CELL_PX + x * MASK_PX);
-            int pixels = __builtin_popcountll(block & BLOCK_BITS);
-            out |= (unsigned)(pixels >= MASK_PX) << (y * MASK_SIDE + x);
+            out |= (unsigned)((block & BLOCK_BITS) != 0) << (y * MASK_SIDE + x);
         }
     return out;
 }

@@ -13,9 +13,9 @@ const { FLOATS, meshOf, warpMatrix } = await import(join(WEB, 'core/warp_mesh.js
 const folder = process.argv[2];
 const CASES = ['orbit_1', 'orbit_3', 'orbit_6', 'nearer_5', 'nearer_10', 'nearer_20'];
 const OFF = 16;          // difference of a colour channel, of 255, from which a pixel counts as different
-const NEAREST = 0.05;    // as in app/viewport/warp.js
+const NEAREST = 0.05;    // as in app/picture/warp.js
 const MOST_ERROR = 0.03; // of the range, for values
-const UNDRAWN = 200;     // grey of pixels that the first picture does not show
+const REDUCED = 4, LATTICE_PX = 14, MARK = 0.08 * 255; // as in app/picture/warp.js
 
 const load = (name) => ({
     ...JSON.parse(readFileSync(join(folder, `${name}.json`), 'utf8')),
@@ -94,11 +94,66 @@ function partOff(a, b, count) {
     return off / count;
 }
 
-function warped(first, shown) {
-    const out = Buffer.alloc(first.pixels.length, UNDRAWN);
+// Returns a level of half the width and height, as WebGL makes it. Levels have two values for each pixel: brightness and part drawn.
+function half({ width, height, values }) {
+    const out = { width: Math.max(1, width >> 1), height: Math.max(1, height >> 1) };
+    const at = (x, y, c) => values[2 * (Math.min(height - 1, y) * width + Math.min(width - 1, x)) + c];
+    out.values = new Float64Array(2 * out.width * out.height).map((_, i) => {
+        const x = 2 * ((i >> 1) % out.width), y = 2 * Math.floor((i >> 1) / out.width), c = i & 1;
+        return (at(x, y, c) + at(x + 1, y, c) + at(x, y + 1, c) + at(x + 1, y + 1, c)) / 4;
+    });
+    return out;
+}
+
+// Reduced levels of a warped picture. The first is a linear blit: the mean of the four pixels in the middle of each square.
+function levelsOf(pixels, shown, width, height) {
+    const wide = Math.ceil(width / REDUCED), middle = REDUCED / 2, values = new Float64Array(2 * wide * Math.ceil(height / REDUCED));
+    for (let i = 0; i < values.length / 2; i++)
+        for (const [dx, dy] of [[-1, -1], [0, -1], [-1, 0], [0, 0]]) {
+            const x = Math.min(width - 1, (i % wide) * REDUCED + middle + dx);
+            const at = Math.min(height - 1, Math.floor(i / wide) * REDUCED + middle + dy) * width + x;
+            values[2 * i] += shown[at] < 0 ? 0 : luma(pixels, at) / 4;
+            values[2 * i + 1] += shown[at] < 0 ? 0 : 1 / 4;
+        }
+    const levels = [{ width: wide, height: Math.ceil(height / REDUCED), values }];
+    while (levels.at(-1).width > 1 || levels.at(-1).height > 1)
+        levels.push(half(levels.at(-1)));
+    return levels;
+}
+
+// Linear filtering of a level at (u, v), 0..1. Returns [brightness, part drawn].
+function sample({ width, height, values }, u, v) {
+    const x = u * width - 0.5, y = v * height - 0.5, left = Math.floor(x), top = Math.floor(y), p = x - left, q = y - top;
+    const most = (value, size) => Math.max(0, Math.min(size - 1, value));
+    const at = (i, j, c) => values[2 * (most(j, height) * width + most(i, width)) + c];
+    return [0, 1].map((c) => (at(left, top, c) * (1 - p) + at(left + 1, top, c) * p) * (1 - q) +
+        (at(left, top + 1, c) * (1 - p) + at(left + 1, top + 1, c) * p) * q);
+}
+
+// Grey of a pixel that is not drawn, as the page's shader computes it.
+function greyAt(levels, x, y, width, height) {
+    const u = (x + 0.5) / width, v = (y + 0.5) / height;
+    let sum = 0, part = 0;
+    for (let i = 0; i < levels.length && part < 0.98; i++) {
+        const [brightness, drawn] = sample(levels[i], u, v);
+        sum += (1 - part) * brightness;
+        part += (1 - part) * drawn;
+    }
+    const grey = part > 0 ? sum / part : 128, share = Math.max(0, Math.min(1, (0.65 - sample(levels[3], u, v)[1]) / 0.3));
+    const line = Math.min((x + y) % LATTICE_PX, (x - y + height * LATTICE_PX) % LATTICE_PX) < 0.1 * LATTICE_PX;
+    const mark = line ? MARK * share * share * (3 - 2 * share) : 0;
+    return grey > 0.4 * 255 ? grey - mark : grey + mark;
+}
+
+function warped({ pixels, width, height }, shown) {
+    const out = Buffer.alloc(pixels.length);
     for (let i = 0; i < shown.length; i++)
         if (shown[i] >= 0)
-            first.pixels.copy(out, 4 * i, 4 * shown[i], 4 * shown[i] + 4);
+            pixels.copy(out, 4 * i, 4 * shown[i], 4 * shown[i] + 4);
+    const levels = levelsOf(out, shown, width, height);
+    for (let i = 0; i < shown.length; i++)
+        if (shown[i] < 0)
+            out.fill(greyAt(levels, i % width, Math.floor(i / width), width, height), 4 * i, 4 * i + 4);
     return out;
 }
 

@@ -30,23 +30,36 @@ SOFT_INLINE lanes row_at(const float *depth, size_t pitch_px, int row)
     return *(const lanes *)(depth + (size_t)row * pitch_px);
 }
 
-/* Divides a cell with depths from `low` to `high` between the middle of the range, or between surface and background. */
-SOFT_INLINE void divide(const float *depth, size_t pitch_px, float low, float high, struct depth_cell *cell)
+/* Divides a cell between depths on both sides of `border`. low: least depth behind it, 0 for the background alone. Returns false if the
+   depths leave no gap there. */
+SOFT_INLINE bool divide(const float *depth, size_t pitch_px, float low, float border, float high, struct depth_cell *cell)
 {
-    float between = low > 0 ? 0.5f * (low + high) : 0;
     lanes zero = { 0 }, nearest_behind = zero, farthest_before = zero + high;
     uint64_t mask = 0;
     for (int row = 0; row < DEPTH_CELL_PX; row++) {
         lanes here = row_at(depth, pitch_px, row);
-        lanes_int before = here > between;
+        lanes_int before = here > border;
         nearest_behind = lanes_most(nearest_behind, lanes_choose(before, zero, here));
         farthest_before = lanes_least(farthest_before, lanes_choose(before, here, zero + high));
         mask |= (uint64_t)lanes_bits(before) << (row * DEPTH_CELL_PX);
     }
     float behind = most_of_all(nearest_behind), before = least_of_all(farthest_before);
     if (low > 0 && before - behind < LEAST_GAP * (high - low))
-        return;
+        return false;
     *cell = (struct depth_cell){ 0.5f * (before + high), 0.5f * (low + behind), mask };
+    return true;
+}
+
+/* Returns the least depth of the surfaces in a cell. */
+SOFT_INLINE float farthest_surface(const float *depth, size_t pitch_px, float high)
+{
+    lanes most = { 0 }, least = most + high;
+    most = least;
+    for (int row = 0; row < DEPTH_CELL_PX; row++) {
+        lanes here = row_at(depth, pitch_px, row);
+        least = lanes_least(least, lanes_choose(here > 0.0f, here, most));
+    }
+    return least_of_all(least);
 }
 
 SOFT_INLINE void find_cell(const struct depth_lens *lens, const float *depth, size_t pitch_px, struct depth_cell *cell)
@@ -59,8 +72,13 @@ SOFT_INLINE void find_cell(const struct depth_lens *lens, const float *depth, si
     }
     float low = least_of_all(least), high = most_of_all(most), middle = 0.5f * (low + high);
     *cell = (struct depth_cell){ middle, middle, 0 };
-    if (high > 0 && (low <= 0 || high - low > lens->step * middle + lens->least_step))
-        divide(depth, pitch_px, low, high, cell);
+    if (high <= 0)
+        return;
+    /* The background has no features that would seem to move, so a step between surfaces matters more than one to the background. */
+    float surface = low > 0 ? low : farthest_surface(depth, pitch_px, high), border = 0.5f * (surface + high);
+    bool divided = high - surface > lens->step * border + lens->least_step && divide(depth, pitch_px, surface, border, high, cell);
+    if (low <= 0 && !divided)
+        divide(depth, pitch_px, 0, 0, high, cell);
 }
 
 /* Finds a cell that reaches beyond the frame: repeats the pixels at the edge. */

@@ -201,9 +201,19 @@ const watchWarped = (page) => page.evaluate((LEAST_RUN_PX) => {
             }
         return ends;
     };
+    // pixels of the warped picture that are neither drawn nor left out, while the server's picture replaces it
+    const countMixed = (canvas) => {
+        const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext('2d');
+        copy.drawImage(canvas, 0, 0);
+        const { data } = copy.getImageData(0, 0, canvas.width, canvas.height);
+        return data.filter((value, i) => i % 4 === 3 && value > 0 && value < 255).length;
+    };
     globalThis.warped = [];
+    globalThis.fades = [];
     viewport.onDrawn = (isNew, isWarped) => {
         onDrawn(isNew, isWarped);
+        if (!isWarped && viewport.warp?.isShown && session.picture.cameraSeq === session.cameraSeq)
+            globalThis.fades.push(countMixed(viewport.warp.canvas));
         if (!isWarped || !viewport.warp.isShown)
             return;
         const asked = cameras.find(({ camera }) => camera === session.picture.camera);
@@ -262,7 +272,9 @@ test('the picture follows the hand before the server answers; nothing is coloure
         assert.ok(off <= MARK_PX, `a marker ${off} px off`);
         assert.ok(beyond <= WARPED_PX, `colours ${beyond} px beyond the box`);
         await settle(page);
-        assert.equal(await page.evaluate(() => globalThis.plantcast.viewport.warp.isShown), false, "then the server's picture is shown");
+        await page.waitForFunction(() => !globalThis.plantcast.viewport.warp.isShown); // then the server's picture is shown
+        const fades = await page.evaluate(() => globalThis.fades);
+        assert.ok(fades.length > 0 && fades.every((mixed) => mixed === 0), `pixels that mix two pictures: ${fades}`);
         const updates = await page.evaluate(() => globalThis.plantcast.viewport.warp.updates);
         await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
         assert.equal(await page.evaluate(() => globalThis.plantcast.viewport.warp.updates), updates, 'a still view is not drawn again');

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Shows the newest picture from the present camera until the server's picture of that camera arrives: draws the picture by WebGL 2 on a
-// mesh over its depth grid, once per animation frame in which the camera has moved. A grey lattice covers places that the picture does not
-// show. Loaded when the camera first moves.
+// mesh over its depth grid, once per animation frame in which the camera has moved. Places that the picture does not show get a grey as
+// light as their surroundings, never a colour, and wide ones a lattice. Loaded when the camera first moves.
 import { same } from '../../core/camera.js';
 import { depthAt, FLOATS, isNear, moveBy, warpMatrix } from '../../core/warp_mesh.js';
 import { isWhole } from '../../core/wire.js';
@@ -11,6 +11,8 @@ const KEPT = 3; // number of depth grids that may be decoded before their pictur
 const NEAREST = 0.05; // distance before which nothing is drawn, as a share of the nearest possible depth
 // If updates come later than SLOW_MS after each other, as without a GPU, the warped picture is drawn with fewer pixels.
 const SLOW_MS = 26, SLOW_COUNT = 8, PAUSE_MS = 150, LEAST_PX = 250000;
+
+const FADE_MS = 80; // time in which the server's picture replaces the warped one
 
 const MESH = `#version 300 es
 in vec4 vertex;
@@ -22,7 +24,14 @@ void main() {
     kind = vertex.w;
     gl_Position = warp * vec4(vertex.xyz, 1.0);
 }`;
-// Leaves out pixels behind a step in depth that contain a part of the colour before the step.
+// Pixels give way to the canvas below one by one: a mixture of two colours would be read as the value between them.
+const GONE = `
+uniform float gone;
+bool isGone() {
+    ivec2 at = ivec2(gl_FragCoord.xy) & 3;
+    int odd = at.x ^ at.y;
+    return float(4 * (2 * (odd & 1) + (at.y & 1)) + (odd & 2) + (at.y >> 1)) < gone * 16.0 - 0.5;
+}`;
 const PICTURE = `#version 300 es
 precision highp float;
 in vec2 at;
@@ -31,30 +40,36 @@ uniform sampler2D picture, masks;
 uniform vec2 origin, size;
 uniform float bit;
 out vec4 colour;
-bool isNear(float x, float y) {
-    return texelFetch(masks, ivec2(vec2(x, y) / bit), 0).r > 0.5;
-}
+${GONE}
 void main() {
-    if (kind > 0.5 && isNear(at.x, at.y) != (kind < 1.5))
+    if (kind > 0.5 && (texelFetch(masks, ivec2(at / bit), 0).r > 0.5) != (kind < 1.5) || isGone())
         discard;
-    if (kind > 1.5 && (isNear(at.x - bit, at.y) || isNear(at.x + bit, at.y) || isNear(at.x, at.y - bit) || isNear(at.x, at.y + bit)))
-        discard;
-    colour = texture(picture, (origin + at) / size);
+    colour = vec4(texture(picture, (origin + at) / size).rgb, 1.0);
 }`;
 const BEHIND = `#version 300 es
 void main() {
     gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 1.0, 1.0);
 }`;
-const LATTICE = `#version 300 es
+const UNDRAWN = `#version 300 es
 precision highp float;
-uniform vec2 greys;
+uniform sampler2D drawn;
+uniform vec2 size;
 uniform float period;
 out vec4 colour;
+${GONE}
 void main() {
+    if (isGone())
+        discard;
+    vec4 sum = vec4(0.0);
+    for (int level = 0; level < 12 && sum.a < 0.98; level++)
+        sum += (1.0 - sum.a) * textureLod(drawn, gl_FragCoord.xy / size, float(level));
+    float grey = sum.a > 0.0 ? dot(sum.rgb, vec3(0.299, 0.587, 0.114)) / sum.a : 0.5;
     vec2 line = mod(vec2(gl_FragCoord.x + gl_FragCoord.y, gl_FragCoord.x - gl_FragCoord.y), period);
-    colour = vec4(vec3(min(line.x, line.y) < 0.15 * period ? greys.x : greys.y), 1.0);
+    float wide = smoothstep(0.35, 0.65, 1.0 - textureLod(drawn, gl_FragCoord.xy / size, 3.0).a);
+    float mark = min(line.x, line.y) < 0.1 * period ? 0.08 * wide : 0.0;
+    colour = vec4(vec3(grey > 0.4 ? grey - mark : grey + mark), 1.0);
 }`;
-const GREYS = { light: [0.72, 0.84], dark: [0.34, 0.24] }, LATTICE_PX = 14;
+const LATTICE_PX = 14, REDUCED = 4; // REDUCED: pixels along the side of one from which the greys of places not drawn are computed
 
 // Returns { program, at(name) }; at() returns the location of a uniform.
 function programOf(gl, ...sources) {
@@ -95,12 +110,12 @@ export class Warp {
 
     // Prepares WebGL. Returns false if the browser does not have it; pictures are then shown unwarped.
     open() {
-        const gl = this.canvas.getContext('webgl2', { alpha: false, antialias: false, powerPreference: 'high-performance' });
+        const gl = this.canvas.getContext('webgl2', { antialias: false, powerPreference: 'high-performance' });
         if (!gl)
             return false;
         try {
             this.mesh = programOf(gl, MESH, PICTURE);
-            this.lattice = programOf(gl, BEHIND, LATTICE);
+            this.undrawn = programOf(gl, BEHIND, UNDRAWN);
         } catch (error) {
             console.warn(`pictures are not warped: ${error.message}`);
             return false;
@@ -113,6 +128,9 @@ export class Warp {
         gl.enableVertexAttribArray(0);
         this.gl = gl;
         this.texture = this.newTexture();
+        this.reduced = { texture: this.newTexture(), framebuffer: gl.createFramebuffer() };
+        gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.LINEAR);
+        gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.LINEAR_MIPMAP_NEAREST);
         return true;
     }
 
@@ -184,10 +202,11 @@ export class Warp {
             this.source = { picture, camera: picture.ownCamera, parts: known.parts, isLoaded: false };
         try {
             if (!this.isWanted || !this.load())
-                return this.hide();
+                return !this.fade() && this.hide();
             if (this.isShown && this.painted === this.source && same(camera, picture.camera))
                 return false;
-            this.paint(camera);
+            this.paint(camera, this.source, 0);
+            this.fadeStart = null;
         } catch (error) { // for example, a browser that takes no VideoFrame as a texture
             console.warn(`pictures are not warped: ${error.message}`);
             this.giveUp();
@@ -209,6 +228,22 @@ export class Warp {
         return this.held !== null;
     }
 
+    // Lets the warped picture give way to the server's picture of the same camera. Returns false if that is done, or not possible.
+    fade() {
+        const { session: { picture, cameraNews, cameraSeq }, painted, isShown, viewport } = this, now = performance.now();
+        if (!isShown || painted.parts !== this.loaded || painted.picture === picture || cameraNews || picture.cameraSeq !== cameraSeq)
+            return false;
+        this.putHeld();
+        Object.assign(picture, { camera: picture.ownCamera, moved: null });
+        this.fadeStart ??= now;
+        const gone = (now - this.fadeStart) / FADE_MS;
+        if (gone >= 1)
+            return false;
+        this.paint(painted.seenFrom, painted, gone);
+        viewport.invalidate();
+        return true;
+    }
+
     putHeld() {
         if (this.held)
             this.viewport.put(this.held);
@@ -223,6 +258,7 @@ export class Warp {
         if (!this.isShown)
             return false;
         this.isShown = false;
+        this.fadeStart = null;
         this.canvas.style.display = 'none';
         return true;
     }
@@ -286,12 +322,21 @@ export class Warp {
         }
         const scale = Math.min(1, Math.sqrt(this.mostPx / (fullWidth * fullHeight)));
         const [width, height] = [fullWidth, fullHeight].map((px) => Math.round(px * scale));
-        if (canvas.width !== width || canvas.height !== height)
-            Object.assign(canvas, { width, height });
+        if (canvas.width === width && canvas.height === height)
+            return;
+        Object.assign(canvas, { width, height });
+        const { gl, reduced } = this, { texture, framebuffer } = reduced;
+        reduced.size = [width, height].map((px) => Math.ceil(px / REDUCED));
+        gl.bindTexture(gl.TEXTURE_2D, texture);
+        gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, ...reduced.size, 0, gl.RGBA, gl.UNSIGNED_BYTE, null);
+        gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, framebuffer);
+        gl.framebufferTexture2D(gl.DRAW_FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, texture, 0);
+        gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, null);
     }
 
-    paint(camera) {
-        const { gl, canvas, source, mesh } = this, { picture, parts } = source;
+    // gone: part of the pixels that are left out.
+    paint(camera, source, gone) {
+        const { gl, canvas, mesh } = this, { picture, parts } = source;
         this.fit(picture);
         gl.viewport(0, 0, canvas.width, canvas.height);
         gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
@@ -300,21 +345,34 @@ export class Warp {
         gl.activeTexture(gl.TEXTURE1);
         gl.uniform1i(mesh.at('masks'), 1);
         gl.uniform2fv(mesh.at('size'), source.size);
+        gl.uniform1f(mesh.at('gone'), gone);
         for (const part of parts)
-            this.paintPart(part, camera);
+            this.paintPart(part, source, camera);
         gl.activeTexture(gl.TEXTURE0);
         gl.viewport(0, 0, canvas.width, canvas.height);
-        gl.useProgram(this.lattice.program);
-        gl.uniform2fv(this.lattice.at('greys'), GREYS[this.session.shown.backdrop] ?? GREYS.light);
-        gl.uniform1f(this.lattice.at('period'), LATTICE_PX * window.devicePixelRatio * canvas.height / this.session.size.height);
-        gl.drawArrays(gl.TRIANGLES, 0, 3);
+        this.paintUndrawn(gone);
         this.isShown = true;
-        this.painted = source;
+        this.painted = Object.assign(source, { seenFrom: camera });
         canvas.style.display = '';
     }
 
-    paintPart(part, camera) {
-        const { gl, canvas, source, mesh } = this, { grid, buffers } = part, { fullWidth, fullHeight } = source.picture;
+    // Fills the places that the picture does not show with the greys around them.
+    paintUndrawn(gone) {
+        const { gl, canvas: { width, height }, reduced, undrawn } = this;
+        gl.bindTexture(gl.TEXTURE_2D, reduced.texture);
+        gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, reduced.framebuffer);
+        gl.blitFramebuffer(0, 0, width, height, 0, 0, ...reduced.size, gl.COLOR_BUFFER_BIT, gl.LINEAR);
+        gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, null);
+        gl.generateMipmap(gl.TEXTURE_2D);
+        gl.useProgram(undrawn.program);
+        gl.uniform2f(undrawn.at('size'), width, height);
+        gl.uniform1f(undrawn.at('period'), LATTICE_PX * window.devicePixelRatio * height / this.session.size.height);
+        gl.uniform1f(undrawn.at('gone'), gone);
+        gl.drawArrays(gl.TRIANGLES, 0, 3);
+    }
+
+    paintPart(part, source, camera) {
+        const { gl, canvas, mesh } = this, { grid, buffers } = part, { fullWidth, fullHeight } = source.picture;
         const across = canvas.width / fullWidth, up = canvas.height / fullHeight;
         const closest = Math.max(1e-6, grid.base + grid.levels * grid.unit); // at most so many times 1/m
         part.matrix = warpMatrix(grid, source.camera, camera, NEAREST / closest);
