@@ -6,7 +6,7 @@ import { existsSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'no
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { inFolder } from './support/folders.mjs';
-import { ifcOf, KINDS } from './support/ifc_kinds.mjs';
+import { ifcOf, KINDS, point } from './support/ifc_kinds.mjs';
 import { OPENINGS, UNCUT } from './support/ifc_opening_kinds.mjs';
 import { ifc } from './support/ifc_sample.mjs';
 import { volumeOf } from './support/glb_volume.mjs';
@@ -49,7 +49,7 @@ const hasOcct = existsSync(join(BIN, 'plantcast-import-occt'));
 
 // How far areas of the second reader may differ. Infinity: its shape is wrong, as its volume or its box shows.
 const SECOND_OFF = [[/elbow/, Infinity, 'fills the hole'], [/half of an arc/, Infinity, 'takes the whole arc'],
-    [/on a (wall|cylinder)/, Infinity, 'lays the profile flat'], [/two outer bounds/, Infinity, 'draws one of two faces'],
+    [/on a (wall|cylinder)|gradient|sloping/, Infinity, 'lays the profile flat'], [/two outer bounds/, Infinity, 'draws one of two faces'],
     [/polyline|composite|(mapped|clipped) pipe/, 0.085, 'pinches a pipe at a corner'], [/B-rep with/, 0.05, 'draws circles coarsely'],
     [/./, 0.03, 'draws circles with 24 corners']];
 
@@ -152,6 +152,37 @@ test('an element whose shape is not built is named, with its class and the reaso
     assert.match(stdout, /IFC4: 1 elements with a shape, 2 lost,/);
     assert.match(stdout, /lost: #903 LINE-1001 \(IfcPipeSegment, 0\$PlantcastKinds0000009\): IfcSectionedSolidHorizontal/);
     assert.match(stdout, /lost: #904 LINE-1002 \(IfcPipeSegment, 0\$PlantcastKinds000000A\): its representation is empty/);
+}));
+
+// The axes are a line, against its direction, and an arc around the origin; the grid stands 10 m from the origin.
+test('an element is placed where axes of a grid meet, or named', { skip: skip || (hasOcct ? false : 'no Open CASCADE') }, () => inFolder(
+    (folder) => {
+    const imported = (schema, placement, second = '#{arc}') => {
+        const lines = [['profile', 'IFCRECTANGLEPROFILEDEF(.AREA.,$,$,200.,100.)'],
+            ['item', 'IFCEXTRUDEDAREASOLID(#{profile},#{frame},#{z},50.)'], point('a', 0, 1000), point('b', 5000, 1000), point('m', 0, 0),
+            ['line', 'IFCPOLYLINE((#{a},#{b}))'], ['at', 'IFCAXIS2PLACEMENT2D(#{m},$)'], ['ring', 'IFCCIRCLE(#{at},2000.)'],
+            ['arc', 'IFCTRIMMEDCURVE(#{ring},(IFCPARAMETERVALUE(0.)),(IFCPARAMETERVALUE(1.5)),.T.,.PARAMETER.)'],
+            ['axis1', "IFCGRIDAXIS('A',#{line},.F.)"], ['axis2', `IFCGRIDAXIS('1',${second},.T.)`], point('far', 10000, 0, 0),
+            ['there', 'IFCAXIS2PLACEMENT3D(#{far},$,$)'], ['gridAt', 'IFCLOCALPLACEMENT(#{place},#{there})'],
+            ['grid', "IFCGRID('0$PlantcastKinds0000008',$,'G',$,$,#{gridAt},$,(#{axis1}),(#{axis2}),$)"],
+            ['meet', 'IFCVIRTUALGRIDINTERSECTION((#{axis1},#{axis2}),(100.,50.,30.))'], ['inGrid', placement]];
+        const bytes = ifcOf(schema, lines), [, inGrid] = /(#\d+)=IFCGRIDPLACEMENT/.exec(bytes), path = join(folder, 'grid.ifc');
+        writeFileSync(path, bytes.replace(/('K-1',\$,\$,)#\d+/, (_, head) => head + inGrid));
+        const { status, stdout, stderr } = plantcast(['import', path, '-o', join(folder, 'plant')]);
+        assert.equal(status, 0, stderr);
+        const { list } = JSON.parse(plantcast(['nodes', join(folder, 'plant/grid.glb'), '--json']).stdout);
+        rmSync(join(folder, 'plant'), { recursive: true });
+        return { stdout, ...list.find(({ path: name }) => name.endsWith('/K-1')) };
+    };
+    const x = 10 + Math.sqrt(1.95 ** 2 - 0.9 ** 2);
+    for (const [schema, placement, size] of [['IFC4', '#{meet},$', [0.2, 0.1, 0.05]], ['IFC2X3', '#{meet},$', [0.2, 0.1, 0.05]],
+        ['IFC4X3_ADD2', '#{gridAt},#{meet},#{y}', [0.1, 0.2, 0.05]]]) {
+        const found = imported(schema, `IFCGRIDPLACEMENT(${placement})`);
+        assert.ok(near(found.centre, [x, 0.9, 0.055]) && near(found.size, size), JSON.stringify(found));
+        assert.doesNotMatch(found.stdout, /error/);
+    }
+    assert.match(imported('IFC4', 'IFCGRIDPLACEMENT(#{meet},$)', '#{line}').stdout, new RegExp('error: at a wrong place, because a grid ' +
+        'placement is not computed \\(grid axes that do not meet\\): #\\d+ K-1 \\(IfcBuildingElementProxy, 0\\$PlantcastKinds0000004\\)'));
 }));
 
 test('broken files are read or refused in one line, and leave nothing behind', { skip }, () => inFolder((folder) => {

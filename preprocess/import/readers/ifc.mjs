@@ -7,9 +7,9 @@ import { existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { basename, dirname, extname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { GlbWriter, relativeTo } from './glb_writer.mjs';
-import { collectErrors, findDamaged, findLosses } from './ifc_losses.mjs';
+import { collectErrors, findDamaged, findLosses, misplacedLines } from './ifc_losses.mjs';
 import { openingLines, uncutOpenings } from './ifc_openings.mjs';
-import { readSolids, takeSolids } from './ifc_solids.mjs';
+import { readSolids, takeSolids, withPlacements } from './ifc_solids.mjs';
 
 const CORNERS = 24; // corners of a full circle
 const MAX_NAMED = 20;
@@ -225,7 +225,8 @@ async function main([input, output, , , , encoding]) {
     api.SetWasmPath(`${folder}/`, true);
     await api.Init();
     api.SetLogLevel(webIfc.LogLevel.LOG_LEVEL_ERROR);
-    const id = api.OpenModel(bytes, { COORDINATE_TO_ORIGIN: false, CIRCLE_SEGMENTS: CORNERS });
+    const solids = readSolids(join(dirname(output), 'solids.glb'));
+    const id = api.OpenModel(withPlacements(bytes, solids.placements), { COORDINATE_TO_ORIGIN: false, CIRCLE_SEGMENTS: CORNERS });
     if (id < 0 || !api.IsModelOpen(id))
         throw new Error('it is no IFC file of a known schema, or is cut off');
     const schema = api.GetModelSchema(id);
@@ -233,13 +234,14 @@ async function main([input, output, , , , encoding]) {
     model.readRelations();
     const glb = new GlbWriter('plantcast-import, web-ifc');
     const root = glb.addNode(-1, basename(input, extname(input)), null);
-    const geometry = readGeometry(api, id, model), solids = readSolids(join(dirname(output), 'solids.glb'));
+    const geometry = readGeometry(api, id, model);
     const findUncut = () => uncutOpenings(model, webIfc.IFCRELVOIDSELEMENT, geometry, solids);
     const wrong = new Set(solids.elements.size > 0 ? findUncut().flatMap(({ elements }) => elements) : []);
     takeSolids(model, solids, geometry, { styledItem: webIfc.IFCSTYLEDITEM, voids: webIfc.IFCRELVOIDSELEMENT }, wrong);
     const uncut = findUncut();
     const { drawn, storeys } = addTree(glb, model, geometry, root);
     errors.stop();
+    const types = { product: webIfc.IFCPRODUCT, grid: webIfc.IFCGRIDPLACEMENT };
     const isShown = (element) => drawn.has(element) || NOT_SHOWN.has(model.classOf(element));
     const { lost, lines, ids, drawn: drawnInstead } = findLosses(model, webIfc.IFCPRODUCT, isShown, solids.failed);
     askForSolids(join(dirname(output), 'asked.txt'), [...ids, ...findDamaged(model, webIfc.IFCPRODUCT, errors.at()),
@@ -251,7 +253,8 @@ async function main([input, output, , , , encoding]) {
         `cut; ${solids.elements.size} elements by Open CASCADE; of the others circles have ${CORNERS} corners (--chord does not apply)`,
     ...lines.length > 0 ? [`not shown: ${lines.length} elements that are only lines or points: ${lines.slice(0, MAX_NAMED).join(', ')}${
         lines.length > MAX_NAMED ? ', ...' : ''}`.replace(/[\t\n]/g, ' ')] : [],
-    ...lost, ...openingLines(model, uncut), ...drawnInstead, ...errors.lines(model, solids), ''].join('\n'));
+    ...lost, ...openingLines(model, uncut), ...drawnInstead,
+    ...misplacedLines(model, types, isShown, solids.failed), ...errors.lines(model, solids), ''].join('\n'));
     if (drawn.size === 0)
         throw new Error(`there is no surface in it${lost.length > 0 ? `: ${lost.length} elements have no triangles, such as ` +
             lost[0].split('\t').slice(1).join(', ') : ''}`);

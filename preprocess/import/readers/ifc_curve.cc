@@ -224,6 +224,8 @@ std::vector<curve_piece> pieces_within(const ifc_model &in, const entity &curve,
         return indexed(in, curve);
     if (curve.is("IFCTRIMMEDCURVE"))
         return trimmed_curve(in, curve, depth);
+    if (is_alignment(in, curve))
+        return alignment_of(in, curve);
     if (curve.is("IFCCOMPOSITECURVE"))
         return composite(in, curve, depth);
     return { basis_of(in, curve) };
@@ -234,6 +236,11 @@ std::vector<curve_piece> pieces_within(const ifc_model &in, const entity &curve,
 double length_of(const curve_piece &part)
 {
     return GCPnts_AbscissaPoint::Length(GeomAdaptor_Curve(part.curve), std::fmin(part.first, part.last), std::fmax(part.first, part.last));
+}
+
+double distance_of(const curve_piece &part)
+{
+    return part.level_mm > 0 ? part.level_mm : length_of(part);
 }
 
 gp_Pnt curve_piece::start() const
@@ -360,7 +367,8 @@ std::vector<curve_piece> trimmed(const std::vector<curve_piece> &pieces, const v
         if (high - low < 1e-9)
             continue;
         double length = part.last - part.first;
-        out.push_back({ part.curve, part.first + low * length, part.first + high * length, (high - low) * part.span });
+        out.push_back({ part.curve, part.first + low * length, part.first + high * length, (high - low) * part.span,
+                        (high - low) * part.level_mm });
     }
     return out;
 }

@@ -4,6 +4,7 @@ const LINES = /Curve|Polyline|IfcLine|Circle|Ellipse|Point|Text|Annotation|Geome
 const REFERENCE = 5; // web-ifc's type code of values that refer to a statement
 // Formats a record in the format of findings.h.
 export const fields = (...values) => values.map((value) => String(value).replace(/\s+/g, ' ').trim()).join('\t');
+const GRID = 'IfcGridPlacement';
 const MAX_IDS = 20; // maximum number of statement ids listed per kind of error
 
 // Returns the ids of the given statements and of all statements that they refer to, directly or indirectly.
@@ -97,7 +98,29 @@ export function findLosses(model, product, isShown, failed) {
         items.forEach((item) => named.add(item));
         lost.push(fields('lost', `#${id}`, model.nameOf(id) ?? '', model.classOf(id), line.GlobalId?.value ?? 'no GUID', why));
     }
-    const drawn = [...failed].filter(([id]) => !named.has(id) && !model.line(id)?.GlobalId).map(([id, reason]) =>
+    const isItem = (id) => !named.has(id) && !model.line(id)?.GlobalId && model.classOf(id) !== GRID;
+    const drawn = [...failed].filter(([id]) => isItem(id)).map(([id, reason]) =>
         fields('error', 1, `Open CASCADE cannot build #${id} ${model.classOf(id)} (${reason}): it is shown as web-ifc draws it`));
     return { lost, lines, ids, drawn };
+}
+
+// Returns findings.h lines that name the elements whose place is wrong, because it depends on a grid placement that was not computed.
+export function misplacedLines(model, { product, grid }, isShown, failed) {
+    const found = new Map(); // names of elements by reason
+    for (const id of model.ofType(grid).next().done ? [] : model.ofType(product)) {
+        const line = model.line(id), seen = new Set();
+        let place = line?.ObjectPlacement?.value;
+        while (place && !seen.has(place) && model.classOf(place) !== GRID) {
+            seen.add(place);
+            place = model.line(place)?.PlacementRelTo?.value;
+        }
+        if (!place || seen.has(place) || !line.Representation || !isShown(id))
+            continue;
+        const why = failed.get(place) ?? 'built without Open CASCADE';
+        const guid = line.GlobalId?.value ?? 'no GUID';
+        found.set(why, [...found.get(why) ?? [], `#${id} ${model.nameOf(id)} (${model.classOf(id)}, ${guid})`]);
+    }
+    return [...found].map(([why, names]) => fields('error', names.length,
+        `at a wrong place, because a grid placement is not computed (${why}): ${
+            names.slice(0, MAX_IDS).join(', ')}${names.length > MAX_IDS ? ', ...' : ''}`));
 }

@@ -1,14 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Builds solids that pass through cross-sections along a curve. */
 #include <BRepAlgoAPI_Cut.hxx>
+#include <BRepBuilderAPI_GTransform.hxx>
 #include <BRepBuilderAPI_Transform.hxx>
 #include <BRepOffsetAPI_ThruSections.hxx>
 #include <BRepTools.hxx>
+#include <BRep_Builder.hxx>
 #include <GCPnts_AbscissaPoint.hxx>
 #include <GeomAdaptor_Curve.hxx>
 #include <Geom_Line.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
+#include <TopoDS_Compound.hxx>
 #include <gp_Ax3.hxx>
 
 #include <cmath>
@@ -63,6 +66,17 @@ struct station {
     int profile;
 };
 
+/* Returns the parameter of the point at a distance from the start of a piece. */
+double parameter_at(const curve_piece &part, double distance_mm)
+{
+    if (part.level_mm > 0)
+        return part.first + (part.last - part.first) * distance_mm / part.level_mm;
+    GCPnts_AbscissaPoint point(GeomAdaptor_Curve(part.curve), part.first > part.last ? -distance_mm : distance_mm, part.first);
+    if (!point.IsDone())
+        throw unsupported("a section that is not on its curve");
+    return point.Parameter();
+}
+
 /* Returns the placement of an upright section on the curve: X points left, Y up. */
 gp_Trsf upright(const std::vector<curve_piece> &pieces, const station &at)
 {
@@ -70,18 +84,14 @@ gp_Trsf upright(const std::vector<curve_piece> &pieces, const station &at)
     const curve_piece *part = &pieces.front();
     for (const curve_piece &one : pieces) {
         part = &one;
-        if (left_mm <= length_of(one) + 1e-6 || &one == &pieces.back())
+        if (left_mm <= distance_of(one) + 1e-6 || &one == &pieces.back())
             break;
-        left_mm -= length_of(one);
+        left_mm -= distance_of(one);
     }
-    GeomAdaptor_Curve curve(part->curve);
     bool back = part->first > part->last;
-    GCPnts_AbscissaPoint point(curve, back ? -left_mm : left_mm, part->first);
     gp_Pnt origin;
     gp_Vec ahead;
-    if (!point.IsDone())
-        throw unsupported("a section that is not on its curve");
-    curve.D1(point.Parameter(), origin, ahead);
+    part->curve->D1(parameter_at(*part, left_mm), origin, ahead);
     gp_Vec level(back ? -ahead.X() : ahead.X(), back ? -ahead.Y() : ahead.Y(), 0);
     if (level.Magnitude() < 1e-9)
         throw unsupported("a section on a vertical curve");
@@ -106,20 +116,27 @@ station station_of(const ifc_model &in, const value &reference, const value &pro
     return { length(0), gp_Vec(length(1), length(2), length(3)), profile.id };
 }
 
+/* Returns the number of chords for the length of a piece that `length_mm` states. */
+int chords_of(const ifc_model &in, const curve_piece &piece, double length_mm)
+{
+    if (piece.curve->IsKind(STANDARD_TYPE(Geom_Line)))
+        return 1;
+    double turn = std::acos(std::fmax(-1, std::fmin(1, piece.tangent(false).Dot(piece.tangent(true)))));
+    /* half the angle in radians by which the curve may turn along one chord without exceeding chord_mm */
+    double chord = std::acos(1 - std::fmin(0.5, in.chord_mm * turn / length_mm));
+    return std::max(8, static_cast<int>(std::ceil(turn / chord)));
+}
+
 /* Adds stations between two stations that have the same profile, where the curve between them is not straight. */
 void add_between(const ifc_model &in, const std::vector<curve_piece> &pieces, station from, const station &to, std::vector<station> *out)
 {
     double at = 0;
     for (const curve_piece &part : pieces) {
-        double length = length_of(part), low = std::fmax(at, from.along_mm), high = std::fmin(at + length, to.along_mm);
-        bool straight = part.curve->IsKind(STANDARD_TYPE(Geom_Line));
+        double length = distance_of(part), low = std::fmax(at, from.along_mm), high = std::fmin(at + length, to.along_mm);
         at += length;
         if (high - low < 1e-6)
             continue;
-        double turn = straight ? 0 : std::acos(std::fmax(-1, std::fmin(1, part.tangent(false).Dot(part.tangent(true)))));
-        /* half the angle in radians by which the curve may turn along one chord without exceeding chord_mm */
-        double chord = std::acos(1 - std::fmin(0.5, in.chord_mm * turn / length));
-        int steps = straight ? 1 : std::max(8, static_cast<int>(std::ceil(turn / chord)));
+        int steps = chords_of(in, part, length);
         for (int i = 1; i <= steps; i++) {
             double share = (low + (high - low) * i / steps - from.along_mm) / (to.along_mm - from.along_mm);
             if (share > 1 - 1e-9)
@@ -151,7 +168,93 @@ TopoDS_Shape horizontal_of(const ifc_model &in, const entity &item)
     return through_faces(faces);
 }
 
+/* --- sections perpendicular to a curve */
+
+struct section_frame {
+    gp_Pnt at;
+    gp_Dir along, x;
+    gp_Dir plane; /* normal of the section; differs from `along` at a corner */
+};
+
+section_frame frame_at(const curve_piece &piece, double parameter, const gp_Dir &reference)
+{
+    gp_Pnt at;
+    gp_Vec along;
+    piece.curve->D1(parameter, at, along);
+    if (along.Magnitude() < 1e-9)
+        throw unsupported("a curve that stands still");
+    if (piece.first > piece.last)
+        along.Reverse();
+    if (gp_Dir(along).IsParallel(reference, 1e-6))
+        throw unsupported("a profile whose reference direction is along its curve");
+    return { at, gp_Dir(along), gp_Ax3(at, gp_Dir(along), reference).XDirection(), gp_Dir(along) };
+}
+
+/* Returns the transform from the XY plane to a section. At a corner the profile is moved along its curve into the plane of the section. */
+gp_GTrsf section_place(const section_frame &from)
+{
+    gp_Trsf upright;
+    gp_GTrsf shear;
+    upright.SetTransformation(gp_Ax3(from.at, from.along, from.x), gp_Ax3(gp::XOY()));
+    double share = from.along.Dot(from.plane);
+    for (int row = 1; row <= 3; row++)
+        for (int column = 1; column <= 3; column++)
+            shear.SetValue(row, column, (row == column) - from.along.Coord(row) * from.plane.Coord(column) / share);
+    /* the point of the corner stays, and its profile lies in the plane through that point */
+    gp_XYZ at = from.at.XYZ(), moved = at;
+    shear.Transforms(moved);
+    shear.SetTranslationPart(at - moved);
+    return shear * gp_GTrsf(upright);
+}
+
+bool same_section(const section_frame &a, const section_frame &b)
+{
+    gp_XYZ first(1, 0, 0), second(1, 0, 0);
+    section_place(a).Transforms(first);
+    section_place(b).Transforms(second);
+    return (first - second).Modulus() < 1e-3;
+}
+
+/* Returns the frames of the sections of one or more solids. A new solid begins at a corner where the profile turns about its curve. */
+std::vector<std::vector<section_frame>> frames_of(const ifc_model &in, const std::vector<curve_piece> &pieces, const gp_Dir &reference)
+{
+    std::vector<std::vector<section_frame>> out(1);
+    for (size_t i = 0; i < pieces.size(); i++) {
+        int steps = chords_of(in, pieces[i], length_of(pieces[i]));
+        double range = pieces[i].last - pieces[i].first;
+        if (i == 0)
+            out.back().push_back(frame_at(pieces[i], pieces[i].first, reference));
+        for (int k = 1; k <= steps; k++)
+            out.back().push_back(frame_at(pieces[i], pieces[i].first + range * k / steps, reference));
+        if (i + 1 == pieces.size())
+            break;
+        section_frame next = frame_at(pieces[i + 1], pieces[i + 1].first, reference), &last = out.back().back();
+        if (next.along.Angle(last.along) > 3)
+            throw unsupported("a curve that turns back");
+        last.plane = next.plane = gp_Dir(next.along.XYZ() + last.along.XYZ());
+        if (!same_section(last, next))
+            out.push_back({ next });
+    }
+    return out;
+}
+
 } // namespace
+
+TopoDS_Shape along_frames(const ifc_model &in, const std::vector<TopoDS_Face> &faces, const std::vector<curve_piece> &pieces,
+                          const gp_Dir &reference)
+{
+    TopoDS_Compound out;
+    BRep_Builder builder;
+    builder.MakeCompound(out);
+    for (const std::vector<section_frame> &frames : frames_of(in, pieces, reference))
+        for (const TopoDS_Face &face : faces) {
+            std::vector<TopoDS_Face> sections;
+            for (const section_frame &frame : frames)
+                sections.push_back(TopoDS::Face(BRepBuilderAPI_GTransform(face, section_place(frame), Standard_True).Shape()));
+            builder.Add(out, through_faces(sections));
+        }
+    return out;
+}
 
 TopoDS_Shape through_faces(const std::vector<TopoDS_Face> &faces)
 {

@@ -36,6 +36,7 @@ struct curve_piece {
     Handle(Geom_Curve) curve;
     double first, last; /* parameter range; first > last: the piece runs against the curve's direction */
     double span;
+    double level_mm = 0; /* length of a piece of an alignment in plan; 0: not an alignment */
 
     gp_Pnt start() const;
     gp_Pnt end() const;
@@ -49,6 +50,8 @@ double volume_of(const triangles &all);
 
 /* --- ifc_curve.cc */
 double length_of(const curve_piece &part); /* in mm */
+/* Returns the length along which IFC measures distances, in mm: the length of an alignment in plan, the length of any other curve. */
+double distance_of(const curve_piece &part);
 gp_Pnt point_of(const ifc_model &in, const value &reference);
 /* Returns the points of an IfcCartesianPointList. */
 std::vector<gp_Pnt> points_of(const ifc_model &in, const value &reference);
@@ -66,6 +69,16 @@ std::vector<curve_piece> trimmed(const std::vector<curve_piece> &pieces, const v
 std::vector<curve_piece> rounded(const std::vector<gp_Pnt> &points, const std::vector<double> &radii, bool closed);
 TopoDS_Wire wire_of(const std::vector<curve_piece> &pieces);
 
+/* --- ifc_alignment.cc */
+bool is_alignment(const ifc_model &in, const entity &curve);
+std::vector<curve_piece> alignment_of(const ifc_model &in, const entity &curve);
+
+/* --- ifc_placement.cc */
+gp_Trsf object_placement(const ifc_model &in, const value &reference);
+/* Returns the statements of a local placement that is equal to an IfcGridPlacement and has its number. `unused` and the three numbers after
+ * it become the numbers of other statements. */
+std::string as_local_placement(const ifc_model &in, const entity &from, int unused);
+
 /* --- ifc_profile.cc */
 /* Returns the faces of a profile, in the XY plane. */
 std::vector<TopoDS_Face> profile_of(const ifc_model &in, const entity &profile);
@@ -81,6 +94,10 @@ TopoDS_Shape disk_of(const ifc_model &in, const entity &item);
 /* --- ifc_sections.cc */
 /* Joins consecutive faces to a solid: outline to outline and hole to hole. */
 TopoDS_Shape through_faces(const std::vector<TopoDS_Face> &faces);
+/* Sweeps faces along a curve that `reference` does not stay perpendicular to. The faces are perpendicular to the curve; their X axes point
+ * towards `reference`. */
+TopoDS_Shape along_frames(const ifc_model &in, const std::vector<TopoDS_Face> &faces, const std::vector<curve_piece> &pieces,
+                          const gp_Dir &reference);
 TopoDS_Face moved(const TopoDS_Face &face, const gp_Trsf &place);
 /* Builds an IfcSectionedSpine or IfcSectionedSolidHorizontal. */
 TopoDS_Shape sections_of(const ifc_model &in, const entity &item);

@@ -7,6 +7,7 @@
 #include <BRepBuilderAPI_Transform.hxx>
 #include <Standard_Failure.hxx>
 #include <TopExp_Explorer.hxx>
+#include <climits>
 #include <cmath>
 #include <fstream>
 #include <set>
@@ -20,6 +21,7 @@ namespace ifc
 namespace
 {
 
+constexpr const char *GRID_PLACEMENT = "IFCGRIDPLACEMENT";
 constexpr size_t REPRESENTATION = 6, PLACEMENT = 5; /* indices, in a product statement's values, of its representation and its placement */
 
 /* --- units */
@@ -84,7 +86,7 @@ struct ifc_writer {
     std::map<int, std::string> failed;
     std::map<int, std::vector<int>> openings; /* ids of openings, by the element from which they are cut */
     std::set<int> asked; /* ids of elements that web-ifc cannot build, or only in part */
-    size_t elements = 0;
+    size_t elements = 0, placements = 0;
 };
 
 ifc_part add_mesh(ifc_writer *w, const TopoDS_Shape &shape, int id)
@@ -182,18 +184,6 @@ void collect(ifc_writer *w, const entity &representation, const gp_GTrsf &above,
     }
 }
 
-gp_Trsf object_placement(const ifc_model &in, const value &reference, int depth)
-{
-    if (reference.absent())
-        return gp_Trsf();
-    entity from = in.statements.get(reference);
-    if (depth > MAX_CHAIN)
-        throw unsupported("placements refer to each other in a circle");
-    if (!from.is("IFCLOCALPLACEMENT"))
-        throw unsupported(from.type);
-    return object_placement(in, from[0], depth + 1) * placement_of(in, from[1]);
-}
-
 /* Computes the 4 x 4 matrix of a placement and converts it: millimetres to metres, Z up to Y up. */
 void matrix_of(const gp_GTrsf &place, double scale, bool turn, const double shift[3], double out[16])
 {
@@ -251,11 +241,11 @@ void cut_openings(ifc_writer *w, const entity &product, std::vector<placed_item>
 {
     const ifc_model &in = w->in;
     std::vector<TopoDS_Shape> cutters;
-    gp_Trsf to_element = object_placement(in, product[PLACEMENT], 0).Inverted();
+    gp_Trsf to_element = object_placement(in, product[PLACEMENT]).Inverted();
     for (int id : w->openings[product.id]) {
         entity opening = in.statements.get(id);
         std::vector<placed_item> parts;
-        gp_GTrsf place(to_element * object_placement(in, opening[PLACEMENT], 0));
+        gp_GTrsf place(to_element * object_placement(in, opening[PLACEMENT]));
         if (!collect_all(w, opening, true, &parts))
             throw unsupported("its opening #" + std::to_string(id) + " cannot be built");
         for (const placed_item &part : parts)
@@ -314,7 +304,7 @@ void add_element(ifc_writer *w, const entity &product)
     if (asked && whole && w->openings.count(product.id) > 0)
         cut = attempt(w, product.id, [&] { cut_openings(w, product, &items, &meshes); });
     double matrix[16];
-    matrix_of(gp_GTrsf(object_placement(w->in, product[PLACEMENT], 0)), 1e-3, true, zero, matrix);
+    matrix_of(gp_GTrsf(object_placement(w->in, product[PLACEMENT])), 1e-3, true, zero, matrix);
     int node = glb_scene_add_node(w->scene, -1, ("#" + std::to_string(product.id)).c_str(), -1, matrix);
     if (whole)
         glb_scene_set_property(w->scene, node, "whole", "yes");
@@ -331,8 +321,27 @@ void add_element(ifc_writer *w, const entity &product)
 bool has_any(const file &in)
 {
     bool any = false;
-    in.each([&](int, const std::string &type) { any |= is_built(type); });
+    in.each([&](int, const std::string &type) { any |= is_built(type) || type == GRID_PLACEMENT; });
     return any;
+}
+
+/* Restates the grid placements as local placements, in properties of a node, so that web-ifc reads them. */
+void add_placements(ifc_writer *w)
+{
+    std::map<int, std::string> statements;
+    int last = 0;
+    w->in.statements.each([&](int id, const std::string &) { last = id; });
+    w->in.statements.each([&](int id, const std::string &type) {
+        int unused = last + 1 + 4 * static_cast<int>(statements.size());
+        if (type == GRID_PLACEMENT && unused < INT_MAX - 4)
+            attempt(w, id, [&] { statements[id] = as_local_placement(w->in, w->in.statements.get(id), unused); });
+    });
+    if (statements.empty())
+        return;
+    int node = glb_scene_add_node(w->scene, -1, "placements", -1, nullptr);
+    for (const auto &entry : statements)
+        glb_scene_set_property(w->scene, node, ("#" + std::to_string(entry.first)).c_str(), entry.second.c_str());
+    w->placements = statements.size();
 }
 
 } // namespace
@@ -358,6 +367,7 @@ void ifc_shapes_write(const char *input, const char *output, double chord_mm, co
     ifc::ifc_model in = ifc::model_of(statements, chord_mm);
     ifc::ifc_writer w = { in, glb_scene_create("plantcast-import, Open CASCADE"), {}, {}, {}, elements };
     w.openings = elements.empty() ? w.openings : ifc::find_openings(statements);
+    ifc::add_placements(&w);
     statements.each([&](int id, const std::string &) {
         try {
             if (!statements.is_rooted(id))
@@ -375,7 +385,7 @@ void ifc_shapes_write(const char *input, const char *output, double chord_mm, co
     int failed = glb_scene_add_node(w.scene, -1, "failed", -1, nullptr);
     for (const auto &entry : w.failed)
         glb_scene_set_property(w.scene, failed, ("#" + std::to_string(entry.first)).c_str(), entry.second.c_str());
-    if (w.elements > 0 || !w.failed.empty())
+    if (w.elements + w.placements > 0 || !w.failed.empty())
         write_scene(&w.scene, output, ": a larger --chord makes it smaller");
     else
         glb_scene_destroy(&w.scene);

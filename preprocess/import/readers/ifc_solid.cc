@@ -117,7 +117,13 @@ TopoDS_Shape along_curve(const ifc_model &in, const entity &item)
         frame = on_surface(in, in.statements.get(item[5]), pieces.front());
     if (whole)
         printf("error\t1\tOpen CASCADE: #%d: its parameters lie outside its curve: using the whole curve\n", item.id);
-    return placed(in, item[1], swept(profile_of(in, in.statements.get(item[0])), pieces, frame.x, frame.up));
+    std::vector<TopoDS_Face> faces = profile_of(in, in.statements.get(item[0]));
+    bool level = true; /* the fixed direction is perpendicular to the whole curve */
+    for (const curve_piece &piece : pieces)
+        for (bool at_end : { false, true })
+            level = level && std::fabs(piece.tangent(at_end).Dot(gp_Vec(frame.up))) < 1e-6;
+    bool fixed = item.is("IFCFIXEDREFERENCESWEPTAREASOLID") && !level;
+    return placed(in, item[1], fixed ? along_frames(in, faces, pieces, frame.x) : swept(faces, pieces, frame.x, frame.up));
 }
 
 TopoDS_Shape pyramid(double x, double y, double height)

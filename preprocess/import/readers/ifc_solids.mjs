@@ -17,12 +17,13 @@ function parseGlb(path) {
     return { json, read };
 }
 
-// Returns { elements, failed }. elements: a Map from element id to { parts, whole }. parts: the element's built items; whole: true if these
-// are all of its geometry. failed: a Map from the id of an item that could not be built to the reason.
+// Returns { elements, failed, placements }. elements: a Map from element id to { parts, whole }. parts: the element's built items; whole:
+// true if these are all of its geometry. failed: a Map from the id of an item that could not be built to the reason. placements: a Map from
+// the id of a grid placement to the statements of an equal local placement.
 export function readSolids(path) {
-    const elements = new Map(), failed = new Map();
+    const elements = new Map(), failed = new Map(), placements = new Map();
     if (!existsSync(path))
-        return { elements, failed };
+        return { elements, failed, placements };
     const { json, read } = parseGlb(path), number = (name) => Number(name.slice(1));
     const geometries = (json.meshes ?? []).map(({ primitives: [{ attributes: { POSITION, NORMAL }, indices }] }) => {
         const points = read(POSITION, Float32Array, 3), normals = read(NORMAL, Float32Array, 3);
@@ -33,15 +34,30 @@ export function readSolids(path) {
     });
     for (const root of json.scenes[0].nodes) {
         const { name, extras = {}, matrix, children = [] } = json.nodes[root];
-        if (name === 'failed')
-            Object.entries(extras).forEach(([item, reason]) => failed.set(number(item), reason));
+        if (name === 'failed' || name === 'placements')
+            Object.entries(extras).forEach(([id, text]) => (name === 'failed' ? failed : placements).set(number(id), text));
         else
             elements.set(number(name), { whole: extras.whole === 'yes', cut: extras.cut === 'yes', parts: children.map((child) => {
                 const part = json.nodes[child];
                 return { item: number(part.name), geometry: geometries[part.mesh], place: multiplied(matrix, part.matrix) };
             }) });
     }
-    return { elements, failed };
+    return { elements, failed, placements };
+}
+
+// Replaces the statements of grid placements, which web-ifc does not compute, by equal local placements. bytes: the IFC file.
+export function withPlacements(bytes, placements) {
+    const out = [];
+    let from = 0;
+    for (let at = placements.size > 0 ? bytes.indexOf('IFCGRIDPLACEMENT') : -1; at >= 0; at = bytes.indexOf('IFCGRIDPLACEMENT', at + 1)) {
+        const begin = bytes.lastIndexOf('#', at), end = bytes.indexOf(';', at) + 1;
+        const [, id] = /^#(\d+)\s*=\s*$/.exec(bytes.subarray(begin, at).toString('latin1')) ?? [];
+        if (end > 0 && placements.has(Number(id))) {
+            out.push(bytes.subarray(from, begin), Buffer.from(placements.get(Number(id))));
+            from = end;
+        }
+    }
+    return from > 0 ? Buffer.concat([...out, bytes.subarray(from)]) : bytes;
 }
 
 // Returns a function that returns the colour of an item from its style, or nothing if the item has no style.

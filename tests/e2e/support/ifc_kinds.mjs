@@ -75,6 +75,30 @@ const turned = [point('far', 0, 500, 0), ['axis', 'IFCAXIS1PLACEMENT(#{far},#{x}
 const upright = (name, along) => [[`${name}at`, `IFCPOINTBYDISTANCEEXPRESSION(IFCLENGTHMEASURE(${along.toFixed(6)}),$,$,$,$)`],
     [name, `IFCAXIS2PLACEMENTLINEAR(#{${name}at},$,$)`]];
 
+// An alignment: in plan a line of 1 m, a clothoid of 0.4 m and an arc of 0.5 m with a radius of 1 m. Its heights are a line, a parabola
+// from 0.5 m to 1.3 m, a crest arc to 1.7 m, and a line.
+const curveSegment = (name, parent, at, slope, length) => [point(`${name}p`, ...at),
+    [`${name}d`, `IFCDIRECTION((${Math.cos(slope).toFixed(12)},${Math.sin(slope).toFixed(12)}))`],
+    [`${name}f`, `IFCAXIS2PLACEMENT2D(#{${name}p},#{${name}d})`],
+    [name, `IFCCURVESEGMENT(.CONTINUOUS.,#{${name}f},IFCLENGTHMEASURE(0.),IFCLENGTHMEASURE(${length.toFixed(9)}),#{${parent}})`]];
+const PLAN_MM = 1900, spiral = [1000 + 400 * (1 - 0.004 + 0.2 ** 4 / 216), 400 * (0.2 / 3 - 0.2 ** 3 / 42)];
+const planEnd = [spiral[0] + 1000 * (Math.sin(0.7) - Math.sin(0.2)), spiral[1] + 1000 * (Math.cos(0.2) - Math.cos(0.7))];
+const [steep, gentle] = [0.2, 0.1].map(Math.atan), crest = 400 / (Math.sin(steep) - Math.sin(gentle));
+const crestEnd = 80 + crest * (Math.cos(gentle) - Math.cos(steep)), PARABOLA_MM = 2000 * (0.2 * Math.hypot(1, 0.2) + Math.asinh(0.2));
+const SLOPING_MM = 500 + PARABOLA_MM + crest * (steep - gentle) + 200 * Math.hypot(1, 0.1);
+const plan = [point('zero', 0, 0), ['right', 'IFCDIRECTION((1.,0.))'], ['flat', 'IFCAXIS2PLACEMENT2D(#{zero},$)'],
+    ['one', 'IFCVECTOR(#{right},1.)'], ['level', 'IFCLINE(#{zero},#{one})'], ['ring', 'IFCCIRCLE(#{flat},1000.)'],
+    ['spiral', `IFCCLOTHOID(#{flat},${Math.sqrt(400000)})`], ...curveSegment('p1', 'level', [0, 0], 0, 1000),
+    ...curveSegment('p2', 'spiral', [1000, 0], 0, 400), ...curveSegment('p3', 'ring', spiral, 0.2, 500),
+    ...curveSegment('p4', 'level', planEnd, 0.7, 0),
+    ['plan', 'IFCCOMPOSITECURVE((#{p1},#{p2},#{p3},#{p4}),.F.)']];
+const gradient = [...plan, ['bowl', 'IFCPOLYNOMIALCURVE(#{flat},(0.,1.),(0.,0.,0.000125),$)'],
+    ['hill', `IFCCIRCLE(#{flat},${crest})`], ...curveSegment('h1', 'level', [0, 0], 0, 500),
+    ...curveSegment('h2', 'bowl', [500, 0], 0, PARABOLA_MM), ...curveSegment('h3', 'hill', [1300, 80], steep, -crest * (steep - gentle)),
+    ...curveSegment('h4', 'level', [1700, crestEnd], gentle, 200 * Math.hypot(1, 0.1)),
+    ...curveSegment('h5', 'level', [1900, crestEnd + 20], gentle, 0),
+    ['curve', 'IFCGRADIENTCURVE((#{h1},#{h2},#{h3},#{h4},#{h5}),.F.,#{plan},$)']];
+
 // [name, schemas, statements, expected volume and size, representation type]
 export const KINDS = [
     ['extrusion', ['IFC2X3', 'IFC4'], [rectangle, ['item', 'IFCEXTRUDEDAREASOLID(#{profile},#{frame},#{z},50.)']], ofBox],
@@ -135,6 +159,23 @@ export const KINDS = [
     ['sections upright on an arc', ['IFC4X3_ADD2'], [...bend, rectangle, ...upright('first', 0), ...upright('last', HALF_TURN),
         ['item', 'IFCSECTIONEDSOLIDHORIZONTAL(#{arc},(#{profile},#{profile}),(#{first},#{last}))']],
     { volume: 20000 * HALF_TURN * 1e-9, size: [0.6, 1.2, 0.1] }],
+    ['pipe on a plan of curve segments', ['IFC4X3_ADD2'], [...plan, disk('plan')],
+        { volume: PIPE * PLAN_MM, size: [(planEnd[0] + R * Math.sin(0.7)) / 1e3, (planEnd[1] + R * (1 + Math.cos(0.7))) / 1e3, 0.05] }],
+    ['profile along a gradient curve', ['IFC4X3_ADD2'], [...gradient, rectangle,
+        ['item', 'IFCFIXEDREFERENCESWEPTAREASOLID(#{profile},#{frame},#{curve},$,$,#{z})']],
+    { volume: 20000 * SLOPING_MM * 1e-9, size: [(planEnd[0] + 50 * Math.sin(0.7) + 7.6) / 1e3,
+        (planEnd[1] + 50 * (1 + Math.cos(0.7)) + 6.4) / 1e3, (crestEnd + 20 + 199.5) / 1e3] }],
+    ['profile along the first line of a gradient curve', ['IFC4X3_ADD2'], [...gradient, rectangle,
+        ['item', 'IFCFIXEDREFERENCESWEPTAREASOLID(#{profile},#{frame},#{curve},IFCLENGTHMEASURE(100.),IFCLENGTHMEASURE(400.),#{z})']],
+    { volume: 20000 * 300e-9, size: [0.3, 0.1, 0.2] }],
+    ['profile along a sloping line and a level one', ['IFC4'], [point('low', 0, 0, 0), point('high', 800, 0, 600),
+        point('end', 1800, 0, 600), ['curve', 'IFCPOLYLINE((#{low},#{high},#{end}))'], rectangle,
+        ['item', 'IFCFIXEDREFERENCESWEPTAREASOLID(#{profile},#{frame},#{curve},$,$,#{z})']],
+    { volume: 20000 * 2000e-9, size: [1.86, 0.1, 0.78] }],
+    ['sections upright on a gradient curve', ['IFC4X3_ADD2'], [...gradient, rectangle, ...upright('first', 0), ...upright('last', PLAN_MM),
+        ['item', 'IFCSECTIONEDSOLIDHORIZONTAL(#{curve},(#{profile},#{profile}),(#{first},#{last}))']],
+    { volume: 20000 * PLAN_MM * 1e-9,
+        size: [(planEnd[0] + 100 * Math.sin(0.7)) / 1e3, (planEnd[1] + 100 * (1 + Math.cos(0.7))) / 1e3, (crestEnd + 20 + 100) / 1e3] }],
     ['centre-line profile extruded', ['IFC2X3', 'IFC4'], [...corner, ['line', 'IFCPOLYLINE((#{a},#{b},#{c}))'],
         ['profile', 'IFCCENTERLINEPROFILEDEF(.AREA.,$,#{line},20.)'],
         ['item', 'IFCEXTRUDEDAREASOLID(#{profile},#{frame},#{z},500.)']], { volume: 20 * 3250 * 500e-9, size: [1.76, 1.51, 0.5] }],
