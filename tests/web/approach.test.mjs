@@ -2,28 +2,67 @@
 // From which positions the camera looks at a tag: the distance, and the sides that are tried.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { approachDistance, approaches } from '../../clients/web/core/approach.js';
+import { approachDistance, approaches, atDistance, distanceBounds, fillOf } from '../../clients/web/core/approach.js';
 import { valid } from '../../clients/web/core/camera.js';
 import { distance } from '../../clients/web/core/camera_moves.js';
 
-const box = (x, y, z) => ({ min: [0, 0, 0], max: [x, y, z] });
+const CAMERA = { eye: [30, 30, 20], target: [0, 0, 0], up: [0, 0, 1], fov: 45 }, ASPECT = 16 / 9;
+const box = (x, y, z) => ({ min: [0, 0, 0], max: [x, y, z] }), WHOLE = box(60, 40, 25);
+const scaled = ({ min, max }, by) => ({ min: min.map((m) => m * by), max: max.map((m) => m * by) });
+const usual = { camera: CAMERA, aspect: ASPECT, whole: WHOLE, solid: false };
+const SHAPES = [box(0.84, 2.24, 1.04), box(1, 1, 1), box(2, 2, 30), box(8, 8, 9), box(60, 40, 6), box(1.4, 6.9, 1.8), box(0.3, 0.3, 0.4)];
 
-test('as far off as what the tag stands on is recognised, however long it is', () => {
-    assert.equal(approachDistance(box(1, 1, 1)), 5, 'a pump');
-    assert.equal(approachDistance(box(2, 2, 30)), 5, 'a column');
-    assert.ok(Math.abs(approachDistance(box(8, 8, 9)) - 8.8) < 1e-9, 'a tank');
-    assert.equal(approachDistance(box(60, 40, 6)), 12, 'a pipe rack');
+test('at most as far off as equipment is recognised, however long it is', () => {
+    const bounds = distanceBounds(WHOLE);
+    assert.ok(Math.abs(approachDistance(box(1, 1, 1), bounds) - 1.1) < 1e-9, 'a pump');
+    assert.equal(approachDistance(box(2, 2, 30), bounds), 16, 'a column');
+    assert.ok(Math.abs(approachDistance(box(8, 8, 9), bounds) - 8.8) < 1e-9, 'a tank');
+    assert.equal(approachDistance(box(60, 40, 6), bounds), 16, 'a pipe rack');
 });
 
-test('all sides look at the tag from as far, the first from its own side, none twice', () => {
-    const camera = { eye: [30, 30, 20], target: [0, 0, 0], up: [0, 0, 1], fov: 45 };
-    const all = approaches(camera, [1, 0.5, 0.5], box(1, 1, 1));
-    assert.ok(all[0].eye[0] > 5 && Math.abs(all[0].eye[1] - 0.5) < 1e-6);
+test('the box of the equipment fills at least 35 % of the picture from every side, on desk, tablet and phone', () => {
+    for (const shape of SHAPES) {
+        for (const aspect of [ASPECT, 4 / 3, 390 / 500]) {
+            for (const corner of [0, 0.5, 1]) {
+                const point = shape.max.map((m, i) => m * [corner, 0.5, 1][i]);
+                for (const [side, camera] of approaches({ ...usual, point, box: shape, aspect }).entries())
+                    assert.ok(fillOf(camera, shape, aspect) >= 0.35, `${shape.max}: side ${side}, ${fillOf(camera, shape, aspect)}`);
+            }
+        }
+    }
+});
+
+test('a plant of a few millimetres and one of many kilometres are looked at alike', () => {
+    for (const by of [1e-3, 1e3]) {
+        for (const shape of SHAPES) {
+            const there = scaled(shape, by), point = shape.max.map((m) => (m * by) / 2);
+            for (const camera of approaches({ ...usual, point, box: there, whole: scaled(WHOLE, by) }))
+                assert.ok(valid(camera) && fillOf(camera, there, ASPECT) >= 0.35, `${by}: ${shape.max}`);
+        }
+    }
+});
+
+test('an orthographic camera is as near as one with perspective', () => {
+    const parallel = { ...CAMERA, height_m: 30 }, shape = box(1.4, 6.9, 1.8);
+    for (const camera of approaches({ ...usual, camera: parallel, point: [0.7, 0, 1], box: shape }))
+        assert.ok(fillOf(camera, shape, ASPECT) >= 0.35 && camera.height_m > 1);
+    assert.equal(atDistance(parallel, distance(parallel) / 2).height_m, 15);
+});
+
+test('all sides look at the tag, the first from its own side, none twice', () => {
+    const all = approaches({ ...usual, point: [1, 0.5, 0.5], box: box(1, 1, 1) });
+    assert.ok(all[0].eye[0] > 1.5 && Math.abs(all[0].eye[1] - 0.5) < 1e-6);
     for (const one of all) {
         assert.ok(valid(one));
         assert.deepEqual(one.target, [1, 0.5, 0.5]);
-        assert.ok(Math.abs(distance(one) - 5) < 1e-9);
     }
     for (const [i, one] of all.entries())
-        assert.ok(all.slice(0, i).every(({ eye }) => Math.hypot(...eye.map((m, k) => m - one.eye[k])) > 0.5), `side ${i}`);
+        assert.ok(all.slice(0, i).every(({ eye }) => Math.hypot(...eye.map((m, k) => m - one.eye[k])) > 0.1), `side ${i}`);
+});
+
+test('no eye is within the bounds of solid equipment', () => {
+    for (const shape of SHAPES) {
+        for (const camera of approaches({ ...usual, solid: true, point: [shape.max[0], shape.max[1] / 2, shape.max[2] / 2], box: shape }))
+            assert.ok(camera.eye.some((m, i) => m <= 0 || m >= shape.max[i]), `${shape.max}: ${camera.eye}`);
+    }
 });

@@ -1,23 +1,81 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Computes cameras that look at a sensor, the best first; app/input/approach.js tries them in this order.
-import { face, orbit } from './camera_moves.js';
-import { subtract } from './vector.js';
+import { isParallel, projector, validOr } from './camera.js';
+import { corners, distance, face, orbit } from './camera_moves.js';
+import { along, length, subtract, unit } from './vector.js';
 
-const LEAST_M = 5, MOST_M = 12, PART = 1.1;
+const PART = 1.1, LONG_PART = 0.7; // distances in sides of the equipment's box: the middle side, and the longest
+const LEAST_M = 0.2, MOST_M = 16; // bounds of the distance in plants of usual size
+const LEAST_PART = 1 / 200, MOST_PART = 1 / 20; // bounds for very small and very large plants, in diagonals of the plant
+const FILL = 0.42; // part of the picture that the equipment's box fills, if no bound prevents it
+// Sides from which equipment looks narrow, so that the camera comes much nearer than on the FRONT first sides, are tried last: there a pump
+// is only its motor's fan cover.
+const NARROW = 0.75, FRONT = 9;
+const STEPS = 16;  // bisections of the distance
 const TURNS = [ // degrees: about the vertical, up
     [0, 0], [35, 0], [-35, 0], [0, 30], [70, 0], [-70, 0], [35, 30], [-35, 30], [0, 55], [110, 0], [-110, 0], [0, -20], [145, 0], [-145, 0],
     [180, 0], [70, 30], [-70, 30], [180, 30], [50, -20], [-50, -20], [0, -45], [90, -45], [-90, -45], [180, -45],
 ];
 
-// Returns a distance from which equipment with these bounds can be recognised. It depends on the second longest side, since pipes and
-// columns are long.
-export function approachDistance({ min, max }) {
-    const [, middle] = subtract(max, min).sort((a, b) => a - b);
-    return PART * middle < MOST_M ? Math.max(LEAST_M, PART * middle) : MOST_M;
+// Returns the bounds { least, most } of a camera's distance from a sensor, in metres.
+export function distanceBounds({ min, max }) {
+    const size = length(subtract(max, min));
+    return { least: Math.min(LEAST_M, size * LEAST_PART), most: Math.max(MOST_M, size * MOST_PART) };
 }
 
-// Returns copies of a camera, each turned about a point by another angle.
-export const sidesOf = (first, point) => TURNS.map(([azimuth, rise]) => orbit(first, azimuth, rise, point));
+// Returns the largest distance from which equipment with these bounds can be recognised. It depends on the middle side, since pipes and
+// columns are long.
+export function approachDistance({ min, max }, { least, most }) {
+    const [, medium, longest] = subtract(max, min).sort((a, b) => a - b);
+    return Math.max(least, Math.min(most, Math.max(PART * medium, LONG_PART * longest)));
+}
 
-// Returns the cameras to try, in order, for a point on equipment with these bounds.
-export const approaches = (camera, point, bounds) => sidesOf(face(camera, point, bounds, approachDistance(bounds)), point);
+// Returns the part of the picture, 0 to 1, that the rectangle around a box fills. A box that reaches behind the camera counts as 1.
+export function fillOf(camera, box, aspect) {
+    const places = corners(box).map(projector(camera, aspect, 1));
+    if (places.includes(null))
+        return 1;
+    const span = (axis, whole) => {
+        const all = places.map((place) => Math.max(0, Math.min(whole, place[axis])));
+        return (Math.max(...all) - Math.min(...all)) / whole;
+    };
+    return span(0, aspect) * span(1, 1);
+}
+
+// Returns the camera at another distance from its target, in the same direction.
+export function atDistance(camera, metres) {
+    const back = unit(subtract(camera.eye, camera.target));
+    const lens = isParallel(camera) ? { height_m: camera.height_m * (metres / distance(camera)) } : {};
+    return validOr({ ...camera, ...lens, eye: along(camera.target, back, metres) }, camera);
+}
+
+// Returns the camera, moved nearer until the box fills FILL of the picture, but not below the distance `least`.
+function nearer(camera, box, aspect, least) {
+    let near = least, far = distance(camera);
+    if (fillOf(camera, box, aspect) >= FILL)
+        return camera;
+    for (let step = 0; step < STEPS; step++) {
+        const mean = Math.sqrt(near * far);
+        if (fillOf(atDistance(camera, mean), box, aspect) >= FILL)
+            near = mean;
+        else
+            far = mean;
+    }
+    return atDistance(camera, near);
+}
+
+const isIn = (point, { min, max }) => point.every((m, i) => m > min[i] && m < max[i]);
+
+// Returns whether other assets stand within the bounds of an asset, as in a building.
+export const isRoom = ({ id, bounds }, assets) =>
+    assets.some((other) => other.id !== id && isIn(other.bounds.min, bounds) && isIn(other.bounds.max, bounds));
+
+// Returns the cameras to try, in order, for a point on equipment with the bounds `box`. aspect: width of the picture divided by its height;
+// whole: bounds of the plant; solid: no eye is within the bounds of the equipment.
+export function approaches({ camera, point, box, aspect, whole, solid }) {
+    const bounds = distanceBounds(whole), first = face(camera, point, box, approachDistance(box, bounds));
+    const all = TURNS.map(([azimuth, rise]) => nearer(orbit(first, azimuth, rise, point), box, aspect, bounds.least));
+    const widest = Math.max(...all.slice(0, FRONT).map(distance)), shows = (side) => distance(side) >= NARROW * widest;
+    const sides = all.filter(({ eye }, i) => i === 0 || !solid || !isIn(eye, box));
+    return [...sides.filter(shows), ...sides.filter((side) => !shows(side))];
+}

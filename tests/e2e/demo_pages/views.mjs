@@ -136,11 +136,12 @@ test('a cut, ghosts and hidden equipment', options, async () => {
     assert.deepEqual(browser.errors, []);
 });
 
-// For every sixth tag: whether it would be visible from its own side at 5 m, and whether it is visible from where the camera arrives.
-test('who flies to a tag sees it', options, async (t) => {
+// For every sixth tag: whether it would be visible from its own side at 5 m, and from where the camera arrives, and which part of the
+// picture its equipment fills there.
+test('a flight to a tag ends where the tag is seen and its equipment fills 35 % of the picture', options, async (t) => {
     const arrived = await page.evaluate(async () => {
-        const { session, cameraController } = globalThis.plantcast, { face } = await import('/core/camera_moves.js'), from = session.camera;
-        const { approach } = cameraController, found = [];
+        const { session, cameraController: { approach }, viewport } = globalThis.plantcast, from = session.camera, found = [];
+        const { face } = await import('/core/camera_moves.js'), { fillOf } = await import('/core/approach.js');
         for (const tag of session.model.tags.filter(({ position, asset }, i) => position && asset && i % 6 === 0)) {
             if (tag.group !== session.params.group)
                 session.setParams({ group: tag.group });
@@ -149,24 +150,34 @@ test('who flies to a tag sees it', options, async (t) => {
             const own = await approach.look(face(from, tag.position, asset.bounds, 5), tag);
             let to = null;
             await approach.go(tag, asset, (camera) => { to = camera; });
-            found.push({ name: tag.name, own: own.seen, seen: (await approach.look(to, tag)).seen });
+            found.push({ name: tag.name, own: own.seen, seen: (await approach.look(to, tag)).seen,
+                fill: fillOf(to, asset.bounds, viewport.width / viewport.height) });
         }
         return found;
     });
     t.diagnostic(`of ${arrived.length} tags ${arrived.filter(({ own }) => own).length} are in sight from their own side`);
     assert.ok(arrived.length >= 20 && arrived.some(({ own }) => !own));
-    assert.deepEqual(arrived.filter(({ seen }) => !seen), []);
+    assert.deepEqual(arrived.filter(({ seen, fill }) => !seen || fill < 0.35), []);
 });
 
-test('what stands before a tag on all sides becomes a ghost; Backspace goes back, and all is as it was', options, async () => {
+test('the eye goes into a room; an asset close around a tag becomes a ghost, and Backspace undoes all', options, async () => {
     const tiny = await TinyPlant.create(), text = readFileSync(tiny.file, 'utf8');
-    writeFileSync(tiny.file, text.replace('groups:', '  - { id: HOUSE, model: box.gltf, placement: { scale: 3 } }\ngroups:'));
+    writeFileSync(tiny.file, text.replace('groups:', `  - { id: HOUSE, model: box.gltf, placement: { scale: 1.15 } }
+  - { id: ROOM, model: box.gltf, placement: { translate: [3, 0, 0], scale: 2 } }\ngroups:`));
     await tiny.start();
     const own = await openPage(`http://127.0.0.1:${tiny.port}/`, { viewport: { width: 1200, height: 720 } }), on = own.page;
     const ghosts = (ids) => on.waitForFunction((all) => globalThis.plantcast.session.confirmed.ghost.join() === all, ids.join());
     try {
         await waitForPicture(on);
         await on.evaluate(() => globalThis.plantcast.modules.get('cameraController'));
+        const inRoom = await on.evaluate(async () => {
+            const { session, cameraController: { approach } } = globalThis.plantcast, tag = session.model.tag('PI-1'), cameras = [];
+            await approach.go(tag, session.model.asset(tag.asset), (camera) => cameras.push(camera));
+            const last = cameras.at(-1), { min, max } = session.model.asset('ROOM').bounds;
+            const { seen } = await approach.look(last, tag);
+            return { seen, inside: last.eye.every((m, i) => m > min[i] && m < max[i]), ghosts: session.params.ghost ?? [] };
+        });
+        assert.deepEqual(inRoom, { seen: true, inside: true, ghosts: [] });
         const { camera: before } = await view(on);
         await on.locator('#assets-list .asset', { hasText: 'E-101' }).locator('.twist').click();
         await on.locator('.reading', { hasText: 'TI-1' }).click();

@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Finds a camera with a free view of a tag. If there is none, makes the assets in front transparent while the user looks at the tag.
-import { approaches } from '../../core/approach.js';
+// Finds a camera with a free view of a tag. If there is none from outside, moves the eye to the tag's side of the walls, or makes the
+// assets in front transparent while the user looks at the tag.
+import { approaches, atDistance, isRoom } from '../../core/approach.js';
 import { halfAt } from '../../core/nearest.js';
 import { askPick } from '../../core/requests.js';
+import { distance } from '../../core/camera_moves.js';
 import { length, subtract } from '../../core/vector.js';
 
 const ANSWER_MS = 700, TRIES = 3; // a pick is sent up to TRIES times, because another module's pick request may replace it
 const SEARCH_MS = 1500, MOST_SEEN_THROUGH = 4, MOST_GHOSTS = 8;
 const AROUND = [[-0.12, 0], [0.12, 0], [0, -0.12], [0, 0.12], [-0.2, -0.2], [0.2, -0.2], [-0.2, 0.2], [0.2, 0.2]], BEFORE = 0.9;
-const NEAR_M = 0.05; // metres; a surface nearer to a sensor than this is the one on which the sensor is mounted
+// a surface nearer to a sensor than this is the one on which the sensor is mounted: metres, and at most a part of the asset's size
+const NEAR_M = 0.05, NEAR_PART = 0.02;
+const MOST_COVERED = 9; // cameras that are compared if the tag's own asset hides the tag from all sides
+const MOST_WALLS = 6, CLEAR = 0.95; // walls that the eye passes, and the part of the way to the last wall at which the eye stops
+const ROOMY = 0.4; // a room is large enough to look at a tag from inside if it allows this part of the distance from outside
 
 const has = (list, id) => (list ?? []).includes(id);
 const without = (list, id) => (list ?? []).filter((other) => other !== id);
@@ -53,9 +59,12 @@ export class Approach {
         const number = ++this.number, isOvertaken = () => number !== this.number;
         this.setGhosts([]);
         this.reveal(asset);
-        const cameras = approaches(this.session.camera, tag.position, asset.bounds);
+        const { camera: now, model, params } = this.session, { width } = halfAt(params, this.viewport.width, 0);
+        const solid = isRoom(asset, model.assets) ? null : asset.id; // the eye does not go into this asset
+        const cameras = approaches({ camera: now, point: tag.position, box: asset.bounds, aspect: width / this.viewport.height,
+            whole: model.plant.bounds, solid: solid !== null });
         fly(cameras[0]);
-        const behind = []; // ids of the assets that block a view, without the tag's own asset
+        const behind = [], own = []; // cameras whose view another asset blocks, or the tag's own asset
         const latest = performance.now() + SEARCH_MS; // deadline, after which the best view found so far is used, as on a slow network
         let best = null, least = Infinity;
         for (const camera of cameras) {
@@ -64,26 +73,70 @@ export class Approach {
                 return;
             if (covered < least)
                 [best, least] = [camera, covered];
-            if (!found.seen && found.asset !== null && found.asset !== asset.id)
-                behind.push(camera);
+            if (!found.seen && found.asset !== null)
+                (found.asset === asset.id ? own : behind).push(camera);
             if (covered === 0 || (performance.now() > latest && (best || behind.length > 0)))
                 break;
         }
-        if (best) {
-            if (best !== cameras[0])
-                fly(best);
-            return;
-        }
-        for (const camera of behind.slice(0, MOST_SEEN_THROUGH)) {
+        best ??= await this.findInside(cameras, tag, solid, isOvertaken) ??
+            await this.findThrough(behind, tag, asset, isOvertaken) ?? await this.leastCovered(own, asset);
+        if (best && best !== cameras[0] && !isOvertaken())
+            fly(best);
+    }
+
+    // Returns the camera that sees the tag through transparent assets; null: none.
+    async findThrough(cameras, tag, asset, isOvertaken) {
+        for (const camera of cameras.slice(0, MOST_SEEN_THROUGH)) {
             const isSeen = await this.seeThrough(camera, tag, asset, isOvertaken);
-            if (isOvertaken())
-                return;
-            if (isSeen) {
-                fly(camera);
-                return;
-            }
+            if (isSeen || isOvertaken())
+                return camera;
         }
         this.setGhosts([]);
+        return null;
+    }
+
+    // Returns the camera in front of whose picture's centre the fewest other assets stand; null: there is no camera.
+    async leastCovered(cameras, asset) {
+        let best = null, least = Infinity;
+        for (const camera of cameras.slice(0, MOST_COVERED)) {
+            const covered = await this.coverAround(camera, asset, least);
+            if (covered < least)
+                [best, least] = [camera, covered];
+            if (covered === 0)
+                break;
+        }
+        return best;
+    }
+
+    // Returns a camera in the same room as the tag: the one with the longest free way to the tag, or else to the equipment that the tag is
+    // in. Returns null if there is no ROOMY place for the eye.
+    async findInside(cameras, tag, solid, isOvertaken) {
+        const latest = performance.now() + SEARCH_MS;
+        let best = null, most = -Infinity;
+        for (const side of cameras) {
+            const found = await this.passWalls(side, tag, solid), part = found ? found.free / distance(side) : 0;
+            if (isOvertaken() || performance.now() > latest)
+                break;
+            if (part >= ROOMY && part - !found.seen > most)
+                [best, most] = [found.camera, part - !found.seen];
+            if (most >= CLEAR * CLEAR)
+                break;
+        }
+        return best;
+    }
+
+    // Moves the eye towards the tag, past one wall after the other, but not into the asset `solid`. Returns { camera, seen: true if the tag
+    // is visible, free: metres from the eye to the tag or to the asset }; null: there is no place for the eye behind the walls.
+    async passWalls(camera, tag, solid) {
+        for (let walls = 0, eye = camera; walls < MOST_WALLS; walls++) {
+            const found = await this.look(eye, tag), metres = found?.position ? length(subtract(found.position, tag.position)) : 0;
+            if (found?.seen || (found && walls > 0 && found.asset === solid))
+                return { camera: eye, seen: found.seen, free: distance(eye) - (found.seen ? 0 : metres) };
+            if (metres === 0 || found.asset === solid)
+                return null;
+            eye = atDistance(camera, CLEAR * Math.min(metres, distance(eye)));
+        }
+        return null;
     }
 
     // Makes blocking assets transparent one after the other. Returns true once the view of the tag is free.
@@ -101,15 +154,16 @@ export class Approach {
         }
     }
 
-    // Returns what a camera sees at the centre of its picture: { seen: true if the tag is visible, asset: id of the asset in front, or null
-    // }; null: the server did not answer.
+    // Returns what a camera sees at the centre of its picture: { seen: true if the tag is visible, asset and position: id of the asset in
+    // front, and the point on its surface, or null }; null: the server did not answer.
     async look(camera, tag) {
         const picked = await this.ask(camera, [0, 0]);
         if (!picked)
             return null;
-        const { sensor, occluded, position, asset } = picked;
-        const isThere = position !== null && length(subtract(position, tag.position)) < NEAR_M;
-        return { seen: isThere || (sensor === tag.name && !occluded), asset };
+        const { sensor, occluded, position, asset } = picked, { min, max } = this.session.model.asset(tag.asset).bounds;
+        const near = Math.min(NEAR_M, NEAR_PART * length(subtract(max, min)));
+        const isThere = position !== null && length(subtract(position, tag.position)) < near;
+        return { seen: isThere || (sensor === tag.name && !occluded), asset, position };
     }
 
     // Returns at how many of the AROUND points near the centre an asset other than `id` is in front; stops counting at `most`.
