@@ -117,9 +117,14 @@ add('camera_moves', 'zoomLimits', [{ plant: { bounds: box }, assets: [{ bounds: 
 add('camera_moves', 'toParallel', [eye]);
 add('camera_moves', 'toPerspective', [flat]);
 add('camera_moves', 'enterBox', [origin, direction, box]);
-add('approach', 'approachDistance', [box]);
-add('approach', 'sidesOf', [eye, point], { call: (...given) => approach.sidesOf(...given).filter((one) => one !== given[0]) });
-add('approach', 'approaches', [eye, point, box], { call: (...given) => approach.approaches(...given).filter((one) => one !== given[0]) });
+add('approach', 'distanceBounds', [box], ENDS);
+add('approach', 'approachDistance', [box, { least: 0.2, most: 16 }], ENDS);
+add('approach', 'atDistance', [eye, 4], { call: (...given) => [approach.atDistance(...given)].filter((at) => at !== given[0]) });
+add('approach', 'fillOf', [eye, box, 1.5]);
+add('approach', 'isRoom', [{ id: 'a', bounds: box }, [{ id: 'b', bounds: box }]], ENDS);
+add('approach', 'approaches', [{ camera: eye, point, box, aspect: 1.5, whole: box, solid: true }], { call: (given) =>
+    approach.approaches(given).filter((one) => one !== given.camera) });
+add('camera_moves', 'corners', [box], ENDS);
 for (const name of ['add', 'subtract', 'dot', 'cross', 'middle'])
     add('vector', name, [point, origin], ENDS);
 add('vector', 'scale', [point, 2], ENDS);

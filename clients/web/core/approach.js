@@ -27,7 +27,8 @@ export function distanceBounds({ min, max }) {
 // columns are long.
 export function approachDistance({ min, max }, { least, most }) {
     const [, medium, longest] = subtract(max, min).sort((a, b) => a - b);
-    return Math.max(least, Math.min(most, Math.max(PART * medium, LONG_PART * longest)));
+    const wanted = Math.max(PART * medium, LONG_PART * longest);
+    return wanted < most ? Math.max(least, wanted) : most;
 }
 
 // Returns the part of the picture, 0 to 1, that the rectangle around a box fills. A box that reaches behind the camera counts as 1.
@@ -39,7 +40,7 @@ export function fillOf(camera, box, aspect) {
         const all = places.map((place) => Math.max(0, Math.min(whole, place[axis])));
         return (Math.max(...all) - Math.min(...all)) / whole;
     };
-    return span(0, aspect) * span(1, 1);
+    return span(0, aspect) * span(1, 1) || 0; // a picture of 0x0 gives NaN
 }
 
 // Returns the camera at another distance from its target, in the same direction.
