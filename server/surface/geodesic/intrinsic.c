@@ -9,7 +9,7 @@
 #include "base/mem.h"
 #include "surface/mesh/tri_edges.h"
 
-#define MOLLIFY 1e-4
+#define MOLLIFY 1e-5
 #define FLIPS_PER_EDGE 50u /* limit of flips per edge; normally never reached, but rounding errors might repeat flips forever */
 
 void intrinsic_finish(struct intrinsic *in)

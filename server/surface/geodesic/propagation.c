@@ -7,7 +7,9 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-#define STEPS_PER_EDGE 32.0 /* buckets of the priority queue per mean edge length; points in one bucket are processed in any order */
+/* buckets of the priority queue per mean edge length. Points in one bucket are processed in any order, so buckets must be shorter than most
+ * edges of meshes with many needles: with 32 instead of 512, mean errors on such a part were 2 to 3 times as large. */
+#define STEPS_PER_EDGE 512.0
 #define NEAR_EDGES 5.0
 #define MAX_BUCKETS (1u << 16)
 /* maximum number of triangles that are tested in the search for the triangle adjacent to the last one of a row; if none of these is
