@@ -337,7 +337,7 @@ test('a token by each of its three ways, and what roles may say', { skip }, asyn
 
 test('what is revoked ends, and only that', { skip }, async () => {
     const spare = token('add', tokensFile, '--role', 'viewer', '--name', 'spare').out.trim();
-    await sleep(2500);
+    await plant.daemon.line(/tokens .*: 4$/m);
     const leaving = await open(), staying = await open();
     assert.equal((await leaving.hello({ token: spare })).role, 'viewer');
     await staying.hello({ token: tokens.operator });

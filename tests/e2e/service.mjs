@@ -13,6 +13,7 @@ import { get } from './support/plain_client.mjs';
 import { freePort } from './support/ports.mjs';
 import { promise } from './support/promise.mjs';
 import { BIN, notBuilt, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+import { until } from './support/until.mjs';
 
 const skip = notBuilt();
 const has = (program) => spawnSync('which', [program]).status === 0;
@@ -250,8 +251,10 @@ test('metrics: build, process and certificate; no old name of one that was renam
     assert.equal(made.status, 0, String(made.stderr));
     const port = await freePort(), service = serve(['--port', String(port), '--tls-cert', cert, '--tls-key', key]);
     await service.said(/^notify: READY=1$/m);
-    await new Promise((done) => setTimeout(done, 3000)); // waits longer than an interval of the supervision
-    const text = spawnSync('curl', ['-s', '--cacert', cert, `https://127.0.0.1:${port}/metrics`], { encoding: 'utf8' }).stdout;
+    const text = await until('the first look of the supervision', () => {
+        const { stdout } = spawnSync('curl', ['-s', '--cacert', cert, `https://127.0.0.1:${port}/metrics`], { encoding: 'utf8' });
+        return /^plantcast_certificate_expiry_timestamp_seconds [1-9]/m.test(stdout) && stdout;
+    });
     const number = (name) => Number(text.match(new RegExp(`^${name} (.*)$`, 'm'))?.[1]);
     assert.match(text, /^plantcast_build_info\{version="[\d.]+",commit="\w+"\} 1$/m);
     const left = number('plantcast_certificate_expiry_timestamp_seconds') - Date.now() / 1000;

@@ -127,7 +127,6 @@ test('another display has its own panes', options, async () => {
         const chart = inner?.querySelector('#trend-chart canvas')?.getBoundingClientRect();
         return chart?.height > 0.5 * innerHeight && chart.bottom < innerHeight;
     }, null, { timeout: 90000 });
-    await other.page.waitForTimeout(1500);
     await shoot(other.page, 'wall-display-2');
     await other.close();
     const gone = await openPage(`${plant.url}wall.html?wall=nowhere`, { viewport: { width: 800, height: 600 } });

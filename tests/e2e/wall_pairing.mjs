@@ -234,7 +234,6 @@ test('the pages of a display that is let in, and of a token of some views, show 
     await tiles.page.waitForFunction(() => /\d/.test(document.querySelector('.tile .value')?.textContent ?? ''), null, { timeout: 60000 });
     const trend = tiles.page.frameLocator('.pane.trend iframe');
     await trend.locator('.uplot').first().waitFor({ timeout: 60000 });
-    await new Promise((done) => setTimeout(done, 3000));
     await shoot(tiles.page, 'wall-device');
     assert.deepEqual(tiles.errors, []);
     await tiles.close();
@@ -242,12 +241,11 @@ test('the pages of a display that is let in, and of a token of some views, show 
     const file = join(folder, 'tokens');
     const made = runProgram('plantcast', ['token', 'add', file, '--role', 'viewer', '--name', 'lobby', '--unattended', '--views', 'whole']);
     const lobby = made.out.trim();
-    await new Promise((done) => setTimeout(done, 4000)); // the daemon reads the file of tokens every 3 s
+    await plant.logged(/tokens .*: 5$/m);
     const seen = await wallPage(1, 'plantcast.wall', lobby);
     await seen.page.locator('.pane.views .said', { hasText: 'Whole unit' }).waitFor({ timeout: 60000 });
     await seen.page.waitForFunction(() => document.querySelector('.pane.views iframe').contentWindow.plantcast?.session.picture, null,
         { timeout: 90000 });
-    await new Promise((done) => setTimeout(done, 3000));
     await shoot(seen.page, 'wall-views-token');
     assert.equal(await seen.page.locator('.pane').count(), 1);
     assert.doesNotMatch(audit(), /refused.*lobby|lobby.*refused/);
