@@ -10,7 +10,6 @@
 #include "render/plan/content_hash.h"
 #include "render/plan/frame_planner.h"
 #include "render/render_job.h"
-#include "render/renderer_compare.h"
 #include "render/renderer_impl.h"
 
 struct light_key renderer_usual_light(const struct renderer *renderer)
@@ -62,9 +61,7 @@ const struct frame_planner *renderer_planner(const struct renderer *renderer)
     return &renderer->planner;
 }
 
-/* Fills in the context that every pass gets. Light, colour map and target are set later. The context points into the plan, which must
-   outlive it. */
-static void init_context(struct renderer *renderer, const struct frame_plan *plan, struct frame_context *context)
+void renderer_init_context(struct renderer *renderer, const struct frame_plan *plan, struct frame_context *context)
 {
     *context = (struct frame_context){ .gpu_scene = &renderer->gpu_scene,
                                        .view = &plan->view,
@@ -124,7 +121,7 @@ static const struct render_backend *choose_backend(const struct renderer *render
 bool renderer_is_quick(struct renderer *renderer, const struct frame_plan *plan)
 {
     struct frame_context context;
-    init_context(renderer, plan, &context);
+    renderer_init_context(renderer, plan, &context);
     const struct render_backend *backend = choose_backend(renderer, &context);
     return backend->init(renderer) && backend->is_quick(renderer, &context);
 }
@@ -134,7 +131,7 @@ bool renderer_is_quick(struct renderer *renderer, const struct frame_plan *plan)
 static struct render_job *begin(struct renderer *renderer, const struct frame_plan *plan, bool at_once)
 {
     struct frame_context context;
-    init_context(renderer, plan, &context);
+    renderer_init_context(renderer, plan, &context);
     struct frame *frame = start_frame(renderer, plan, &context);
     if (!frame)
         return NULL;
@@ -245,38 +242,12 @@ bool renderer_bake_idle(struct renderer *renderer, int64_t budget_ns)
     return light_step(&renderer->light, &usual, budget_ns);
 }
 
-/* --- numbers --------------------------------------------------------------------------------------------------------------- */
-
 void renderer_set_per_fragment(struct renderer *renderer, bool per_fragment)
 {
     if (per_fragment && !renderer->reference.models)
         reference_init(&renderer->reference, &renderer->gpu_scene, renderer->fields.field);
     renderer->per_fragment = renderer->planner.finest = per_fragment;
     renderer->fields.reference = per_fragment ? &renderer->reference : NULL;
-}
-
-bool renderer_measure(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot, bool finest, float (*out)[4])
-{
-    struct frame_planner planner = renderer->planner;
-    struct view plain = *view;
-    struct frame_context context;
-    struct measure_target measure = { 0 };
-    plain.color_scale.log = false;
-    planner.finest = finest;
-    struct frame_plan *plan = frame_plan_create(&planner, &plain);
-    frame_plan_complete(plan, &planner, snapshot);
-    fields_upload(&renderer->fields, plan->visible, plan->visible_count, plan->fields);
-    init_context(renderer, plan, &context);
-    context.measured = true;
-    bool good = render_backend_gl.init(renderer) && gl_backend_take_up(renderer, &context) &&
-                measure_target_begin(&measure, renderer->gl->log, view->width_px, view->height_px);
-    if (good) {
-        surface_pass_draw(&renderer->by_gl->surface_pass, &context);
-        measure_target_read(&measure, out);
-    }
-    measure_target_finish(&measure);
-    frame_plan_destroy(&plan);
-    return good;
 }
 
 void renderer_set_depth(struct renderer *renderer, bool gives_depth)

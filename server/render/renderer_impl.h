@@ -33,6 +33,9 @@ struct renderer {
     struct visibility shown; /* visibility of assets in the last frame that was drawn in one call */
 };
 
+/* Fills in the context that every pass gets. Light, colour map and target are set later. The context points into the plan, which must
+   outlive it. */
+void renderer_init_context(struct renderer *renderer, const struct frame_plan *plan, struct frame_context *context);
 /* Uploads the context's fields to the GPU; context->fields must belong to the caller. A field that does not fit is replaced by one that
    shows no data, and the frame's content hash and age are updated. */
 void renderer_upload_fields(struct renderer *renderer, const struct frame_plan *plan, const struct frame_context *context,

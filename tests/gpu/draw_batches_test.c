@@ -6,9 +6,9 @@
 #include <math.h>
 
 
-#include "render/renderer_compare.h"
 #include "tests/support/gl_calls.h"
 #include "tests/support/planned.h"
+#include "tests/support/renderer_compare.h"
 #include "tests/support/rig.h"
 #include "tests/support/sweep.h"
 #include "tests/support/synthetic.h"

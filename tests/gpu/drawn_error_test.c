@@ -10,10 +10,10 @@
 
 #include "base/mem.h"
 #include "render/pick/pick.h"
-#include "render/renderer_compare.h"
 #include "scene/scene_create.h"
 #include "tests/support/planned.h"
 #include "tests/support/prep_case.h"
+#include "tests/support/renderer_compare.h"
 #include "tests/support/rig.h"
 #include "tests/support/sweep.h"
 #include "tests/support/synthetic.h"

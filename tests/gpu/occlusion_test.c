@@ -6,8 +6,8 @@
 
 
 #include "base/mem.h"
-#include "render/renderer_compare.h"
 #include "render/split_view.h"
+#include "tests/support/renderer_compare.h"
 #include "tests/support/site.h"
 #include "tests/support/sweep.h"
 #include "tests/support/synthetic.h"

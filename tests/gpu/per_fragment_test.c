@@ -7,8 +7,8 @@
 
 #include "base/mem.h"
 #include "protocol/asset_distance.h"
-#include "render/renderer_compare.h"
 #include "tests/support/cad.h"
+#include "tests/support/renderer_compare.h"
 #include "tests/support/rig.h"
 #include "tests/support/sweep.h"
 #include "tests/support/synthetic.h"

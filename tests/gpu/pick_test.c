@@ -3,6 +3,7 @@
    and on a small one. */
 #include "render/pick/pick.h"
 
+#include "tests/support/renderer_compare.h"
 #include "tests/support/test.h"
 #include <math.h>
 #include <time.h>
@@ -10,7 +11,6 @@
 
 
 #include "base/mem.h"
-#include "render/renderer_compare.h"
 #include "scene/framing.h"
 #include "scene/scene_create.h"
 #include "tests/support/rig.h"

@@ -11,7 +11,7 @@
 #include "base/mem.h"
 #include "message/message.h"
 #include "plant/models/transform.h"
-#include "render/renderer_compare.h"
+#include "tests/support/renderer_compare.h"
 #include "tests/support/site.h"
 #include "tests/support/sweep.h"
 #include "tests/support/synthetic.h"

@@ -5,8 +5,8 @@
 
 
 #include "render/memory.h"
-#include "render/renderer_compare.h"
 #include "tests/support/planned.h"
+#include "tests/support/renderer_compare.h"
 #include "tests/support/rig.h"
 #include "tests/support/sweep.h"
 #include "value/quality.h"

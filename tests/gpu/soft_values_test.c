@@ -7,8 +7,8 @@
 
 
 #include "base/mem.h"
-#include "render/renderer_compare.h"
 #include "tests/support/planned.h"
+#include "tests/support/renderer_compare.h"
 #include "tests/support/site.h"
 #include "tests/support/sweep.h"
 #include "tests/support/synthetic.h"

@@ -12,7 +12,6 @@
 #include "render/gl/frame_tiles.h"
 #include "render/gl/frame_uniforms.h"
 #include "render/pick/markers.h"
-#include "render/renderer_compare.h"
 #include "render/render_job.h"
 #include "render/renderer_impl.h"
 
@@ -308,21 +307,3 @@ const struct render_backend render_backend_gl = {
     .submit = submit,
     .is_complete = is_complete,
 };
-
-/* --- numbers ---------------------------------------------------------------------------------------------------------------- */
-
-void renderer_set_occlusion_least(struct renderer *renderer, int least_triangles)
-{
-    renderer->by_gl->surface_pass.least_hiding = least_triangles;
-}
-
-void renderer_set_batching_off(struct renderer *renderer, bool one_by_one)
-{
-    renderer->by_gl->surface_pass.one_by_one = one_by_one;
-}
-
-size_t renderer_occluded_count(const struct renderer *renderer)
-{
-    const struct surface_pass *pass = &renderer->by_gl->surface_pass;
-    return occlusion_count(&pass->occlusion, &pass->opaque);
-}

@@ -165,20 +165,3 @@ void occlusion_test(const struct occlusion *occlusion, const struct draw_batches
     glBindBuffersBase(GL_SHADER_STORAGE_BUFFER, BIND_COMMANDS, 2, NULL);
     glMemoryBarrier(GL_COMMAND_BARRIER_BIT);
 }
-
-size_t occlusion_count(const struct occlusion *occlusion, const struct draw_batches *batches)
-{
-    size_t count = 0, first_round = occlusion_round(occlusion, 0);
-    for (size_t i = first_round; i < occlusion->asset_count; i++) {
-        const struct occlusion_asset *asset = &occlusion->assets[i];
-        const struct occlusion_box *box = &occlusion->boxes[asset->boxes_before];
-        struct draw_command command;
-        if (!asset->tested || box->place_count == 0)
-            continue;
-        glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-        glGetNamedBufferSubData(batches->command_buffer, (GLintptr)(batches->place_of[box->first_place] * sizeof(command)), sizeof(command),
-                                &command);
-        count += command.instances == 0;
-    }
-    return count;
-}

@@ -45,7 +45,5 @@ bool occlusion_upload(struct occlusion *occlusion);
 /* Tests the boxes of visible assets first..end-1 against the depth drawn so far. Changes the program, bindings, face culling and polygon
    offset; all other GL state of the pass (render/gl/surface_pass.c) stays unchanged. */
 void occlusion_test(const struct occlusion *occlusion, const struct draw_batches *batches, size_t first, size_t end);
-/* Returns how many assets were culled; waits for the GPU. For tests and measurements. */
-size_t occlusion_count(const struct occlusion *occlusion, const struct draw_batches *batches);
 
 #endif

@@ -368,9 +368,3 @@ void surface_pass_draw_blended(struct surface_pass *pass, const struct frame_con
     draw_gathered(&pass->blended, context);
     end_pass(context);
 }
-
-void surface_pass_draw(struct surface_pass *pass, const struct frame_context *context)
-{
-    surface_pass_draw_some(pass, context, 0, INT_MAX);
-    surface_pass_draw_blended(pass, context);
-}

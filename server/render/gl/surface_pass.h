@@ -43,8 +43,6 @@ struct surface_pass {
 /* Compiles the programs of SURFACE_PICTURE. Returns false on failure, logged. */
 bool surface_pass_init(struct surface_pass *pass, struct log *log);
 void surface_pass_finish(struct surface_pass *pass);
-/* Draws all visible assets, opaque ones first. */
-void surface_pass_draw(struct surface_pass *pass, const struct frame_context *context);
 /* Draws the assets in slices. surface_pass_draw_some() draws opaque submeshes of the visible assets from index `first` on until about
    `triangles` triangles are drawn, and returns the index at which to continue. surface_pass_draw_blended() then draws all transparent
    ones. */

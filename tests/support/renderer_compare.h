@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Functions with which tests and benchmarks compare frames of a renderer. Thread: the one that made the GL context. */
-#ifndef RENDER_RENDERER_COMPARE_H
-#define RENDER_RENDERER_COMPARE_H
+/* Reads numbers instead of colours from a renderer, and turns off what saves it time. Thread: the one that made the GL context. */
+#ifndef TESTS_RENDERER_COMPARE_H
+#define TESTS_RENDERER_COMPARE_H
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "render/pick/measure_target.h"
+/* values in the no-data channel: MEASURE_CONTEXT: an asset without a field; MEASURE_NOTHING: no asset */
+enum { MEASURE_CONTEXT = -1, MEASURE_NOTHING = -2 };
 
 struct renderer; /* render/renderer.h */
 struct snapshot;
