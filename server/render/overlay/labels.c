@@ -9,7 +9,7 @@
 
 enum { PASSES = 3 };
 static const double SPACINGS[PASSES] = { 0.16, 0.08, 0 }, HELD_FACTOR = 0.8;
-static const double MARK_UNITS = 5, RING_UNITS = 13, NEAR_GAP = 8, FAR_GAP = 22, MAX_COVERED_PART = 0.06, CELL_UNITS = 96;
+static const double MAX_COVERED_PART = 0.06;
 
 static bool is_held(const struct label_item *item)
 {
@@ -33,77 +33,11 @@ static int by_importance(const void *a, const void *b, void *arg)
     return i < k ? -1 : 1;
 }
 
-/* --- what is taken ---------------------------------------------------------------------------------------------------------- */
-
-static int clamp(double value, int count)
-{
-    return value < 0 ? 0 : value >= count ? count - 1 : (int)value;
-}
-
-/* Finds the grid cells that a box covers: first and last column, first and last row. */
-static void cells_of(const struct label_layout *layout, const struct label_box *box, int range[4])
-{
-    double cell = CELL_UNITS * layout->area->unit, x = box->x - layout->area->box.x, y = box->y - layout->area->box.y;
-    range[0] = clamp(x / cell, layout->columns);
-    range[1] = clamp((x + box->width) / cell, layout->columns);
-    range[2] = clamp(y / cell, layout->rows);
-    range[3] = clamp((y + box->height) / cell, layout->rows);
-}
-
-static void take(struct label_layout *layout, const struct label_box *box, int owner, enum label_over kind)
-{
-    int range[4];
-    cells_of(layout, box, range);
-    for (int column = range[0]; column <= range[1]; column++)
-        for (int row = range[2]; row <= range[3]; row++) {
-            int *head = &layout->heads[row * layout->columns + column];
-            mem_grow(&layout->entries, &layout->entry_capacity, layout->entry_count + 1, sizeof(*layout->entries));
-            layout->entries[layout->entry_count] = (struct cell_entry){ .box = *box, .owner = owner, .next = *head, .kind = kind };
-            *head = (int)layout->entry_count++;
-        }
-}
-
-bool layout_is_free(const struct label_layout *layout, const struct label_box *box, int owner, enum label_over over)
-{
-    int range[4];
-    cells_of(layout, box, range);
-    for (int column = range[0]; column <= range[1]; column++)
-        for (int row = range[2]; row <= range[3]; row++)
-            for (int i = layout->heads[row * layout->columns + column]; i >= 0; i = layout->entries[i].next) {
-                const struct label_box *other = &layout->entries[i].box;
-                bool counts = layout->entries[i].owner != owner && layout->entries[i].kind > over;
-                if (counts && box->x < other->x + other->width && other->x < box->x + box->width && box->y < other->y + other->height &&
-                    other->y < box->y + box->height)
-                    return false;
-            }
-    return true;
-}
-
 /* --- one label -------------------------------------------------------------------------------------------------------------- */
-
-struct label_box layout_box(const struct label_item *item, int slot, double unit, double across, double down)
-{
-    static const double places[LABEL_SLOTS][2] = { { 1, -0.5 }, { -1, -0.5 }, { 1, -1.3 }, { 1, 0.3 }, { -1, -1.3 }, { -1, 0.3 },
-                                                   { 0, -1.9 }, { 0, 0.9 },   { 1, -2 },   { -1, -2 }, { 1, 1 },     { -1, 1 },
-                                                   { 1, -3.2 }, { -1, -3.2 }, { 1, 2.2 },  { -1, 2.2 } };
-    double side = places[slot][0], gap = (slot < LABEL_FIRST_FAR ? NEAR_GAP : FAR_GAP) * unit;
-    double above = places[slot][1] < -0.5 ? -1 : places[slot][1] > -0.5 ? 1 : 0, more = item->ring ? (RING_UNITS - MARK_UNITS) * unit : 0;
-    double beside = across + gap + more;
-    double x = side > 0 ? item->x + beside : side < 0 ? item->x - beside - item->width : item->x - item->width / 2;
-    double y = item->y + places[slot][1] * item->height + (side == 0 ? above * (more + down) : 0);
-    return (struct label_box){ x, y, item->width, item->height };
-}
 
 static struct label_box box_of(const struct label_item *item, int slot, double unit)
 {
     return layout_box(item, slot, unit, 0, 0);
-}
-
-bool layout_is_inside(const struct label_layout *layout, const struct label_box *box)
-{
-    const struct label_box *area = &layout->area->box;
-    return box->x >= area->x && box->y >= area->y && box->x + box->width <= area->x + area->width &&
-           box->y + box->height <= area->y + area->height;
 }
 
 static bool fits(const struct label_layout *layout, int index, int slot)
@@ -124,10 +58,7 @@ static void place(struct label_layout *layout, int index)
         if (!fits(layout, index, slot))
             continue;
         struct label_box box = box_of(item, slot, layout->area->unit);
-        take(layout, &box, index, OVER_ALL);
-        layout->places[index] = (struct label_place){ box, slot, LABEL_NONE };
-        layout->labelled[layout->labelled_count++] = index;
-        layout->used += item->width * item->height;
+        layout_set(layout, &index, 1, &box, slot);
         return;
     }
 }
@@ -153,37 +84,6 @@ static void place_rank(struct label_layout *layout, const int *order, size_t cou
             if (room && layout->places[order[i]].slot == LABEL_NONE && is_apart(layout, item, least))
                 place(layout, order[i]);
         }
-}
-
-void layout_set(struct label_layout *layout, const int *members, size_t count, const struct label_box *box, int slot)
-{
-    take(layout, box, members[0], OVER_ALL);
-    for (size_t i = 0; i < count; i++) {
-        layout->places[members[i]] = (struct label_place){ *box, slot, count > 1 ? members[0] : LABEL_NONE };
-        layout->labelled[layout->labelled_count++] = members[i];
-    }
-    layout->used += box->width * box->height;
-}
-
-static void layout_init(struct label_layout *layout, const struct label_item *items, size_t count, const struct label_area *area,
-                        struct label_place *places)
-{
-    double cell = CELL_UNITS * area->unit;
-    *layout = (struct label_layout){ .items = items, .area = area, .places = places };
-    layout->columns = (int)(area->box.width / cell) + 1;
-    layout->rows = (int)(area->box.height / cell) + 1;
-    layout->heads = mem_array((size_t)layout->columns * (size_t)layout->rows, sizeof(*layout->heads));
-    layout->labelled = mem_array(count, sizeof(*layout->labelled));
-    for (int i = 0; i < layout->columns * layout->rows; i++)
-        layout->heads[i] = -1;
-    for (size_t i = 0; i < area->blocked_count; i++)
-        take(layout, &area->blocked[i], -1, OVER_ALL);
-    for (size_t i = 0; i < count; i++) {
-        double radius = (items[i].ring ? RING_UNITS : MARK_UNITS) * area->unit;
-        struct label_box mark = { items[i].x - radius, items[i].y - radius, 2 * radius, 2 * radius };
-        take(layout, &mark, (int)i, items[i].ring ? OVER_RINGS : OVER_MARKS);
-        places[i] = (struct label_place){ .slot = LABEL_NONE, .callout = LABEL_NONE };
-    }
 }
 
 void labels_place(const struct label_item *items, size_t count, const struct label_area *area, struct label_place *places)

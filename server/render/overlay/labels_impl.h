@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* State of label placement in one frame, shared by labels.c and labels_rings.c. */
+/* State of label placement in one frame, shared by label_layout.c, labels.c and labels_rings.c. */
 #ifndef RENDER_OVERLAY_LABELS_IMPL_H
 #define RENDER_OVERLAY_LABELS_IMPL_H
 #include "render/overlay/labels.h"
@@ -33,6 +33,9 @@ struct label_layout {
     double used;
 };
 
+/* Marks the blocked areas and the markers as occupied; no label is placed yet. */
+void layout_init(struct label_layout *layout, const struct label_item *items, size_t count, const struct label_area *area,
+                 struct label_place *places);
 /* Returns the box of an item's label in a slot (candidate position around the marker). across, down: half the width and height of the group
    of markers around item->x, item->y; 0 for a single marker. */
 struct label_box layout_box(const struct label_item *item, int slot, double unit, double across, double down);
