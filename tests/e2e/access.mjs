@@ -134,7 +134,7 @@ walls:
             await said(query, lobby, 403, /this token is for the views/);
         for (const query of ['view=left&group=pressure', 'view=left&hidden=', 'view=left&view=rest&camera=1,1,1,0,0,0', 'view=left&at=-1h'])
             await said(query, lobby, 400, /a query with view may also have width, height and language only/);
-        await said('view=gone', lobby, 400, /the plant file has no such view/);
+        await said('view=gone', lobby, 400, /this plant has no view “gone”/);
         await said('view=page', lobby, 400, /unknown: a picture cannot show this/);
         await said('view=left&view=rest&width=320&height=200', lobby, 200, /PNG/); // the first view= argument counts
         for (const url of ['/api/v1/plant', '/api/v1/tags', '/api/v1/views', '/api/v1/alarms', '/metrics', '/api/v1/pick?x=1&y=1&view=left',
@@ -175,7 +175,7 @@ async function streamsOnlyItsViews(lobby, whole) {
         { type: 'pick', seq: 4, x: 1, y: 1 }, { type: 'time', at_us: 1 }, { type: 'follow', session: 7 }, { type: 'lead', session: 7 },
         { type: 'look', seq: 5, named: 'rest' }, { type: 'look', seq: 5, named: 'left,flat' }])
         await refused(message, only);
-    await refused({ type: 'look', seq: 6, named: 'gone' }, /the plant file has no view 'gone'/);
+    await refused({ type: 'look', seq: 6, named: 'gone' }, /this plant has no view “gone”/);
     await refused({ type: 'look', seq: 6, named: 'page' }, /unknown: a picture cannot show this/);
     client.say({ type: 'look', seq: 7, named: 'flat' });
     const shown = await client.text('camera');

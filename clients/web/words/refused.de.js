@@ -7,6 +7,7 @@ no_group: in dieser Anlage gibt es „{name}“ nicht (Messgröße)
 no_asset: in dieser Anlage gibt es „{name}“ nicht (Anlagenteil)
 no_tag: in dieser Anlage gibt es „{name}“ nicht (Messstelle)
 no_device: in dieser Anlage gibt es „{name}“ nicht (Gerät)
+no_view: in dieser Anlage gibt es „{name}“ nicht (Ansicht)
 unknown: „{name}“ ist hier nicht bekannt
 uncut: „Paper“ wird nicht genau gezeichnet, wo {group} nur einen Sensor hat ({count} von {all} Anlagenteilen, zuerst {asset}). In
   der Anlagendatei hilft „singles: cut“ bei dieser Gruppe.

@@ -7,6 +7,7 @@ no_group: this plant has no quantity “{name}”
 no_asset: this plant has no equipment “{name}”
 no_tag: this plant has no tag “{name}”
 no_device: this plant has no device “{name}”
+no_view: this plant has no view “{name}”
 unknown: “{name}” is unknown here
 uncut: “paper” cannot be drawn accurately where {group} has one sensor ({count} of {all} assets, the first {asset}). The plant file
   may say “singles: cut” at that group.

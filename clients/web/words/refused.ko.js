@@ -7,6 +7,7 @@ no_group: 이 플랜트에는 “{name}” 물리량 항목이 없습니다
 no_asset: 이 플랜트에는 “{name}” 설비 항목이 없습니다
 no_tag: 이 플랜트에는 “{name}” 태그 항목이 없습니다
 no_device: 이 플랜트에는 “{name}” 장치 항목이 없습니다
+no_view: 이 플랜트에는 “{name}” 뷰 항목이 없습니다
 unknown: “{name}”은(는) 여기서 알 수 없습니다
 uncut: {group}의 센서가 하나뿐인 설비({all}개 중 {count}개, 첫째 {asset})에서는
   논문식을 정확히 그릴 수 없습니다.

@@ -35,7 +35,7 @@ static const struct named_view *find_view(const struct server_context *server, c
     }
     const struct named_view *named = named_view_find(server->params.plant.scene->plant, id);
     if (!named)
-        message_fail(error, "bad_field", "view=%.48s: the plant file has no such view", id);
+        message_refuse_with(error, "bad_field", "view", REFUSAL_NO_VIEW, "name=%.48s", id);
     return named;
 }
 

@@ -27,7 +27,7 @@ static const struct named_view *find_view(const struct session *session, const c
     }
     const struct named_view *named = named_view_find(session->context->plant, id);
     if (!named)
-        message_fail(error, "bad_field", "named: the plant file has no view '%s'", quoted(id, name));
+        message_refuse_with(error, "bad_field", "named", REFUSAL_NO_VIEW, "name=%s", quoted(id, name));
     return named;
 }
 
