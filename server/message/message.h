@@ -194,20 +194,23 @@ struct pair_request {
     char digits[7], device[64]; /* pair: the digits that the display shows; unpair: name of the display's device */
 };
 
+struct hello_request {
+    char token[TOKEN_MAX_CHARS + 1], resume[RESUME_MOST_CHARS + 1]; /* "": none */
+    double idle_ms; /* milliseconds since the user was last active; negative: not stated */
+    bool tokens;    /* true: the server shall send the view as a token whenever it changes */
+    bool depth;     /* the client asks for depth grids */
+    bool anew;      /* true: resume only the session's id and the sessions that follow it, not its view */
+    bool has_camera, has_params;
+    struct wall_place tile; /* which tile this display shows of a picture across many displays; display 0: none */
+};
+
 struct message {
     enum message_type type;
-    int width_px, height_px;                                        /* in hello and resize: size of the view; 0: as in the resumed
-                                                                       session */
-    struct codec_list codecs;                                       /* in hello and codecs: what the client can decode; empty: as in the
-                                                                       resumed session */
-    double pixel_ratio;                                             /* in hello and resize: device pixels per page pixel; 0: not stated */
-    char token[TOKEN_MAX_CHARS + 1], resume[RESUME_MOST_CHARS + 1]; /* hello; "": none */
-    double idle_ms;                  /* in hello: milliseconds since the user was last active; negative: not stated */
-    bool tokens;                     /* in hello: true: the server shall send the view as a token whenever it changes */
-    bool depth;                      /* in hello: the client asks for depth grids */
-    bool anew;                       /* in hello: true: resume only the session's id and the sessions that follow it, not its view */
+    struct hello_request hello;
+    int width_px, height_px;         /* in hello and resize: size of the view; 0: as in the resumed session */
+    struct codec_list codecs;        /* in hello and codecs: what the client can decode; empty: as in the resumed session */
+    double pixel_ratio;              /* in hello and resize: device pixels per page pixel; 0: not stated */
     char named[NAMED_VIEW_ID_BYTES]; /* in hello and look: id of a view in the plant file; empty (only in hello): none */
-    bool has_camera, has_params;     /* hello */
     struct camera camera;            /* camera, hello */
     uint32_t seq;                    /* sequence number in camera, ack, fit, pick and look; in hello that of its camera */
     struct params_change params;     /* params, hello */
@@ -232,7 +235,6 @@ struct message {
     struct note_request note;         /* note, remove_note */
     struct wall_request wall;         /* display, send_to_wall, point */
     struct pair_request pair;         /* pair, unpair */
-    struct wall_place tile;           /* in hello: which tile this display shows of a picture across many displays; display 0: none */
     enum signed_frames signed_frames; /* hello, sign */
 };
 

@@ -124,8 +124,8 @@ static bool parse_hello(const struct plant *plant, const json_t *o, struct messa
 {
     const json_t *camera = json_object_get(o, "camera"), *params = json_object_get(o, "params");
     bool resumes, given;
-    if (!may_text(o, "token", out->token, sizeof(out->token), NULL, error) ||
-        !may_text(o, "resume", out->resume, sizeof(out->resume), &resumes, error) ||
+    if (!may_text(o, "token", out->hello.token, sizeof(out->hello.token), NULL, error) ||
+        !may_text(o, "resume", out->hello.resume, sizeof(out->hello.resume), &resumes, error) ||
         !may_text(o, "named", out->named, sizeof(out->named), NULL, error))
         return false;
     if (((!resumes || json_object_get(o, "width") || json_object_get(o, "height")) && !size_parse(o, out, error)) ||
@@ -133,25 +133,26 @@ static bool parse_hello(const struct plant *plant, const json_t *o, struct messa
         return false;
     if (json_object_get(o, "at_us") && !parse_time(plant, o, out, error))
         return false;
-    out->idle_ms = -1;
-    if (!may_number(o, "idle_ms", 0, 1e12, &out->idle_ms, NULL, error))
+    out->hello.idle_ms = -1;
+    if (!may_number(o, "idle_ms", 0, 1e12, &out->hello.idle_ms, NULL, error))
         return false;
     if (!tile_parse(plant, o, out, error) || !take_signed(o, "signed", out, &given, error))
         return false;
-    if (out->tile.display && !out->width_px) {
+    if (out->hello.tile.display && !out->width_px) {
         message_fail(error, "bad_field", "tile: expected width and height too");
         return false;
     }
-    out->tokens = json_is_true(json_object_get(o, "tokens"));
-    out->anew = json_is_true(json_object_get(o, "anew"));
-    out->depth = json_is_true(json_object_get(o, "depth"));
-    out->has_camera = json_is_object(camera);
-    out->has_params = json_is_object(params);
-    if ((camera && !out->has_camera) || (params && !out->has_params)) {
+    out->hello.tokens = json_is_true(json_object_get(o, "tokens"));
+    out->hello.anew = json_is_true(json_object_get(o, "anew"));
+    out->hello.depth = json_is_true(json_object_get(o, "depth"));
+    out->hello.has_camera = json_is_object(camera);
+    out->hello.has_params = json_is_object(params);
+    if ((camera && !out->hello.has_camera) || (params && !out->hello.has_params)) {
         message_fail(error, "bad_field", "camera, params: expected objects");
         return false;
     }
-    return (!out->has_camera || parse_camera(plant, camera, out, error)) && (!out->has_params || parse_params(plant, params, out, error));
+    return (!out->hello.has_camera || parse_camera(plant, camera, out, error)) &&
+           (!out->hello.has_params || parse_params(plant, params, out, error));
 }
 
 static bool parse_resize(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)

@@ -77,7 +77,7 @@ bool role_may_send(enum role role, const struct message *message, struct message
         message_refuse(error, "not_allowed", operators, REFUSAL_ROLE_OPERATOR);
         return false;
     }
-    if (message->type != MESSAGE_PARAMS && !message->has_params)
+    if (message->type != MESSAGE_PARAMS && !message->hello.has_params)
         return true;
     return params_allowed(role, &message->params, error) && params_allowed(role, &message->split.right, error);
 }

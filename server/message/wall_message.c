@@ -35,7 +35,7 @@ bool tile_parse(const struct plant *plant, const json_t *o, struct message *out,
         message_fail(error, "bad_field", "tile: display %d of wall %s is not one of its tiles", place.wall.place.display, wall->id);
         return false;
     }
-    out->tile = place.wall.place;
+    out->hello.tile = place.wall.place;
     return true;
 }
 

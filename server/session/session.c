@@ -449,7 +449,7 @@ static bool parse(const struct session *session, const char *text, size_t count,
     if (message_parse(known, text, count, message, error))
         return true;
     /* A hello that carries a token may name tags; the token decides afterwards what the role may see. */
-    return known != plant && !session->hello && message_parse(plant, text, count, message, &other) && message->token[0];
+    return known != plant && !session->hello && message_parse(plant, text, count, message, &other) && message->hello.token[0];
 }
 
 void session_on_message(struct session *session, const char *text, size_t count, int64_t now_ns, int64_t now_utc_ns)

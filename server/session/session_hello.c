@@ -38,7 +38,7 @@ static bool judge_token(struct session *session, const char *token, int64_t now_
 static bool identify(struct session *session, const struct message *message, int64_t now_ns, int64_t now_utc_ns,
                      struct message_error *error)
 {
-    if (message->token[0] && session->context->tokens && !judge_token(session, message->token, now_ns, now_utc_ns, error))
+    if (message->hello.token[0] && session->context->tokens && !judge_token(session, message->hello.token, now_ns, now_utc_ns, error))
         return false;
     if (role_may_send(session->identity.role, message, error))
         return true;
@@ -54,7 +54,7 @@ static bool identify(struct session *session, const struct message *message, int
 static bool admit(struct session *session, const struct message *message, const struct view *view, struct message_error *error)
 {
     const struct session_context *context = session->context;
-    bool is_tile = message->tile.display > 0;
+    bool is_tile = message->hello.tile.display > 0;
     int width_px = is_tile ? message->width_px : view->width_px, height_px = is_tile ? message->height_px : view->height_px;
     const char *why = admission_refuses(context->admission, session->room.share, (int64_t)width_px * height_px);
     if (!why)
@@ -70,7 +70,7 @@ static bool admit(struct session *session, const struct message *message, const 
    if the wall has no such tile. */
 static bool begin_tile(struct session *session, const struct message *message, struct view *view, struct message_error *error)
 {
-    const struct wall_place *place = &message->tile;
+    const struct wall_place *place = &message->hello.tile;
     if (session->identity.role < ROLE_ENGINEER && !session->identity.holder.display) {
         message_fail(error, "not_allowed", "tile: needs the token of display %d of wall %s, or the role engineer", place->display,
                      place->wall);
@@ -108,20 +108,20 @@ static bool begin_view(struct session *session, const struct message *message, c
         view->height_px = message->height_px;
     }
     view->camera_seq = view->params_seq = 0;
-    if (message->tile.display && !begin_tile(session, message, view, error))
+    if (message->hello.tile.display && !begin_tile(session, message, view, error))
         return false;
     session_scope_fit(session, view);
     if (session->identity.holder.views[0])
         return session_scope_view(session, message->named, view, error);
     if (message->named[0] && !session_look(session, message->named, view, error))
         return false;
-    if (message->has_camera) {
+    if (message->hello.has_camera) {
         view->camera = message->camera;
         view->camera_seq = message->seq;
     }
-    if (message->has_params)
+    if (message->hello.has_params)
         view->params_seq = message->params.seq;
-    return !message->has_params || session_apply_params(session, message, view, error);
+    return !message->hello.has_params || session_apply_params(session, message, view, error);
 }
 
 bool session_apply_params(const struct session *session, const struct message *message, struct view *view, struct message_error *error)
@@ -167,16 +167,16 @@ bool session_hello(struct session *session, const struct message *message, int64
     struct view view;
     if (!identify(session, message, now_ns, now_utc_ns, error))
         return false;
-    if (message->idle_ms >= 0) /* a hello sent by an automatic reconnection is no sign of user activity */
-        session->identity.active_ns = now_ns - (int64_t)(message->idle_ms * 1e6);
+    if (message->hello.idle_ms >= 0) /* a hello sent by an automatic reconnection is no sign of user activity */
+        session->identity.active_ns = now_ns - (int64_t)(message->hello.idle_ms * 1e6);
     if (session->identity.holder.role != ROLE_NOBODY && session_left_alone(session, now_ns, error))
         return false;
     bool narrowed = session->identity.holder.views[0] || session->identity.holder.display;
     session_scope_begin(session);
     char secret[RESUME_CHARS + 1];
-    bool back = !message->tile.display && find_resumed(session, message->resume, now_ns, now_utc_ns, secret, &resumed);
+    bool back = !message->hello.tile.display && find_resumed(session, message->hello.resume, now_ns, now_utc_ns, secret, &resumed);
     /* NULL if the client asked for a new view, not for a kept one */
-    const struct resumed *before = back && !message->anew ? &resumed : NULL;
+    const struct resumed *before = back && !message->hello.anew ? &resumed : NULL;
     if (!begin_view(session, message, before, &view, error) ||
         !session_choose_codec(session, message->codecs.count ? &message->codecs : &resumed.codecs, error) ||
         !session_choose_signed(session, message->signed_frames, error) || !admit(session, message, &view, error))
@@ -184,14 +184,14 @@ bool session_hello(struct session *session, const struct message *message, int64
     if (back)
         take_over(session, &resumed, secret);
     session->view = view;
-    if (message->has_params && !session->identity.holder.views[0])
+    if (message->hello.has_params && !session->identity.holder.views[0])
         session_record_params(session, message);
     if (message->time.has_at && !narrowed)
         session_time_begin(session, message->time.at_us, message->time.speed);
     else if (before && !narrowed)
         session_time_begin(session, resumed.view.at_us, resumed.speed);
-    session->identity.tokens = message->tokens;
-    session->asks_depth = message->depth;
+    session->identity.tokens = message->hello.tokens;
+    session->asks_depth = message->hello.depth;
     session->identity.resumed = session->identity.returned = back;
     if (back)
         session->identity.number = resumed.called;

@@ -53,7 +53,7 @@ static bool take(const char *text, size_t count, struct message_error *error)
     view_default(small_scene(), 640, 360, &view);
     if (!message_parse(plant(), text, count, &message, error))
         return false;
-    bool params = message.type == MESSAGE_PARAMS || message.has_params;
+    bool params = message.type == MESSAGE_PARAMS || message.hello.has_params;
     return !params || (params_apply(&context, &message.params, &view, error) && split_apply(&context, &message.split, &view, error));
 }
 
@@ -109,7 +109,7 @@ TEST(fields_arrive)
     assert_int_equal(m.width_px, 640);
     assert_int_equal(m.height_px, 360);
     assert_true(m.codecs.count == 2 && m.codecs.at[0] == WIRE_CODEC_PNG && m.codecs.at[1] == WIRE_CODEC_JPEG && !m.codecs.choose);
-    assert_true(m.has_camera && !m.has_params);
+    assert_true(m.hello.has_camera && !m.hello.has_params);
     assert_int_equal(m.seq, 9);
     assert_true(m.camera.eye_m[2] == 3 && m.camera.target_m[0] == 4 && m.camera.up[2] == 1 && m.camera.fov_deg == 50);
     m = parse("{\"type\":\"camera\",\"seq\":2,\"eye\":[1,2,3],\"target\":[4,5,6],\"projection\":\"orthographic\",\"height_m\":9}");
