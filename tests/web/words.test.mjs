@@ -9,8 +9,8 @@ import { filesIn, graph } from './modules.mjs';
 
 const WEB = new URL('../../clients/web/', import.meta.url);
 const read = (...names) => names.map((name) => readFileSync(new URL(name, WEB), 'utf8')).join('\n');
-// Texts of the page at start, of parts loaded later, of the import page, and of the watchdog.
-const filesOf = (language) => ['', 'lazy.', 'alarms.', 'import.', 'watchdog.'].map((part) => `words/${part}${language}.js`);
+// Texts of the page at start, of parts loaded later, of the import page, of the watchdog, and of headsets.
+const filesOf = (language) => ['', 'lazy.', 'alarms.', 'import.', 'watchdog.', 'xr.'].map((part) => `words/${part}${language}.js`);
 const tableOf = async (file) => readWords((await import(`../../clients/web/${file}`)).default);
 const tables = Object.fromEntries(await Promise.all(LANGUAGES.map(async (language) =>
     [language, Object.assign({}, ...await Promise.all(filesOf(language).map(tableOf)))])));

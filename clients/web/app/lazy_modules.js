@@ -25,6 +25,7 @@ const MODULES = {
     toolbarOverflow: { file: 'toolbar/toolbar_overflow', type: 'ToolbarOverflow', styles: ['toolbar/toolbar_overflow'], wordless: true },
     following: { file: 'sharing/following', type: 'Following', styles: ['sharing/following'] },
     clipGizmo: { file: 'views/clip_gizmo', type: 'ClipGizmo', styles: ['measure/measure', 'views/clip_gizmo'] },
+    enterVr: { file: 'xr/enter_vr', type: 'EnterVr', words: 'xr' },
     help: { file: 'help/help', type: 'Help', styles: ['help/help'] },
     import: { file: 'import/import', type: 'Import', styles: ['common/panel', 'import/import'], words: 'import' },
     isolines: { file: 'viewport/isolines', type: 'Isolines' },

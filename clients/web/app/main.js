@@ -257,6 +257,10 @@ for (const query of ['(forced-colors: active)', '(prefers-contrast: more)'].map(
     wear();
 }
 serveInstalled();
+// Offers headsets on a browser that has one, also once one is connected.
+const offerVr = () => navigator.xr?.isSessionSupported('immersive-vr').then((yes) => yes && modules.prepare('enterVr'), () => {});
+navigator.xr?.addEventListener('devicechange', offerVr);
+offerVr();
 async function watch() {
     const { watchMainThread } = await import('./common/watchdog.js');
     watchMainThread({ scale: () => page.unit, reloads: document.body.classList.contains('wall') && parent === window });

@@ -188,16 +188,20 @@ export function depthAt(grid, px, py) {
 
 const halfHeight = (camera) => (isParallel(camera) ? camera.height_m / 2 : Math.tan(camera.fov * RADIANS / 2));
 
+// Returns the columns for x, y, depth and 1 of a grid, each as [vector in metres from `origin`, homogeneous coordinate]. camera: of the
+// picture.
+export function gridColumns({ width, height }, camera, origin) {
+    const old = basis(camera), tall = halfHeight(camera), wide = tall * width / height;
+    const eye = subtract(camera.eye, origin), corner = add(scale(old.right, -wide), scale(old.up, tall));
+    const [depth, rest] = isParallel(camera) ? [[old.forward, 0], [add(eye, corner), 1]] : [[eye, 1], [add(old.forward, corner), 0]];
+    return [[scale(old.right, 2 * wide / width), 0], [scale(old.up, -2 * tall / height), 0], depth, rest];
+}
+
 // Returns the 4x4 matrix, column by column as WebGL takes it, from [x, y, depth, 1] of a grid to clip coordinates of another camera, for a
 // picture of the same shape. nearest: a distance from the new eye in metres before which nothing is drawn.
 export function warpMatrix({ width, height }, from, to, nearest) {
-    const old = basis(from), now = basis(to), tall = halfHeight(from), wide = tall * width / height;
-    const eye = subtract(from.eye, to.eye), origin = add(scale(old.right, -wide), scale(old.up, tall));
-    // The columns for x, y, depth and 1 in metres from the new eye, each with the homogeneous coordinate.
-    const [depth, rest] = isParallel(from) ? [[old.forward, 0], [add(eye, origin), 1]] : [[eye, 1], [add(old.forward, origin), 0]];
-    const columns = [[scale(old.right, 2 * wide / width), 0], [scale(old.up, -2 * tall / height), 0], depth, rest];
-    const up = halfHeight(to), across = up * width / height, reach = 2 * distance(to) + 1e4 * up;
-    return columns.flatMap(([v, h]) => {
+    const now = basis(to), up = halfHeight(to), across = up * width / height, reach = 2 * distance(to) + 1e4 * up;
+    return gridColumns({ width, height }, from, to.eye).flatMap(([v, h]) => {
         const x = dot(v, now.right) / across, y = dot(v, now.up) / up, z = dot(v, now.forward);
         return isParallel(to) ? [x, y, z / reach, h] : [x, y, z * (1 - 1e-6) - 2 * nearest * h, z];
     });

@@ -14,7 +14,7 @@ const SLOW_MS = 26, SLOW_COUNT = 8, PAUSE_MS = 150, LEAST_PX = 250000;
 
 const FADE_MS = 80; // time in which the server's picture replaces the warped one
 
-const MESH = `#version 300 es
+export const MESH = `#version 300 es
 in vec4 vertex;
 uniform mat4 warp;
 out vec2 at;
@@ -32,7 +32,7 @@ bool isGone() {
     int odd = at.x ^ at.y;
     return float(4 * (2 * (odd & 1) + (at.y & 1)) + (odd & 2) + (at.y >> 1)) < gone * 16.0 - 0.5;
 }`;
-const PICTURE = `#version 300 es
+export const PICTURE = `#version 300 es
 precision highp float;
 in vec2 at;
 flat in float kind;
@@ -72,7 +72,7 @@ void main() {
 const LATTICE_PX = 14, REDUCED = 4; // REDUCED: pixels along the side of one from which the greys of places not drawn are computed
 
 // Returns { program, at(name) }; at() returns the location of a uniform.
-function programOf(gl, ...sources) {
+export function programOf(gl, ...sources) {
     const program = gl.createProgram();
     [gl.VERTEX_SHADER, gl.FRAGMENT_SHADER].forEach((type, i) => {
         const shader = gl.createShader(type);

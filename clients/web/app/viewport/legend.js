@@ -69,6 +69,13 @@ export const TITLES = { distance: (name, { sensor }) => [say('legend.distance', 
 const LEAST = { distance: 0, uncertainty: 0, blind: 0.05005 };
 const LIMIT_PLACES = { LL: -2, L: -1, H: 1, HH: 2 };
 
+// Returns [title, suffix, note] of the shown quantity.
+export function titleOf({ model }, params) {
+    const name = quantityText(model.group(params.group));
+    const sign = { difference: 'Δ ', uncertainty: '± ', blind: '? ' }[params.show] ?? ''; // used until coverage.js is loaded
+    return TITLES[params.show]?.(name, params) ?? [sign + name];
+}
+
 export class Legend {
     // paramsOf returns, from the picture's parameters, those of the half of the view that this legend explains, or null if the legend stays
     // empty.
@@ -128,9 +135,7 @@ export class Legend {
     }
 
     title(params) {
-        const name = quantityText(this.session.model.group(params.group));
-        const sign = { difference: 'Δ ', uncertainty: '± ', blind: '? ' }[params.show] ?? ''; // used until coverage.js is loaded
-        return TITLES[params.show]?.(name, params) ?? [sign + name];
+        return titleOf(this.session, params);
     }
 
     notes(params, map, isOperator) {

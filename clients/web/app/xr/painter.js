@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Draws an eye of a headset by WebGL 2: the server's picture on the mesh over its depth grid, and boards (rectangles with a canvas).
+import { clipOf, eyeMatrix } from '../../core/headset_views.js';
+import { subtract, add, scale } from '../../core/vector.js';
+import { FLOATS } from '../../core/warp_mesh.js';
+import { MESH, PICTURE, programOf } from '../picture/warp.js';
+
+const NEAREST_M = 0.05; // nothing nearer is drawn
+const UNDRAWN = { light: 0.55, dark: 0.3 }; // grey of directions that no picture shows: neutral, and not a colour of any map
+const BOARD = `#version 300 es
+uniform vec4 corners[4];
+out vec2 at;
+void main() {
+    at = vec2(gl_VertexID & 1, gl_VertexID >> 1);
+    gl_Position = corners[gl_VertexID];
+}`;
+const CANVAS = `#version 300 es
+precision highp float;
+in vec2 at;
+uniform sampler2D picture;
+out vec4 colour;
+void main() {
+    colour = texture(picture, at);
+}`;
+
+export class Painter {
+    // backdrop: of the pictures, light or dark.
+    constructor(gl, backdrop) {
+        Object.assign(this, { gl, buffers: null, source: null });
+        this.mesh = programOf(gl, MESH, PICTURE);
+        this.board = programOf(gl, BOARD, CANVAS);
+        this.picture = this.newTexture(gl.NEAREST); // a mixture of two colours would be read as the value between them
+        this.masks = this.newTexture(gl.NEAREST);
+        gl.depthFunc(gl.LEQUAL);
+        gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
+        const grey = UNDRAWN[backdrop] ?? UNDRAWN.light;
+        gl.clearColor(grey, grey, grey, 1);
+        gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
+    }
+
+    newTexture(filter) {
+        const { gl } = this, texture = gl.createTexture();
+        gl.bindTexture(gl.TEXTURE_2D, texture);
+        for (const [name, value] of [[gl.TEXTURE_MIN_FILTER, filter], [gl.TEXTURE_MAG_FILTER, filter],
+            [gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE], [gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE]])
+            gl.texParameteri(gl.TEXTURE_2D, name, value);
+        return texture;
+    }
+
+    // Takes a picture to draw from now on. canvas: its pixels; part: { grid, mesh } of its depth; camera: its own.
+    take(canvas, part, camera) {
+        const { gl } = this, { grid, mesh } = part;
+        gl.bindTexture(gl.TEXTURE_2D, this.picture);
+        gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA, gl.RGBA, gl.UNSIGNED_BYTE, canvas);
+        if (this.source?.part !== part) {
+            gl.bindTexture(gl.TEXTURE_2D, this.masks);
+            const { masks, maskSide, columns, rows } = grid;
+            gl.texImage2D(gl.TEXTURE_2D, 0, gl.R8, columns * maskSide, rows * maskSide, 0, gl.RED, gl.UNSIGNED_BYTE, masks);
+            this.buffers ??= [gl.ARRAY_BUFFER, gl.ELEMENT_ARRAY_BUFFER].map((target) => [target, gl.createBuffer()]);
+            [mesh.vertices, mesh.indices].forEach((data, i) => {
+                const [target, buffer] = this.buffers[i];
+                gl.bindBuffer(target, buffer);
+                gl.bufferData(target, data, gl.DYNAMIC_DRAW);
+            });
+        }
+        this.source = { part, camera, size: [canvas.width, canvas.height] };
+    }
+
+    clear(framebuffer) {
+        const { gl } = this;
+        gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
+        gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    }
+
+    // Draws the picture as an eye sees it.
+    drawPicture(eye) {
+        const { gl, mesh, source: { part: { grid, mesh: { indices } }, camera, size } } = this;
+        gl.enable(gl.DEPTH_TEST);
+        gl.enable(gl.CULL_FACE);
+        gl.disable(gl.BLEND);
+        gl.useProgram(mesh.program);
+        gl.uniformMatrix4fv(mesh.at('warp'), false, eyeMatrix(grid, camera, eye, NEAREST_M));
+        gl.uniform2f(mesh.at('origin'), grid.x, grid.y);
+        gl.uniform2fv(mesh.at('size'), size);
+        gl.uniform1f(mesh.at('bit'), grid.cellPx / grid.maskSide);
+        gl.uniform1i(mesh.at('masks'), 1);
+        gl.activeTexture(gl.TEXTURE1);
+        gl.bindTexture(gl.TEXTURE_2D, this.masks);
+        gl.activeTexture(gl.TEXTURE0);
+        gl.bindTexture(gl.TEXTURE_2D, this.picture);
+        for (const [target, buffer] of this.buffers)
+            gl.bindBuffer(target, buffer);
+        gl.enableVertexAttribArray(0);
+        gl.vertexAttribPointer(0, FLOATS, gl.FLOAT, false, 0, 0);
+        gl.drawElements(gl.TRIANGLES, indices.length, gl.UNSIGNED_INT, 0);
+        gl.disableVertexAttribArray(0);
+    }
+
+    // Draws boards in front of everything, in their order: { texture, at, axes, width, height } in plant metres; without `at`, over the
+    // whole view.
+    drawBoards(eye, boards) {
+        const { gl, board } = this;
+        gl.disable(gl.DEPTH_TEST);
+        gl.disable(gl.CULL_FACE);
+        gl.enable(gl.BLEND);
+        gl.useProgram(board.program);
+        for (const { texture, at, axes, width, height } of boards) {
+            const corner = (x, y) => (at ? clipOf(eye, [add(subtract(at, eye.at), add(scale(axes[0], x * width / 2),
+                scale(axes[1], y * height / 2))), 1], NEAREST_M) : [x, y, 0, 1]);
+            gl.bindTexture(gl.TEXTURE_2D, texture);
+            gl.uniform4fv(board.at('corners'), [corner(-1, 1), corner(1, 1), corner(-1, -1), corner(1, -1)].flat());
+            gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);
+        }
+    }
+
+    // Copies a canvas into a texture, which it makes at the first call.
+    upload(texture, canvas) {
+        const { gl } = this, own = texture ?? this.newTexture(gl.LINEAR);
+        gl.bindTexture(gl.TEXTURE_2D, own);
+        gl.pixelStorei(gl.UNPACK_PREMULTIPLY_ALPHA_WEBGL, true);
+        gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA, gl.RGBA, gl.UNSIGNED_BYTE, canvas);
+        gl.pixelStorei(gl.UNPACK_PREMULTIPLY_ALPHA_WEBGL, false);
+        return own;
+    }
+}

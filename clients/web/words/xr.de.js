@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Words of headsets, in German.
+export default `
+[xr]
+enter: VR starten
+leave: VR verlassen
+back: −{n} min
+live: Jetzt
+waiting: Warten auf das Bild des Servers
+flat: Der Server sendet keine Tiefe: Es kann nichts gezeigt werden
+gone: Das Headset hat die Sitzung beendet
+failed: Das Headset zeigt die Anlage nicht: {why}
+`;

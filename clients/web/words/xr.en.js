@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Words of headsets, in English.
+export default `
+[xr]
+enter: Enter VR
+leave: Leave VR
+back: −{n} min
+live: Now
+waiting: Waiting for the server’s picture
+flat: The server sends no depth: nothing can be shown
+gone: The headset ended the session
+failed: The headset does not show the plant: {why}
+`;

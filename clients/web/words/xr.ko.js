@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Words of headsets, in Korean.
+export default `
+[xr]
+enter: VR 시작
+leave: VR 종료
+back: −{n}분
+live: 현재
+waiting: 서버의 화면을 기다리는 중
+flat: 서버가 깊이를 보내지 않아 표시할 수 없습니다
+gone: 헤드셋이 세션을 종료했습니다
+failed: 헤드셋에 플랜트를 표시할 수 없습니다: {why}
+`;
