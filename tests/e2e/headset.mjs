@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The plant on a headset: an emulated Quest 3 (npm's iwer) in chromium.
+import assert from 'node:assert/strict';
+import { readFileSync, writeFileSync } from 'node:fs';
+import { after, before, test } from 'node:test';
+import { openPage, readPng, SHOOTS, SCREENSHOTS, waitForHealth, waitForPicture } from './support/browser.mjs';
+import { aimAt, enterVr, EYE, eyesPng, headsetScript, IPD_M, lookFrom, pull, SCREEN, seen } from './support/headset.mjs';
+import { notBuilt, TinyPlant } from './support/tiny_plant.mjs';
+import { until } from './support/until.mjs';
+
+const options = { skip: notBuilt(), timeout: 200000 };
+const PX_PER_TAN = EYE.height / 2; // of an eye with a field of view of 90 degrees
+let plant;
+
+before(async () => {
+    if (options.skip)
+        return;
+    plant = await TinyPlant.create();
+    plant.keepFresh();
+    await plant.start();
+    await plant.set({ 'TI-1': 94, 'TI-2': 94, 'PI-1': 5 }); // one colour everywhere
+});
+after(() => plant?.destroy());
+
+// expected: a script error that the emulator itself causes.
+async function withHeadset(f, at = plant, expected = null) {
+    const { page, errors, close } = await openPage(`http://127.0.0.1:${at.port}/?lang=en`, SCREEN, headsetScript());
+    try {
+        await waitForPicture(page);
+        await waitForHealth(page, 'live');
+        await page.waitForFunction(() => globalThis.plantcast.session.model.readings.slice(0, 2).every(({ value }) => value === 94));
+        await f(page);
+        assert.deepEqual(errors.filter((text) => !expected?.test(text)), []);
+    } finally {
+        await close();
+    }
+}
+const state = (page, name) => page.evaluate((key) => globalThis.plantcast.modules.there('enterVr').headset?.[key] ?? null, name);
+const hasEnded = (page) => page.waitForFunction(() => !globalThis.plantcast.modules.there('enterVr').headset);
+const keep = async (page, name) => SHOOTS && writeFileSync(`${SCREENSHOTS}/${name}.png`, await eyesPng(page));
+
+test('the button: only with a headset, and only if the server sends depth', options, async () => {
+    const { page, close } = await openPage(`http://127.0.0.1:${plant.port}/`);
+    try {
+        await waitForPicture(page);
+        await page.waitForFunction(() => globalThis.plantcast.modules);
+        assert.equal(await page.evaluate(() => document.featurePolicy.allowsFeature('xr-spatial-tracking')), true);
+        assert.equal(await page.locator('#enter-vr').count(), 0);
+        const files = await page.evaluate(() => performance.getEntriesByType('resource').map(({ name }) => name));
+        assert.deepEqual(files.filter((name) => name.includes('/xr')), []);
+    } finally {
+        await close();
+    }
+    const flat = await TinyPlant.create();
+    writeFileSync(flat.file, readFileSync(flat.file, 'utf8').replace('name: Two boxes', 'name: Two boxes\n  reprojection: off'));
+    try {
+        await flat.start();
+        await flat.set({ 'TI-1': 94, 'TI-2': 94, 'PI-1': 5 });
+        await withHeadset(async (other) => {
+            await other.locator('#enter-vr').waitFor({ state: 'attached' });
+            assert.equal(await other.locator('#enter-vr').isVisible(), false);
+        }, flat);
+    } finally {
+        await flat.destroy();
+    }
+});
+
+// Returns the snapshot that the server draws from an eye: the true picture.
+async function truth(page, eye, side) {
+    const camera = [eye[0] + side * IPD_M / 2, eye[1], eye[2], eye[0] + side * IPD_M / 2, 0, eye[2], 90].map((m) => m.toFixed(4)).join();
+    const query = `width=${EYE.width}&height=${EYE.height}&look=flat&strip=none&hidden=P-101A&camera=${camera}`;
+    const answer = await fetch(`http://127.0.0.1:${plant.port}/snapshot.png?${query}`);
+    return readPng(page, Buffer.from(await answer.arrayBuffer()));
+}
+// Returns the first and the last coloured pixel of a row, left of a snapshot's legend.
+function runOf({ width, rgba }, row) {
+    const coloured = [...Array(Math.round(0.8 * width)).keys()].filter((x) => {
+        const [r, g, b] = rgba.slice(4 * (row * width + x), 4 * (row * width + x) + 3);
+        return Math.max(r, g, b) - Math.min(r, g, b) > 60;
+    });
+    return [coloured[0], coloured.at(-1)];
+}
+
+test('both eyes see the plant from their own places; a turned head sees it in the next frame', options, (t) => withHeadset(async (page) => {
+    const home = await page.evaluate(() => ({ camera: globalThis.plantcast.session.camera, size: globalThis.plantcast.session.size }));
+    await page.evaluate(() => globalThis.plantcast.session.setParams({ look: 'flat', hidden: ['P-101A'] }));
+    await enterVr(page);
+    for (const away of [2, 20]) {
+        const eye = [0, -0.5 - away, 0]; // in front of the side of the box at y = -0.5
+        await lookFrom(page, eye, [0, 1, 0]);
+        const { left, right } = await seen(page), row = EYE.height / 2 + (away === 2 ? 30 : 6); // beside the markers
+        const trueRuns = await Promise.all([-1, 1].map(async (side) => runOf(await truth(page, eye, side), row)));
+        const runs = [left, right].map((picture) => runOf(picture, row));
+        t.diagnostic(`${away} m: runs ${JSON.stringify(runs)}, true ${JSON.stringify(trueRuns)}`);
+        for (const i of [0, 1]) { // the left and the right edge of the box
+            const [own, real] = [runs, trueRuns].map(([a, b]) => a[i] - b[i]);
+            assert.ok(Math.abs(own - real) <= 1, `at ${away} m: a disparity of ${own} px, in truth ${real}`);
+            assert.ok(Math.abs(runs[0][i] - trueRuns[0][i]) <= 2, `at ${away} m: ${runs[0][i]} px, in truth ${trueRuns[0][i]}`);
+        }
+        const undrawn = [left, right].map(({ undrawn: share }) => share);
+        t.diagnostic(`${away} m: not drawn ${undrawn.map((share) => (100 * share).toFixed(2))} %`);
+        assert.ok(undrawn.every((share) => share < 0.03), `${undrawn}`);
+        await keep(page, `headset-${away}m`);
+    }
+    await lookFrom(page, [0, -2.5, 0], [0, 1, 0]);
+    const yaw = 8 * Math.PI / 180, { left, seq } = await seen(page), turned = await seen(page, yaw);
+    const [a, b] = [left, turned.left].map((picture) => runOf(picture, EYE.height / 2)), middleOf = ([from, to]) => (from + to) / 2;
+    assert.equal(turned.seq, seq, 'before another picture of the server');
+    assert.ok(Math.abs(middleOf(b) - middleOf(a) - PX_PER_TAN * Math.tan(yaw)) < 6, `${a} to ${b}`);
+    await page.evaluate(() => globalThis.plantcast.modules.there('enterVr').headset.xr.end());
+    await hasEnded(page);
+    await page.waitForFunction(({ camera, size }) => {
+        const { session } = globalThis.plantcast;
+        return session.size.width === size.width && session.picture.fullWidth === size.width &&
+            session.picture.cameraSeq === session.cameraSeq && session.camera.eye.every((m, i) => m === camera.eye[i]);
+    }, home);
+    assert.equal(await page.locator('#enter-vr').isEnabled(), true);
+}));
+
+test('hands: the floor, equipment, a sensor, the wrist, and a grip', options, () => withHeadset(async (page) => {
+    await enterVr(page);
+    await lookFrom(page, [0, -2.5, 0.8], [0, 1, 0]);
+    await aimAt(page, [-0.8, -1.2, -0.8]); // the floor is where the user stands: 1.6 m below the eyes
+    await pull(page);
+    await page.waitForFunction(() => Math.abs(globalThis.plantcast.modules.there('enterVr').headset.rig.at[0] + 0.8) < 0.05);
+    await lookFrom(page, [0, -2.5, 0.8], [0, 1, 0]);
+    await aimAt(page, [0.1, -0.5, 0.1]);
+    await pull(page);
+    await page.waitForFunction(() => globalThis.plantcast.modules.there('enterVr').headset.hands.card?.picked.asset === 'E-101');
+    const value = await page.evaluate(() => globalThis.plantcast.modules.there('enterVr').headset.hands.card.picked.value);
+    assert.equal(value.toFixed(0), '94');
+    await keep(page, 'headset-place');
+    await lookFrom(page, [-1.8, -1.2, 1.3], [1, 0.6, 0]);
+    await aimAt(page, [-0.5, 0, 0]);
+    await pull(page);
+    await page.waitForFunction(() => globalThis.plantcast.modules.there('enterVr').headset.hands.card?.picked.sensor === 'TI-2');
+    await keep(page, 'headset-sensor');
+    await aimAt(page, [0.1, -0.2, 0.5]); // the top of the box
+    await pull(page);
+    await page.waitForFunction(() => Math.abs(globalThis.plantcast.modules.there('enterVr').headset.rig.at[2] - 0.5) < 0.02);
+    await lookFrom(page, [0, -2.5, 0.8], [0, 1, 0], true);
+    const button = await page.evaluate(() => {
+        const { hands } = globalThis.plantcast.modules.there('enterVr').headset, { at, axes: [x, y], width, height } = hands.panel();
+        return at.map((m, i) => m + x[i] * width * 0.25 + y[i] * height * 0.38); // the right button of the first row
+    });
+    await aimAt(page, button);
+    await keep(page, 'headset-wrist');
+    await pull(page);
+    await page.waitForFunction(() => globalThis.plantcast.session.params.group === 'pressure');
+    const before = (await state(page, 'rig')).at;
+    await page.evaluate(async () => {
+        const { device } = globalThis, frame = () => new Promise(requestAnimationFrame);
+        device.controllers.right.updateButtonValue('squeeze', 1);
+        await frame();
+        await frame();
+        device.controllers.right.position.set(0.2, 1.3, 0.1); // a pull towards the body
+        await frame();
+        await frame();
+        device.controllers.right.updateButtonValue('squeeze', 0);
+    });
+    await until('the user is pulled along', async () => (await state(page, 'rig')).at[1] - before[1] > 0.3);
+}));
+
+test('a lost connection covers the view until the server is back; a lost context ends it', options, () => withHeadset(async (page) => {
+    await enterVr(page);
+    await lookFrom(page, [0, -2.5, 0], [0, 1, 0]);
+    await plant.daemon.stop('SIGKILL');
+    await until('the loss is noticed', async () => (await state(page, 'state')).kind === 'lost');
+    await page.waitForFunction(() => globalThis.plantcast.modules.there('enterVr').headset.warning?.[2]);
+    const { left, right } = await seen(page);
+    for (const { rgba } of [left, right]) { // the warning is dark red
+        let count = 0;
+        for (let i = 0; i < rgba.length; i += 4)
+            count += rgba[i] > 90 && rgba[i + 1] < 60 && rgba[i + 2] < 70 ? 1 : 0;
+        assert.ok(count > 0.03 * rgba.length / 4, `${count} pixels`);
+    }
+    await keep(page, 'headset-lost');
+    await plant.startDaemon('--port', String(plant.port));
+    await until('the server is back', async () => (await state(page, 'state')).kind === 'live' && await state(page, 'isNear'));
+    await page.evaluate(() => {
+        const { gl } = globalThis.plantcast.modules.there('enterVr').headset.painter;
+        gl.getExtension('WEBGL_lose_context').loseContext();
+    });
+    await hasEnded(page);
+    await page.waitForFunction(() => !Object.hasOwn(globalThis.plantcast.viewport, 'invalidate'));
+}, plant, /null \(reading '0'\)/)); // the emulator reads a state of the lost context

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// An emulated headset (npm's iwer, a Quest 3) in the pages of the browser: moves it, and reads what its eyes see.
+import { readFileSync } from 'node:fs';
+import { createRequire } from 'node:module';
+
+export const EYE = { width: 700, height: 700 }; // of an eye's picture in pixels; the emulator draws both into the window, side by side
+export const SCREEN = { viewport: { width: 2 * EYE.width, height: EYE.height } };
+export const IPD_M = 0.063;
+const HEAD_M = 1.6; // height of the emulated head above the room's floor
+
+// Returns an init script that installs the headset, whose eyes have a field of view of 90 degrees.
+export function headsetScript() {
+    const runtime = readFileSync(createRequire(import.meta.url).resolve('iwer/build/iwer.min.js'), 'utf8');
+    return { content: `${runtime};(() => {
+        globalThis.device = new IWER.XRDevice(IWER.metaQuest3, { stereoEnabled: true, fovy: Math.PI / 2, ipd: ${IPD_M} });
+        device.installRuntime({ forceInstall: true });
+    })();` };
+}
+
+const isNear = () => globalThis.plantcast.modules.there('enterVr')?.headset?.isNear;
+
+// Presses the page's button, and waits until the eyes show a picture.
+export async function enterVr(page) {
+    await page.locator('#enter-vr').click();
+    await page.waitForFunction(isNear, null, { polling: 50 });
+}
+
+// Puts the eyes at a place of the plant, looking level along `forward`, and waits for the picture from there. Only the right hand is
+// there, or both.
+export async function lookFrom(page, eye, forward, hasLeft = false) {
+    await page.evaluate(async ([at, towards, head, both]) => {
+        const { headset } = globalThis.plantcast.modules.there('enterVr'), { device } = globalThis;
+        const { rigAt } = await import('/core/headset_views.js');
+        headset.rig = rigAt([at[0], at[1], at[2] - head], towards, [0, 0, 1]);
+        device.quaternion.set(0, 0, 0, 1);
+        device.controllers.left.connected = both;
+        device.controllers.left.position.set(-0.15, 1.3, -0.4);
+        device.controllers.right.position.set(0.2, 1.3, -0.3);
+        device.controllers.right.quaternion.set(0, 0, 0, 1);
+        headset.hands.card = null;
+    }, [eye, forward, HEAD_M, hasLeft]);
+    await page.waitForFunction((at) => {
+        const { shown, sent } = globalThis.plantcast.modules.there('enterVr').headset, { session } = globalThis.plantcast;
+        return shown?.still && sent.eye.every((m, i) => Math.abs(m - at[i]) < 0.02) && shown.cameraSeq === session.cameraSeq;
+    }, eye, { polling: 50 });
+}
+
+// Points the right hand at a place of the plant, and waits for the frame that shows it.
+export const aimAt = (page, point) => page.evaluate(async (place) => {
+    const { headset } = globalThis.plantcast.modules.there('enterVr'), { position, quaternion } = globalThis.device.controllers.right;
+    const { axes, at } = headset.rig, from = place.map((m, i) => m - at[i]), hand = [position.x, position.y, position.z];
+    const [x, y, z] = axes.map((axis, j) => axis.reduce((sum, v, i) => sum + v * from[i], -hand[j]));
+    const yaw = Math.atan2(-x, -z) / 2, pitch = Math.atan2(y, Math.hypot(x, z)) / 2;
+    const [c, s, p, q] = [Math.cos(yaw), Math.sin(yaw), Math.cos(pitch), Math.sin(pitch)];
+    quaternion.set(c * q, s * p, -s * q, c * p);
+    const { frames } = headset;
+    while (headset.frames < frames + 2)
+        await new Promise(requestAnimationFrame);
+}, point);
+
+// Pulls the trigger of the right hand.
+export const pull = (page) => page.evaluate(async () => {
+    const { headset } = globalThis.plantcast.modules.there('enterVr'), { right } = globalThis.device.controllers;
+    for (const value of [1, 0]) {
+        right.updateButtonValue('trigger', value);
+        const { frames } = headset;
+        while (headset.frames < frames + 2 && !headset.ended)
+            await new Promise(requestAnimationFrame);
+    }
+});
+
+// Runs f(headset) in the page right after a frame is drawn. yaw: angle in radians by which the head turns just before that frame.
+const inFrame = (page, f, yaw = null) => page.evaluate(`new Promise((done) => {
+    const { headset } = globalThis.plantcast.modules.there('enterVr'), { next } = headset, yaw = ${yaw};
+    const last = (now, frame) => {
+        headset.next = next;
+        next(now, frame);
+        done((${f})(headset));
+    };
+    headset.next = yaw === null ? last : (now, frame) => {
+        headset.next = last;
+        next(now, frame);
+        device.quaternion.set(0, Math.sin(yaw / 2), 0, Math.cos(yaw / 2));
+    };
+})`);
+
+// Returns what the eyes see: { left, right: { width, rgba, undrawn (share of pixels that no picture shows) }, seq of the picture }.
+export async function seen(page, yaw = null) {
+    const { pixels, seq } = await inFrame(page, ((headset) => {
+        const { gl } = headset.painter, { drawingBufferWidth: width, drawingBufferHeight: height } = gl;
+        const all = new Uint8Array(4 * width * height);
+        gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, all);
+        let text = '';
+        for (let i = 0; i < all.length; i += 32768)
+            text += String.fromCharCode(...all.subarray(i, i + 32768));
+        return { pixels: btoa(text), seq: headset.shown.seq };
+    }).toString(), yaw);
+    const all = Buffer.from(pixels, 'base64'), { width, height } = EYE;
+    const eye = (left) => {
+        const rgba = Buffer.alloc(4 * width * height);
+        for (let y = 0; y < height; y++)
+            all.copy(rgba, 4 * y * width, 4 * ((height - 1 - y) * 2 * width + left), 4 * ((height - 1 - y) * 2 * width + left + width));
+        let undrawn = 0;
+        for (let i = 0; i < rgba.length; i += 4)
+            undrawn += rgba[i] === 140 && rgba[i + 1] === 140 && rgba[i + 2] === 140 ? 1 : 0; // Painter's grey
+        return { width, rgba, undrawn: undrawn / (width * height) };
+    };
+    return { left: eye(0), right: eye(width), seq };
+}
+
+// Returns what the eyes see in the next frame, as a PNG file: the left eye's picture beside the right eye's.
+export const eyesPng = async (page) =>
+    Buffer.from(await inFrame(page, ((headset) => headset.painter.gl.canvas.toDataURL('image/png').split(',')[1]).toString()), 'base64');
