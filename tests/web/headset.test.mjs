@@ -140,6 +140,23 @@ test('a ray meets the surface that the picture shows, from wherever it begins', 
     assert.ok(hitOf(grid, CAMERA, [0, 0.3, 1.2], unit([1, -0.0001, 0])) === null, 'never an endless search');
 });
 
+test('numbers of a broken device: every search ends, and nothing is hit', () => {
+    const grid = gridOf(CAMERA, 1000, 1000, 8), bad = [NaN, Infinity, -Infinity, 1e300, 0];
+    for (const one of bad)
+        for (const other of bad)
+            for (const i of [0, 1, 2]) {
+                const spoil = (v) => v.with(i, one), direction = [other, 1, 0.1];
+                const rays = [[spoil([0, 0.3, 1.2]), direction], [[0, 0.3, 1.2], spoil(direction)]];
+                for (const hit of rays.map((ray) => hitOf(grid, CAMERA, ...ray)))
+                    assert.ok(hit === null || hit.point.every(Number.isFinite), `${one} ${other}: ${hit?.point}`);
+                assert.ok(floorHit([0, 0, 1], spoil(direction), [0, 0, 0], UP)?.every(Number.isFinite) ?? true);
+                const { fov, width, height } = wideView(matrix(0, [0, 0, 0]), [{ projectionMatrix: LEFT.with(0, one).with(5, other),
+                    transform: { matrix: matrix(0, [0, 0, 0]) } }], 1000);
+                const isAsked = fov >= 1 && fov <= 120 && width >= 16 && height >= 16 && width * height < 5e6;
+                assert.ok(isAsked, `${one} ${other}: ${fov} ${width}x${height}`);
+            }
+});
+
 test('the floor, standing there, and the panel at the wrist', () => {
     isClose(floorHit([0, 0, 1.5], unit([0, 1, -1]), [9, 9, 0], UP), [0, 1.5, 0]);
     assert.equal(floorHit([0, 0, 1.5], unit([0, 1, 0.1]), [0, 0, 0], UP), null, 'upwards');

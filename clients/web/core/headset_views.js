@@ -6,9 +6,10 @@ import { basis, heightAt, RADIANS } from './camera.js';
 import { depthAt, gridColumns } from './warp_mesh.js';
 import { add, along, cross, dot, length, middle, scale, subtract, unit } from './vector.js';
 
-const MAX_TAN = Math.tan(60 * RADIANS); // the server accepts fields of view up to 120 degrees
+const MAX_TAN = Math.tan(60 * RADIANS), LEAST_TAN = 0.02; // the server accepts fields of view of 1 to 120 degrees
 const MARGIN = 1.15; // how much wider the picture is than both eyes see, so that a turned head finds most of its view drawn
 const MOST_PX = 4e6, STEP_PX = 2; // largest picture that is requested; step along a ray
+const MOST_DENSITY = 4096; // pixels of an eye per tangent of 1: above, the numbers make no sense
 const NEAREST_M = 0.05, FARTHEST_M = 1000; // ends of a ray
 export const STAND_M = 1.6; // height of the eyes above the floor, where the device does not know it
 const ROOM_M = 2.5; // distance from the plant at which a user begins
@@ -60,6 +61,9 @@ export function clipOf({ axes, projection: p }, [v, h], nearest) {
 export const eyeMatrix = (grid, camera, eye, nearest) =>
     gridColumns(grid, camera, eye.at).flatMap((column) => clipOf(eye, column, nearest));
 
+// Returns the tangent of a direction to the side; the largest one if the device's numbers make no sense.
+const tanOf = (aside, depth) => (depth > 0.1 && Math.abs(aside) < Infinity ? Math.max(LEAST_TAN, Math.abs(aside) / depth) : MAX_TAN);
+
 // Returns the shape of a picture that covers what all eyes see: { fov, width, height }. head: matrix of the viewer; views: of WebXR; eyePx:
 // height of an eye's picture in pixels.
 export function wideView(head, views, eyePx) {
@@ -69,10 +73,10 @@ export function wideView(head, views, eyePx) {
         const own = columnsOf(transform.matrix);
         for (const [sx, sy] of [[-1, -1], [1, -1], [-1, 1], [1, 1]]) {
             const corner = turned(own, [(sx + p[8]) / p[0], (sy + p[9]) / p[5], -1]), depth = -dot(corner, axes[2]);
-            across = Math.max(across, depth > 0.1 ? Math.abs(dot(corner, axes[0])) / depth : MAX_TAN);
-            up = Math.max(up, depth > 0.1 ? Math.abs(dot(corner, axes[1])) / depth : MAX_TAN);
+            across = Math.max(across, tanOf(dot(corner, axes[0]), depth));
+            up = Math.max(up, tanOf(dot(corner, axes[1]), depth));
         }
-        density = Math.max(density, eyePx * p[5] / 2);
+        density = Math.max(density, Math.min(MOST_DENSITY, eyePx * p[5] / 2 || 0));
     }
     const tall = Math.min(MAX_TAN, up * MARGIN), wide = Math.min(1.5 * MAX_TAN, across * MARGIN);
     const shrink = Math.min(1, Math.sqrt(MOST_PX / (4 * density * density * tall * wide)));
